@@ -17,9 +17,10 @@ from vehicle.signals.excitation.road_settings import SETTINGS
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from vehicle.drawing.rendering.road_plot import RoadTrack, Vector
+    from vehicle.drawing.rendering.road_plot import RoadTrack
     from vehicle.model.parameters.vehicle import Vehicle
     from vehicle.runs.car.road import Drive, Road
+    from vehicle.signals.analysis.samples import Vector
     from vehicle.signals.excitation.road_drive import RoadDrive
     from vehicle.signals.excitation.signal import Signal
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
+import numpy as np
 from numpy.typing import ArrayLike
 
-from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.signals.analysis.frf import FrequencyResponse, frequency_responses
 from vehicle.signals.analysis.local_rational import local_rational_responses
 from vehicle.signals.analysis.samples import checked_signals
 
@@ -33,3 +35,11 @@ def local_rational_response(
         rounding=(rounding,),
     )
     return estimates[0]
+
+
+def frequency_response(
+    time_step: float, excitation: ArrayLike, responses: ArrayLike, **options: Any
+) -> FrequencyResponse:
+    """Estimate the FRFs to one excitation (n,); for the options see `frequency_responses`."""
+    inputs = np.asarray(excitation, dtype=np.float64)[None]
+    return frequency_responses(time_step, inputs, responses, input_names=("excitation",), **options)[0]

@@ -3,9 +3,9 @@ import pytest
 from scipy.signal import lsim
 
 from tests.signals.analysis.oscillator import state_space, stationary_response, transmissibility
+from tests.signals.analysis.single_input import frequency_response
 from tests.validation import foreign, validated
 from vehicle.errors import DataError
-from vehicle.signals.analysis.frf import frequency_response
 
 STEP = 1e-3
 

@@ -2,9 +2,10 @@ import numpy as np
 import pytest
 
 from tests.signals.analysis.oscillator import stationary_response, transmissibility
+from tests.signals.analysis.single_input import frequency_response
 from tests.validation import validated
 from vehicle.errors import DataError
-from vehicle.signals.analysis.frf import frequency_response, frequency_responses
+from vehicle.signals.analysis.frf import frequency_responses
 
 STEP = 1e-3
 SAMPLES = 200_000
@@ -78,7 +79,7 @@ def test_fully_correlated_inputs_are_refused_by_name(plates, copy):
     assert message.startswith("excitations: fully correlated inputs, the matrix Gxx is rank-deficient")
     assert "copies: fr and fl (coherence " in message
     assert "rear (" not in message
-    assert "Use the single-input frequency_response with one input" in message
+    assert "Use one input alone (its FRF is the response to the common motion)" in message
 
 
 def test_an_input_that_is_the_sum_of_two_others_is_rejected(plates):

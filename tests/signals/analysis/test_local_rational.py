@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.signals.analysis.single_input import local_rational_response
+from tests.signals.analysis.single_input import frequency_response, local_rational_response
 from tests.validation import validated
 from vehicle.errors import DataError
-from vehicle.signals.analysis.frf import frequency_response
 from vehicle.signals.analysis.local_rational import local_rational_responses
 
 RATE = 500.0

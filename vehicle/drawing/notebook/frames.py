@@ -12,6 +12,7 @@ import numpy as np
 from vehicle.engines.simulation.recording import Recording
 from vehicle.errors import MissingPartError
 from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.vibration_spectra import ChannelSpectrum
 
 
@@ -70,7 +71,6 @@ def response_frame(response: FrequencyResponse, names: tuple[str, ...]) -> Any:
     Raises:
         MissingPartError: pandas is not installed.
     """
-    pandas = _library("pandas", "to_dataframe")
     columns = {}
     for row, name in enumerate(names):
         values = response.response[row]
@@ -78,9 +78,7 @@ def response_frame(response: FrequencyResponse, names: tuple[str, ...]) -> Any:
         columns[name, "phase"] = np.degrees(np.angle(values))
         columns[name, "coherence"] = response.coherence[row]
         columns[name, "random error"] = response.random_error[row]
-    frame = pandas.DataFrame(columns, index=pandas.Index(response.frequency, name="frequency [Hz]"))
-    frame.columns.names = ["channel", "value"]
-    return frame
+    return _over_frequency(response.frequency, columns)
 
 
 def spectra_frame(spectra: Sequence[ChannelSpectrum]) -> Any:
@@ -92,11 +90,16 @@ def spectra_frame(spectra: Sequence[ChannelSpectrum]) -> Any:
     Raises:
         MissingPartError: pandas is not installed.
     """
-    pandas = _library("pandas", "to_dataframe")
     columns = {}
     for spectrum in spectra:
         columns[spectrum.label, f"density [({spectrum.unit})^2/Hz]"] = spectrum.density
         columns[spectrum.label, f"cumulative RMS [{spectrum.unit}]"] = spectrum.cumulative_rms
-    frame = pandas.DataFrame(columns, index=pandas.Index(spectra[0].frequency, name="frequency [Hz]"))
+    return _over_frequency(spectra[0].frequency, columns)
+
+
+def _over_frequency(frequency: Vector, columns: dict[tuple[str, str], Vector]) -> Any:
+    """Return a pandas table of (channel, value) columns over frequency [Hz]."""
+    pandas = _library("pandas", "to_dataframe")
+    frame = pandas.DataFrame(columns, index=pandas.Index(frequency, name="frequency [Hz]"))
     frame.columns.names = ["channel", "value"]
     return frame

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 
-Vector = npt.NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 WIDTH, HEIGHT = 330, 110
 """Size of a small drawing [pixel]."""

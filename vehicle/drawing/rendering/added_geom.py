@@ -6,6 +6,8 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.signals.analysis.samples import Vector
+
 UPRIGHT = np.eye(3).ravel()
 
 
@@ -15,7 +17,7 @@ def add_geom(
     size: npt.ArrayLike,
     position: npt.ArrayLike,
     colour: npt.NDArray[np.float32],
-    frame: npt.NDArray[np.float64] = UPRIGHT,
+    frame: Vector = UPRIGHT,
 ) -> mujoco.MjvGeom:
     """Append a shape to an updated scene, which must have space for it.
 

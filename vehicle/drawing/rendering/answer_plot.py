@@ -8,11 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from vehicle.drawing.rendering.figure import COLOURS, INK, PAGE_WIDTH, saved_figure
-
-Vector = npt.NDArray[np.float64]
+from vehicle.drawing.rendering.figure import COLOURS, INK, PAGE_WIDTH, name_bars, saved_figure
+from vehicle.signals.analysis.samples import Vector
 
 BETTER, WORSE, NEUTRAL = COLOURS[2], COLOURS[1], "#9aa5b1"
 """Colours of a change: smaller vibration or load, larger vibration or load, no rating."""
@@ -43,9 +41,8 @@ def plot_changes(path: Path, changes: Mapping[str, Sequence[Change]], title: str
     """Plot the changes of numbers as bars, a panel for each run, one below the other.
 
     Args:
-        path: PNG or SVG file.
+        path, title, caption: see `saved_figure`.
         changes: name of the run to its changes against the first run; equal labels in all runs are not needed.
-        title, caption: above and below the figure.
     """
     highest = max(len(of_run) for of_run in changes.values())
     height = 0.7 + len(changes) * (0.6 + (0.27 if len(changes) == 1 else 0.22) * highest)
@@ -63,12 +60,8 @@ def plot_changes(path: Path, changes: Mapping[str, Sequence[Change]], title: str
             axis.set_xlim(
                 min(float(percent.min()), -0.2 * FULL_PANEL) - room, max(float(percent.max()), 0.2 * FULL_PANEL) + room
             )
-            for row, value in zip(rows, percent, strict=True):
-                text, side = f"{value:+.1f} %" if abs(value) < 10.0 else f"{value:+.0f} %", 4 if value >= 0.0 else -4
-                axis.annotate(
-                    text, (value, row), (side, 0), textcoords="offset points", va="center",
-                    ha="left" if value >= 0.0 else "right", fontsize=8,
-                )  # fmt: skip
+            texts = [f"{value:+.1f} %" if abs(value) < 10.0 else f"{value:+.0f} %" for value in percent]
+            name_bars(axis, percent, texts, 4)
             axis.set_xlabel("change [%]")
             if len(changes) > 1:
                 axis.set_title(name)
@@ -81,11 +74,10 @@ def plot_bands(
     """Plot the share of each third octave in the weighted acceleration, stacked by axis.
 
     Args:
-        path: PNG or SVG file.
+        path, caption: see `saved_figure`.
         edges: edges of the bands [Hz]; (b + 1,).
         powers: axis to the mean square in each band [(m/s2)^2]; (b,).
         modes: short names of natural modes to their frequencies [Hz], marked above the bars.
-        caption: below the figure.
     """
     total = sum(float(power.sum()) for power in powers.values()) or 1.0
     title = "Share of the frequencies in the weighted acceleration of the seat rail"

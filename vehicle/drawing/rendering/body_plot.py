@@ -11,9 +11,8 @@ import numpy.typing as npt
 
 from vehicle.drawing.rendering.colour_scale import colours
 from vehicle.drawing.rendering.figure import COLOURS, saved_figure
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.thinned_wireframe import thinned
-
-Vector = npt.NDArray[np.float64]
 
 MOST = 12
 """Maximum number of modes in a picture."""
@@ -41,14 +40,12 @@ def plot_body(
     """Write the picture of the first modes.
 
     Args:
-        path: PNG file.
+        path, title, caption: see `saved_figure`.
         positions: positions of the nodes in the vehicle frame [m], (n, 3).
         edges: pairs of nodes, (m, 2); if empty, nodes are drawn as dots.
         shapes: shapes of the modes, (modes, n, 3); the first `MOST` are drawn.
         titles: titles of the modes.
         attachments: nodes at which the car is fixed to the body, shown as dots.
-        title: title above the picture.
-        caption: caption below the picture.
     """
     from matplotlib.collections import LineCollection
 

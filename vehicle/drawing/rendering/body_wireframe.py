@@ -15,12 +15,11 @@ import numpy.typing as npt
 
 from vehicle.drawing.rendering.added_geom import add_geom
 from vehicle.drawing.rendering.motion import Motion, State
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.thinned_wireframe import MOST_NODES, thinned
 
 if TYPE_CHECKING:  # processes that draw a film need no compiler of models
     from vehicle.engines.simulation.car_model import CarModel
-
-Vector = npt.NDArray[np.float64]
 
 NODE_RADIUS = 0.020
 MEMBER_RADIUS = 0.0085

@@ -11,11 +11,10 @@ import numpy.typing as npt
 
 from vehicle.drawing.rendering.figure import COLOURS, INK, saved_figure, wrapped
 from vehicle.drawing.rendering.wireframe import GROUPS, CarWireframe
+from vehicle.signals.analysis.samples import Vector
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-Vector = npt.NDArray[np.float64]
 
 SHADES = {"body": "#c4c4c4", "mass": "#a5a5a5", "link": "#3a3a3a", "spring": "#8a8a8a", "wheel": "#5a6b7a"}
 """Colour of the lines of each group; plates are not drawn, but the ground."""
@@ -34,10 +33,9 @@ def plot_car(path: Path, wire: CarWireframe, data: Any, size: tuple[float, float
     """Write the drawing of a car.
 
     Args:
-        path: PNG or SVG file.
+        path, size: see `saved_figure`.
         wire: lines of the car.
         data: a `vehicle.runs.car.car_data.CarData` of the same car.
-        size: width and height [inch].
     """
     count = max(1, len(data.axles))
     caption = (

@@ -6,12 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-import numpy as np
-import numpy.typing as npt
-
 from vehicle.drawing.rendering.figure import COLOURS, saved_figure
-
-Vector = npt.NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 MOST_POINTS = 6000
 """Maximum number of points of a line; more are not visible in a picture of this size."""
@@ -37,10 +33,8 @@ def plot_damper(path: Path, loops: Sequence[DamperLoop], title: str, caption: st
     """Write the picture of a fitted damper, a row for each test.
 
     Args:
-        path: PNG file.
+        path, title, caption: see `saved_figure`.
         loops: measured and fitted forces of all tests.
-        title: title above the picture.
-        caption: caption below the picture.
     """
     with saved_figure(path, (9.0, 1.0 + 3.0 * len(loops)), title, caption) as figure:
         grid = figure.subplots(len(loops), 2, squeeze=False, sharey="row")

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import mujoco
-import numpy as np
-import numpy.typing as npt
 
 from vehicle.drawing.rendering.body_wireframe import Wireframe
 from vehicle.drawing.rendering.canvas import Canvas
 from vehicle.drawing.rendering.colour_scale import colours
 from vehicle.drawing.rendering.motion import Coil, Motion, State
 from vehicle.model.parameters.composition import Composition
+from vehicle.signals.analysis.samples import Vector
 
 
 class Drawing:
@@ -48,7 +47,7 @@ class Drawing:
         self.positions = self.wireframe.positions(state, factor)
         self.shades = colours(self.wireframe.displacement(state), self.scale_top)
 
-    def see(self, camera: mujoco.MjvCamera, opacity: npt.NDArray[np.float64]) -> None:
+    def see(self, camera: mujoco.MjvCamera, opacity: Vector) -> None:
         """Fill the scene of the canvas for a camera; geoms may be appended before it is rendered."""
         self.canvas.model.mat_rgba[:, 3] = opacity
         self.canvas.update(self.data, camera)

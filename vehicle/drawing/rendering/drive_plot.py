@@ -11,9 +11,8 @@ import numpy.typing as npt
 
 from vehicle.drawing.rendering.figure import COLOURS, LINES, saved_figure
 from vehicle.drawing.rendering.recorded_run import liveliest
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.spectra import power_spectral_density
-
-Vector = npt.NDArray[np.float64]
 
 DETAIL, WINDOW = 2.0, 4.0
 """Length of the magnified time window and of a window of the spectra [s]."""
@@ -36,12 +35,11 @@ def plot_replication(
     """Plot target and response of each channel and the drive signal below: a time window, and the spectrum.
 
     Args:
-        path: PNG file.
+        path, caption: see `saved_figure`.
         time: sample times [s], (n,).
         responses: channel to target and response [m/s2], (n,) each.
         drive: wheel to its plate displacement [m], (n,).
         band: edges of the frequency band [Hz].
-        caption: line under the picture.
     """
     step = float(time[1] - time[0])
     start = liveliest(time, np.sum([pair[0] for pair in responses.values()], axis=0), DETAIL)
@@ -94,10 +92,9 @@ def plot_convergence(path: Path, errors: Mapping[str, Vector], kept: npt.NDArray
     """Plot the error of each channel over the runs.
 
     Args:
-        path: PNG file.
+        path, caption: see `saved_figure`.
         errors: channel to RMS of target minus response over RMS of target, in the band [-], (runs,).
         kept: True for runs better than all previous runs, (runs,).
-        caption: line under the picture.
     """
     runs = np.arange(1, kept.size + 1)
     with saved_figure(path, (8.0, 4.8), "Error over the iteration", caption) as figure:

@@ -10,12 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.drawing.rendering.recorded_run import event_of, liveliest, wheels_of
 from vehicle.engines.simulation.recording import Recording
-
-Vector = npt.NDArray[np.float64]
 
 FPS = 30.0
 """Frames per second of every film [Hz]."""
@@ -97,10 +94,7 @@ def liveliest_window(
     """Choose the time window with the largest damper motion of a wheel; without slip, with the largest knuckle motion.
 
     Args:
-        recording: recording of the run.
-        wheel: the excited wheel.
-        hub: acceleration channel of the part that carries the wheel.
-        slip_velocity: damper velocity above which the damper slips [m/s].
+        recording, wheel, hub, slip_velocity: see `choose_excerpt`.
         length: length of the window [s].
 
     Returns:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.drawing.rendering.grid_lines import bared, draw_grid
+from vehicle.signals.analysis.samples import Complex, Vector
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -178,7 +179,7 @@ def frf_axes(figure: Figure, axes: npt.NDArray[Any], coherence_ticks: tuple[floa
     figure.align_ylabels(axes[:, 0])
 
 
-def wrapped_phase(response: npt.NDArray[np.complex128]) -> npt.NDArray[np.float64]:
+def wrapped_phase(response: Complex) -> Vector:
     """Return the phase [deg] between -180 and 180, with NaN after each jump so that no line crosses the picture.
 
     Args:
@@ -194,9 +195,9 @@ def wrapped_phase(response: npt.NDArray[np.complex128]) -> npt.NDArray[np.float6
 
 def fading(
     axis: Axes,
-    frequency: npt.NDArray[np.float64],
-    values: npt.NDArray[np.float64],
-    coherence: npt.NDArray[np.float64],
+    frequency: Vector,
+    values: Vector,
+    coherence: Vector,
     label: str | None = None,
     **style: Any,
 ) -> None:
@@ -222,18 +223,16 @@ def fading(
 
 def error_band(
     axis: Axes,
-    frequency: npt.NDArray[np.float64],
-    values: npt.NDArray[np.float64],
-    half: npt.NDArray[np.float64],
-    coherence: npt.NDArray[np.float64],
+    frequency: Vector,
+    values: Vector,
+    half: Vector,
+    coherence: Vector,
     colour: str,
 ) -> None:
     """Draw the band of the random error of a magnitude, not where the coherence is below `SHOWN_BAND`.
 
     Args:
-        axis: the axis.
-        frequency: [Hz], (m,).
-        values: magnitude, (m,).
+        axis, frequency, values: see `fading`.
         half: half width of the band, (m,).
         coherence: gamma^2 [-], (m,); where it is unknown the band is drawn.
         colour: of the curve.
@@ -259,3 +258,17 @@ def shade(
         return
     transform = axis.get_xaxis_transform()
     axis.fill_between(along, 0.0, 1.0, where=where, transform=transform, color=colour, zorder=0, label=label)
+
+
+def name_bars(axis: Axes, values: Sequence[float] | Vector, texts: Sequence[str], distance: float) -> None:
+    """Write a text at the end of each horizontal bar, outside of the bar.
+
+    Args:
+        axis: axes with bars at 0, 1, 2, ...
+        values: ends of the bars, (n,).
+        texts: their texts.
+        distance: distance of the text from the end [point].
+    """
+    for row, (value, text) in enumerate(zip(values, texts, strict=True)):
+        side, across = (distance, "left") if value >= 0.0 else (-distance, "right")
+        axis.annotate(text, (value, row), (side, 0), textcoords="offset points", va="center", ha=across, fontsize=8)

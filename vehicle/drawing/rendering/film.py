@@ -72,8 +72,7 @@ def write_film(path: Path, frames: Iterable[Picture], shape: tuple[int, int]) ->
         shape: height and width [pixel], even.
 
     Raises:
-        MissingPartError: there is no ffmpeg that encodes it.
-        OutputError: the file cannot be written.
+        MissingPartError, OutputError: see `film`.
     """
     import mediapy
 

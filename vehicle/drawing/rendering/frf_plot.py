@@ -45,11 +45,9 @@ def plot_frfs(
     """Plot the FRFs of a run.
 
     Args:
-        path: PNG file.
+        path, caption, size: see `saved_figure`.
         run: the run.
         responses: responses to each motion of the plates, with rows of all acceleration channels.
-        caption: line under the picture.
-        size: width and height [inch].
     """
     if len(responses) > 1:
         _plot_separated(path, run, responses, caption, size)

@@ -10,11 +10,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.drawing.rendering.figure import COLOURS, INK, saved_figure
-
-Vector = npt.NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 MARKS, DOTS = "*DsP^v", "os^vDP"
 """Markers of the named cars, and of parameters."""

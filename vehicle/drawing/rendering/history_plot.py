@@ -5,16 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from itertools import cycle, islice
 
-import numpy as np
-import numpy.typing as npt
-
 from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.drawing.rendering.open_axes import Axes
+from vehicle.signals.analysis.samples import Vector
 
 
-def draw_histories(
-    axes: Axes, time: npt.NDArray[np.float64], histories: Mapping[str, tuple[npt.NDArray[np.float64], str]]
-) -> None:
+def draw_histories(axes: Axes, time: Vector, histories: Mapping[str, tuple[Vector, str]]) -> None:
     """Draw time histories; curves that the axes already have stay.
 
     Args:

@@ -31,11 +31,9 @@ def plot_kinematics(
     """Write the picture of axle kinematics.
 
     Args:
-        path: PNG file.
+        path, title, caption: see `saved_figure`.
         poses: poses of the right wheel in the order of travel.
         geometry: geometry of the axle at these positions.
-        title: title above the picture.
-        caption: caption below the picture.
     """
 
     def values(name: str) -> np.ndarray:

@@ -25,9 +25,8 @@ def plot_loads(path: Path, loads: Sequence[LoadSpectrum], caption: str) -> None:
     """Write the picture of load spectra.
 
     Args:
-        path: PNG file.
+        path, caption: see `saved_figure`.
         loads: loads with their cycles; each panel shows as many of the largest as there are colours.
-        caption: caption below the picture.
     """
     left = [load for load in loads if load.counted.ranges.size]
     panels: dict[str, list[LoadSpectrum]] = {}

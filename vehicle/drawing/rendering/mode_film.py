@@ -9,7 +9,6 @@ from typing import Protocol
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.drawing.rendering.backend import choose_backend
 from vehicle.drawing.rendering.body_wireframe import Wireframe
@@ -25,6 +24,7 @@ from vehicle.drawing.rendering.rounding import round_up
 from vehicle.drawing.rendering.stage import stage_model
 from vehicle.drawing.rendering.wireframe import car_wireframe, unit_factor
 from vehicle.engines.simulation.car_model import CarModel
+from vehicle.signals.analysis.samples import Complex
 
 PERIOD, CYCLES = 40, 3
 """Frames of a cycle, and cycles of the film: 4 s."""
@@ -48,7 +48,7 @@ class MovingMode(Protocol):
         """Return the damping ratio -Re(s) / |s| [-]."""
 
     @property
-    def shape(self) -> npt.NDArray[np.complex128]:
+    def shape(self) -> Complex:
         """Return the displacement of the velocity coordinates, (nv,)."""
 
     @property
@@ -64,7 +64,7 @@ class ModeMotion(Motion):
         shape: displacement of the velocity coordinates, (nv,).
     """
 
-    def __init__(self, model: mujoco.MjModel, shape: npt.NDArray[np.complex128]) -> None:
+    def __init__(self, model: mujoco.MjModel, shape: Complex) -> None:
         super().__init__(model)
         data, rows = mujoco.MjData(model), np.zeros((model.nbody, 2, 3, model.nv))
         mujoco.mj_kinematics(model, data)
@@ -140,14 +140,11 @@ def mode_film(
     Args:
         car: compiled car.
         mode: mode of the car.
-        path: MP4 file.
-        size: width and height [pixel], even.
-        progress: called with the finished fraction.
+        path, size, progress: see `film`.
 
     Raises:
         ConfigurationError: the size cannot be encoded or read.
-        MissingPartError: an off-screen OpenGL library or ffmpeg is missing.
-        OutputError: the file cannot be written.
+        MissingPartError, OutputError: see `film`.
     """
     backend = choose_backend()
     shot = ModeShot(car, mode, OneView(width=size[0], height=size[1]))

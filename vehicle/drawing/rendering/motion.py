@@ -13,14 +13,12 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 import scipy
 
 from vehicle.drawing.rendering.recorded_run import wheels_of
 from vehicle.engines.simulation.recording import Recording
 from vehicle.model.parameters.composition import Composition, PlacedSpring
-
-Vector = npt.NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -7,12 +7,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.drawing.rendering.figure import COLOURS, LINES, saved_figure
-
-Vector = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
+from vehicle.signals.analysis.samples import Complex, Vector
 
 MARKERS = ("o", "s", "^", "D", "v")
 """Markers of the points, one for each colour."""
@@ -38,10 +35,8 @@ def plot_mount(path: Path, curves: Sequence[MountCurve], title: str, caption: st
     """Write the picture of a fitted mount.
 
     Args:
-        path: PNG file.
+        path, title, caption: see `saved_figure`.
         curves: points and curves of all amplitudes.
-        title: title above the picture.
-        caption: caption below the picture.
     """
     with saved_figure(path, (9.0, 7.5), title, caption) as figure:
         upper, lower = figure.subplots(2, 1, sharex=True)

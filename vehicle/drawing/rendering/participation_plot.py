@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
-from vehicle.drawing.rendering.figure import COLOURS, FRF_TICKS, INK, saved_figure
+from vehicle.drawing.rendering.figure import COLOURS, FRF_TICKS, INK, name_bars, saved_figure
+from vehicle.signals.analysis.samples import Vector
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,8 +21,6 @@ HATCHES = ("", "//", "..", "\\\\", "xx")
 """Hatches in addition to the colours, to distinguish areas in black-and-white print."""
 
 MOST_BARS = 10
-
-Vector = npt.NDArray[np.float64]
 
 
 def plot_participation(
@@ -104,14 +102,4 @@ def _bars(axis: Axes, shares: Mapping[str, float], colours: Mapping[str, str], l
     axis.grid(visible=False, axis="y")
     axis.margins(x=0.18)
     axis.set(xlabel=label)
-    for row, value in zip(rows, values, strict=True):
-        side = 3 if value >= 0.0 else -3
-        axis.annotate(
-            f"{round(value) + 0:+d}",
-            (value, float(row)),
-            (side, 0),
-            textcoords="offset points",
-            va="center",
-            ha="left" if side > 0 else "right",
-            fontsize=8,
-        )
+    name_bars(axis, values, [f"{round(value) + 0:+d}" for value in values], 3)

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.drawing.rendering.figure import (
     COLOURS,
@@ -28,6 +27,7 @@ from vehicle.drawing.rendering.placed_axes import Margins, placed_axes
 from vehicle.drawing.rendering.recorded_run import RecordedRun, dampers_of, level_words, liveliest, wheels_of
 from vehicle.names import side_of, wheel_words
 from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.signals.analysis.samples import Vector
 
 REGION = 1.96
 """Half width of the band around a magnitude, in standard errors: 95 % of all records lie within it."""
@@ -83,12 +83,10 @@ def plot_frf(
     """Write the FRF picture: magnitudes with the 95 % band of their random error, grey outside the band of the input.
 
     Args:
-        path: PNG file.
+        path, caption, size: see `saved_figure`.
         run: the run, with its excited wheel.
         response: FRFs to the plate displacement [m/s2 per m], one row for each acceleration channel.
-        caption: line under the picture: input, level, estimator.
         title: what the FRFs are to, where that is not one plate.
-        size: width and height [inch].
     """
     rows = {name: row for row, name in enumerate(run.car.model.vehicle.acceleration_channels)}
     wheel, wheels = run.wheel, run.car.model.vehicle.wheels
@@ -258,7 +256,7 @@ def _range(runs: Sequence[RecordedRun], channels: Sequence[str], scale: float) -
     return low - margin, high + margin
 
 
-def envelope(time: npt.NDArray[np.float64], values: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], ...]:
+def envelope(time: Vector, values: Vector) -> tuple[Vector, ...]:
     """Reduce a history to the minimum and maximum of `SEGMENTS` segments of equal length.
 
     Neighbours share a sample, so that the area between minimum and maximum has no gaps.
@@ -278,7 +276,7 @@ def envelope(time: npt.NDArray[np.float64], values: npt.NDArray[np.float64]) -> 
     return 0.5 * (time[edges[:-1]] + time[edges[1:]]), np.minimum(low, ends), np.maximum(high, ends)
 
 
-def distinct(x: npt.NDArray[np.float64], y: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], ...]:
+def distinct(x: Vector, y: Vector) -> tuple[Vector, ...]:
     """Remove dots of a scatter plot that lie on others, so that rare dots of a long record remain.
 
     Args:

@@ -6,15 +6,13 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.engines.simulation.recording import Recording
 from vehicle.model.parameters.composition import Composition
+from vehicle.signals.analysis.samples import Vector
 
 if TYPE_CHECKING:  # processes that draw a film need no compiler of models
     from vehicle.engines.simulation.car_model import CarModel
-
-Vector = npt.NDArray[np.float64]
 
 
 class RecordedSignal(Protocol):

@@ -7,12 +7,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from vehicle.drawing.rendering.figure import COLOURS, saved_figure
-
-Vector = NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 
 class RoadTrack(NamedTuple):
@@ -32,10 +28,9 @@ def plot_road(path: Path, distance: Vector, tracks: Mapping[str, RoadTrack], tit
     """Plot a road, a column for each track.
 
     Args:
-        path: PNG file.
+        path, title, caption: see `saved_figure`.
         distance: distance of the wheels [m]; (n,).
         tracks: title of the column to the road.
-        title, caption: above and below the figure.
     """
     width = 3.0 + 4.5 * len(tracks)
     with saved_figure(path, (width, 6.0), title, textwrap.fill(caption, round(12.0 * width))) as figure:

@@ -14,13 +14,11 @@ from collections.abc import Mapping, Sequence
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.drawing.rendering.added_geom import add_geom
 from vehicle.engines.simulation.recording import Recording
 from vehicle.model.parameters.composition import PlacedWheel
-
-Vector = npt.NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 PIECE, PARTS = 0.05, 4
 """Length of a straight segment of the strip [m], and number of parts of a segment whose road is not straight."""

@@ -33,11 +33,9 @@ def plot_responses(
     """Plot FRFs of several runs over each other, with a column for each channel.
 
     Args:
-        path: PNG or SVG file.
+        path, title, caption, size: see `saved_figure`.
         runs: name to run and FRFs of all its acceleration channels.
         channels: channel recorded in all runs to the title of its column.
-        title, caption: above and below the figure.
-        size: width and height [inch].
     """
     with saved_figure(path, size, title, wrapped(f"{caption}; {FADED}" if caption else FADED, size[0])) as figure:
         axes = figure.subplots(

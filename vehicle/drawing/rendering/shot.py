@@ -9,7 +9,6 @@ from pathlib import Path
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.drawing.rendering.body_wireframe import Wireframe
 from vehicle.drawing.rendering.cameras import close_up, whole_car
@@ -33,8 +32,7 @@ from vehicle.drawing.rendering.rounding import round_factor, round_up
 from vehicle.drawing.rendering.trace_strip import Trace, TraceStrip
 from vehicle.errors import ConfigurationError
 from vehicle.names import side_of
-
-Vector = npt.NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 VISIBLE_TRAVEL = 0.08
 """Travel [m] to which the largest displacement of the excerpt is exaggerated."""

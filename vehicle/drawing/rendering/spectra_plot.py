@@ -42,10 +42,9 @@ def plot_spectra(
     All columns have the same scale, so that channels and runs can be compared.
 
     Args:
-        path: PNG or SVG file.
+        path, title, caption: see `saved_figure`.
         runs: name to the spectra of a run.
         channels: channel that is in all runs to the title of its column.
-        title, caption: above and below the figure.
         max_width: maximum width [inch].
     """
     size = (min(max(7.0, 1.6 + 3.8 * len(channels)), max_width), 8.6 if max_width > PAGE_WIDTH else 6.6)
@@ -119,9 +118,8 @@ def plot_road_levels(path: Path, levels: Mapping[str, RoadLevel], title: str = "
     """Plot the density of road heights over the wavenumber, with the limits of the classes of ISO 8608.
 
     Args:
-        path: PNG or SVG file.
+        path, title, caption: see `saved_figure`.
         levels: name of the run and wheel to the level of its road.
-        title, caption: above and below the figure.
     """
     with saved_figure(path, (7.6, 6.0), title, caption) as figure:
         axis: Any = figure.subplots()

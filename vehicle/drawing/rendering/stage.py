@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
-from vehicle.drawing.rendering.body_wireframe import EMISSION
-from vehicle.drawing.rendering.frame_at_rest import frame_at_rest
+from vehicle.drawing.rendering.body_wireframe import EMISSION, members_of
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.model.assembly.studio import add_studio
 from vehicle.model.assembly.visuals import add_shapes, visible_shapes
 from vehicle.model.shapes import SHELL
+from vehicle.model.shapes.shape import Shape
+from vehicle.model.shapes.solids import joined, rod
+from vehicle.signals.analysis.samples import Vector
 
 SAMPLES = 0
 """Multisampling of the picture: four samples take twice as long on a processor; a film halves its colours anyway."""
@@ -65,7 +66,24 @@ def stage_model(car: CarModel, size: tuple[int, int], *, road: bool = False) -> 
     return spec.compile()
 
 
-def unveiled(model: mujoco.MjModel) -> npt.NDArray[np.float64]:
+REST_RADIUS, REST_COLOUR = 0.005, (0.35, 0.38, 0.42, 1.0)
+"""Radius [m] and colour of the rods of a frame at rest."""
+
+
+def frame_at_rest(car: CarModel) -> dict[str, Shape]:
+    """Return the frame of the body in the design position, a reference for its motion, as one shape by name.
+
+    Empty for a body without lines.
+    """
+    lines, slim = members_of(car)
+    if not len(lines):
+        return {}
+    ends = np.asarray(car.superelement.positions)[lines]
+    mesh = joined([rod(first, second, slim * REST_RADIUS, sides=6) for first, second in ends])
+    return {"frame_at_rest": Shape(mesh=mesh, rgba=REST_COLOUR, part="world")}
+
+
+def unveiled(model: mujoco.MjModel) -> Vector:
     """Return the opacity of all materials, (materials,), zero for shapes that would hide the suspension."""
     names = {model.mat(number).name: number for number in range(model.nmat)}
     opacity = model.mat_rgba[:, 3].copy()

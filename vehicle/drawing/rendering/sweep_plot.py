@@ -7,11 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.drawing.rendering.figure import COLOURS, INK, saved_figure
-
-Vector = npt.NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 MOST_LINES = 3000
 """Maximum number of cars drawn on parallel axes: the most comfortable and evenly spaced others."""
@@ -34,12 +32,11 @@ def plot_sweep(
     """Plot the comfort of the cars of a sweep; a star marks the most comfortable car, a circle the first.
 
     Args:
-        path: PNG or SVG file.
+        path, title, caption: see `saved_figure`.
         names: varied parameters with units; at least one.
         parameters: values of the parameters; (cars, names).
         weighted: weighted RMS [m/s2]; (cars,).
         unweighted: unweighted RMS, 2 to 50 Hz [m/s2]; (cars,).
-        title, caption: above and below the figure.
     """
     size = (7.6, 5.0) if len(names) < 3 else (2.4 + 1.7 * len(names), 5.4)
     with saved_figure(path, size, title, caption) as figure:
@@ -118,23 +115,7 @@ def _parallel(figure: Any, axis: Any, names: Sequence[str], parameters: Vector, 
 def _mark(axis: Any, x: Vector, y: Vector, weighted: Vector) -> None:
     """Mark the most comfortable car and the first car."""
     best = int(np.nanargmin(weighted))
-    axis.plot(
-        x[best],
-        y[best],
-        "*",
-        markersize=15,
-        color=COLOURS[1],
-        markeredgecolor="white",
-        linestyle="none",
-        label="most comfortable",
-    )
-    axis.plot(
-        x[0],
-        y[0],
-        "o",
-        markersize=17,
-        markerfacecolor="none",
-        markeredgecolor=COLOURS[1],
-        linestyle="none",
-        label="first car",
-    )
+    star = {"marker": "*", "markersize": 15, "color": COLOURS[1], "markeredgecolor": "white"}
+    circle = {"marker": "o", "markersize": 17, "markerfacecolor": "none", "markeredgecolor": COLOURS[1]}
+    for index, look, label in ((best, star, "most comfortable"), (0, circle, "first car")):
+        axis.plot(x[index], y[index], linestyle="none", label=label, **look)

@@ -7,14 +7,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 from PIL import Image, ImageDraw
 
 from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.drawing.rendering.layout import INK, PAPER, Layout
 from vehicle.drawing.rendering.rounding import round_up
-
-Vector = npt.NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 GRID = (208, 212, 218)
 TRACE_COLOURS = tuple(tuple(bytes.fromhex(COLOURS[place][1:])) for place in (4, 0, 1))

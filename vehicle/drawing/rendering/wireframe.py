@@ -11,9 +11,8 @@ import numpy.typing as npt
 
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.model.parameters.composition import Composition, PlacedPart, PlacedWheel
+from vehicle.signals.analysis.samples import Complex, Vector
 from vehicle.signals.analysis.thinned_wireframe import MOST_NODES, thinned
-
-Vector = npt.NDArray[np.float64]
 
 GROUPS = ("body", "mass", "link", "spring", "wheel", "ground")
 """Groups of lines."""
@@ -47,12 +46,12 @@ class CarWireframe:
     groups: npt.NDArray[np.intp]
     motion: Vector
 
-    def displacement(self, shape: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
+    def displacement(self, shape: Complex) -> Complex:
         """Return the displacement of the points [m], (n, 3), in a shape over the velocity coordinates."""
         return np.asarray(self.motion @ shape)
 
 
-def unit_factor(displacement: npt.NDArray[np.complex128]) -> complex:
+def unit_factor(displacement: Complex) -> complex:
     """Return the complex factor that makes the largest displacement of a shape 1, with a real largest component.
 
     Args:

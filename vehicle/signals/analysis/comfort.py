@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from vehicle.errors import DataError
 from vehicle.signals.analysis.comfort_error import overall_error, overall_waves
-from vehicle.signals.analysis.samples import checked_rows
+from vehicle.signals.analysis.samples import Complex, Vector, checked_rows
 from vehicle.signals.analysis.spectra import band_periodogram, band_rms, rms_of
 
 COMFORT_BAND = (2.0, 50.0)
@@ -39,13 +39,13 @@ class Settling:
 class ComfortValues:
     """Comfort values of r records of equal length."""
 
-    axes: NDArray[np.float64]
+    axes: Vector
     """RMS in x, y, z [m/s2], shape (r, 3)"""
-    overall: NDArray[np.float64]
+    overall: Vector
     """sqrt(x^2 + y^2 + z^2) [m/s2], shape (r,)"""
-    error: NDArray[np.float64]
+    error: Vector
     """normalised standard error of `overall`, see `vehicle.signals.analysis.comfort_error` [-], shape (r,)"""
-    waves: NDArray[np.complex128]
+    waves: Complex
     """slow variations of `overall`, see `vehicle.signals.analysis.comfort_error` [m/s2], shape (r, WAVES)"""
 
 
@@ -82,9 +82,7 @@ def comfort_values(
     )
 
 
-def rms_standard_error(
-    time_step: float, signals: ArrayLike, band: tuple[float, float] = COMFORT_BAND
-) -> NDArray[np.float64]:
+def rms_standard_error(time_step: float, signals: ArrayLike, band: tuple[float, float] = COMFORT_BAND) -> Vector:
     """Return the normalised standard error of the band RMS of stationary Gaussian records, shape (k,).
 
     Var[ms] = (1/T) int S^2 df  and  rms = sqrt(ms), so  error = sqrt(int S^2 df / T) / (2 int S df)
@@ -111,7 +109,7 @@ def rms_standard_error(
 
 
 def settling(
-    time_step: float, signals: ArrayLike | Sequence[NDArray[np.float64]], band: tuple[float, float] = COMFORT_BAND
+    time_step: float, signals: ArrayLike | Sequence[Vector], band: tuple[float, float] = COMFORT_BAND
 ) -> tuple[Settling, ...]:
     """Compare the band RMS of the two halves of each signal; a decaying transient causes a drift.
 

@@ -27,10 +27,8 @@ Sources: Bendat and Piersol, Random Data, 4th ed., chapter 8; Heidelberger and W
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
-Vector = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
+from vehicle.signals.analysis.samples import Complex, Vector
 
 WAVES = 3
 """Number of stored C_m. They reach 3/T, 0.4 Hz for 8 s: about the half-power bandwidth of the modes from 2 Hz on. With

@@ -15,13 +15,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from vehicle.errors import DataError
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.spectra import periodogram
 from vehicle.signals.analysis.weighting import weighting
-
-Vector = NDArray[np.float64]
 
 NOMINAL = (1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0)
 """Nominal midband frequencies of a decade [Hz] (IEC 61260-1:2014, annex E)."""

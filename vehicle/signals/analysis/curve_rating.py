@@ -11,10 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.time_shift import coefficients
 from vehicle.signals.analysis.time_warping import warped_differences
-
-Vector = npt.NDArray[np.float64]
 
 CORRIDOR, PHASE, MAGNITUDE, SLOPE = 0.4, 0.2, 0.2, 0.2
 """Weights of the four ratings in the overall rating."""

@@ -9,11 +9,9 @@ from typing import Any
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
 from vehicle.errors import DataError
-
-Real = NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 DEPENDENT = 0.98
 """Minimum coherence of two time-aligned inputs that count as copies: separated responses would have more than seven
@@ -55,7 +53,7 @@ class Copy:
     """ratio of the second input to the first [-]; NaN if they are related by a filter"""
 
 
-def copy_of(time_step: float, first: Real, second: Real, band: tuple[float, float]) -> Copy:
+def copy_of(time_step: float, first: Vector, second: Vector, band: tuple[float, float]) -> Copy:
     """Estimate delay, factor and coherence of a second input against a first.
 
     The delay is the maximum of the correlation of the whitened signals. Both signals are then cut to their common time
@@ -97,7 +95,7 @@ def copy_of(time_step: float, first: Real, second: Real, band: tuple[float, floa
     return Copy(coherence=float(np.median(coherence)), delay=shift * time_step, factor=float(factor))
 
 
-def refuse_copies(time_step: float, inputs: Real, names: Sequence[str], band: tuple[float, float]) -> None:
+def refuse_copies(time_step: float, inputs: Vector, names: Sequence[str], band: tuple[float, float]) -> None:
     """Raise an error if an input is a copy of another.
 
     Raises:
@@ -110,7 +108,7 @@ def refuse_copies(time_step: float, inputs: Real, names: Sequence[str], band: tu
 
 
 def common_motions(
-    time_step: float, inputs: Real, names: Sequence[str], band: tuple[float, float]
+    time_step: float, inputs: Vector, names: Sequence[str], band: tuple[float, float]
 ) -> list[dict[int, float]]:
     """Group the inputs that are scaled copies without a delay; the groups are independent motions.
 

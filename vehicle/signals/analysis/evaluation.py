@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.exposure import (
@@ -21,7 +21,14 @@ from vehicle.signals.analysis.exposure import (
     vibration_dose_value,
     weighted_rms,
 )
-from vehicle.signals.analysis.samples import USABLE, checked_rows, checked_signals, checked_time_step, is_constant
+from vehicle.signals.analysis.samples import (
+    USABLE,
+    Vector,
+    checked_rows,
+    checked_signals,
+    checked_time_step,
+    is_constant,
+)
 from vehicle.signals.analysis.weighting import FULL_SAMPLING_RATE, weighted_record, weighting
 
 AXES = ("x", "y", "z")
@@ -93,18 +100,18 @@ class _Span:
     from_rest: bool
     """True if the record starts at rest, so that the filters are settled from the first sample on"""
 
-    def whole(self, weighted: NDArray[np.float64]) -> NDArray[np.float64]:
+    def whole(self, weighted: Vector) -> Vector:
         """Return the record (n,) without the skipped time."""
         return weighted[round(self.skip / self.time_step) :]
 
-    def settled(self, weighted: NDArray[np.float64], name: str) -> NDArray[np.float64]:
+    def settled(self, weighted: Vector, name: str) -> Vector:
         """Return the part of the record (n,) after the filter has settled; empty if the record is shorter."""
         settling = 0.0 if self.from_rest else weighting(name).settling_s
         return weighted[round(max(self.skip, settling) / self.time_step) :]
 
 
 def _axis(
-    span: _Span, record: NDArray[np.float64], name: str, factor: float, average: RunningAverage
+    span: _Span, record: Vector, name: str, factor: float, average: RunningAverage
 ) -> tuple[dict[str, Any], list[str]]:
     """Return the measures of an axis (n,) and the notices on them."""
     step, sickness = span.time_step, _motion_sickness(span, record)
@@ -152,7 +159,7 @@ def _axis(
     return values, remarks
 
 
-def _motion_sickness(span: _Span, record: NDArray[np.float64]) -> float | None:
+def _motion_sickness(span: _Span, record: Vector) -> float | None:
     """Return the MSDV of an axis (n,), extrapolated from the settled part; None if the record is too short.
 
     MSDV = a_w T^(1/2) with a_w of the part after the filter has settled and T the whole duration: method b of the
@@ -181,7 +188,7 @@ def _about_motion_sickness(duration: float) -> list[str]:
 
 def evaluate(
     time_step: float,
-    xyz: ArrayLike | Sequence[NDArray[np.float64]],
+    xyz: ArrayLike | Sequence[Vector],
     *,
     contact: str = "seat",
     average: RunningAverage = "linear",
@@ -294,7 +301,7 @@ def _sums(values: dict[str, Any], contact_point: Application) -> dict[str, float
     }
 
 
-def offset_line(signals: ArrayLike) -> NDArray[np.float64]:
+def offset_line(signals: ArrayLike) -> Vector:
     """Return the least-squares straight line of each signal (k, n): mean and drift, shape (k, n)."""
     array = checked_signals("acceleration", signals)
     count = np.arange(array.shape[1]) - 0.5 * (array.shape[1] - 1)
@@ -303,7 +310,7 @@ def offset_line(signals: ArrayLike) -> NDArray[np.float64]:
     return np.where(is_constant(array)[:, None], array, line)
 
 
-def without_offset(signals: ArrayLike) -> NDArray[np.float64]:
+def without_offset(signals: ArrayLike) -> Vector:
     """Return the signals (k, n) without mean and drift; a constant signal becomes exactly zero.
 
     Every weighting has a double zero at 0 Hz, so the settled response to a straight line is zero and no vibration is
@@ -313,9 +320,7 @@ def without_offset(signals: ArrayLike) -> NDArray[np.float64]:
     return array - offset_line(array)
 
 
-def offset_effect(
-    time_step: float, xyz: ArrayLike, *, contact: str = "seat", axes: Sequence[str] = AXES
-) -> NDArray[np.float64]:
+def offset_effect(time_step: float, xyz: ArrayLike, *, contact: str = "seat", axes: Sequence[str] = AXES) -> Vector:
     """Return the relative change of weighted RMS or VDV by mean and drift, |with - without| / without, shape (k,).
 
     The larger of both changes is returned. The weighting filters are at rest before the record, so a mean is a step at

@@ -7,15 +7,15 @@ from typing import Literal
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.signals.analysis.samples import checked_signals, checked_time_step
+from vehicle.signals.analysis.samples import Vector, checked_signals, checked_time_step
 
 RunningAverage = Literal["linear", "exponential"]
 
 
-def _one(weighted: ArrayLike) -> NDArray[np.float64]:
+def _one(weighted: ArrayLike) -> Vector:
     """Return a single weighted record as floats, shape (n,)."""
     array = checked_signals("weighted acceleration", weighted)
     if array.shape[0] != 1:
@@ -64,10 +64,7 @@ def mtvv(
 
 
 def crest_factor(weighted: ArrayLike) -> float | None:
-    """Return the crest factor max|a_w| / RMS [-], at least 1; None for a record of zeros.
-
-    Args:
-        weighted: evaluated part of the weighted record [m/s2], shape (n,).
+    """Return the crest factor max|a_w| / RMS [-] of a weighted record [m/s2], (n,), at least 1; None for zeros.
 
     Source: ISO 2631-1:1997, 6.2.1.
     """

@@ -8,10 +8,12 @@ from functools import partial
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from vehicle.errors import DataError
 from vehicle.signals.analysis.samples import (
+    Complex,
+    Vector,
     checked_band,
     checked_names,
     checked_same_length,
@@ -36,16 +38,16 @@ coherence. Below it the error of the separated responses is more than seven time
 class FrequencyResponse:
     """FRF, response over excitation, with coherence and standard error."""
 
-    frequency: NDArray[np.float64]
+    frequency: Vector
     """frequency lines [Hz], shape (m,)"""
-    response: NDArray[np.complex128]
+    response: Complex
     """H(f) [unit of response / unit of excitation], shape (k, m); NaN where undefined"""
-    coherence: NDArray[np.float64]
+    coherence: Vector
     """gamma^2 [-], shape (k, m); NaN where undefined"""
-    random_error: NDArray[np.float64]
+    random_error: Vector
     """standard error of |H| [unit of H], shape (k, m): 95 % of all estimates lie within 1.96 of it in magnitude, within
     2.45 in the complex plane; NaN where undefined"""
-    averages: NDArray[np.float64]
+    averages: Vector
     """number of independent averages with which H1 has this error [-], shape (k, m)"""
     segments: int
     """overlapping segments averaged [-]"""
@@ -64,31 +66,6 @@ class FrequencyResponse:
             f"FrequencyResponse({len(self.response)} responses, {len(self.frequency)} lines, {self.estimator}, "
             f"resolution {self.resolution_hz:.3g} Hz)"
         )
-
-
-def frequency_response(
-    time_step: float,
-    excitation: ArrayLike,
-    responses: ArrayLike,
-    *,
-    window_s: float = 4.0,
-    overlap: float = 0.5,
-    band: tuple[float, float] = (1.0, 50.0),
-    names: Sequence[str] | None = None,
-    minimum_averages: float = MINIMUM_AVERAGES,
-) -> FrequencyResponse:
-    """Estimate the FRFs to one excitation (n,); for the other arguments see `frequency_responses`."""
-    return frequency_responses(
-        time_step,
-        np.asarray(excitation, dtype=np.float64)[None],
-        responses,
-        window_s=window_s,
-        overlap=overlap,
-        band=band,
-        input_names=("excitation",),
-        names=names,
-        minimum_averages=minimum_averages,
-    )[0]
 
 
 @one_blas_thread()
@@ -201,8 +178,7 @@ def frequency_responses(
         (~reached, "not excited, so the FRF is undefined"),
         (
             reached & ~separable,
-            "the inputs are fully correlated there, so their responses cannot be separated; use the single-input "
-            "frequency_response",
+            "the inputs are fully correlated there, so their responses cannot be separated; use one input",
         ),
     ):
         if lost.any():
@@ -228,9 +204,7 @@ def frequency_responses(
     )
 
 
-def _refuse_dependent(
-    scaled: NDArray[np.complex128], independence: NDArray[np.float64], labels: tuple[str, ...]
-) -> None:
+def _refuse_dependent(scaled: Complex, independence: Vector, labels: tuple[str, ...]) -> None:
     """Raise an error if an input depends linearly on the others over most of the band."""
     if np.median(independence) >= INDEPENDENCE:
         return
@@ -246,6 +220,6 @@ def _refuse_dependent(
     raise DataError(
         f"excitations: fully correlated inputs, the matrix Gxx is rank-deficient (median minimum eigenvalue "
         f"{np.median(independence):.3g}, must be at least {INDEPENDENCE:g}): {which}; their responses cannot be "
-        "separated. Use the single-input frequency_response with one input (it returns the response to the common "
-        "motion), or drive them with independent signals"
+        "separated. Use one input alone (its FRF is the response to the common motion), or drive them with "
+        "independent signals"
     )

@@ -15,8 +15,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-Vector = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
+from vehicle.signals.analysis.samples import Complex, Vector
 
 LARGEST_SCALE = 0.1
 """Maximum |ln s| of the frequency scale: resonances up to a tenth apart are matched."""

@@ -18,11 +18,9 @@ import scipy
 from numpy.typing import NDArray
 
 from vehicle.signals.analysis.record_lines import RecordLines, is_long
+from vehicle.signals.analysis.samples import Complex, Vector
 from vehicle.signals.analysis.segments import windows_of_equal_length
 from vehicle.signals.analysis.spline import CubicSpline
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 TAPERS, BANDWIDTH, TAPER_SAMPLES = 5, 6.0, 2048
 """Number of Slepian tapers, time-bandwidth product, and samples of each, which a spline interpolates.
@@ -72,12 +70,8 @@ FEW = 0.05
 """
 
 
-def rounding_step(samples: Real) -> float:
-    """Return the rounding step of samples, of which all small differences are multiples; 0 without a step.
-
-    Args:
-        samples: record in any unit, that of the result; (n,).
-    """
+def rounding_step(samples: Vector) -> float:
+    """Return the rounding step of samples (n,), of which all small differences are multiples; 0 without a step."""
     steps = np.diff(np.sort(samples))
     steps = steps[steps > 1e-9 * np.ptp(samples)]
     if not steps.size:
@@ -92,7 +86,7 @@ def rounding_step(samples: Real) -> float:
     return float(np.median(smallest))
 
 
-def tapered_power(samples: Real, rounding: float, lines: int | None = None) -> tuple[Real, float]:
+def tapered_power(samples: Vector, rounding: float, lines: int | None = None) -> tuple[Vector, float]:
     """Return the power of the lines with five tapers, averaged over three lines, scaled like |rfft|^2, and the floor.
 
     Args:
@@ -108,7 +102,10 @@ def tapered_power(samples: Real, rounding: float, lines: int | None = None) -> t
     power, total = np.zeros(computed), 0.0
     for number in range(TAPERS):
         window = partial(_window, number, count)
-        tapered = partial(_tapered, samples, mean, window)
+
+        def tapered(part: slice, window: Callable[[slice], Vector] = window) -> Vector:
+            return np.asarray((samples[part] - mean) * window(part))
+
         energy = sum(float(np.sum(window(part) ** 2)) for part in transform.parts)
         power += np.abs(transform.of(tapered)) ** 2 * count / energy / TAPERS
         if computed < all_lines:
@@ -127,7 +124,7 @@ def _taper_splines() -> list[CubicSpline]:
     return [CubicSpline(np.linspace(0.0, 1.0, TAPER_SAMPLES), taper) for taper in slepian_tapers()]
 
 
-def slepian_tapers() -> Real:
+def slepian_tapers() -> Vector:
     """Return the tapers with unit energy, the most concentrated one first, with any sign; (TAPERS, TAPER_SAMPLES).
 
     Source: Percival and Walden, Spectral Analysis for Physical Applications, 1993, equation 386a: eigenvectors of a
@@ -141,32 +138,27 @@ def slepian_tapers() -> Real:
     return np.ascontiguousarray(vectors[:, ::-1].T)
 
 
-def _window(number: int, count: int, part: slice) -> Real:
+def _window(number: int, count: int, part: slice) -> Vector:
     """Return a part of a taper over a record of `count` samples."""
     return _window_samples(number, count, part.start, part.stop)
 
 
 @lru_cache(maxsize=1)
-def _window_samples(number: int, count: int, start: int, stop: int) -> Real:
+def _window_samples(number: int, count: int, start: int, stop: int) -> Vector:
     """Return samples of a taper; the last part is stored, because energy and spectrum need it one after the other."""
-    values: Real = _taper_splines()[number](np.minimum(np.arange(start, stop) * (1.0 / (count - 1)), 1.0))
+    values: Vector = _taper_splines()[number](np.minimum(np.arange(start, stop) * (1.0 / (count - 1)), 1.0))
     return values
 
 
-def _tapered(samples: Real, mean: float, window: Callable[[slice], Real], part: slice) -> Real:
-    """Return a part of a record without its mean, multiplied by a taper."""
-    return (samples[part] - mean) * window(part)
-
-
 @lru_cache(maxsize=64)
-def _cubic_basis(half: int) -> Real:
+def _cubic_basis(half: int) -> Vector:
     """Return an orthonormal basis of the cubic polynomials over 2 n + 1 lines, shape (2 n + 1, 4)."""
-    basis: Real = np.linalg.qr(np.vander(np.arange(-half, half + 1) / half, 4))[0]
+    basis: Vector = np.linalg.qr(np.vander(np.arange(-half, half + 1) / half, 4))[0]
     return basis
 
 
 def silent_lines(
-    inputs: Real,
+    inputs: Vector,
     spectra: Complex,
     centres: NDArray[np.int_],
     halves: NDArray[np.int_],
@@ -214,7 +206,7 @@ def silent_lines(
     return causes
 
 
-def cause_messages(frequency: Real, silent: NDArray[np.int_], causes: Sequence[str] = CAUSES) -> list[str]:
+def cause_messages(frequency: Vector, silent: NDArray[np.int_], causes: Sequence[str] = CAUSES) -> list[str]:
     """Return a message for each cause, with its number of lines and their frequency ranges."""
     messages = []
     for number, cause in enumerate(causes, 1):

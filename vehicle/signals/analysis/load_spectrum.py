@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.signals.analysis.rainflow_count import Cycles, count_cycles
-
-Vector = npt.NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

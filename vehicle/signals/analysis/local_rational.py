@@ -29,6 +29,8 @@ from vehicle.signals.analysis.input_floor import CAUSES, cause_messages, silent_
 from vehicle.signals.analysis.output_error import WindowFit, fit_windows
 from vehicle.signals.analysis.record_lines import RecordLines, is_long
 from vehicle.signals.analysis.samples import (
+    Complex,
+    Vector,
     checked_names,
     checked_rows,
     checked_same_length,
@@ -87,7 +89,7 @@ def shortest_record(inputs: int, highest: float) -> float:
 def local_rational_responses(
     time_step: float,
     excitations: ArrayLike,
-    responses: ArrayLike | Sequence[NDArray[np.float64]],
+    responses: ArrayLike | Sequence[Vector],
     *,
     band: tuple[float, float] = (1.0, 50.0),
     resolution: float = 0.1,
@@ -219,7 +221,7 @@ def local_rational_responses(
     )
 
 
-def _without_mean(record: NDArray[np.float64], lines: RecordLines) -> NDArray[np.complex128]:
+def _without_mean(record: Vector, lines: RecordLines) -> Complex:
     """Return lines of the spectrum of a record without its mean."""
     mean = record.mean()
     return lines.of(lambda part: record[part] - mean)
@@ -238,9 +240,7 @@ def _batches(wide: NDArray[np.bool_], outputs: int) -> Iterator[slice]:
             yield slice(begin, min(begin + size, last))
 
 
-def _scaled(
-    spectra: NDArray[np.complex128], axis: int, lines: NDArray[np.int_]
-) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
+def _scaled(spectra: Complex, axis: int, lines: NDArray[np.int_]) -> tuple[Complex, Vector]:
     """Scale frequency windows to unit mean power over their lines, and return their levels too; zeros stay.
 
     Args:
@@ -253,7 +253,7 @@ def _scaled(
     return spectra * np.expand_dims(1.0 / np.where(level > 0.0, level, 1.0), axis), level
 
 
-def _coherence(fit: WindowFit, gram: NDArray[np.complex128]) -> NDArray[np.float64]:
+def _coherence(fit: WindowFit, gram: Complex) -> Vector:
     """Return the share of the response power that the inputs explain, shape (s, k).
 
     Noise of the estimate increases the power H' S H by trace(S C) on average; this is subtracted.

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.signals.analysis.samples import Vector
 
-def mac(
-    first: npt.ArrayLike, second: npt.ArrayLike, mass: npt.NDArray[np.float64] | None = None
-) -> npt.NDArray[np.float64]:
+
+def mac(first: npt.ArrayLike, second: npt.ArrayLike, mass: Vector | None = None) -> Vector:
     """Return the modal assurance criterion |a^H M b|^2 / ((a^H M a) (b^H M b)) of every pair of shapes.
 
     Without a mass matrix M = I: only for shapes whose coordinates have one unit, as translations of points. With it the

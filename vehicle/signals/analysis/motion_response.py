@@ -6,15 +6,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from vehicle.names import in_order
 from vehicle.signals.analysis.dependence import common_motions
 from vehicle.signals.analysis.frf import FrequencyResponse, frequency_responses
 from vehicle.signals.analysis.periodic_record import whole_record_responses
 from vehicle.signals.analysis.response_name import ResponseName, plates_of
-
-Real = NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -51,8 +49,8 @@ class MotionResponse:
 
 def motion_responses(
     time_step: float,
-    inputs: Mapping[str, Real],
-    responses: Sequence[Real] | Real,
+    inputs: Mapping[str, Vector],
+    responses: Sequence[Vector] | Vector,
     *,
     names: Sequence[str],
     band: tuple[float, float],

@@ -29,9 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehicle.signals.analysis.pole_grid import FARTHEST, PoleGrid, pole_grid, right_sides, sums_of_poles
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from vehicle.signals.analysis.samples import Complex, Vector
 
 STEPS = 8
 """Maximum Gauss-Newton steps; the start from the grid is within a cell, so that each step squares the error."""
@@ -64,7 +62,7 @@ class WindowFit:
     """FRF H, shape (s, k, p)"""
     covariance: Complex
     """covariance E dH_i conj(dH_j), shape (s, k, p, p)"""
-    noise: Real
+    noise: Vector
     """power of the error e per line, shape (s, k)"""
 
 
@@ -122,8 +120,8 @@ def fit_windows(inputs: Complex, outputs: Complex, halves: NDArray[np.int_], *, 
 
 
 def _posterior(
-    equations: _NormalEquations, right: list[Complex], total: Real, floor: Real, dof: NDArray[np.int_], block: slice
-) -> tuple[NDArray[np.intp], Real, Real, Complex, Complex]:
+    equations: _NormalEquations, right: list[Complex], total: Vector, floor: Vector, dof: NDArray[np.int_], block: slice
+) -> tuple[NDArray[np.intp], Vector, Vector, Complex, Complex]:
     """Average the estimates of all poles of the grid, weighted by their probability.
 
     Args:
@@ -139,7 +137,7 @@ def _posterior(
         shape (p, s, k); covariance of H, shape (s, k, p, p).
     """
     gain, direct = equations.gain[..., block], equations.direct[..., block]
-    residual_power: Real = np.broadcast_to(total, right[0].shape)
+    residual_power: Vector = np.broadcast_to(total, right[0].shape)
     for i, row in enumerate(right):
         for j in range(i):
             row -= equations.lower[i][j][:, block, None] * right[j]
@@ -234,7 +232,7 @@ class _NormalEquations(NamedTuple):
     """Normal equations L D L' of the terms with a pole, for no pole and all poles of the grid."""
 
     lower: list[list[Complex]]  # L below its diagonal, elements of shape (G, s)
-    weights: list[Real]  # 1 / D, elements of shape (G, s)
+    weights: list[Vector]  # 1 / D, elements of shape (G, s)
     direct: Complex  # part in H of the unknowns after the elimination (p, p + 1, G, s)
     gain: Complex  # the same over D
     covariance: Complex  # covariance of H without a pole per unit of noise power (s, p, p)
@@ -280,7 +278,7 @@ def _normal_equations(grid: PoleGrid, windows: _Windows, halves: NDArray[np.int_
             gram[i, : i + 1, 1:] -= share[i].conj() * share[: i + 1]
         direct[:, :, 1:] -= inverse[:inputs, column, None, None] * share
     lower: list[list[Complex]] = []
-    pivots: list[Real] = []
+    pivots: list[Vector] = []
     for i in range(size):
         row_of: list[Complex] = []
         for j in range(i):
@@ -302,14 +300,14 @@ class _Refined(NamedTuple):
     """Estimates with a separate pole for each response."""
 
     a: Complex
-    cost: Real  # residual power (k,)
+    cost: Vector  # residual power (k,)
     step: Complex  # Gauss-Newton step of a
-    error: Real  # standard error of a per unit of noise
+    error: Vector  # standard error of a per unit of noise
     part: Complex  # of the pole in H (k, p)
     covariance: Complex  # of that part per unit of noise power (k, p, p)
 
 
-def _solved(a: Complex, residual: Complex, total: Real, windows: _Windows) -> _Refined:
+def _solved(a: Complex, residual: Complex, total: Vector, windows: _Windows) -> _Refined:
     """Solve the least squares with a given pole for each response, and compute the Gauss-Newton step of the pole."""
     shapes = 1.0 / (1.0 + a[:, None] * windows.offset)  # (k, N)
     terms = shapes[:, :, None] * windows.tail  # (k, N, p + 1)
@@ -362,12 +360,12 @@ def _refine(start: Complex, residual: Complex, windows: _Windows, least_imaginar
     return current
 
 
-def _power(rows: Complex) -> Real:
+def _power(rows: Complex) -> Vector:
     """Return the sum of |z|^2 over the last axis."""
     return np.asarray(np.sum(rows.real**2 + rows.imag**2, axis=-1))
 
 
-def _column_power(columns: Complex) -> Real:
+def _column_power(columns: Complex) -> Vector:
     """Return the sum of |z|^2 over the first axis."""
     return np.asarray(np.sum(columns.real**2 + columns.imag**2, axis=0))
 

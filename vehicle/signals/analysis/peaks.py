@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.signals.analysis.samples import Complex, Vector
 from vehicle.signals.analysis.tops import prominent_tops
 
 PROMINENCE_DB = 1.0
@@ -38,7 +39,7 @@ class Peak:
     """standard error of the nearest line [unit of the FRF]; None if unknown"""
 
 
-def _vertex(x: NDArray[np.float64], y: NDArray[np.float64]) -> tuple[float, float]:
+def _vertex(x: Vector, y: Vector) -> tuple[float, float]:
     """Return position and height of the parabola through three points around a maximum, not necessarily equidistant."""
     left = (y[1] - y[0]) / (x[1] - x[0])
     right = (y[2] - y[1]) / (x[2] - x[1])
@@ -125,7 +126,7 @@ def resonances(response: FrequencyResponse, row: int) -> tuple[Peak, ...]:
     )
 
 
-def phase_resonance(frequency: NDArray[np.float64], response: NDArray[np.complex128]) -> float:
+def phase_resonance(frequency: Vector, response: Complex) -> float:
     """Return the resonance frequency: the phase crossing of 90 deg nearest to the largest line, at any damping.
 
     Args:

@@ -29,6 +29,8 @@ from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.analysis.input_floor import ABOVE_FLOOR, rounding_step
 from vehicle.signals.analysis.local_rational import local_rational_responses
 from vehicle.signals.analysis.samples import (
+    Complex,
+    Vector,
     checked_names,
     checked_rows,
     checked_signals,
@@ -36,9 +38,6 @@ from vehicle.signals.analysis.samples import (
     is_constant,
 )
 from vehicle.threads import one_blas_thread
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 SAME = 1e-9
 """Maximum difference of equal samples over the range of a record without a rounding step: an input between the samples
@@ -84,7 +83,7 @@ PROBES = 64
 def whole_record_responses(
     time_step: float,
     excitations: ArrayLike,
-    responses: ArrayLike | Sequence[Real],
+    responses: ArrayLike | Sequence[Vector],
     *,
     band: tuple[float, float] = (1.0, 50.0),
     resolution: float = 0.1,
@@ -95,14 +94,8 @@ def whole_record_responses(
     """Estimate the FRFs of a whole record: by its periods if a single input is periodic, else by local rational models.
 
     Args:
-        time_step: sampling interval [s].
-        excitations: p inputs, shape (p, n).
-        responses: outputs, shape (n,) or (k, n), or a sequence of k outputs (n,).
-        band: lowest and highest frequency [Hz].
+        time_step, excitations, responses, band, names, input_names, rounding: see `local_rational_responses`.
         resolution: spacing of the frequencies of local rational models [Hz]; a periodic input determines its lines.
-        names: names of the responses in messages.
-        input_names: names of the inputs in messages.
-        rounding: rounding step of each input; estimated from the samples if 0 or missing.
 
     Returns:
         One FRF for each input; `estimator` is the name of the estimator. If a periodic input is not evaluated by its
@@ -141,7 +134,7 @@ def whole_record_responses(
     return estimates
 
 
-def repeated_samples(samples: Real, shortest: int, rounding: float = 0.0) -> tuple[int, int, float]:
+def repeated_samples(samples: Vector, shortest: int, rounding: float = 0.0) -> tuple[int, int, float]:
     """Return the period of a record that repeats until its end, over at least its last half.
 
     Args:
@@ -176,7 +169,7 @@ def repeated_samples(samples: Real, shortest: int, rounding: float = 0.0) -> tup
     return 0, 0, 0.0
 
 
-def _possible_periods(samples: Real, periods: NDArray[np.int_], tolerance: float) -> NDArray[np.int_]:
+def _possible_periods(samples: Vector, periods: NDArray[np.int_], tolerance: float) -> NDArray[np.int_]:
     """Return the periods after which some samples of the last half of a record are repeated."""
     for probe in np.linspace(samples.size - samples.size // 2, samples.size - 1, PROBES).astype(int).tolist():
         periods = periods[np.abs(samples[probe] - samples[probe - periods]) <= tolerance]
@@ -184,7 +177,7 @@ def _possible_periods(samples: Real, periods: NDArray[np.int_], tolerance: float
 
 
 def _periodic_response(
-    step: float, excitation: Real, responses: Sequence[Real], band: tuple[float, float], names: Sequence[str],
+    step: float, excitation: Vector, responses: Sequence[Vector], band: tuple[float, float], names: Sequence[str],
     rounding: float,
 ) -> FrequencyResponse | tuple[int, str]:  # fmt: skip
     """Return the FRFs to a periodic input, or the number of last samples for a local rational model and a message."""
@@ -255,7 +248,7 @@ def _periodic_response(
     )
 
 
-def _scatter(frequency: Real, drive: Complex, response: Complex) -> Real:
+def _scatter(frequency: Vector, drive: Complex, response: Complex) -> Vector:
     """Return the variance of a response around that of a smooth FRF, in windows of adjacent lines.
 
     With H = (b0 + b1 x + b2 x^2) / (1 + a x), Y = U (b0 + b1 x + b2 x^2) - a x Y is linear in the unknowns. The
@@ -273,5 +266,5 @@ def _scatter(frequency: Real, drive: Complex, response: Complex) -> Real:
     columns = np.stack([*(drive * x**degree for degree in range(DEGREE + 1)), -x * response], axis=-1)
     basis = np.linalg.qr(columns)[0]
     fitted = basis @ (basis.conj().swapaxes(1, 2) @ response[:, :, None])
-    variance: Real = np.sum(np.abs(response - fitted[:, :, 0]) ** 2, axis=1) / (ADJACENT - DEGREE - 2)
+    variance: Vector = np.sum(np.abs(response - fitted[:, :, 0]) ** 2, axis=1) / (ADJACENT - DEGREE - 2)
     return variance

@@ -22,9 +22,8 @@ from numpy.typing import NDArray
 
 from vehicle.errors import DataError
 from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.signals.analysis.samples import Complex, Vector
 from vehicle.signals.analysis.spectra import power_spectral_density
-
-Real = NDArray[np.float64]
 
 PERIOD = 4.0
 """Period of the inputs [s], the inverse of the distance of the lines."""
@@ -60,18 +59,18 @@ class PhaseInputs:
     """
 
     time_step: float
-    samples: Mapping[str, Real]
-    frequency: Real
+    samples: Mapping[str, Vector]
+    frequency: Vector
     lines: NDArray[np.intp]
-    spectra: NDArray[np.complex128]
+    spectra: Complex
 
-    def periods(self, responses: Real) -> Real:
+    def periods(self, responses: Vector) -> Vector:
         """Return the evaluated periods of responses (k, n); (k, PHASES, samples of a period)."""
         lead, period = (round(length / self.time_step) for length in (LEAD, PERIOD))
         blocks = responses[:, : PHASES * (lead + period)].reshape(len(responses), PHASES, lead + period)
         return np.asarray(blocks[:, :, lead:])
 
-    def response(self, responses: Real) -> FrequencyResponse:
+    def response(self, responses: Vector) -> FrequencyResponse:
         """Return the FRFs to the first input.
 
         Args:
@@ -100,7 +99,7 @@ class PhaseInputs:
 
 def phase_inputs(
     time_step: float,
-    record: Mapping[str, Real],
+    record: Mapping[str, Vector],
     delays: Mapping[str, float] | None = None,
     *,
     interval: float | None = None,

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-Vector = npt.NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 LARGEST_DELAY = 0.1
 """Maximum |delay| of the search [s]: five times the delay of a Bessel filter of order 8 with a corner of 25 Hz."""

@@ -9,8 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from vehicle.signals.analysis.samples import Complex, Vector
 
 SHARPEST = 0.15
 """Minimum half-bandwidth of a pole relative to n: 0.3 % damping if n is 2 % of the frequency."""
@@ -33,7 +32,7 @@ class PoleGrid(NamedTuple):
     """Poles z in units of n lines, a = -1/z: those with Re z >= 0, then the mirrored ones of Re z > 0."""
 
     poles: Complex  # a (G,)
-    spacing: Real  # distance of neighbours in z (G,)
+    spacing: Vector  # distance of neighbours in z (G,)
     sharpest: float  # least imaginary part of z
     mirrored: int  # number of mirrored poles
     wide: bool  # arguments of `pole_grid`
@@ -53,7 +52,7 @@ def pole_grid(wide: bool, half: int) -> PoleGrid:
 
 
 @lru_cache(maxsize=16)
-def _shapes_of(wide: bool, half_of_grid: int, half: int) -> tuple[Real, Real]:
+def _shapes_of(wide: bool, half_of_grid: int, half: int) -> tuple[Vector, Vector]:
     """Return even and odd parts of 1 / (1 + a x) for x >= 0 and x > 0, real parts above imaginary parts."""
     grid = pole_grid(wide, half_of_grid)
     a = grid.poles[: len(grid.poles) - grid.mirrored, None]
@@ -68,7 +67,7 @@ def _shapes_of(wide: bool, half_of_grid: int, half: int) -> tuple[Real, Real]:
     return np.concatenate([real, imaginary]), np.concatenate([odd_real, odd_imaginary])[:, 1:].copy()
 
 
-def sums_of_poles(grid: PoleGrid, columns: Real, halves: NDArray[np.int_]) -> tuple[Real, Real]:
+def sums_of_poles(grid: PoleGrid, columns: Vector, halves: NDArray[np.int_]) -> tuple[Vector, Vector]:
     """Return the sums of s(x) y and s(-x) y over the lines, s = 1 / (1 + a x), for the poles of Re z >= 0.
 
     The even and odd parts of y are summed once for both.
@@ -79,7 +78,7 @@ def sums_of_poles(grid: PoleGrid, columns: Real, halves: NDArray[np.int_]) -> tu
         halves: lines n on each side of the centre of each window, in ascending order, shape (s,).
 
     Returns:
-        Real and imaginary parts, shape (2, poles, s, c), of s(x) and of s(-x).
+        Vector and imaginary parts, shape (2, poles, s, c), of s(x) and of s(-x).
     """
     middle, (count, width) = len(columns) // 2, columns.shape[1:]
     after, before = columns[middle + 1 :], columns[middle - 1 :: -1]

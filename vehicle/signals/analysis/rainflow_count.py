@@ -17,8 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError, MissingPartError
-
-Vector = npt.NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

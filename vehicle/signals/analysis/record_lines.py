@@ -15,12 +15,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from vehicle.signals.analysis.fast_length import fast_length
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from vehicle.signals.analysis.samples import Complex, Vector
 
 LONG = 2**20
 """Maximum length of a record transformed as a whole [samples]: 17 minutes at 1 kHz."""
@@ -71,7 +68,7 @@ class ChirpTransform:
         kernel[self.length - size + 1 :] = chirp[1:size][::-1].conj()
         self.kernel = np.fft.fft(kernel)
 
-    def __call__(self, block: Real) -> Complex:
+    def __call__(self, block: Vector) -> Complex:
         """Return the lines of a block; (last - first,). block: samples, at most `size`."""
         spectrum = np.fft.fft(block * self.before[: block.size], self.length)
         spectrum *= self.kernel
@@ -98,7 +95,7 @@ class RecordLines:
             self.zoom = ChirpTransform(samples, size, first, last)
             self.turn: Complex = np.exp(-2j * np.pi / samples * (np.arange(first, last) * size % samples))
 
-    def of(self, part_values: Callable[[slice], Real]) -> Complex:
+    def of(self, part_values: Callable[[slice], Vector]) -> Complex:
         """Return the lines of a record.
 
         Args:

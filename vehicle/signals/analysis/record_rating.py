@@ -10,11 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.signals.analysis.curve_rating import Ratings, rate_curves
-
-Vector = npt.NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 WINDOW = 1.0
 """Length of a window [s]: one period of 1 Hz, the lowest frequency of comparisons."""

@@ -44,11 +44,7 @@ class ResponseName:
 
 
 def plates_of(motion: Mapping[str, float]) -> tuple[tuple[str, float], ...]:
-    """Return the motion of a `ResponseName`.
-
-    Args:
-        motion: wheel to the factor of its plate; 1 for the first.
-    """
+    """Return the motion of a `ResponseName` from wheel to the factor of its plate; 1 for the first."""
     return tuple((PLATE + wheel, float(factor)) for wheel, factor in motion.items())
 
 

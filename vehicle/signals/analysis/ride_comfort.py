@@ -13,14 +13,12 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.names import AXES
 from vehicle.signals.analysis.comfort import COMFORT_BAND, comfort_values
 from vehicle.signals.analysis.comfort_error import WAVES
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.seat_value import seat_value, weighted_rms_of
-
-Vector = npt.NDArray[np.float64]
 
 UNWEIGHTED, WEIGHTED = "unweighted", "weighted"
 """The two names of comfort."""

@@ -8,10 +8,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from vehicle.errors import DataError
 from vehicle.signals.analysis.cumulative_spectrum import CumulativeSpectrum
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.spectra import power_spectral_density
 
 CLASSES = {letter: 16e-6 * 4.0**number for number, letter in enumerate("ABCDEFGH")}
@@ -42,8 +43,8 @@ class RoadLevel:
         fitted: range of the third octaves of the fit [cycles/m].
     """
 
-    wavenumber: NDArray[np.float64]
-    density: NDArray[np.float64]
+    wavenumber: Vector
+    density: Vector
     reference_density: float
     letter: str
     fitted: tuple[float, float]

@@ -9,6 +9,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from vehicle.errors import ConfigurationError, DataError
 
+Vector = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+"""Arrays of real and complex numbers, of any shape."""
+
 SAMPLES_PER_PERIOD = 2.5
 """Minimum sampling rate over the highest evaluated frequency; above Nyquist (2.0), because of the anti-alias filter."""
 
@@ -24,7 +28,7 @@ def checked_time_step(time_step: float) -> float:
     return step
 
 
-def checked_signals(label: str, signals: ArrayLike) -> NDArray[np.float64]:
+def checked_signals(label: str, signals: ArrayLike) -> Vector:
     """Return a signal (n,) or several (k, n) as floats of shape (k, n); reject other shapes and non-finite values.
 
     Args:
@@ -48,7 +52,7 @@ def checked_signals(label: str, signals: ArrayLike) -> NDArray[np.float64]:
     return array
 
 
-def checked_rows(label: str, signals: ArrayLike | Sequence[NDArray[np.float64]]) -> Sequence[NDArray[np.float64]]:
+def checked_rows(label: str, signals: ArrayLike | Sequence[Vector]) -> Sequence[Vector]:
     """Return the rows of `checked_signals`; a sequence of signals (n,) is not copied to a single array."""
     if isinstance(signals, list | tuple) and all(isinstance(row, np.ndarray) and row.ndim == 1 for row in signals):
         rows = [checked_signals(f"{label} {number}", row)[0] for number, row in enumerate(signals)]
@@ -59,7 +63,7 @@ def checked_rows(label: str, signals: ArrayLike | Sequence[NDArray[np.float64]])
     return list(checked_signals(label, signals))
 
 
-def checked_same_length(label: str, signals: NDArray[np.float64], reference: str, length: int) -> None:
+def checked_same_length(label: str, signals: Vector, reference: str, length: int) -> None:
     """Raise an error if the length n of signals (k, n) differs from the length of the reference record."""
     if signals.shape[-1] != length:
         raise DataError(
@@ -87,13 +91,13 @@ def checked_band(band: tuple[float, float], time_step: float) -> tuple[float, fl
     return low, high
 
 
-def lines_in_band(frequency: NDArray[np.float64], band: tuple[float, float]) -> NDArray[np.bool_]:
+def lines_in_band(frequency: Vector, band: tuple[float, float]) -> NDArray[np.bool_]:
     """Return a mask of the lines [Hz], shape (m,), in the closed band; rounding does not exclude a line on an edge."""
     slack = 1e-9 * (frequency[-1] if frequency.size else 0.0)
     return (frequency >= band[0] - slack) & (frequency <= band[1] + slack)
 
 
-def is_constant(signals: NDArray[np.float64]) -> NDArray[np.bool_]:
+def is_constant(signals: Vector) -> NDArray[np.bool_]:
     """Return a mask of the constant signals among (k, n): peak-to-peak value within the rounding of their magnitude."""
     size = np.abs(signals).max(axis=-1)
     return np.asarray(np.ptp(signals, axis=-1) <= 8.0 * np.finfo(np.float64).eps * size)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.signals.analysis.samples import checked_signals, checked_time_step
+from vehicle.signals.analysis.samples import Vector, checked_signals, checked_time_step
 
 MINIMUM_AVERAGES = 8.0
 """Minimum effective averages: with 8, the coherence of unrelated signals is 1/8, and the random error of an FRF at a
@@ -31,7 +31,7 @@ class Segments:
     """number of whole segments [-]"""
     averages: float
     """effective number of independent averages of the overlapping segments [-]"""
-    window: NDArray[np.float64]
+    window: Vector
     """Hann window, shape (length,) [-]"""
 
     @property
@@ -40,7 +40,7 @@ class Segments:
         return self.length - self.step
 
 
-def effective_averages(window: NDArray[np.float64], step: int, count: int) -> float:
+def effective_averages(window: Vector, step: int, count: int) -> float:
     """Return the effective number of independent averages of `count` overlapping segments of a white record.
 
     K_eff = K / (1 + 2 sum_j (1 - j/K) rho_j),  rho_j = (sum w(i) w(i + j step))^2 / (sum w^2)^2
@@ -119,7 +119,7 @@ def windows_of_equal_length(
             yield members, centres[members, None] + np.arange(-half, half + 1)
 
 
-def window_extremes(time_step: float, signal: ArrayLike, window_s: float = 0.5) -> NDArray[np.float64]:
+def window_extremes(time_step: float, signal: ArrayLike, window_s: float = 0.5) -> Vector:
     """Return max |x| of successive windows; an incomplete window at the end is ignored.
 
     The extreme of a short window of a random signal is random. A single published extreme is compared with the

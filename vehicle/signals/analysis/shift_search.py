@@ -5,10 +5,9 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
-Vector = npt.NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 RESOLUTION = 2.5e-4
 """Width of the smoothed spectrum over the sampling rate: 0.25 Hz at 1 kHz [-]."""

@@ -13,10 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.signals.analysis.samples import checked_same_length, checked_signals
+from vehicle.signals.analysis.samples import Vector, checked_same_length, checked_signals
 from vehicle.signals.analysis.tops import prominent_tops
-
-Real = NDArray[np.float64]
 
 SHORTEST_SLIP = 0.020
 """Minimum length of a slip phase with peaks after the break-away [s]."""
@@ -39,7 +37,7 @@ def _slipping(velocity: ArrayLike, slip_velocity: ArrayLike) -> NDArray[np.bool_
     return np.asarray(np.abs(checked_signals("damper velocity", velocity)) > limits[:, None])
 
 
-def _one(velocity: ArrayLike) -> Real:
+def _one(velocity: ArrayLike) -> Vector:
     """Return the velocity of a single damper, shape (1, n)."""
     signal = checked_signals("damper velocity", velocity)
     if signal.shape[0] != 1:
@@ -47,7 +45,7 @@ def _one(velocity: ArrayLike) -> Real:
     return signal
 
 
-def _instants(time: ArrayLike, samples: int) -> Real:
+def _instants(time: ArrayLike, samples: int) -> Vector:
     """Return the time stamps [s], shape (n,); check that their number fits the velocity and that they increase."""
     stamps = checked_signals("time", time)
     checked_same_length("time", stamps, "the damper velocity", samples)
@@ -67,7 +65,7 @@ def slip_share(velocity: ArrayLike, slip_velocity: float) -> float:
     return float(slip_shares(_one(velocity), slip_velocity)[0])
 
 
-def slip_shares(velocity: ArrayLike, slip_velocity: ArrayLike) -> Real:
+def slip_shares(velocity: ArrayLike, slip_velocity: ArrayLike) -> Vector:
     """Return the slip share of each damper, shape (d,); velocities (d, n), slip velocities (d,)."""
     return np.asarray(np.mean(_slipping(velocity, slip_velocity), axis=1))
 
@@ -84,22 +82,20 @@ def first_slip(time: ArrayLike, velocity: ArrayLike, slip_velocity: float) -> fl
     return None if np.isnan(first) else first
 
 
-def first_slips(time: ArrayLike, velocity: ArrayLike, slip_velocity: ArrayLike) -> Real:
+def first_slips(time: ArrayLike, velocity: ArrayLike, slip_velocity: ArrayLike) -> Vector:
     """Return the first slip [s] of each damper, NaN without slip, shape (d,); arguments as for `slip_shares`."""
     slips = _slipping(velocity, slip_velocity)
     instants = _instants(time, slips.shape[1])
     return np.where(slips.any(axis=1), instants[np.argmax(slips, axis=1)], np.nan)
 
 
-def slip_intervals(time: ArrayLike, velocity: ArrayLike, slip_velocity: float) -> Real:
+def slip_intervals(time: ArrayLike, velocity: ArrayLike, slip_velocity: float) -> Vector:
     """Return start and end [s] of every slip, shape (s, 2): first sample above the limit, next sample below.
 
     A slip that lasts to the end of the record ends with its last time stamp.
 
     Args:
-        time: time stamps [s], shape (n,).
-        velocity: velocity of the damper [m/s], shape (n,).
-        slip_velocity: speed that counts as slip [m/s].
+        time, velocity, slip_velocity: see `first_slip`.
     """
     slips = _slipping(_one(velocity), slip_velocity)[0]
     instants = _instants(time, slips.size)
@@ -145,7 +141,7 @@ class SlipPhase:
 
 
 def slip_phases(
-    time: Real, velocity: Real, relative: Real, *, saturated: float, begin: float, until: float
+    time: Vector, velocity: Vector, relative: Vector, *, saturated: float, begin: float, until: float
 ) -> list[SlipPhase]:
     """Return the slip phases that begin in a time span of a run, with the peaks after each break-away.
 

@@ -7,11 +7,18 @@ from typing import Any
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from vehicle.errors import DataError
 from vehicle.signals.analysis.record_lines import RecordLines
-from vehicle.signals.analysis.samples import checked_band, checked_signals, checked_time_step, lines_in_band
+from vehicle.signals.analysis.samples import (
+    Complex,
+    Vector,
+    checked_band,
+    checked_signals,
+    checked_time_step,
+    lines_in_band,
+)
 from vehicle.signals.analysis.segments import cut_into_segments
 
 SEGMENTS_AT_ONCE = 256
@@ -22,15 +29,15 @@ SEGMENTS_AT_ONCE = 256
 class PowerSpectralDensity:
     """One-sided density S(f), whose integral over f is the mean square."""
 
-    frequency: NDArray[np.float64]
+    frequency: Vector
     """frequency lines [Hz], shape (m,)"""
-    density: NDArray[np.float64]
+    density: Vector
     """density [unit^2/Hz], shape (k, m)"""
     resolution_hz: float
     """line spacing [Hz]"""
     averages: float
     """effective independent averages [-]"""
-    lines: NDArray[np.complex128] | None = None
+    lines: Complex | None = None
     """complex lines of a periodogram [unit], |line|^2 = S df, shape (k, m); None for an averaged density"""
 
 
@@ -85,7 +92,7 @@ def periodogram(time_step: float, signals: ArrayLike) -> PowerSpectralDensity:
     return _periodogram(step, checked_signals("signals", signals), slice(None))
 
 
-def _periodogram(step: float, array: NDArray[np.float64], lines: slice) -> PowerSpectralDensity:
+def _periodogram(step: float, array: Vector, lines: slice) -> PowerSpectralDensity:
     """Return the selected lines of the periodogram of signals (k, n)."""
     samples = array.shape[1]
     sides = np.full(samples // 2 + 1, 2.0)
@@ -121,7 +128,7 @@ def band_periodogram(time_step: float, signals: ArrayLike, band: tuple[float, fl
     return _periodogram(step, array, slice(inside[0], inside[-1] + 1))
 
 
-def band_rms(time_step: float, signals: ArrayLike, band: tuple[float, float]) -> NDArray[np.float64]:
+def band_rms(time_step: float, signals: ArrayLike, band: tuple[float, float]) -> Vector:
     """Return the RMS of each signal in the closed band, sqrt(sum_band S_k df) of the periodogram, shape (k,).
 
     Whole record, no window: a component with an integer number of periods in the record counts fully or not at all. A
@@ -136,6 +143,6 @@ def band_rms(time_step: float, signals: ArrayLike, band: tuple[float, float]) ->
     return rms_of(band_periodogram(time_step, signals, band))
 
 
-def rms_of(spectrum: PowerSpectralDensity) -> NDArray[np.float64]:
+def rms_of(spectrum: PowerSpectralDensity) -> Vector:
     """Return the RMS of each signal over the lines of its periodogram, shape (k,)."""
     return np.asarray(np.sqrt(spectrum.density.sum(axis=1) * spectrum.resolution_hz))

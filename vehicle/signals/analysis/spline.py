@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-Vector = npt.NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 
 class CubicSpline:

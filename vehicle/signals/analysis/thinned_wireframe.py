@@ -6,7 +6,8 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-Vector = npt.NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
+
 Indices = npt.NDArray[np.intp]
 
 MOST_NODES, MOST_LINES = 400, 1500

@@ -17,9 +17,8 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.shift_search import searched_line, spectral_shares
-
-Vector = npt.NDArray[np.float64]
 
 LARGEST_DRIFT = 1e-2
 """Maximum drift in the search [-]. Clocks of loggers stay within 1e-4, wrong rates (1000 for 1024 Hz) are 2.4e-2."""

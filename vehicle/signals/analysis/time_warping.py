@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-Vector = npt.NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 WINDOW = 0.1
 """Half width of the window over the length of the curves (ISO/TS 18571)."""

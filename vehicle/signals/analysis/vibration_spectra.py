@@ -6,14 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from vehicle.errors import DataError
 from vehicle.signals.analysis.cumulative_spectrum import CumulativeSpectrum, ThirdOctaves
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.spectra import power_spectral_density
 from vehicle.signals.analysis.weighting import weighting
-
-Vector = NDArray[np.float64]
 
 RANGE = (0.5, 80.0)
 """Frequencies of the spectra [Hz]: the range of ISO 2631-1 for comfort."""

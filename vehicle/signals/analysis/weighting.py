@@ -7,11 +7,11 @@ from functools import lru_cache
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.fast_length import fast_length
-from vehicle.signals.analysis.samples import checked_signals, checked_time_step
+from vehicle.signals.analysis.samples import Complex, Vector, checked_signals, checked_time_step
 
 LEAST_SAMPLING_RATE = 25.0
 """Minimum sampling rate of a weighted record [Hz], for vibration up to 10 Hz, the range in which Wk is highest."""
@@ -23,7 +23,7 @@ KEPT_LINES = 2**16
 """Maximum number of lines with cached factors: a megabyte."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, slots=True)
 class Weighting:
     """Frequency weighting with the parameters of the standard; an infinite frequency omits its factor."""
 
@@ -75,7 +75,7 @@ class Weighting:
         return 4.0 / self.f1
 
     @property
-    def sections(self) -> NDArray[np.float64]:
+    def sections(self) -> Vector:
         """Return the factors of H as rows b0, b1, b2, a0, a1, a2; (2, 3 or 4, 6).
 
         H = product of (b0 + b1 jf + b2 (jf)^2) / (a0 + a1 jf + a2 (jf)^2) with f [Hz]; see `transfer_function`.
@@ -87,7 +87,7 @@ class Weighting:
             rows += [[f5**2, f5 / self.q5, 1.0, f6**2, f6 / self.q6, 1.0]]
         return np.array(rows)
 
-    def transfer_function(self, frequency: ArrayLike) -> NDArray[np.complex128]:
+    def transfer_function(self, frequency: ArrayLike) -> Complex:
         """Return the complex factor H at frequencies [Hz] of any shape.
 
         With s = j 2 pi f and w_i = 2 pi f_i:
@@ -106,35 +106,28 @@ class Weighting:
             factor = factor * ((b0 + s * (b1 + s * b2)) / (a0 + s * (a1 + s * a2)))
         return np.asarray(factor, dtype=np.complex128)
 
-    def spectrum_factor(self, frequency: ArrayLike) -> NDArray[np.float64]:
+    def spectrum_factor(self, frequency: ArrayLike) -> Vector:
         """Return |H| [-], the factor of a third octave RMS value; a density is multiplied by its square."""
         return np.asarray(np.abs(self.transfer_function(frequency)))
 
 
-_INFINITE = float("inf")
+_NONE = float("inf")
+
+_PARAMETERS: dict[str, tuple[float, ...]] = {  # f1, f2, f3, f4, q4, f5, q5, f6, q6, gain
+    # ISO 2631-1:1997 annex A, the same in ISO 8041:2005
+    "Wk": (0.4, 100.0, 12.5, 12.5, 0.63, 2.37, 0.91, 3.35, 0.91),
+    "Wd": (0.4, 100.0, 2.0, 2.0, 0.63, _NONE, 1.0, _NONE, 1.0),
+    "Wf": (0.08, 0.63, _NONE, 0.25, 0.86, 0.0625, 0.80, 0.10, 0.80),
+    "Wc": (0.4, 100.0, 8.0, 8.0, 0.63, _NONE, 1.0, _NONE, 1.0),
+    "We": (0.4, 100.0, 1.0, 1.0, 0.63, _NONE, 1.0, _NONE, 1.0),
+    "Wj": (0.4, 100.0, _NONE, _NONE, 1.0, 3.75, 0.91, 5.32, 0.91),
+    # BS 6841:1987 writes the step without (f5/f6)^2 and K = 0.4; ISO 8041:2005 writes K = 1.024: the same, for
+    # 1.024 (2.5/4)^2 = 0.4
+    "Wb": (0.4, 100.0, 16.0, 16.0, 0.55, 2.5, 0.9, 4.0, 0.95, 1.024),
+}
 
 WEIGHTINGS: MappingProxyType[str, Weighting] = MappingProxyType(
-    {
-        w.name: w
-        for w in (
-            # ISO 2631-1:1997 annex A, the same in ISO 8041:2005
-            Weighting(name="Wk", f1=0.4, f2=100.0, f3=12.5, f4=12.5, q4=0.63, f5=2.37, q5=0.91, f6=3.35, q6=0.91),
-            Weighting(name="Wd", f1=0.4, f2=100.0, f3=2.0, f4=2.0, q4=0.63, f5=_INFINITE, q5=1.0, f6=_INFINITE, q6=1.0),
-            Weighting(
-                name="Wf", f1=0.08, f2=0.63, f3=_INFINITE, f4=0.25, q4=0.86, f5=0.0625, q5=0.80, f6=0.10, q6=0.80
-            ),
-            Weighting(name="Wc", f1=0.4, f2=100.0, f3=8.0, f4=8.0, q4=0.63, f5=_INFINITE, q5=1.0, f6=_INFINITE, q6=1.0),
-            Weighting(name="We", f1=0.4, f2=100.0, f3=1.0, f4=1.0, q4=0.63, f5=_INFINITE, q5=1.0, f6=_INFINITE, q6=1.0),
-            Weighting(
-                name="Wj", f1=0.4, f2=100.0, f3=_INFINITE, f4=_INFINITE, q4=1.0, f5=3.75, q5=0.91, f6=5.32, q6=0.91
-            ),
-            # BS 6841:1987 writes the step without (f5/f6)^2 and K = 0.4; ISO 8041:2005 writes K = 1.024: the same,
-            # for 1.024 (2.5/4)^2 = 0.4
-            Weighting(
-                name="Wb", f1=0.4, f2=100.0, f3=16.0, f4=16.0, q4=0.55, f5=2.5, q5=0.9, f6=4.0, q6=0.95, gain=1.024
-            ),
-        )
-    }
+    {name: Weighting(name, *parameters) for name, parameters in _PARAMETERS.items()}
 )
 """The weightings by name."""
 
@@ -146,7 +139,7 @@ def weighting(name: str) -> Weighting:
     return WEIGHTINGS[name]
 
 
-def weighted_record(time_step: float, signals: ArrayLike, name: str) -> NDArray[np.float64]:
+def weighted_record(time_step: float, signals: ArrayLike, name: str) -> Vector:
     """Return records filtered by the analogue weighting, which is at rest before the first sample.
 
     The record, extended by zeros until the filter has decayed, is transformed, multiplied by the exact complex H(f) of
@@ -197,6 +190,6 @@ def weighted_record(time_step: float, signals: ArrayLike, name: str) -> NDArray[
 
 
 @lru_cache(maxsize=8)
-def _factors(name: str, length: int, step: float) -> NDArray[np.complex128]:
+def _factors(name: str, length: int, step: float) -> Complex:
     """Return the complex factors of a weighting at the lines of a record, cached for the runs of a sweep."""
     return weighting(name).transfer_function(np.fft.rfftfreq(length, step))

@@ -9,7 +9,6 @@ import numpy as np
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import CORNERS, is_wheel
-from vehicle.signals.formats.channel import Channel
 from vehicle.signals.formats.reader import read_record
 from vehicle.signals.formats.table import TIME, USABLE, Header, Table
 from vehicle.signals.records.choice import Choice, choose
@@ -17,11 +16,6 @@ from vehicle.signals.records.integration import displacement
 
 WHEEL_REMEDY = "pass wheel='fl' (of a car: wheel=car.vehicle.shaker_wheel), or name the column displacement_fl"
 """Remedy for a plate displacement without a wheel, read from Python; a command takes the wheel of its car."""
-
-
-def _moves(channel: Channel) -> bool:
-    """Return False for the constant plate channel of a run, which records undriven plates too."""
-    return not channel.name.startswith("plate_") or bool(np.ptp(channel.values) > 0.0)
 
 
 def chosen_plates(path: Path, choice: Choice | None, wheel: str | None) -> tuple[Table, float]:
@@ -46,14 +40,13 @@ def chosen_plates(path: Path, choice: Choice | None, wheel: str | None) -> tuple
     if unknown is not None:
         raise ConfigurationError(f"--channel {unknown}=...: must be one of {', '.join(CORNERS.values())}, time")
     if not any(role != "time" for role in choice.channels):
-        wheels = CORNERS.values()
-        named = {f"displacement_{channel}": channel for channel in wheels} | {
-            f"plate_{channel}_displacement": channel for channel in wheels
-        }
+        forms = ("displacement_{}", "plate_{}_displacement")
+        named = {form.format(corner): corner for form in forms for corner in CORNERS.values()}
         assigned = {
             named[channel.name]: channel.name
             for channel in measurement.channels
-            if channel.name in named and _moves(channel)
+            # a run records undriven plates too
+            if channel.name in named and (channel.name.startswith("displacement") or np.ptp(channel.values) > 0.0)
         }
         plain = [channel for channel in measurement.channels if channel.name == "displacement"] or measurement.channels
         if not assigned and (plain[0].name == "displacement" or len(plain) == 1):
@@ -61,12 +54,9 @@ def chosen_plates(path: Path, choice: Choice | None, wheel: str | None) -> tuple
                 raise DataError(f"{path}: channel {plain[0].name!r} names no wheel; {WHEEL_REMEDY}")
             assigned = {wheel: "1" if len(measurement.channels) == 1 else plain[0].name}
         if not assigned:
-            names = ", ".join(
-                f"{n} {channel.name!r} [{channel.unit}]" for n, channel in enumerate(measurement.channels[:20], 1)
-            )
             raise DataError(
-                f"{path}: {len(measurement.channels)} channels: {names}; select the channel of the plate: --channel "
-                f"{wheel or 'fl'}=NAME, with its number, exact name, or a pattern with *"
+                f"{path}: {len(measurement.channels)} channels: {measurement.listed()}; select the channel of the "
+                f"plate: --channel {wheel or 'fl'}=NAME, with its number, exact name, or a pattern with *"
             )
         choice = replace(choice, channels={**choice.channels, **assigned})
     chosen = choose(measurement, choice)

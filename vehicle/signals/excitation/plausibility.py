@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from vehicle.digits import number
 from vehicle.errors import DataError
 from vehicle.signals.analysis.fast_length import fast_length
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.formats.clock import PAUSE
 from vehicle.signals.records.channel_faults import clipped, constant_part
 from vehicle.signals.records.rare_events import rare_events
@@ -39,7 +39,7 @@ of its lowest frequency has less than 0.2."""
 
 
 def check_level(
-    path: Path, displacement: Mapping[str, NDArray[np.float64]], timestep: float, units: Mapping[str, str] | None = None
+    path: Path, displacement: Mapping[str, Vector], timestep: float, units: Mapping[str, str] | None = None
 ) -> list[str]:
     """Reject levels that indicate a wrong unit or quantity; return notices on rare events, such as a pothole.
 
@@ -107,12 +107,11 @@ def check_level(
     return events
 
 
-def acceleration_events(displacement: Mapping[str, NDArray[np.float64]], timestep: float) -> list[str]:
+def acceleration_events(displacement: Mapping[str, Vector], timestep: float) -> list[str]:
     """Return a notice for each plate of a road with an acceleration above that of a shaker, with its maximum.
 
     Args:
-        displacement: wheel -> plate displacement [m], shape (n,).
-        timestep: sampling interval [s].
+        displacement, timestep: see `check_level`.
     """
     events = []
     for wheel, z in displacement.items():
@@ -128,7 +127,7 @@ def acceleration_events(displacement: Mapping[str, NDArray[np.float64]], timeste
     return events
 
 
-def band_limited_acceleration(z: NDArray[np.float64], timestep: float) -> NDArray[np.float64]:
+def band_limited_acceleration(z: Vector, timestep: float) -> Vector:
     """Return the second time derivative of the record below 100 Hz [m/s2], shape (n,).
 
     z'' = (z[i+1] - 2 z[i] + z[i-1]) / dt^2, after a zero-phase low pass: a digital Butterworth filter of 4th order,
@@ -145,7 +144,7 @@ def band_limited_acceleration(z: NDArray[np.float64], timestep: float) -> NDArra
     return np.concatenate((inner[:1], inner, inner[-1:]))
 
 
-def _low_pass(z: NDArray[np.float64], cutoff: float) -> NDArray[np.float64]:
+def _low_pass(z: Vector, cutoff: float) -> Vector:
     """Return a record without its share above a cut-off frequency, without phase.
 
     Args:
@@ -166,7 +165,7 @@ def _low_pass(z: NDArray[np.float64], cutoff: float) -> NDArray[np.float64]:
     return np.asarray(smooth[beyond : beyond + z.size])
 
 
-def velocity_share_near_nyquist(z: NDArray[np.float64]) -> float:
+def velocity_share_near_nyquist(z: Vector) -> float:
     """Return the share of the VELOCITY variance above 0.8 of the Nyquist frequency [-].
 
     sum over f > 0.8 fN of f^2 |Z(f)|^2 / sum over all f, Hann window. The displacement PSD of a road falls so steeply
@@ -182,7 +181,7 @@ def velocity_share_near_nyquist(z: NDArray[np.float64]) -> float:
     return float(power[frequency > 0.8].sum()) / total if total > 0.0 else 0.0
 
 
-def aliasing_notices(displacement: Mapping[str, NDArray[np.float64]], timestep: float) -> tuple[str, ...]:
+def aliasing_notices(displacement: Mapping[str, Vector], timestep: float) -> tuple[str, ...]:
     """Return a notice for each plate with more than 5 % of its velocity variance above 0.8 of the Nyquist frequency."""
     limit = 0.4 / timestep
     shares = {wheel: velocity_share_near_nyquist(z) for wheel, z in displacement.items()}
@@ -195,13 +194,10 @@ def aliasing_notices(displacement: Mapping[str, NDArray[np.float64]], timestep: 
     )
 
 
-def drifts(displacement: Mapping[str, NDArray[np.float64]]) -> list[str]:
-    """Return a notice for each plate whose least-squares line rises by more than the RMS about the line.
+def drifts(displacement: Mapping[str, Vector]) -> list[str]:
+    """Return a notice for each plate (wheel -> [m], (n,)) whose least-squares line rises by more than the RMS about it.
 
     Slope b = 12 / (n^2 - 1) mean((k - (n - 1)/2) z_k) per sample, k = 0 ... n - 1; drift b (n - 1).
-
-    Args:
-        displacement: wheel -> plate displacement [m], shape (n,).
     """
     notices = []
     for wheel, z in displacement.items():
@@ -216,7 +212,7 @@ def drifts(displacement: Mapping[str, NDArray[np.float64]]) -> list[str]:
     return notices
 
 
-def pauses(wheel: str, time: NDArray[np.float64], values: NDArray[np.float64]) -> list[str]:
+def pauses(wheel: str, time: Vector, values: Vector) -> list[str]:
     """Return a notice on the longest constant part between two motions if it is at least `PAUSE` long.
 
     Args:
@@ -236,7 +232,7 @@ def pauses(wheel: str, time: NDArray[np.float64], values: NDArray[np.float64]) -
     ]
 
 
-def clipping(wheel: str, values: NDArray[np.float64]) -> list[str]:
+def clipping(wheel: str, values: Vector) -> list[str]:
     """Return a notice for each side on which the displacement of a plate is clipped.
 
     Args:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
+
+from vehicle.signals.analysis.samples import Vector
 
 RAMP_S = 0.5
 """Length of the half-cosine ramp [s]: half a period of 1 Hz, the lower end of the range of interest."""
@@ -17,7 +18,7 @@ VELOCITY_SHARE = 0.1
 """Maximum first difference over the RMS of all differences [-]; a larger one is a velocity jump at t = 0."""
 
 
-def half_cosine(*, samples: int, timestep: float, length: float) -> NDArray[np.float64]:
+def half_cosine(*, samples: int, timestep: float, length: float) -> Vector:
     """Return weights that rise from 0 to 1 over `length` seconds with zero slope at both ends, then 1.
 
     w(t) = (1 - cos(pi t / length)) / 2
@@ -33,19 +34,19 @@ def half_cosine(*, samples: int, timestep: float, length: float) -> NDArray[np.f
     if length <= 0.0:
         return np.ones(samples)
     phase = np.minimum(np.arange(samples) * timestep / length, 1.0)
-    weights: NDArray[np.float64] = 0.5 * (1.0 - np.cos(np.pi * phase))
+    weights: Vector = 0.5 * (1.0 - np.cos(np.pi * phase))
     return weights
 
 
-def taper(*, samples: int, timestep: float, length: float) -> NDArray[np.float64]:
+def taper(*, samples: int, timestep: float, length: float) -> Vector:
     """Return weights with a half-cosine rise at the beginning and fall at the end [-], shape (n,)."""
     rise = half_cosine(samples=samples, timestep=timestep, length=length)
     return rise * rise[::-1]
 
 
 def start_from_rest(
-    displacement: Mapping[str, NDArray[np.float64]], *, timestep: float
-) -> tuple[dict[str, NDArray[np.float64]], tuple[str, ...]]:
+    displacement: Mapping[str, Vector], *, timestep: float
+) -> tuple[dict[str, Vector], tuple[str, ...]]:
     """Apply the half-cosine ramp to all wheels if at least one does not begin at rest; subtract nothing.
 
     Args:
@@ -67,7 +68,7 @@ def start_from_rest(
     return {wheel: z * weights + 0.0 for wheel, z in plates.items()}, tuple(f"{cause}; {done}" for cause in causes)
 
 
-def _causes(wheel: str, z: NDArray[np.float64], timestep: float) -> list[str]:
+def _causes(wheel: str, z: Vector, timestep: float) -> list[str]:
     rms = float(np.std(z))
     first = float(z[0])
     if abs(first) > OFFSET_SHARE * rms:

@@ -8,10 +8,11 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from vehicle.errors import DataError
 from vehicle.names import CORNERS, in_order, is_wheel
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.spline import CubicSpline
 
 STEP_TOLERANCE = 1e-6
@@ -29,13 +30,13 @@ per sample, to 1e-36 over this margin."""
 class PlateMotion:
     """Motion of plates at given times; zeros for a wheel without excitation."""
 
-    time: NDArray[np.float64]
+    time: Vector
     """Simulation times [s], shape (m,)."""
-    displacement: Mapping[str, NDArray[np.float64]]
+    displacement: Mapping[str, Vector]
     """Upward displacement of each plate [m], wheel -> shape (m,)."""
-    velocity: Mapping[str, NDArray[np.float64]]
+    velocity: Mapping[str, Vector]
     """First time derivative of the displacement [m/s], wheel -> shape (m,)."""
-    acceleration: Mapping[str, NDArray[np.float64]]
+    acceleration: Mapping[str, Vector]
     """Second time derivative of the displacement [m/s2], wheel -> shape (m,)."""
 
 
@@ -59,44 +60,41 @@ class Signal:
         DataError: shapes differ, a value is not finite, the grid is not uniform, a wheel is unknown.
     """
 
-    time: NDArray[np.float64]
-    displacement: Mapping[str, NDArray[np.float64]]
+    time: Vector
+    displacement: Mapping[str, Vector]
     notices: tuple[str, ...] = ()
     source: str = "array"
     sha256: str | None = None
     highest: float | None = None
-    slope_velocity: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
-    profile: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
+    slope_velocity: Mapping[str, Vector] = field(default_factory=dict)
+    profile: Mapping[str, Vector] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         """Return source, length and wheels in a line."""
         return f"Signal({self.source}, {self.duration:g} s, wheels {', '.join(self.wheels)})"
 
     def __post_init__(self) -> None:
-        time = _read_only(self.time)
-        displacement = {wheel: _read_only(values) for wheel, values in self.displacement.items()}
-        object.__setattr__(self, "time", time)
-        object.__setattr__(self, "displacement", displacement)
-        slopes = {wheel: _read_only(values) for wheel, values in self.slope_velocity.items()}
-        object.__setattr__(self, "slope_velocity", slopes)
-        profile = {wheel: _read_only(values) for wheel, values in self.profile.items()}
-        object.__setattr__(self, "profile", profile)
+        object.__setattr__(self, "time", _read_only(self.time))
+        for name in ("displacement", "slope_velocity", "profile"):
+            columns = {wheel: _read_only(values) for wheel, values in getattr(self, name).items()}
+            object.__setattr__(self, name, columns)
         self._check_time()
-        if not displacement:
+        if not self.displacement:
             raise DataError(f"{self.source}: the signal drives no wheel; set a displacement for one of {_wheels()}")
-        for wheel in displacement:
+        for wheel in self.displacement:
             if not is_wheel(wheel):
                 raise DataError(f"{self.source}: unknown wheel {wheel!r}; must be one of {_wheels()}")
-        for name, columns in (("displacement", displacement), ("slope velocity", slopes), ("profile", profile)):
-            if columns and columns.keys() != displacement.keys():
+        for name in ("displacement", "slope_velocity", "profile"):
+            columns, name = getattr(self, name), name.replace("_", " ")
+            if columns and columns.keys() != self.displacement.keys():
                 raise DataError(
                     f"{self.source}: {name} of {', '.join(columns)}; set it for the wheels of the displacements, "
-                    f"{', '.join(displacement)}, or for none"
+                    f"{', '.join(self.displacement)}, or for none"
                 )
             for wheel, values in columns.items():
-                if values.shape != time.shape:
+                if values.shape != self.time.shape:
                     raise DataError(
-                        f"{self.source}: {name} of {wheel} has shape {values.shape}, time has {time.shape}; "
+                        f"{self.source}: {name} of {wheel} has shape {values.shape}, time has {self.time.shape}; "
                         "all columns must have the same length"
                     )
                 if not np.isfinite(values).all():
@@ -170,7 +168,7 @@ class Signal:
         """Return the cubic spline of the slope velocity of a signal that has it; see `spline`."""
         return self._spline(self.slope_velocity[wheel], first, last)
 
-    def _spline(self, values: NDArray[np.float64], first: float, last: float) -> CubicSpline:
+    def _spline(self, values: Vector, first: float, last: float) -> CubicSpline:
         begin, end = (int(time / self.timestep) for time in (first, last))
         near = slice(max(begin - MARGIN, 0), end + 2 + MARGIN)
         return CubicSpline(self.time[near], values[near])
@@ -205,7 +203,7 @@ class Signal:
                 f"{self.duration:.9g} s; shorten the simulation or use a longer signal"
             )
         instants = np.clip(instants, 0.0, self.duration)
-        motion: list[dict[str, NDArray[np.float64]]] = [{}, {}, {}]
+        motion: list[dict[str, Vector]] = [{}, {}, {}]
         for wheel in self.wheels if wheels is None else wheels:
             driven = wheel in self.displacement and instants.size
             spline = self.spline(wheel, float(instants.min()), float(instants.max())) if driven else None
@@ -215,18 +213,18 @@ class Signal:
 
 
 @lru_cache(maxsize=2)
-def uniform_time(*, samples: int, timestep: float) -> NDArray[np.float64]:
+def uniform_time(*, samples: int, timestep: float) -> Vector:
     """Return sample times i * timestep, i = 0 ... samples - 1 [s], as products, without accumulated rounding.
 
     The array is read-only, as it is shared by a signal and its runs.
     """
-    time: NDArray[np.float64] = np.arange(samples, dtype=np.float64)
+    time: Vector = np.arange(samples, dtype=np.float64)
     time *= timestep
     time.setflags(write=False)
     return time
 
 
-def _read_only(values: ArrayLike) -> NDArray[np.float64]:
+def _read_only(values: ArrayLike) -> Vector:
     array = np.asarray(values, dtype=np.float64)
     if array.flags.writeable or not array.flags.owndata:
         array = np.array(array)

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehicle.errors import ConfigurationError, DataError
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.formats.can_frames import BusLog, Frames, Source
 from vehicle.signals.formats.channel import Channel
 from vehicle.signals.formats.optional_library import extra
@@ -267,9 +268,7 @@ def raw_values(signal: Any, payload: NDArray[np.uint8]) -> NDArray[Any]:
     return (numbers << np.uint64(WIDEST - size)).view(np.int64) >> np.int64(WIDEST - size)
 
 
-def _without_value(
-    signal: Any, raw: NDArray[Any], values: NDArray[np.float64], j1939: bool
-) -> dict[str, NDArray[np.bool_]]:
+def _without_value(signal: Any, raw: NDArray[Any], values: Vector, j1939: bool) -> dict[str, NDArray[np.bool_]]:
     """Return the raw values that are no measured values, by reason, with their frames, (n,).
 
     A value table names raw values; it does not replace factor and offset. A named value of a measured quantity

@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehicle.errors import ConfigurationError, DataError
+from vehicle.signals.analysis.samples import Complex
 from vehicle.signals.formats.clock import clock_of_rounded, clock_of_stamps, is_uniform, longest_step, typical_rate
 from vehicle.signals.formats.geometry import Geometry, ModeShape
 from vehicle.signals.formats.table import Vector
 from vehicle.signals.formats.units import find_ratio
 
-Values = NDArray[np.float64] | NDArray[np.complex128]
+Values = NDArray[np.float64] | Complex
 
 ROAD_PROFILE = "road profile"
 """Function of heights over the distance, and of the distance itself."""
@@ -111,7 +112,7 @@ class Measurement:
         path: measurement file.
         format: name of the file format.
         channels: channels in the order of the file, which numbers them from 1.
-        sha256: hexadecimal digest of the bytes of the file.
+        sha256: hexadecimal digest of the bytes of the file; `read_record` adds it.
         program: program that wrote the file; empty if unknown.
         start: date and time of the first sample, as written in the file.
         notices: messages on unusual content that was accepted.
@@ -134,6 +135,10 @@ class Measurement:
         names = ", ".join(channel.name for channel in self.channels[:3])
         more = f" and {len(self.channels) - 3} more" if len(self.channels) > 3 else ""
         return f"Measurement({self.path.name}, {self.format}, {len(self.channels)} channels: {names}{more})"
+
+    def listed(self) -> str:
+        """Return number, name and unit of up to twenty channels, for messages."""
+        return ", ".join(f"{n} {channel.name!r} [{channel.unit}]" for n, channel in enumerate(self.channels[:20], 1))
 
     def __getitem__(self, name: str) -> Channel:
         """Return the channel with a name.

@@ -41,11 +41,7 @@ LONGEST_CLOCK = 48
 
 
 def is_clock(cell: str) -> bool:
-    """Return True if a cell contains a date, a time of day, or both.
-
-    Args:
-        cell: text of the cell, stripped.
-    """
+    """Return True if a stripped cell contains a date, a time of day, or both."""
     if len(cell) > LONGEST_CLOCK:
         return False
     both = _BOTH.fullmatch(cell)

@@ -10,7 +10,6 @@ import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import ROAD_PROFILE, Channel, Measurement, check_length, uniform_axis
-from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.table import Vector
 
 WIDTHS = {"LRFI": 10, "LDFI": 20}
@@ -41,21 +40,15 @@ class Surface:
         v: lateral positions, positive to the left [m], (k,), increasing.
         z: heights [m], (n, k); NaN outside the road.
         curved: True if the reference line is curved; it is used as a straight line.
-        sha256: hexadecimal digest of the file.
     """
 
     u: Vector
     v: Vector
     z: Vector
     curved: bool
-    sha256: str
 
     def height(self, v: float) -> Vector:
-        """Return the heights of a track [m], (n,), linear between sections as in OpenCRG; NaN outside the road.
-
-        Args:
-            v: lateral position of the track, positive to the left [m].
-        """
+        """Return the heights [m], (n,), of the track at v [m], linear between sections; NaN outside the road."""
         if not self.v[0] - 1e-9 <= v <= self.v[-1] + 1e-9:
             return np.full(self.u.size, np.nan)
         left = min(int(np.searchsorted(self.v, v, side="right")), self.v.size - 1)
@@ -125,24 +118,18 @@ def read_surface(path: Path) -> Surface:
     u, v = uniform_axis(table.shape[0], step, start), _places(path, [names[index] for index in longs], numbers)
 
     def along(name: str, letter: str) -> Vector:
-        column = next(
-            (index for index, column_name in enumerate(names) if column_name == f"reference line {name}"), None
-        )
-        if column is None:
+        if f"reference line {name}" not in names:
             return np.full(u.size, numbers.get(f"reference_line_start_{letter}", 0.0))
-        return np.nan_to_num(table[:, column])  # OpenCRG does not use the first value of a slope
+        return np.nan_to_num(table[:, names.index(f"reference line {name}")])  # the first value of a slope is not used
 
     slope, banking = along("slope", "s"), along("banking", "b")
     rise = numbers.get("reference_line_start_z", 0.0) + np.concatenate([[0.0], np.cumsum(slope[1:]) * step])
-    heading = next(
-        (table[:, index] for index, column_name in enumerate(names) if column_name == "reference line phi"), np.zeros(1)
-    )
+    heading = table[:, names.index("reference line phi")] if "reference line phi" in names else np.zeros(1)
     return Surface(
         u=u,
         v=v,
         z=table[:, longs] + rise[:, None] + banking[:, None] * v[None, :],
         curved=bool(np.nanmax(heading[1:] if heading.size > 1 else heading) - np.nanmin(heading[-1:]) != 0.0),
-        sha256=digest(path),
     )
 
 
@@ -158,7 +145,6 @@ def read(path: Path) -> Measurement:
         path=path,
         format="crg",
         channels=tuple(channels),
-        sha256=surface.sha256,
         program="OpenCRG",
         notices=(road_words(surface),),
     )

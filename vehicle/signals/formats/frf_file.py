@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.errors import DataError
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.analysis.motion_response import MotionResponse
 from vehicle.signals.analysis.response_name import ResponseName, parsed_name
+from vehicle.signals.analysis.samples import Complex
 from vehicle.signals.formats.table import Header, Table, Vector, Wanted, key_column
 from vehicle.signals.formats.table_file import read_table
 from vehicle.signals.formats.text_format import write_table
@@ -43,7 +43,7 @@ class FrfData:
 
     frequency: Vector
     names: tuple[ResponseName, ...]
-    response: npt.NDArray[np.complex128]
+    response: Complex
     coherence: Vector
     random_error: Vector
 
@@ -140,10 +140,13 @@ def read_frf(path: Path) -> FrfData:
             f"{path}: {len(table.values)} rows of numbers, must be a header and at least {LEAST_LINES} rows"
         )
     frequency = table.values[:, table.key]
-    _check_frequency(table, frequency)
+    for index in np.flatnonzero(np.diff(frequency, prepend=0.0) <= 0.0)[:1].tolist():
+        after = f" after {frequency[index - 1]:g}; frequencies must increase" if index else ", must be above 0"
+        raise DataError(f"{table.place(index)}: column {FREQUENCY!r} has the value {frequency[index]:g}{after}")
     channels = _channels(table.header)
-    values = {suffix: _columns(table, channels, suffix) for suffix in (*SUFFIXES, RANDOM_ERROR)}
-    magnitude, phase, coherence, random_error = values.values()
+    magnitude, phase, coherence, random_error = (
+        _columns(table, channels, suffix) for suffix in (*SUFFIXES, RANDOM_ERROR)
+    )
     return FrfData(
         frequency=frequency,
         names=tuple(parsed_name(channel) for channel in channels),
@@ -193,12 +196,6 @@ def _columns(table: Table, channels: Sequence[str], suffix: str) -> Vector:
             f"{table.place(row)}: column {columns[channel]!r} has the value {values[channel, row]:g}, must be {allowed}"
         )
     return values
-
-
-def _check_frequency(table: Table, frequency: Vector) -> None:
-    for index in np.flatnonzero(np.diff(frequency, prepend=0.0) <= 0.0)[:1].tolist():
-        after = f" after {frequency[index - 1]:g}; frequencies must increase" if index else ", must be above 0"
-        raise DataError(f"{table.place(index)}: column {FREQUENCY!r} has the value {frequency[index]:g}{after}")
 
 
 def write_frf(

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-import numpy as np
-from numpy.typing import NDArray
+from vehicle.signals.analysis.samples import Complex
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -43,7 +42,7 @@ class ModeShape:
     number: int
     frequency: float
     points: tuple[str, ...]
-    shape: NDArray[np.complex128]
+    shape: Complex
     damping_ratio: float = 0.0
     modal_mass: float = 0.0
     modal_a: complex = 0j

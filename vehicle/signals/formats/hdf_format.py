@@ -13,14 +13,13 @@ import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel, Measurement, even_step, uniform_axis
-from vehicle.signals.formats.file_digest import digest
-from vehicle.signals.formats.heads import TIME_NAME, split_head
+from vehicle.signals.formats.heads import split_head, time_key
 from vehicle.signals.formats.matlab_format import channels_of
-from vehicle.signals.formats.optional_library import extra
-from vehicle.signals.formats.packed_values import unpacked
+from vehicle.signals.formats.optional_library import extra, reading
+from vehicle.signals.formats.packed_values import attribute_text, unpacked
 from vehicle.signals.formats.pandas_frames import frame_channels
 from vehicle.signals.formats.table import Vector
-from vehicle.signals.formats.units import find_unit
+from vehicle.signals.formats.units import seconds_in
 from vehicle.signals.formats.unpacked_size import require_unpacked
 
 PLAIN_CLASSES = frozenset(
@@ -50,31 +49,25 @@ def read(path: Path) -> Measurement:
     """
     h5py = extra("h5py", "hdf5", "an HDF5 file (MAT 7.3)")
     start = ""
-    try:
-        with h5py.File(path, "r") as file:
-            require_unpacked(path, _size(file, h5py), path.stat().st_size)
-            if any("MATLAB_class" in item.attrs for item in file.values()):
-                objects = {name: matlab_class for name, item in file.items() if (matlab_class := _object_class(item))}
-                names = [name for name in file if not name.startswith("#") and name not in objects]
-                variables = {name: _matlab(file, file[name], h5py) for name in names}
-                variables = {name: item for name, item in variables.items() if item is not None}
-                channels, notices = channels_of(variables, path, objects)
-                program = "MATLAB 7.3"
-            else:
-                notices = []
-                channels, start = _walk(path, file, h5py, notices)
-                program = _attribute(file, "program")
-    except DataError:
-        raise
-    except Exception as error:  # h5py raises errors of any type for damaged files
-        raise DataError(f"{path}: cannot be read as HDF5 ({error}); it may be truncated; export it again") from None
+    with reading(path, "HDF5", "it may be truncated; export it again"), h5py.File(path, "r") as file:
+        require_unpacked(path, _size(file, h5py), path.stat().st_size)
+        if any("MATLAB_class" in item.attrs for item in file.values()):
+            objects = {name: matlab_class for name, item in file.items() if (matlab_class := _object_class(item))}
+            names = [name for name in file if not name.startswith("#") and name not in objects]
+            variables = {name: _matlab(file, file[name], h5py) for name in names}
+            variables = {name: item for name, item in variables.items() if item is not None}
+            channels, notices = channels_of(variables, path, objects)
+            program = "MATLAB 7.3"
+        else:
+            notices = []
+            channels, start = _walk(path, file, h5py, notices)
+            program = _attribute(file, "program")
     if not channels:
         raise DataError(f"{path}: no numeric array; export the channels as arrays")
     return Measurement(
         path=path,
         format="hdf5",
         channels=channels,
-        sha256=digest(path),
         program=program,
         start=start,
         notices=tuple(notices),
@@ -202,10 +195,10 @@ def _coordinate(dataset: Any, count: int) -> Vector | None:
     if not len(scales) or scales[0].shape != (count,) or scales[0].dtype.kind not in "fiu":
         return None
     unit, since, _ = _attribute(scales[0], "units").partition(" since ")
-    factor = LONG_UNITS.get(unit.strip().lower()) or _seconds(unit.strip())
+    factor = LONG_UNITS.get(unit.strip().lower()) or seconds_in(unit.strip())
     if not factor:
         return None
-    times = np.asarray(unpacked("", scales[0]).values, dtype=np.float64) * factor
+    times = np.asarray(unpacked("", scales[0])[0], dtype=np.float64) * factor
     return times - times[0] if since else times
 
 
@@ -220,8 +213,8 @@ def _fields(name: str, dataset: Any, notices: list[str]) -> list[Channel]:
     if others:
         notices.append(f"fields of {name!r} without numbers are ignored: {', '.join(map(repr, others))}")
     heads = {field: split_head(field) for field in numeric}
-    key = next((field for field, (text, unit) in heads.items() if TIME_NAME.fullmatch(text) and _seconds(unit)), None)
-    axis = None if key is None else table[key].astype(np.float64) * _seconds(heads[key][1])
+    key = time_key(heads)
+    axis = None if key is None else table[key].astype(np.float64) * seconds_in(heads[key][1])
     return [
         Channel(name=text, values=table[field].astype(np.float64), unit=unit, axis=axis, place=name)
         for field, (text, unit) in heads.items()
@@ -229,24 +222,15 @@ def _fields(name: str, dataset: Any, notices: list[str]) -> list[Channel]:
     ]
 
 
-def _seconds(unit: str) -> float:
-    """Return the factor from a unit of time to seconds; 0 for other units."""
-    entry = find_unit(unit)
-    return entry.factor if entry is not None and entry.quantity == "time" else 0.0
-
-
 def _attribute(item: Any, name: str) -> str:
-    value = item.attrs.get(name, "")
-    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
+    return attribute_text(item.attrs.get(name))
 
 
 def write(path: Path, channels: tuple[Channel, ...], description: str) -> None:
     """Write channels to an HDF5 file, one array per channel.
 
     Args:
-        path: file to write.
-        channels: channels of any type.
-        description: description of the record.
+        path, channels, description: file to write, channels of any type, and description of the record.
 
     Raises:
         MissingPartError: h5py is not installed.

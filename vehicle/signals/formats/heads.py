@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle.errors import DataError
 from vehicle.signals.formats.clock_text import is_clock
-from vehicle.signals.formats.units import find_unit
+from vehicle.signals.formats.units import find_unit, seconds_in
 
 HEAD_LINES = 6
 """Maximum number of header lines: device, name, type, unit, sensor, axis."""
@@ -199,11 +199,7 @@ def _is_number(cell: str) -> bool:
 
 
 def bare_unit(cell: str) -> str:
-    """Strip enclosing blanks and brackets from a unit; return "" for a dash.
-
-    Args:
-        cell: text of the unit, such as "[m/s2]", "(g)", "m/(s^2)" or "-".
-    """
+    """Strip enclosing blanks and brackets from a unit, as "[m/s2]", "(g)", "m/(s^2)"; return "" for a dash."""
     text = cell.strip(" -")
     while len(text) > 1 and text[0] + text[-1] in ("[]", "()"):
         inner = text[1:-1]
@@ -257,6 +253,11 @@ def split_head(cell: str) -> tuple[str, str]:
     if slash and find_unit(unit):
         return name.strip(), unit.strip()
     return cell.strip(), _unit_of_name(cell.strip())
+
+
+def time_key(heads: Mapping[str, tuple[str, str]]) -> str | None:
+    """Return the first column with the name and the unit of a time, see `split_head`; None without one."""
+    return next((key for key, (name, unit) in heads.items() if TIME_NAME.fullmatch(name) and seconds_in(unit)), None)
 
 
 def _unit_of_name(name: str) -> str:

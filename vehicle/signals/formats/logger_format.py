@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -206,9 +206,7 @@ def _axis(
         name, unit = heads.names[key], heads.units[key]
         time_unit = find_unit(unit)
         if time_unit is None or time_unit.factor < 1.0:
-            prefix = next(
-                (text for text, scale in (("ms", 1e-3), ("us", 1e-6)) if time_unit and time_unit.factor == scale), ""
-            )
+            prefix = {1e-3: "ms", 1e-6: "us"}.get(time_unit.factor if time_unit else 1.0, "")
             epoch = epoch_seconds(values[:, key], prefix or _EPOCH_UNITS.get(unit.lower(), ""))
         else:
             epoch = epoch_seconds(values[:, key], "s") if unit else None
@@ -220,17 +218,17 @@ def _axis(
     if clock is not None:
         return clock
     if key >= 0:
-        remark = f"time column without a known unit: set --rate HZ, or --channel time={heads.names[key]} --unit time=s"
-        return _Axis(None, (key,), "time", remark=remark)
+        return _Axis(None, (key,), "time", remark=_without_unit("time", heads.names[key]))
     if kinds[0] == "number" and _is_axis(heads.names[0], heads.units[0], "frequency"):
         unit_of_first = find_unit(heads.units[0])
         if unit_of_first is not None:
             return _Axis(values[:, 0] * unit_of_first.factor, (0,), "frequency")
-        remark = (
-            f"frequency column without a known unit: set --rate HZ, or --channel time={heads.names[0]} --unit time=s"
-        )
-        return _Axis(None, (0,), "frequency", remark=remark)
+        return _Axis(None, (0,), "frequency", remark=_without_unit("frequency", heads.names[0]))
     return _Axis(None, (), "time")
+
+
+def _without_unit(quantity: str, name: str) -> str:
+    return f"{quantity} column without a known unit: set --rate HZ, or --channel time={name} --unit time=s"
 
 
 def _start_of(heads: Heads, kinds: Sequence[Kind], values: Vector) -> str:
@@ -264,11 +262,7 @@ def _clock_axis(path: Path, heads: Heads, texts: dict[int, list[str]], numbers: 
         shown = " and ".join(repr(heads.names[day_column]) for day_column in columns)
         notice = f"dates and clocks of column {shown}: the time begins at {start}"
         clocks.append(_Axis(seconds, columns, "time", start, (notice, *notices)))
-    rising = [
-        day_column
-        for day_column in clocks
-        if day_column.values is not None and (np.diff(day_column.values) > 0.0).all()
-    ]
+    rising = [clock for clock in clocks if clock.values is not None and (np.diff(clock.values) > 0.0).all()]
     return next(iter((*rising, *clocks)), None)
 
 
@@ -292,22 +286,16 @@ def _rates_above(above: Sequence[str]) -> list[str]:
 def _responses(path: Path, sha256: str) -> Measurement:
     """Read the `frf.csv` of a run as channels: frequency responses, coherences and random errors."""
     frfs = read_frf(path)
-    axis: dict[str, Any] = {"axis": frfs.frequency, "kind": "frequency"}
     channels = []
     for row, name in enumerate(frfs.channels):
-        channels.append(
-            Channel(
-                name=name,
-                values=frfs.response[row],
-                unit="(m/s2)/m",
-                function="frequency response",
-                **axis,
-            )
-        )
-        channels.append(Channel(name=f"{name}_coherence", values=frfs.coherence[row], function="coherence", **axis))
-        if np.isfinite(frfs.random_error[row]).any():
-            error = Channel(name=name + RANDOM_ERROR, values=frfs.random_error[row], unit="(m/s2)/m", **axis)
-            channels.append(replace(error, function="random error"))
+        for end, values, unit, function in (
+            ("", frfs.response, "(m/s2)/m", "frequency response"),
+            (SUFFIXES[2], frfs.coherence, "", "coherence"),
+            (RANDOM_ERROR, frfs.random_error, "(m/s2)/m", "random error"),
+        ):
+            channel = Channel(name=name + end, values=values[row], unit=unit, axis=frfs.frequency, kind="frequency")
+            if end != RANDOM_ERROR or np.isfinite(channel.values).any():
+                channels.append(replace(channel, function=function))
     return Measurement(path=path, format="csv", channels=tuple(channels), sha256=sha256)
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -266,11 +266,8 @@ def _step(text: str) -> tuple[float, str]:
     if low == high and abs(step * low - 1.0) > 1e-12:
         return 1.0 / low, f"time step {text} s is rounded: taken as a clock of {low} Hz"
     if low != high and half / step > 1e-5:
-        return (
-            step,
-            f"time step {text} s is rounded: uncertainty of the rate {1.0 / step:.9g} Hz "
-            f"{number(100 * half / step, 2)} %",
-        )
+        uncertainty = f"uncertainty of the rate {1.0 / step:.9g} Hz {number(100 * half / step, 2)} %"
+        return step, f"time step {text} s is rounded: {uncertainty}"
     return step, ""
 
 
@@ -280,34 +277,22 @@ def _joined(
     """Concatenate the channels of all segments if their names are equal; else return all with their segment."""
     if len(segments) == 1:
         return tuple(columns[0])
-    names = [(channel.name, channel.unit, channel.axis is None) for channel in columns[0]]
-    if any(
-        [(channel.name, channel.unit, channel.axis is None) for channel in other_columns] != names
-        for other_columns in columns
-    ):
+    names = [[(channel.name, channel.unit, channel.axis is None) for channel in of_segment] for of_segment in columns]
+    if any(other_names != names[0] for other_names in names):
         notices.append(f"{len(segments)} segments with different channels: channels are listed by segment")
         return tuple(
-            Channel(name=channel.name, values=channel.values, unit=channel.unit, axis=channel.axis, kind=channel.kind,
-                    function=channel.function, place=f"segment {number}", remark=channel.remark)
-            for number, segment_channels in enumerate(columns, 1) for channel in segment_channels
-        )  # fmt: skip
+            replace(channel, place=f"segment {number}")
+            for number, of_segment in enumerate(columns, 1)
+            for channel in of_segment
+        )
     offsets = _starts(path, segments, columns)
     notices.append(f"{len(segments)} segments concatenated by their times")
     joined = []
     for index, channel in enumerate(columns[0]):
         parts = [segment_channels[index] for segment_channels in columns]
         axes = [part.axis + shift for part, shift in zip(parts, offsets, strict=True) if part.axis is not None]
-        joined.append(
-            Channel(
-                name=channel.name,
-                values=np.concatenate([part.values for part in parts]),
-                unit=channel.unit,
-                axis=np.concatenate(axes) if axes else None,
-                kind=channel.kind,
-                function=channel.function,
-                remark=channel.remark,
-            )
-        )
+        values = np.concatenate([part.values for part in parts])
+        joined.append(replace(channel, values=values, axis=np.concatenate(axes) if axes else None))
     return tuple(joined)
 
 

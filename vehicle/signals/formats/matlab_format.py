@@ -6,6 +6,7 @@ import struct
 import warnings
 import zlib
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +14,9 @@ import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel, Measurement, check_length, clock_step, even_step, uniform_axis
-from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.matlab_elements import COMPRESSED, MATRIX, check_matrix, object_name
-from vehicle.signals.formats.matlab_structures import columns_of, is_structure, structure_channels
+from vehicle.signals.formats.matlab_structures import columns_of, is_structure, structure_channels, word
+from vehicle.signals.formats.optional_library import reading
 from vehicle.signals.formats.table import Vector
 from vehicle.signals.formats.units import find_ratio, find_unit
 from vehicle.signals.formats.unpacked_size import require_unpacked
@@ -31,32 +32,21 @@ def read(path: Path) -> Measurement:
         DataError: the file is damaged, truncated, or without numbers.
     """
     from scipy.io import loadmat
-    from scipy.io.matlab import MatReadError
 
     objects = _check_elements(path)
-    warnings_read: list[str] = []
-    try:
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
-            variables = loadmat(path, squeeze_me=False, struct_as_record=True)
-        warnings_read = [str(warning.message).split("\n")[0] for warning in caught]
-        warnings_read = [
-            text for text in warnings_read if 'variable name "None"' not in text
-        ]  # SciPy warns of objects, which have no name
-    except (
-        ValueError, TypeError, KeyError, IndexError, EOFError, OSError, OverflowError, MemoryError, AttributeError,
-        NotImplementedError, UnicodeDecodeError, struct.error, zlib.error, MatReadError,
-    ) as error:  # fmt: skip
-        raise DataError(f"{path}: cannot be read as a MAT file ({error}); save it again as version 7") from None
+    with reading(path, "a MAT file", "save it again as version 7"), warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        variables = loadmat(path, squeeze_me=False, struct_as_record=True)
+    texts = [str(warning.message).split("\n")[0] for warning in caught]
+    warned = [text for text in texts if 'variable name "None"' not in text]  # of objects, which have no name
     program = variables.get("__header__", b"")
     channels, notices = channels_of(variables, path, objects)
     return Measurement(
         path=path,
         format="mat",
         channels=channels,
-        sha256=digest(path),
         program=(program.decode("latin-1") if isinstance(program, bytes) else str(program)).strip()[:80],
-        notices=(*warnings_read, *notices),
+        notices=(*warned, *notices),
     )
 
 
@@ -101,11 +91,10 @@ def channels_of(
             continue
         if array.ndim > 2:
             left_out.append(f"{name} ({' x '.join(map(str, array.shape))})")
-            continue
-        if array.size == 1:
+        elif array.size == 1:
             scalars.append(f"{name} = {array.ravel()[0]:g}")
-            continue
-        channels += [_plain(*column) for column in columns_of(name, array)]
+        else:
+            channels += [_plain(*column) for column in columns_of(name, array)]
     remedy = _remedy(objects)
     if not channels and objects:
         raise DataError(f"{path}: no numeric array; {remedy}")
@@ -174,13 +163,6 @@ def _field(value: Any, *names: str) -> Any:
     return value
 
 
-def _text(value: Any) -> str:
-    array = np.asarray(value) if value is not None else np.array("")
-    while array.dtype == object and array.size == 1:
-        array = np.asarray(array.ravel()[0])
-    return str(array.ravel()[0]).strip() if array.size == 1 and array.dtype.kind in "US" else ""
-
-
 def _number(value: Any) -> float | None:
     array = np.asarray(value) if value is not None else np.array([])
     return float(array.ravel()[0]) if array.size == 1 and array.dtype.kind in "fiu" else None
@@ -206,7 +188,7 @@ def _signal(path: Path, label: str, record: Mapping[str, Any]) -> list[Channel]:
             f"{path}: {label}: {stated_count:g} values stated, {columns.shape[0]} present; the file is damaged; "
             "save it again"
         )
-    axis_unit = find_unit(_text(_field(x, "quantity", "label")))
+    axis_unit = find_unit(word(_field(x, "quantity", "label")))
     axis_quantity = axis_unit.quantity if axis_unit is not None else ""
     axis: Vector | None = None
     remark = ""
@@ -217,7 +199,7 @@ def _signal(path: Path, label: str, record: Mapping[str, Any]) -> list[Channel]:
             length = step * axis_unit.factor
             length, remark = clock_step(length) if axis_quantity == "time" else (length, "")
             axis = uniform_axis(columns.shape[0], length, start * axis_unit.factor)
-    unit = _text(_field(y, "quantity", "label"))
+    unit = word(_field(y, "quantity", "label"))
     factor, unit_entry = _number(_field(y, "quantity", "unit_transformation", "factor")), find_ratio(unit)
     if factor is not None and unit_entry is not None:
         if abs(factor * unit_entry.factor - 1.0) > 0.01:
@@ -229,27 +211,23 @@ def _signal(path: Path, label: str, record: Mapping[str, Any]) -> list[Channel]:
         else:
             note = ""
         remark = "; ".join(text for text in (remark, note) if text)
-    name = _text(_field(record.get("function_record"), "name")) or _text(_field(record.get("function_record"), "title"))
-    function = _text(_field(record.get("function_record"), "type"))
-    point = _text(_field(record.get("function_record"), "point"))
-    channels = []
-    for n in range(columns.shape[1]):
-        channel = _plain(name or label, columns[:, n])
-        channels.append(
-            Channel(
-                name=channel.name if columns.shape[1] == 1 else f"{channel.name}({n + 1})",
-                values=channel.values,
-                unit=unit,
-                axis=axis,
-                kind="frequency" if axis_quantity == "frequency" else "time",
-                function=function or ("time history" if axis_quantity == "time" else "spectrum"),
-                place=point,
-                direction=_text(_field(record.get("function_record"), "direction")),
-                reference=_text(_field(record.get("function_record"), "reference")),
-                remark=remark,
-            )
+    about = {key: word(_field(record.get("function_record"), key))
+             for key in ("name", "title", "type", "point", "direction", "reference")}  # fmt: skip
+    name = about["name"] or about["title"] or label
+    return [
+        replace(
+            _plain(name if columns.shape[1] == 1 else f"{name}({n + 1})", columns[:, n]),
+            unit=unit,
+            axis=axis,
+            kind="frequency" if axis_quantity == "frequency" else "time",
+            function=about["type"] or ("time history" if axis_quantity == "time" else "spectrum"),
+            place=about["point"],
+            direction=about["direction"],
+            reference=about["reference"],
+            remark=remark,
         )
-    return channels
+        for n in range(columns.shape[1])
+    ]
 
 
 def _check_elements(path: Path) -> dict[str, str]:
@@ -297,9 +275,7 @@ def write(path: Path, channels: tuple[Channel, ...], description: str) -> None:
     """Write one structure per channel, in the layout of Testlab.
 
     Args:
-        path: file to write.
-        channels: channels of any type.
-        description: description of the record.
+        path, channels, description: file to write, channels of any type, and description of the record.
     """
     from scipy.io import savemat
 

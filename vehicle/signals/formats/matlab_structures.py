@@ -16,15 +16,11 @@ import numpy as np
 
 from vehicle.signals.formats.channel import Channel
 from vehicle.signals.formats.table import Vector
-from vehicle.signals.formats.units import find_unit
+from vehicle.signals.formats.units import seconds_in
 
 
 def is_structure(record: Mapping[str, Any]) -> bool:
-    """Return True if the fields of a structure are those of Simulink or dSPACE.
-
-    Args:
-        record: field to value.
-    """
+    """Return True if the fields of a structure, with their values, are those of Simulink or dSPACE."""
     return _has(record, "signals", "values") or (_has(record, "X", "Data") and _has(record, "Y", "Data"))
 
 
@@ -73,7 +69,7 @@ def _simulink(label: str, signals: Any) -> Iterator[tuple[str, Vector]]:
             continue
         element_label = label if elements.size == 1 else f"{label}({number})"
         columns = columns_of(f"{element_label}.values", values.astype(np.float64))
-        text = _word(element["label"]) if "label" in (elements.dtype.names or ()) else ""
+        text = word(element["label"]) if "label" in (elements.dtype.names or ()) else ""
         names = [part.strip(" <>") for part in text.split(",")]
         if len(names) != len(columns):
             names = [f"{text}({n})" if text else name for n, (name, _) in enumerate(columns, 1)]
@@ -91,11 +87,11 @@ def _dspace(label: str, record: Mapping[str, Any]) -> Iterator[tuple[str, Vector
         index = numbers(element["XIndex"]) if "XIndex" in fields else None
         at = int(index[0]) - 1 if index is not None and index.size == 1 else 0
         axis = axes[at] if 0 <= at < axes.size else None
-        unit = find_unit(_word(axis["Unit"])) if axis is not None and "Unit" in (axes.dtype.names or ()) else None
-        factor = unit.factor if unit is not None and unit.quantity == "time" else 1.0
+        unit = word(axis["Unit"]) if axis is not None and "Unit" in (axes.dtype.names or ()) else ""
+        factor = seconds_in(unit) or 1.0
         times = None if axis is None else numbers(axis["Data"])
-        name = _word(element["Name"]).strip('"') if "Name" in fields else ""
-        own_unit = _word(element["Unit"]) if "Unit" in fields else ""
+        name = word(element["Name"]).strip('"') if "Name" in fields else ""
+        own_unit = word(element["Unit"]) if "Unit" in fields else ""
         yield name or f"{label}.Y({number})", values, own_unit, None if times is None else times * factor
 
 
@@ -104,18 +100,15 @@ def _has(record: Mapping[str, Any], field: str, inner: str) -> bool:
 
 
 def numbers(value: Any) -> Vector | None:
-    """Return a vector of numbers as floats, (n,); None if the value is no numeric vector.
-
-    Args:
-        value: field of a structure.
-    """
+    """Return a field of a structure as floats, (n,); None if it is no numeric vector."""
     array = np.asarray(value) if value is not None else np.zeros(0)
     vector = array.dtype.kind in "fiub" and array.size > 0 and array.size == max(array.shape, default=1)
     return array.astype(np.float64).ravel() if vector else None
 
 
-def _word(value: Any) -> str:
-    array = np.asarray(value)
+def word(value: Any) -> str:
+    """Return a field of a structure as text; empty for other values."""
+    array = np.asarray("" if value is None else value)
     while array.dtype == object and array.size == 1:
         array = np.asarray(array.ravel()[0])
     return str(array.ravel()[0]).strip() if array.size == 1 and array.dtype.kind in "US" else ""

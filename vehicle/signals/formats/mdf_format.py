@@ -19,7 +19,6 @@ from vehicle.errors import DataError
 from vehicle.signals.formats.can_decoder import decode, load_database, quiet
 from vehicle.signals.formats.can_frames import FD_LENGTHS, IDENTIFIER_BITS, BusLog, grouped, merged
 from vehicle.signals.formats.channel import NOT_OVER_TIME, ROAD_PROFILE, Channel, Measurement
-from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.optional_library import extra
 from vehicle.signals.formats.units import find_unit
 from vehicle.signals.formats.unpacked_size import require_unpacked
@@ -64,7 +63,7 @@ def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
             warnings.simplefilter("ignore")
             with asammdf.MDF(path) as file:
                 size = path.stat().st_size
-                buses = {n for n, group in enumerate(file.groups) if _is_bus(group)}
+                buses = {n for n, group in enumerate(file.groups) if _bus_frames(group)}
                 for group in file.groups:
                     _check_size(path, group, size)
                 require_unpacked(path, sum(map(_unpacked, file.groups)), size)
@@ -90,7 +89,6 @@ def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
         path=path,
         format="mdf",
         channels=tuple(channels),
-        sha256=digest(path),
         program=program,
         start=start,
         notices=tuple(notices),
@@ -146,10 +144,7 @@ def _channels(file: Any, buses: Set[int]) -> tuple[list[Channel], list[str]]:
         if number in buses:
             count = int(getattr(group.channel_group, "cycles_nr", 0))
             if count and not _is_can(group):
-                frame_type = next(
-                    name for channel in group.channels if (name := str(channel.name).split(".")[0]) in BUS_FRAMES
-                )
-                frames[frame_type] += count
+                frames[_bus_frames(group)] += count
             continue
         axes: dict[int, np.ndarray] = {}
         group_name = str(getattr(group.channel_group, "acq_name", "") or "") if len(file.groups) > 1 else ""
@@ -218,9 +213,9 @@ def _axis(file: Any, number: int) -> tuple[Channel | None, float, str]:
     )
 
 
-def _is_bus(group: Any) -> bool:
-    """Return True for a group of raw bus frames."""
-    return any(str(channel.name).split(".")[0] in BUS_FRAMES for channel in group.channels)
+def _bus_frames(group: Any) -> str:
+    """Return the type of the raw bus frames of a group; empty for other groups."""
+    return next((name for channel in group.channels if (name := str(channel.name).split(".")[0]) in BUS_FRAMES), "")
 
 
 def _is_can(group: Any) -> bool:

@@ -5,13 +5,12 @@ from __future__ import annotations
 import hashlib
 import math
 import zipfile
-import zlib
 from pathlib import Path
-from tokenize import TokenError
 
 import numpy as np
 
 from vehicle.errors import DataError
+from vehicle.signals.formats.optional_library import reading
 from vehicle.signals.formats.table import Header, Record, Table, Wanted, name_and_unit
 from vehicle.signals.formats.unpacked_size import require_unpacked
 
@@ -23,23 +22,10 @@ def read(path: Path, wanted: Wanted) -> Table:
         DataError: not an archive of arrays, too large, no array `time`, another length, values that are not finite, or
             a violated requirement of `wanted`.
     """
-    try:
+    with reading(path, "npz", "use the time.npz of a run, or a CSV file"):
         names = _wanted_arrays(path)
         with np.load(path, allow_pickle=False) as arrays:
             loaded = {name: arrays[name] for name in names}
-    except (
-        OSError,
-        ValueError,
-        EOFError,
-        zipfile.BadZipFile,
-        NotImplementedError,
-        RuntimeError,
-        SyntaxError,
-        KeyError,
-        TokenError,
-        zlib.error,
-    ) as error:
-        raise DataError(f"{path}: cannot be read as npz ({error}); use the time.npz of a run, or a CSV file") from None
     texts = [str(text) for text in np.atleast_1d(loaded.pop("units", np.array([], dtype=str)))]
     units = {"time": "s"} | dict(name_and_unit(text) for text in texts)
     numbers = {name: values for name, values in loaded.items() if values.ndim == 1 and values.dtype.kind in "fiu"}

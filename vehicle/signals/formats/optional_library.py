@@ -1,11 +1,14 @@
-"""Optional libraries of formats and commands: imported at their use, or named with the extra that installs them."""
+"""Libraries of formats and commands: optional ones are imported at their use, and errors of readers are converted."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
-from vehicle.errors import MissingPartError
+from vehicle.errors import DataError, MissingPartError
 
 
 def extra(package: str, name: str, purpose: str) -> Any:
@@ -26,3 +29,21 @@ def extra(package: str, name: str, purpose: str) -> Any:
             f"{purpose} needs {package}, which is not installed; install it with: pip install "
             f"'vehicle-on-shaker[{name}]'"
         ) from None
+
+
+@contextmanager
+def reading(path: Path, form: str, remedy: str) -> Iterator[None]:
+    """Convert the errors of a library that reads a file; for damaged files libraries raise errors of any type.
+
+    Args:
+        path, form, remedy: file, its format and the remedy, for the message.
+
+    Raises:
+        DataError: any error in the block.
+    """
+    try:
+        yield
+    except DataError:
+        raise
+    except Exception as error:
+        raise DataError(f"{path}: cannot be read as {form} ({' '.join(str(error).split())}); {remedy}") from None

@@ -17,9 +17,10 @@ import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel
-from vehicle.signals.formats.heads import TIME_NAME, split_head
+from vehicle.signals.formats.heads import split_head, time_key
+from vehicle.signals.formats.packed_values import attribute_text
 from vehicle.signals.formats.table import Vector
-from vehicle.signals.formats.units import find_unit
+from vehicle.signals.formats.units import seconds_in
 
 NANOSECONDS = 1e-9
 """Length of a nanosecond [s]."""
@@ -54,8 +55,7 @@ def frame_channels(path: Path, name: str, group: Any) -> tuple[list[Channel], st
             if block.dtype.kind not in "fiub":
                 continue
             values = np.asarray(block[()])
-            if not group[f"block{number}_values"].attrs.get("transposed", True):
-                values = values.T
+            values = values if block.attrs.get("transposed", True) else values.T
             items = [_text(item_name) for item_name in group[f"block{number}_items"][()]]
             if values.ndim != 2 or values.shape != (index.shape[0], len(items)):
                 raise DataError(
@@ -66,11 +66,8 @@ def frame_channels(path: Path, name: str, group: Any) -> tuple[list[Channel], st
         columns = {item: columns[item] for item in order if item in columns}
     axis, start, index_values = _index(index)
     heads = {column: split_head(column) for column in columns}
-    if axis is None:
-        key = next((c for c, (text, unit) in heads.items() if TIME_NAME.fullmatch(text) and _is_time(unit)), None)
-        time_unit = find_unit(heads[key][1]) if key is not None else None
-        if key is not None and time_unit is not None:
-            axis = columns.pop(key) * time_unit.factor
+    if axis is None and (key := time_key(heads)) is not None:
+        axis = columns.pop(key) * seconds_in(heads[key][1])
     channels = [
         Channel(name=heads[column][0], values=values, unit=heads[column][1], axis=axis, place=name)
         for column, values in columns.items()
@@ -96,9 +93,7 @@ def _index(index: Any) -> tuple[Vector | None, str, Vector | None]:
         first = float(values[0]) * scale
         start = datetime.fromtimestamp(first, tz=UTC).isoformat(timespec="milliseconds") if index_type[0] == "d" else ""
         return seconds, start, None
-    if np.array_equal(values, np.arange(values.size)):
-        return None, "", None
-    return None, "", values.astype(np.float64)
+    return None, "", None if np.array_equal(values, np.arange(values.size)) else values.astype(np.float64)
 
 
 def _numbers(block: Any) -> Vector:
@@ -106,15 +101,7 @@ def _numbers(block: Any) -> Vector:
     return values.astype(np.float64).ravel() if values.dtype.kind in "fiub" else np.full(values.shape[0], np.nan)
 
 
-def _is_time(unit: str) -> bool:
-    unit_entry = find_unit(unit)
-    return unit_entry is not None and unit_entry.quantity == "time"
-
-
 def _text(value: Any) -> str:
     """Return an attribute or a name as text; empty for a pickled object or None."""
-    if value is None:
-        return ""
-    if isinstance(value, bytes):
-        return "" if value[:1] in (b"\x80", b"N", b"(") and value[-1:] == b"." else value.decode("utf-8", "replace")
-    return str(value)
+    pickled = isinstance(value, bytes) and value[:1] in (b"\x80", b"N", b"(") and value[-1:] == b"."
+    return "" if pickled else attribute_text(value)

@@ -11,11 +11,10 @@ import numpy as np
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel, Measurement
 from vehicle.signals.formats.clock_text import epoch_seconds
-from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.heads import TIME_NAME, split_head
-from vehicle.signals.formats.optional_library import extra
+from vehicle.signals.formats.optional_library import extra, reading
 from vehicle.signals.formats.table import Vector
-from vehicle.signals.formats.units import find_unit
+from vehicle.signals.formats.units import seconds_in
 from vehicle.signals.formats.unpacked_size import require_unpacked
 
 
@@ -27,31 +26,35 @@ def read(path: Path) -> Measurement:
         DataError: the file is damaged, truncated, encrypted, too large, or without numbers.
     """
     extra("pyarrow", "parquet", "a Parquet file")
-    parquet = import_module("pyarrow.parquet")
+    parquet, arrow = import_module("pyarrow.parquet"), import_module("pyarrow.types")
+    types = (
+        arrow.is_integer,
+        arrow.is_floating,
+        arrow.is_decimal,
+        arrow.is_duration,
+        arrow.is_time,
+        arrow.is_timestamp,
+    )
     notices: list[str] = []
-    try:
+    with reading(path, "Parquet", "export it again, or as CSV"):
         with parquet.ParquetFile(path, page_checksum_verification=True) as file:
             rows, fields = file.metadata.num_rows, file.schema_arrow
-            wanted = [n for n, field in enumerate(fields) if _is_number(field.type) or _is_date(field.type)]
+            wanted = [n for n, field in enumerate(fields) if any(is_type(field.type) for is_type in types)]
             needed = 2 * 8 * rows * len(wanted)
             require_unpacked(path, needed, path.stat().st_size)
             skipped = [field.name for n, field in enumerate(fields) if n not in wanted]
             table = file.read(columns=[fields[n].name for n in wanted])
             program = str(file.metadata.created_by or "")
         columns = [(name, *_column(table.column(n))) for n, name in enumerate(table.column_names)]
-    except DataError:
-        raise
-    except Exception as error:  # pyarrow raises errors of any type for damaged files
-        reason = " ".join(str(error).split())
-        raise DataError(f"{path}: cannot be read as Parquet ({reason}); export it again, or as CSV") from None
     if skipped:
         notices.append(f"columns without numbers are ignored: {', '.join(map(repr, skipped[:12]))}")
     axis, key, start = _axis(columns, notices)
-    channels = []
-    for index, (name, values, _) in enumerate(columns):
-        if index != key:
-            text, unit = split_head(name)
-            channels.append(Channel(name=text, values=np.asarray(values, dtype=np.float64), unit=unit, axis=axis))
+    heads = [split_head(name) for name, *_ in columns]
+    channels = [
+        Channel(name=text, values=np.asarray(columns[index][1], dtype=np.float64), unit=unit, axis=axis)
+        for index, (text, unit) in enumerate(heads)
+        if index != key
+    ]
     if not channels or not rows:
         raise DataError(
             f"{path}: no numeric column; it contains {', '.join(map(repr, fields.names[:12])) or 'nothing'}; "
@@ -61,31 +64,15 @@ def read(path: Path) -> Measurement:
         path=path,
         format="parquet",
         channels=tuple(channels),
-        sha256=digest(path),
         program=program[:80],
         start=start,
         notices=tuple(notices),
     )
 
 
-def _is_number(data_type: Any) -> bool:
-    types = import_module("pyarrow.types")
-    return bool(
-        types.is_integer(data_type)
-        or types.is_floating(data_type)
-        or types.is_decimal(data_type)
-        or types.is_duration(data_type)
-        or types.is_time(data_type)  # some writers store durations as times of day
-    )
-
-
-def _is_date(data_type: Any) -> bool:
-    return bool(import_module("pyarrow.types").is_timestamp(data_type))
-
-
 def _column(column: Any) -> tuple[Any, str]:
     """Return the numbers of a column, NaN if missing, and the unit of a date or duration; keep integer counts."""
-    unit = getattr(column.type, "unit", "") if hasattr(column.type, "unit") else ""
+    unit = getattr(column.type, "unit", "")
     if unit:
         column = column.cast("int32" if column.type.bit_width == 32 else "int64").cast("int64")
     elif not (column.type.bit_width or 0) or str(column.type).startswith("decimal"):
@@ -103,9 +90,9 @@ def _axis(columns: list[tuple[str, Any, str]], notices: list[str]) -> tuple[Vect
             return epoch[0], index, epoch[1]
     for index, (name, values, unit) in enumerate(columns):
         text, unit_in_name = split_head(name)
-        time_unit = find_unit(unit or unit_in_name)
-        if (unit or TIME_NAME.fullmatch(text)) and time_unit is not None and time_unit.quantity == "time":
-            return values * time_unit.factor, index, ""
+        factor = seconds_in(unit or unit_in_name)
+        if (unit or TIME_NAME.fullmatch(text)) and factor:
+            return values * factor, index, ""
     for index, (name, values, _) in enumerate(columns):
         epoch = epoch_seconds(values, "") if TIME_NAME.fullmatch(split_head(name)[0]) else None
         if epoch is not None:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.formats.channel import Measurement
 from vehicle.signals.formats.clock import check_increasing, check_stamps, check_uniform, without_rounding
+from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.formats import recognised_format
 from vehicle.signals.formats.table import TIME, Record, Vector, Wanted, key_column, name_and_unit
 from vehicle.signals.formats.table_file import read_table
@@ -39,7 +41,7 @@ def read_record(path: str | Path, databases: Sequence[Path] = ()) -> Measurement
         )
     read = recognised.function("reader", "read")
     measurement: Measurement = read(file, databases) if databases else read(file)
-    return measurement
+    return measurement if measurement.sha256 else replace(measurement, sha256=digest(file))
 
 
 def read(file: str | Path, databases: Sequence[Path] = ()) -> Measurement:
@@ -47,7 +49,7 @@ def read(file: str | Path, databases: Sequence[Path] = ()) -> Measurement:
 
     Args:
         file: measurement file, or the folder of a run, whose time histories are read.
-        databases: DBC files that decode the log of a CAN bus.
+        databases: see `read_record`.
 
     Returns:
         Channels with names, units and times; `read(file)["Seat Z"]` is one of them.

@@ -63,9 +63,7 @@ def refuse(head: Head) -> None:
             raise DataError(f"{path}: {name}, not supported; export {instead}")
     if ending in TEXT_ENDINGS:
         return  # the text reader reports the position of the invalid byte
-    if b"\0" in data and not data.startswith((b"\xff\xfe", b"\xfe\xff")):
-        name, instead = ENDINGS.get(ending, ("of no known format", "UFF 58, MAT, RPC III, MDF4 or CSV"))
-        raise DataError(f"{path}: binary file, {name}, not supported; export {instead}")
-    if ending in ENDINGS and not data.isascii():
-        name, instead = ENDINGS[ending]
-        raise DataError(f"{path}: {name}, not supported; export {instead}")
+    name, instead = ENDINGS.get(ending, ("of no known format", "UFF 58, MAT, RPC III, MDF4 or CSV"))
+    binary = b"\0" in data and not data.startswith((b"\xff\xfe", b"\xfe\xff"))
+    if binary or (ending in ENDINGS and not data.isascii()):
+        raise DataError(f"{path}: {'binary file, ' if binary else ''}{name}, not supported; export {instead}")

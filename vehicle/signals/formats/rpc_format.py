@@ -16,7 +16,6 @@ import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel, Measurement, check_length, clock_step, uniform_axis
-from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.text import LARGEST
 
 RECORD, BLOCK = 128, 512
@@ -95,7 +94,6 @@ def read(path: Path) -> Measurement:
         path=path,
         format="rpc",
         channels=tuple(channel_list),
-        sha256=digest(path),
         program=head.get("OPERATION", ""),
         start=head.get("DATE", "").removeprefix(NO_DATE),
         notices=tuple(notices),
@@ -181,9 +179,7 @@ def write(path: Path, channels: tuple[Channel, ...], description: str) -> None:
     """Write time histories of equal rate in floating point.
 
     Args:
-        path: file to write.
-        channels: time histories over equal times.
-        description: description of the record.
+        path, channels, description: file to write, time histories over equal times, and description of the record.
 
     Raises:
         DataError: different rates, or missing values, which the format does not support.

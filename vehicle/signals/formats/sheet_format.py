@@ -9,9 +9,8 @@ import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Measurement
-from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.logger_format import read_lines
-from vehicle.signals.formats.optional_library import extra
+from vehicle.signals.formats.optional_library import extra, reading
 from vehicle.signals.formats.text import Text
 from vehicle.signals.formats.unpacked_size import require_archive
 
@@ -36,7 +35,7 @@ def read(path: Path) -> Measurement:
         body = "\n".join(_row(row) for row in cells)
         notice = () if len(sheets) == 1 else (f"sheet {title!r} of {len(sheets)}",)
         try:
-            measurement = read_lines(path, Text(body=body, notices=notice, sha256=digest(path)), "xlsx")
+            measurement = read_lines(path, Text(body=body, notices=notice, sha256=""), "xlsx")
         except DataError as error:
             first_error = first_error or error
             continue
@@ -68,12 +67,9 @@ def _sheets(path: Path, *, formulas: bool = False) -> dict[str, list[tuple[objec
     openpyxl = extra("openpyxl", "xlsx", "an XLSX file")
     with path.open("rb") as archive:
         require_archive(path, archive, limit=LARGEST_SHEETS, freely=FREE_SHEETS, densest=DENSEST_SHEETS)
-    try:
-        with path.open("rb") as file:  # openpyxl rejects other file extensions
-            book = openpyxl.load_workbook(file, read_only=True, data_only=not formulas)
-            return {sheet.title: list(sheet.iter_rows(values_only=True)) for sheet in book.worksheets}
-    except Exception as error:  # openpyxl raises errors of any type for damaged archives
-        raise DataError(f"{path}: cannot be read as XLSX ({error}); save it again, or as CSV") from None
+    with reading(path, "XLSX", "save it again, or as CSV"), path.open("rb") as file:  # openpyxl rejects other suffixes
+        book = openpyxl.load_workbook(file, read_only=True, data_only=not formulas)
+        return {sheet.title: list(sheet.iter_rows(values_only=True)) for sheet in book.worksheets}
 
 
 def read_sheet_texts(path: Path) -> list[list[str]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import struct
 import zipfile
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -30,6 +31,11 @@ class Head:
     size: int
 
 
+def starting(*signatures: bytes) -> Callable[[Head], bool]:
+    """Return the predicate of files that begin with one of several signatures."""
+    return lambda head: head.data.startswith(signatures)
+
+
 def is_npz(head: Head) -> bool:
     """Return True for a ZIP archive that is not a workbook; the reader reports a damaged archive."""
     return head.data.startswith(b"PK") and not is_xlsx(head)
@@ -46,34 +52,9 @@ def is_xlsx(head: Head) -> bool:
         return False
 
 
-def is_tdms(head: Head) -> bool:
-    """Return True for NI TDMS."""
-    return head.data.startswith(b"TDSm")
-
-
-def is_mdf(head: Head) -> bool:
-    """Return True for ASAM MDF, finished or not."""
-    return head.data.startswith((b"MDF     ", b"UnFinMF "))
-
-
 def is_hdf5(head: Head) -> bool:
     """Return True for HDF5, also after the 512 bytes of text in files of MATLAB 7.3."""
     return head.data.startswith((HDF5_SIGNATURE, b"MATLAB 7.3")) or head.data[512:520] == HDF5_SIGNATURE
-
-
-def is_rpc(head: Head) -> bool:
-    """Return True for MTS RPC III."""
-    return head.data.startswith(b"FORMAT\0")
-
-
-def is_parquet(head: Head) -> bool:
-    """Return True for Apache Parquet."""
-    return head.data.startswith(b"PAR1")
-
-
-def is_erd(head: Head) -> bool:
-    """Return True for ERD of the University of Michigan."""
-    return head.data.startswith(b"ERDFILEV")
 
 
 def is_wave(head: Head) -> bool:
@@ -84,11 +65,6 @@ def is_wave(head: Head) -> bool:
 def is_matlab(head: Head) -> bool:
     """Return True for a MAT file of version 5 or 4."""
     return head.data[126:128] in (b"IM", b"MI") or head.data.startswith(b"MATLAB 5.0") or _is_matlab_4(head)
-
-
-def is_lvm(head: Head) -> bool:
-    """Return True for a LabVIEW measurement file."""
-    return head.data.startswith(b"LabVIEW Measurement")
 
 
 def is_can_log(head: Head) -> bool:
@@ -114,11 +90,7 @@ def is_uff(head: Head) -> bool:
 
 
 def can_log_type(text: str) -> str:
-    """Return the name of the text format of a CAN log: asc, trc, candump; empty for other text.
-
-    Args:
-        text: first characters of the file.
-    """
+    """Return the type of the CAN log that begins with a text: asc, trc, candump; empty for other text."""
     if re.search(r"^base\s+(hex|dec)\s+timestamps\s+(absolute|relative)", text, re.MULTILINE):
         return "asc"
     if text.lstrip("\ufeff\xef\xbb\xbf").startswith((";$FILEVERSION=", ";####")) and (

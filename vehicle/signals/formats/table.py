@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from vehicle.errors import DataError
 from vehicle.signals.analysis import samples
 
-Vector = NDArray[np.float64]
+Vector = samples.Vector
 
 TIME = "time [s]"
 """Header of the column of sample times."""

@@ -13,8 +13,7 @@ import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import OVER_ANGLE, OVER_DISTANCE, Channel, Measurement, clock_step, uniform_axis
-from vehicle.signals.formats.file_digest import digest
-from vehicle.signals.formats.optional_library import extra
+from vehicle.signals.formats.optional_library import extra, reading
 from vehicle.signals.formats.units import find_unit
 
 AXES = {"displacement": OVER_DISTANCE, "angle": OVER_ANGLE}
@@ -82,7 +81,7 @@ def read(path: Path) -> Measurement:
     nptdms = extra("nptdms", "tdms", "a TDMS file")
     channels: list[Channel] = []
     skipped, start = 0, ""
-    try:
+    with reading(path, "TDMS", "it may be truncated; export it again"):
         with warnings.catch_warnings(), _remarks() as remarks:
             warnings.simplefilter("error")
             file = nptdms.TdmsFile.read(path)
@@ -115,15 +114,12 @@ def read(path: Path) -> Measurement:
                     **axis,
                 )
             )
-    except Exception as error:  # npTDMS raises errors of any type for damaged files
-        raise DataError(f"{path}: cannot be read as TDMS ({error}); it may be truncated; export it again") from None
     if not channels:
         raise DataError(f"{path}: no numeric channel; {skipped} channels of other types; export numbers")
     return Measurement(
         path=path,
         format="tdms",
         channels=tuple(channels),
-        sha256=digest(path),
         program=str(file.properties.get("name") or ""),
         start=start,
         notices=(f"{skipped} channels without numbers are ignored",) if skipped else (),

@@ -45,25 +45,19 @@ def read(path: Path, wanted: Wanted) -> Table:
     notices = list(text.notices)
     if delimiter != ",":
         notices.append(f"delimiter {delimiter!r} accepted; ',' is the usual one")
-    plain = _plain(text, header)
-    if plain is not None:
-        return Table(
-            header=header, key=key, values=plain[0], lines=plain[1], notices=tuple(notices), sha256=text.sha256
-        )
-    lines = text.lines
-    numbers = [n for n, line in enumerate(lines[head:], head + 1) if not _is_comment(line)]
-    if not numbers:
-        raise DataError(f"{path}:{head}: the file ends after the header; needed is one row per sample below it")
-    rows = [lines[n - 1] for n in numbers]
-    if delimiter != "," and any("," in row for row in rows):
-        rows = decimal_points(numbers, rows, header)
-        notices.append("decimal comma read as decimal point")
-    values = fast(rows, header)
-    if values is None:
-        values = careful(numbers, rows, header, key, wanted)
-    return Table(
-        header=header, key=key, values=values, lines=np.array(numbers), notices=tuple(notices), sha256=text.sha256
-    )
+    parsed = _plain(text, header)
+    if parsed is None:
+        lines = text.lines
+        numbers = [n for n, line in enumerate(lines[head:], head + 1) if not _is_comment(line)]
+        if not numbers:
+            raise DataError(f"{path}:{head}: the file ends after the header; needed is one row per sample below it")
+        rows = [lines[n - 1] for n in numbers]
+        if delimiter != "," and any("," in row for row in rows):
+            rows = decimal_points(numbers, rows, header)
+            notices.append("decimal comma read as decimal point")
+        values = fast(rows, header)
+        parsed = careful(numbers, rows, header, key, wanted) if values is None else values, np.array(numbers)
+    return Table(header=header, key=key, values=parsed[0], lines=parsed[1], notices=tuple(notices), sha256=text.sha256)
 
 
 def _first_line(text: Text) -> tuple[int, str]:
@@ -177,8 +171,7 @@ def fast_with_gaps(rows: list[str], header: Header, key: int) -> Vector | None:
     Infinite cells stay infinite: they are no missing values, and the user of the channel refuses them.
 
     Args:
-        rows: lines of text.
-        header: header with delimiter and number of columns.
+        rows, header: see `fast`.
         key: index of the column without missing values; -1 for none.
     """
     sign = re.escape(header.delimiter)
@@ -198,8 +191,7 @@ def careful(numbers: list[int], rows: list[str], header: Header, key: int, wante
 
     Args:
         numbers: line number of each row.
-        rows: lines of text.
-        header: header of the table.
+        rows, header: see `fast`.
         key: index of the column of times or frequencies; -1 for none.
         wanted: requirements on the table.
 
@@ -207,7 +199,7 @@ def careful(numbers: list[int], rows: list[str], header: Header, key: int, wante
         DataError: a non-numeric cell, or a row with another number of cells.
     """
     width = len(header.cells)
-    values: NDArray[np.float64] = np.full((len(rows), width), np.nan)
+    values: Vector = np.full((len(rows), width), np.nan)
     for index, (line, row) in enumerate(zip(numbers, rows, strict=True)):
         cells = _split(row, header.delimiter)
         if len(cells) != width:
@@ -274,9 +266,7 @@ def decimal_points(numbers: list[int], rows: list[str], header: Header) -> list[
     """Replace decimal commas by decimal points; reject ambiguous commas.
 
     Args:
-        numbers: line number of each row.
-        rows: lines of text.
-        header: header of the table.
+        numbers, rows, header: see `careful`.
 
     Raises:
         DataError: a comma that may separate thousands.

@@ -14,7 +14,6 @@ import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel, Measurement
-from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.geometry import ModeShape
 from vehicle.signals.formats.uff_blocks import BEGIN, END, Block, text_of
 from vehicle.signals.formats.uff_function import read_function
@@ -80,7 +79,6 @@ def read(path: Path) -> Measurement:
         path=path,
         format="uff",
         channels=_named([_turned(channel, nodes) for channel in channels]),
-        sha256=digest(path),
         program=program,
         start=start,
         notices=tuple(notices),

@@ -80,12 +80,9 @@ def read_function(path: Path, data: bytes, block: Block, where: str, units: Unit
     if spacing == 0:
         axis = table[:, 0] * scale if scale else None
     elif step > 0.0 and scale:
-        if is_time:
-            step, rounded = clock_step(step * scale)
-            remarks.append(rounded)
-            axis = uniform_axis(points, step, first * scale)
-        else:
-            axis = uniform_axis(points, step * scale, first * scale)
+        step, rounded = clock_step(step * scale) if is_time else (step * scale, "")
+        remarks.append(rounded)
+        axis = uniform_axis(points, step, first * scale)
     else:
         remarks.append("no time step in the file" if is_time else "no frequency step in the file")
     columns = table[:, 1:] if spacing == 0 else table
@@ -248,16 +245,11 @@ def _unit(code: int, label: str, units: Units | None) -> tuple[str, str]:
     if unit is not None:
         if quantity and "/" not in unit.quantity and unit.quantity != quantity:
             return "", f"quantity {quantity}, unit {label!r}: a contradiction"
-        dataset_factor = _factor(unit.quantity, units)
-        if dataset_factor is not None and unit.si != "m/s2" and abs(dataset_factor / unit.factor - 1.0) > 1e-6:
-            return "", f"the unit is {label!r}, in dataset 164 {dataset_factor:g} of the SI unit: a contradiction"
-        if (
-            dataset_factor is not None
-            and unit.si == "m/s2"
-            and "g" not in label.lower()
-            and abs(dataset_factor / unit.factor - 1.0) > 1e-6
-        ):
-            return "", f"the unit is {label!r}, in dataset 164 {dataset_factor:g} m/s2: a contradiction"
+        dataset_factor, acceleration = _factor(unit.quantity, units), unit.si == "m/s2"
+        gravity = acceleration and "g" in label.lower()
+        if dataset_factor is not None and not gravity and abs(dataset_factor / unit.factor - 1.0) > 1e-6:
+            si = "m/s2" if acceleration else "of the SI unit"
+            return "", f"the unit is {label!r}, in dataset 164 {dataset_factor:g} {si}: a contradiction"
         return label, ""
     dataset_factor = _factor(quantity, units)
     if dataset_factor is None:

@@ -11,7 +11,6 @@ from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from vehicle.errors import DataError
 from vehicle.signals.formats.geometry import Geometry
@@ -66,7 +65,7 @@ class AxisSystem:
         cylindrical: True if coordinates are radius, angle [deg] and height.
     """
 
-    axes: NDArray[np.float64]
+    axes: Vector
     origin: Vector
     cylindrical: bool = False
 
@@ -77,7 +76,7 @@ class AxisSystem:
             coordinates = np.array([coordinates[0] * np.cos(angle), coordinates[0] * np.sin(angle), coordinates[2]])
         return self.origin + self.axes @ coordinates
 
-    def directions(self, point: Vector) -> NDArray[np.float64]:
+    def directions(self, point: Vector) -> Vector:
         """Return the directions of the three components at a point in global axes, as columns (3, 3)."""
         if not self.cylindrical:
             return self.axes
@@ -182,7 +181,7 @@ class Nodes:
         system, _, coordinates = self.at[label]
         return self.systems.get(system, GLOBAL).point(coordinates)
 
-    def directions(self, label: int) -> NDArray[np.float64]:
+    def directions(self, label: int) -> Vector:
         """Return the directions of the motion components at a node, as columns (3, 3); global axes if unknown."""
         if label not in self.at:
             return np.eye(3)

@@ -7,9 +7,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from vehicle.errors import DataError
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.formats.channel import Channel, Values, even_step
 from vehicle.signals.formats.geometry import Geometry, ModeShape
 from vehicle.signals.formats.units import find_unit
@@ -135,7 +135,7 @@ def _function(path: Path, channel: Channel, nodes: Mapping[str, int]) -> bytes:
     return ("\n".join(rows) + "\n").encode("ascii", "replace") + body + b"    -1\n"
 
 
-def _uneven(axis: NDArray[np.float64], values: Values) -> bytes:
+def _uneven(axis: Vector, values: Values) -> bytes:
     """Format frequencies with values: one complex value per row, or two real values per row."""
     parts = [
         f"{x:13.5e}" + "".join(f"{number:20.11e}" for number in _parts(value))
@@ -175,7 +175,7 @@ def _shape(mode: ModeShape, nodes: Mapping[str, int]) -> bytes:
     return _set(55, rows)
 
 
-def _defined(path: Path, channel: Channel) -> tuple[Values, NDArray[np.float64]]:
+def _defined(path: Path, channel: Channel) -> tuple[Values, Vector]:
     """Return values and axis of the longest run of defined values of a spectrum."""
     if channel.axis is None or channel.axis.size < 2:
         raise DataError(f"{path}: {channel.name} has no axis, which UFF requires; leave it out")

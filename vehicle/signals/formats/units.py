@@ -126,16 +126,18 @@ def find_unit(text: str) -> Unit | None:
     return None if unit is None else unit._replace(factor=unit.factor * float(scaled["number"]))
 
 
+def seconds_in(text: str) -> float:
+    """Return the length of a unit of time [s]; 0 for other units."""
+    unit = find_unit(text)
+    return unit.factor if unit is not None and unit.quantity == "time" else 0.0
+
+
 GRAMS = ("g/s", "mg/s", "g/km", "g/h", "g/min", "g/l")
 """Ratios in which g is the gram: flows of air and fuel."""
 
 
 def find_ratio(text: str) -> Unit | None:
-    """Return the unit for a text or a ratio of units, such as (m/s2)/N, g/m or m/s2/N; None if ambiguous or unknown.
-
-    Args:
-        text: unit in the file.
-    """
+    """Return the unit for a text or a ratio of units, such as (m/s2)/N, g/m or m/s2/N; None if ambiguous or unknown."""
     whole = find_unit(text)
     if whole is not None or text.strip().lower() in GRAMS:
         return whole

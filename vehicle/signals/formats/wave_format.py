@@ -10,7 +10,7 @@ import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel, Measurement, check_length, uniform_axis
-from vehicle.signals.formats.file_digest import digest
+from vehicle.signals.formats.optional_library import reading
 
 
 def read(path: Path) -> Measurement:
@@ -22,22 +22,10 @@ def read(path: Path) -> Measurement:
     from scipy.io import wavfile
 
     _check_chunks(path)
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")
-            warnings.filterwarnings("ignore", message="Chunk .* not understood")
-            rate, data = wavfile.read(path)
-    except (
-        ValueError,
-        TypeError,
-        EOFError,
-        OSError,
-        struct.error,
-        OverflowError,
-        ZeroDivisionError,
-        wavfile.WavFileWarning,
-    ) as error:
-        raise DataError(f"{path}: cannot be read as WAV ({error}); export it as uncompressed WAV") from None
+    with reading(path, "WAV", "export it as uncompressed WAV"), warnings.catch_warnings():
+        warnings.simplefilter("error")
+        warnings.filterwarnings("ignore", message="Chunk .* not understood")
+        rate, data = wavfile.read(path)
     if data.size == 0 or rate <= 0:
         raise DataError(f"{path}: {data.size} samples at {rate} Hz, must be a record; export it again")
     if not np.isfinite(data).all():
@@ -53,7 +41,7 @@ def read(path: Path) -> Measurement:
         Channel(name=f"channel {n + 1}", values=values[:, n].copy(), axis=axis, remark=remark)
         for n in range(values.shape[1])
     )
-    return Measurement(path=path, format="wav", channels=channels, sha256=digest(path))
+    return Measurement(path=path, format="wav", channels=channels)
 
 
 def _check_chunks(path: Path) -> None:

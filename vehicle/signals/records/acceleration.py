@@ -60,12 +60,9 @@ def _chosen(path: Path, choice: Choice, names: list[str]) -> Record:
     if not roles:
         roles = {axis: name for axis, name in zip(AXES, names, strict=True) if name in names_in_file}
     if not roles or not set(roles) <= set(AXES):
-        listed = ", ".join(
-            f"{n} {channel.name!r} [{channel.unit}]" for n, channel in enumerate(measurement.channels[:20], 1)
-        )
         raise DataError(
             f"{path}: no axis is assigned; set --channel x=NAME --channel y=NAME --channel z=NAME, or one or two of "
-            f"them, each with a number, an exact name or a pattern with *; the file has {listed}"
+            f"them, each with a number, an exact name or a pattern with *; the file has {measurement.listed()}"
         )
     chosen = choose(measurement, replace(choice, channels={**choice.channels, **roles}))
     wrong = next((role for role, quantity in chosen.quantities.items() if quantity != "acceleration"), None)

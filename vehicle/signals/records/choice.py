@@ -15,9 +15,9 @@ from vehicle.signals.formats.channel import NOT_OVER_TIME, Channel, Measurement,
 from vehicle.signals.formats.clock import check_stamps, clock_options, is_uniform, longest_step, without_rounding
 from vehicle.signals.formats.table import USABLE, Vector
 from vehicle.signals.formats.text import LARGEST
-from vehicle.signals.formats.units import allowed_units, find_ratio, find_unit
+from vehicle.signals.formats.units import allowed_units, find_ratio, find_unit, seconds_in
 from vehicle.signals.records.channel_faults import MOTIONS, faults
-from vehicle.signals.records.common_span import Block, blocks_of, cut, need_resampling, without_times
+from vehicle.signals.records.common_span import Block, blocks_of, cut, need_resampling
 from vehicle.signals.records.resampled import resampled
 
 
@@ -151,16 +151,12 @@ def pick(
     if len(matches) == 1:
         return matches[0]
     channels = [(index, channel) for index, channel in enumerate(measurement.channels) if allowed(channel)]
-    hit_text = (
-        f"matches {len(matches)} channels ({', '.join(str(n + 1) for n in matches[:8])})"
-        if matches
-        else "matches no channel"
-    )
+    several = f"matches {len(matches)} channels ({', '.join(str(n + 1) for n in matches[:8])})"
     listed = ", ".join(f"{index + 1} {channel.name!r} [{channel.unit}]" for index, channel in channels[:40])
     more = f" and {len(channels) - 40} more" if len(channels) > 40 else ""
     raise DataError(
-        f"{measurement.path}: {option} {wanted!r} {hit_text}; set a number, an exact name, or a pattern with * that "
-        f"matches one of: {listed}{more}"
+        f"{measurement.path}: {option} {wanted!r} {several if matches else 'matches no channel'}; set a number, an "
+        f"exact name, or a pattern with * that matches one of: {listed}{more}"
     )
 
 
@@ -255,7 +251,11 @@ def _blocks(
         selected = dict(blocks[0].channels) if len(blocks) == 1 else selected
     if choice.rate is None and "time" not in choice.channels:
         if not blocks:
-            raise without_times(path, next(channel for channel in channels.values() if channel.axis is None))
+            name = next(channel.name for channel in channels.values() if channel.axis is None)
+            raise DataError(
+                f"{path}: channel {name!r} has no times; set --rate HZ, or --channel time=NAME and --unit time=s "
+                "for the channel of the times"
+            )
         return blocks
     if len({channel.values.size for channel in selected.values()}) > 1:
         sizes = ", ".join(f"{role} {channel.values.size}" for role, channel in selected.items())
@@ -269,9 +269,8 @@ def _part(path: Path, block: Block, choice: Choice, notices: list[str]) -> tuple
     time, channels = block.time, block.channels
     selected = np.ones(time.size, dtype=bool)
     if choice.first is not None or choice.last is not None:
-        selected = (time >= (-np.inf if choice.first is None else choice.first)) & (
-            time <= (np.inf if choice.last is None else choice.last)
-        )
+        first, last = -np.inf if choice.first is None else choice.first, np.inf if choice.last is None else choice.last
+        selected = (time >= first) & (time <= last)
         if np.count_nonzero(selected) < 3:
             raise DataError(f"{path}: the excerpt has {np.count_nonzero(selected)} samples, must have at least 3; "
                             f"the record is from {time[0]:.6g} to {time[-1]:.6g} s")  # fmt: skip
@@ -326,19 +325,16 @@ def _times(path: Path, choice: Choice, channels: Mapping[str, Channel], notices:
     """Return the sample times [s] from the requested rate or the chosen channel of the times."""
     first = next(iter(channels.values()))
     if choice.rate is not None:
-        file_rate = first.rate
-        if file_rate is not None and abs(file_rate / choice.rate - 1.0) > 1e-6:
-            notices.append(f"rate {choice.rate:g} Hz on request; the file has {file_rate:.9g} Hz")
-        else:
-            notices.append(f"rate {choice.rate:g} Hz on request")
+        rate = first.rate
+        other = f"; the file has {rate:.9g} Hz" if rate is not None and abs(rate / choice.rate - 1.0) > 1e-6 else ""
+        notices.append(f"rate {choice.rate:g} Hz on request{other}")
         return np.arange(first.values.size) / choice.rate
     unit = choice.units.get("time", channels["time"].unit)
-    unit_entry = find_unit(unit)
-    if unit_entry is None or unit_entry.quantity != "time":
+    if not (factor := seconds_in(unit)):
         raise DataError(
             f"{path}: channel {channels['time'].name!r} has the unit {unit!r}; set --unit time=s, or ms, us, min"
         )
-    return np.asarray(channels["time"].values, dtype=np.float64) * unit_entry.factor
+    return np.asarray(channels["time"].values, dtype=np.float64) * factor
 
 
 def _has_rate(time: Vector, rate: float) -> bool:

@@ -7,15 +7,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.digits import number
+from vehicle.signals.analysis.samples import Complex
 from vehicle.signals.analysis.time_shift import TimeShift, time_shift
 from vehicle.signals.formats.table import Record, Vector
 from vehicle.signals.formats.units import STANDARD_GRAVITY
 from vehicle.signals.records.resampled import at_times
-
-Complex = npt.NDArray[np.complex128]
 
 SAME_MOTION = 0.7
 """Minimum |correlation| of two records of the same motion, for which sign, unit and clock can be checked [-]."""
@@ -183,11 +181,7 @@ def _common_drift(shifts: Sequence[TimeShift]) -> tuple[float, float]:
 
 
 def sign_and_unit(parts: Sequence[Counterpart]) -> list[str]:
-    """Return one message for each inverted channel and each channel with a wrong unit.
-
-    Args:
-        parts: comparisons returned by `counterparts`.
-    """
+    """Return one message for each inverted channel and each wrong unit among the result of `counterparts`."""
     messages: list[str] = []
     for part in parts:
         shift = part.reliable_shift

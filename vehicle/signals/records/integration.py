@@ -61,8 +61,7 @@ def filtered(chosen: Chosen, corner: float) -> tuple[dict[str, Vector], tuple[st
     """Return the selected channels after the high-pass filter, without integration, and the notices.
 
     Args:
-        chosen: selected channels, see `choose`.
-        corner: corner frequency fc [Hz].
+        chosen, corner: see `displacement` and `integrate`.
 
     Raises:
         DataError: see `integrate`.

@@ -109,10 +109,7 @@ def read_measured(
         role: roles[role] for role in sorted(roles, key=lambda role: (model_channels.index(output_of[role]), role))
     }
     if not roles:
-        listed = (
-            ", ".join(f"{n} {channel.name!r} [{channel.unit}]" for n, channel in enumerate(file.channels[:20], 1))
-            or "none"
-        )
+        listed = file.listed() or "none"
         suggested = map_options(suggested_channels(file.channels, model_channels))
         examples = ", ".join(name for name in model_channels if EXAMPLES.fullmatch(name))
         advice = f"their names suggest {suggested}" if suggested else f"channels of the model are such as {examples}"

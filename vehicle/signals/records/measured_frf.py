@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from vehicle.errors import DataError
 from vehicle.signals.analysis.response_name import ResponseName, parsed_name
+from vehicle.signals.analysis.samples import Complex
 from vehicle.signals.formats.channel import Channel, Measurement
 from vehicle.signals.formats.frf_file import RANDOM_ERROR, FrfData
 from vehicle.signals.formats.table import Vector
@@ -58,7 +59,7 @@ def measured_frfs(
     Raises:
         DataError: a channel that is not a response, without a unit, real, or per force.
     """
-    responses: dict[ResponseName, tuple[Channel, NDArray[np.complex128]]] = {}
+    responses: dict[ResponseName, tuple[Channel, Complex]] = {}
     notices = []
     for role, wanted in channels.items():
         for name, index in _named_channels(measurement, parsed_name(role), wanted):
@@ -134,7 +135,7 @@ def _named_channels(measurement: Measurement, role: ResponseName, wanted: str) -
     return sorted(named, key=lambda pair: pair[0].input)
 
 
-def _acceleration_per_displacement(channel: Channel, where: str, name: str) -> tuple[NDArray[np.complex128], str]:
+def _acceleration_per_displacement(channel: Channel, where: str, name: str) -> tuple[Complex, str]:
     """Convert a response to m/s2 per m; return the values and a message on the conversion."""
     if channel.axis is None:
         raise DataError(f"{where} has no frequencies; export it with frequencies")

@@ -9,15 +9,13 @@ from pathlib import Path
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.road_level import RoadLevel, road_level
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.vibration_spectra import RANGE, ChannelSpectrum, vibration_spectra
 from vehicle.signals.formats.reader import read_columns, time_file
 from vehicle.signals.records.run_summary import RunSummary, available_summary
-
-Vector = npt.NDArray[np.float64]
 
 SEAT = "seat_acc_[xyz]"
 """Channels of the seat, evaluated for a car with a seat; without, this point belongs to the body."""
