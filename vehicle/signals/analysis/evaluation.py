@@ -1,7 +1,5 @@
 """Evaluate the vibration at a point of contact after ISO 2631-1 or BS 6841, and the effect of an offset."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from types import MappingProxyType

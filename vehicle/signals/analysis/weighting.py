@@ -1,7 +1,5 @@
 """Frequency weightings of ISO 2631-1 and BS 6841: analogue transfer functions, spectrum factors, weighted records."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 from types import MappingProxyType

@@ -3,8 +3,6 @@
 Source: Universal File Datasets, University of Cincinnati SDRL.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Evaluate the comfort of an acceleration record after ISO 2631-1 or BS 6841: sensor offset, SEAT value."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
