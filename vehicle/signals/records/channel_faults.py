@@ -200,7 +200,8 @@ def stuck(values: Vector, time: Vector, others: list[Vector] | None = None) -> t
     moving = float(time[-1] - time[0]) - sum(float(time[last] - time[first]) for first, last in [*rested, (begin, end)])
     interval = max(moving, 0.0) / crossings
     minimum = max(STUCK_PERIODS * interval, min(CERTAIN, CERTAIN_PERIODS * interval))
-    if end + 1 - begin >= OUTLASTS * _second_longest(values):
+    ends = np.concatenate([[-1], np.flatnonzero(np.diff(values) != 0.0), [values.size - 1]])
+    if end + 1 - begin >= OUTLASTS * np.sort(np.diff(ends))[-2]:  # of all constant parts, the ends included
         minimum = min(minimum, CERTAIN)
     return (float(time[begin]), float(time[end])) if length >= minimum else None
 
@@ -212,12 +213,6 @@ def constant_part(values: Vector) -> tuple[int, int] | None:
         return None
     longest = int(np.argmax(moves[1:] - moves[:-1]))
     return int(moves[longest]) + 1, int(moves[longest + 1])
-
-
-def _second_longest(values: Vector) -> int:
-    """Return the number of equal samples in a row in the second longest constant part, the ends included."""
-    ends = np.concatenate([[-1], np.flatnonzero(np.diff(values) != 0.0), [values.size - 1]])
-    return int(np.sort(np.diff(ends))[-2])
 
 
 def _rested_at_the_ends(values: Vector) -> list[tuple[int, int]]:
