@@ -11,7 +11,7 @@ import pytest
 from vehicle.drawing.rendering.backend import choose_backend
 from vehicle.drawing.rendering.cameras import whole_car
 from vehicle.drawing.rendering.canvas import Canvas
-from vehicle.drawing.rendering.frame_at_rest import frame_at_rest
+from vehicle.drawing.rendering.stage import frame_at_rest
 
 
 @pytest.mark.render

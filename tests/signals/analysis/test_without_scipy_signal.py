@@ -40,9 +40,9 @@ def test_prominent_tops():
         prominence = (0.0, 0.5, 1.0)[trial % 3]
         expected, found = scipy.signal.find_peaks(values, prominence=prominence)
         tops = prominent_tops(values, prominence)
-        assert [top.at for top in tops] == expected.tolist()
-        assert [top.prominence for top in tops] == found["prominences"].tolist()
-        assert [list(top.bases) for top in tops] == np.column_stack(
+        assert [at for at, _, _ in tops] == expected.tolist()
+        assert [rise for _, rise, _ in tops] == found["prominences"].tolist()
+        assert [list(bases) for *_, bases in tops] == np.column_stack(
             [found["left_bases"], found["right_bases"]]
         ).tolist()
 

@@ -1,16 +1,15 @@
 """Scene of a film: the car with its shapes, translucent shell, lights and floor."""
 
-from __future__ import annotations
-
 import mujoco
 import numpy as np
 
-from vehicle.drawing.rendering.body_wireframe import EMISSION
-from vehicle.drawing.rendering.frame_at_rest import frame_at_rest
+from vehicle.drawing.rendering.body_wireframe import EMISSION, members_of
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.model.assembly.studio import add_studio
 from vehicle.model.assembly.visuals import add_shapes, visible_shapes
 from vehicle.model.shapes import SHELL
+from vehicle.model.shapes.shape import Shape
+from vehicle.model.shapes.solids import joined, rod
 from vehicle.signals.analysis.samples import Vector
 
 SAMPLES = 0
@@ -63,6 +62,23 @@ def stage_model(car: CarModel, size: tuple[int, int], *, road: bool = False) -> 
     patch = min(wheel.patch[2] for wheel in car.vehicle.composition.wheels)
     add_studio(spec, size, SAMPLES, patch - BELOW_ROAD if road else GROUND)
     return spec.compile()
+
+
+REST_RADIUS, REST_COLOUR = 0.005, (0.35, 0.38, 0.42, 1.0)
+"""Radius [m] and colour of the rods of a frame at rest."""
+
+
+def frame_at_rest(car: CarModel) -> dict[str, Shape]:
+    """Return the frame of the body in the design position, a reference for its motion, as one shape by name.
+
+    Empty for a body without lines.
+    """
+    lines, slim = members_of(car)
+    if not len(lines):
+        return {}
+    ends = np.asarray(car.superelement.positions)[lines]
+    mesh = joined([rod(first, second, slim * REST_RADIUS, sides=6) for first, second in ends])
+    return {"frame_at_rest": Shape(mesh=mesh, rgba=REST_COLOUR, part="world")}
 
 
 def unveiled(model: mujoco.MjModel) -> Vector:

@@ -1,7 +1,5 @@
 """Picture of a sweep: comfort over a parameter, a map over two, or parallel axes over more."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -115,23 +113,7 @@ def _parallel(figure: Any, axis: Any, names: Sequence[str], parameters: Vector, 
 def _mark(axis: Any, x: Vector, y: Vector, weighted: Vector) -> None:
     """Mark the most comfortable car and the first car."""
     best = int(np.nanargmin(weighted))
-    axis.plot(
-        x[best],
-        y[best],
-        "*",
-        markersize=15,
-        color=COLOURS[1],
-        markeredgecolor="white",
-        linestyle="none",
-        label="most comfortable",
-    )
-    axis.plot(
-        x[0],
-        y[0],
-        "o",
-        markersize=17,
-        markerfacecolor="none",
-        markeredgecolor=COLOURS[1],
-        linestyle="none",
-        label="first car",
-    )
+    star = {"marker": "*", "markersize": 15, "color": COLOURS[1], "markeredgecolor": "white"}
+    circle = {"marker": "o", "markersize": 17, "markerfacecolor": "none", "markeredgecolor": COLOURS[1]}
+    for index, look, label in ((best, star, "most comfortable"), (0, circle, "first car")):
+        axis.plot(x[index], y[index], linestyle="none", label=label, **look)

@@ -1,7 +1,5 @@
 """Vibration at a point of contact after ISO 2631-1, BS 6841, ISO 5349-1 or EN 12299; effect of an offset."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -260,16 +258,23 @@ def evaluate(
     span = _Span(time_step=step, skip=skip, from_rest=from_rest)
     values: dict[str, Any] = dict.fromkeys(AXES)
     remarks = []
-    weighting_of = dict(
-        zip(AXES, zip(contact_point.weightings, contact_point.comfort_factors, strict=True), strict=True)
-    )
     for axis, record in zip(axes, rows, strict=True):
-        values[axis], axis_remarks = _axis(span, record, *weighting_of[axis], average)
+        number = AXES.index(axis)
+        name, factor = contact_point.weightings[number], contact_point.comfort_factors[number]
+        values[axis], axis_remarks = _axis(span, record, name, factor, average)
         remarks += [f"{axis}: {remark}" for remark in axis_remarks]
         if not contact_point.doses:
             values[axis] |= dict.fromkeys(DOSES)
     duration = span.whole(rows[0]).size * step
-    sums = _sums(values, contact_point) if len(axes) == 3 else None
+    sums: dict[str, float | None] | None = None
+    if len(axes) == 3:
+        rms, doses = ([values[axis][name] for axis in AXES] for name in ("weighted_rms", "vdv"))
+        comfort, health = contact_point.comfort_factors, contact_point.health_factors
+        sums = {
+            "weighted_rms": vector_sum(rms, comfort),
+            "vdv": vector_sum(doses, comfort, power=4.0) if contact_point.doses else None,
+            "health_weighted_rms": None if health is None else vector_sum(rms, health),
+        }
     reasons = [
         f"{axis}: zero throughout, so crest factor and ratios are undefined"
         for axis in axes
@@ -299,20 +304,6 @@ def evaluate(
         **values,
         "vector_sum": sums,
         "reasons": reasons,
-    }
-
-
-def _sums(values: dict[str, Any], contact_point: Application) -> dict[str, float | None]:
-    """Return the vector sums over three axes: weighted RMS, VDV, and RMS with health factors."""
-    rms = [values[axis]["weighted_rms"] for axis in AXES]
-    return {
-        "weighted_rms": vector_sum(rms, contact_point.comfort_factors),
-        "vdv": vector_sum([values[axis]["vdv"] for axis in AXES], contact_point.comfort_factors, power=4.0)
-        if contact_point.doses
-        else None,
-        "health_weighted_rms": None
-        if contact_point.health_factors is None
-        else vector_sum(rms, contact_point.health_factors),
     }
 
 

@@ -1,7 +1,5 @@
 """Measures of the vibration exposure to a weighted acceleration: RMS, MTVV, crest factor, VDV, MSDV and vector sums."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Literal
 
@@ -64,10 +62,7 @@ def mtvv(
 
 
 def crest_factor(weighted: ArrayLike) -> float | None:
-    """Return the crest factor max|a_w| / RMS [-], at least 1; None for a record of zeros.
-
-    Args:
-        weighted: evaluated part of the weighted record [m/s2], shape (n,).
+    """Return the crest factor max|a_w| / RMS [-] of a weighted record [m/s2], (n,), at least 1; None for zeros.
 
     Source: ISO 2631-1:1997, 6.2.1.
     """

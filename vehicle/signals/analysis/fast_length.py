@@ -1,7 +1,5 @@
 """Lengths with fast Fourier transforms: those of `scipy.fft.next_fast_len`, whose import takes a tenth of a second."""
 
-from __future__ import annotations
-
 
 def fast_length(samples: int) -> int:
     """Return the smallest product of powers of 2, 3 and 5 that is not smaller than a number of samples.

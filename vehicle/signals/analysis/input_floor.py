@@ -8,8 +8,6 @@ Source: Thomson, Spectrum estimation and harmonic analysis, Proc. IEEE 70 (1982)
 Noise, 2008: rounding to a step q adds white noise of variance q^2 / 12.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from functools import cache, lru_cache, partial
 
@@ -71,11 +69,7 @@ FEW = 0.05
 
 
 def rounding_step(samples: Vector) -> float:
-    """Return the rounding step of samples, of which all small differences are multiples; 0 without a step.
-
-    Args:
-        samples: record in any unit, that of the result; (n,).
-    """
+    """Return the rounding step of samples (n,), of which all small differences are multiples; 0 without a step."""
     steps = np.diff(np.sort(samples))
     steps = steps[steps > 1e-9 * np.ptp(samples)]
     if not steps.size:

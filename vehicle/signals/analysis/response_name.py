@@ -1,7 +1,5 @@
 """Name of an FRF, its output and its input, and the row of another set of FRFs with the same name."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Mapping, Sequence
@@ -44,11 +42,7 @@ class ResponseName:
 
 
 def plates_of(motion: Mapping[str, float]) -> tuple[tuple[str, float], ...]:
-    """Return the motion of a `ResponseName`.
-
-    Args:
-        motion: wheel to the factor of its plate; 1 for the first.
-    """
+    """Return the motion of a `ResponseName` from wheel to the factor of its plate; 1 for the first."""
     return tuple((PLATE + wheel, float(factor)) for wheel, factor in motion.items())
 
 

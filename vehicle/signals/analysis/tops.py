@@ -1,29 +1,11 @@
 """Local maxima with their prominence, as of `scipy.signal.find_peaks`, whose import takes half a second."""
 
-from __future__ import annotations
-
-from typing import NamedTuple
-
 import numpy as np
 
 from vehicle.signals.analysis.samples import Vector
 
 
-class Top(NamedTuple):
-    """Local maximum.
-
-    Attributes:
-        at: sample; the middle of a plateau, rounded down.
-        prominence: height over the higher one of both bases.
-        bases: lowest samples to the left and to the right, up to the next higher sample.
-    """
-
-    at: int
-    prominence: float
-    bases: tuple[int, int]
-
-
-def prominent_tops(values: Vector, prominence: float) -> list[Top]:
+def prominent_tops(values: Vector, prominence: float) -> list[tuple[int, float, tuple[int, int]]]:
     """Return the local maxima of a record whose prominence reaches a limit.
 
     A sample or plateau is a maximum if both neighbours are lower; the ends of the record are none.
@@ -31,6 +13,10 @@ def prominent_tops(values: Vector, prominence: float) -> list[Top]:
     Args:
         values: the record; (n,).
         prominence: minimum prominence, in the unit of the record.
+
+    Returns:
+        Sample of each maximum, the middle of a plateau rounded down; its prominence, the height over the higher one of
+        both bases; and its bases, the lowest samples to the left and to the right up to the next higher sample.
     """
     firsts = np.flatnonzero(np.concatenate([[True], values[1:] != values[:-1]]))
     levels, lasts = values[firsts], np.append(firsts[1:], values.size) - 1
@@ -46,5 +32,5 @@ def prominent_tops(values: Vector, prominence: float) -> list[Top]:
         right = index + int(np.argmin(values[index:end]))
         rise = float(values[index] - max(values[left], values[right]))
         if rise >= prominence:
-            tops.append(Top(index, rise, (left, right)))
+            tops.append((index, rise, (left, right)))
     return tops

@@ -1,7 +1,5 @@
 """Frequency weightings of ISO 2631-1, BS 6841, ISO 5349-1, EN 12299: transfer functions, factors, weighted records."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 from types import MappingProxyType
@@ -21,7 +19,7 @@ KEPT_LINES = 2**16
 """Maximum number of lines with cached factors: a megabyte."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, slots=True)
 class Weighting:
     """Frequency weighting with the parameters of the standard; an infinite frequency omits its factor."""
 
@@ -114,57 +112,27 @@ class Weighting:
         return np.asarray(np.abs(self.transfer_function(frequency)))
 
 
-_INFINITE = float("inf")
+_NONE = float("inf")
+
+_PARAMETERS: dict[str, tuple[float, ...]] = {  # f1, f2, f3, f4, q4, f5, q5, f6, q6, gain
+    # ISO 2631-1:1997 annex A, the same in ISO 8041:2005
+    "Wk": (0.4, 100.0, 12.5, 12.5, 0.63, 2.37, 0.91, 3.35, 0.91),
+    "Wd": (0.4, 100.0, 2.0, 2.0, 0.63, _NONE, 1.0, _NONE, 1.0),
+    "Wf": (0.08, 0.63, _NONE, 0.25, 0.86, 0.0625, 0.80, 0.10, 0.80),
+    "Wc": (0.4, 100.0, 8.0, 8.0, 0.63, _NONE, 1.0, _NONE, 1.0),
+    "We": (0.4, 100.0, 1.0, 1.0, 0.63, _NONE, 1.0, _NONE, 1.0),
+    "Wj": (0.4, 100.0, _NONE, _NONE, 1.0, 3.75, 0.91, 5.32, 0.91),
+    # BS 6841:1987 writes the step without (f5/f6)^2 and K = 0.4; ISO 8041:2005 writes K = 1.024: the same, for
+    # 1.024 (2.5/4)^2 = 0.4
+    "Wb": (0.4, 100.0, 16.0, 16.0, 0.55, 2.5, 0.9, 4.0, 0.95, 1.024),
+    # EN 12299:2009, annex C: other quality factors, K = 0.4 without (f5/f6)^2
+    "Wb_en12299": (0.4, 100.0, 16.0, 16.0, 0.63, 2.5, 0.8, 4.0, 0.8, 1.024),
+    # ISO 5349-1:2001, annex A, with the exact frequencies of ISO 8041:2005
+    "Wh": (10.0**0.8, 10.0**3.1, 50.0 / np.pi, 50.0 / np.pi, 0.64, _NONE, 1.0, _NONE, 1.0),
+}
 
 WEIGHTINGS: MappingProxyType[str, Weighting] = MappingProxyType(
-    {
-        w.name: w
-        for w in (
-            # ISO 2631-1:1997 annex A, the same in ISO 8041:2005
-            Weighting(name="Wk", f1=0.4, f2=100.0, f3=12.5, f4=12.5, q4=0.63, f5=2.37, q5=0.91, f6=3.35, q6=0.91),
-            Weighting(name="Wd", f1=0.4, f2=100.0, f3=2.0, f4=2.0, q4=0.63, f5=_INFINITE, q5=1.0, f6=_INFINITE, q6=1.0),
-            Weighting(
-                name="Wf", f1=0.08, f2=0.63, f3=_INFINITE, f4=0.25, q4=0.86, f5=0.0625, q5=0.80, f6=0.10, q6=0.80
-            ),
-            Weighting(name="Wc", f1=0.4, f2=100.0, f3=8.0, f4=8.0, q4=0.63, f5=_INFINITE, q5=1.0, f6=_INFINITE, q6=1.0),
-            Weighting(name="We", f1=0.4, f2=100.0, f3=1.0, f4=1.0, q4=0.63, f5=_INFINITE, q5=1.0, f6=_INFINITE, q6=1.0),
-            Weighting(
-                name="Wj", f1=0.4, f2=100.0, f3=_INFINITE, f4=_INFINITE, q4=1.0, f5=3.75, q5=0.91, f6=5.32, q6=0.91
-            ),
-            # BS 6841:1987 writes the step without (f5/f6)^2 and K = 0.4; ISO 8041:2005 writes K = 1.024: the same,
-            # for 1.024 (2.5/4)^2 = 0.4
-            Weighting(
-                name="Wb", f1=0.4, f2=100.0, f3=16.0, f4=16.0, q4=0.55, f5=2.5, q5=0.9, f6=4.0, q6=0.95, gain=1.024
-            ),
-            # EN 12299:2009, annex C: other quality factors, K = 0.4 without (f5/f6)^2
-            Weighting(
-                name="Wb_en12299",
-                f1=0.4,
-                f2=100.0,
-                f3=16.0,
-                f4=16.0,
-                q4=0.63,
-                f5=2.5,
-                q5=0.8,
-                f6=4.0,
-                q6=0.8,
-                gain=1.024,
-            ),
-            # ISO 5349-1:2001, annex A, with the exact frequencies of ISO 8041:2005
-            Weighting(
-                name="Wh",
-                f1=10.0**0.8,
-                f2=10.0**3.1,
-                f3=50.0 / np.pi,
-                f4=50.0 / np.pi,
-                q4=0.64,
-                f5=_INFINITE,
-                q5=1.0,
-                f6=_INFINITE,
-                q6=1.0,
-            ),
-        )
-    }
+    {name: Weighting(name, *parameters) for name, parameters in _PARAMETERS.items()}
 )
 """The weightings by name."""
 

@@ -1,7 +1,5 @@
 """Check the plausibility of plate displacements: level, acceleration, bandwidth, drift, pauses, clipping."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -195,12 +193,9 @@ def aliasing_notices(displacement: Mapping[str, Vector], timestep: float) -> tup
 
 
 def drifts(displacement: Mapping[str, Vector]) -> list[str]:
-    """Return a notice for each plate whose least-squares line rises by more than the RMS about the line.
+    """Return a notice for each plate (wheel -> [m], (n,)) whose least-squares line rises by more than the RMS about it.
 
     Slope b = 12 / (n^2 - 1) mean((k - (n - 1)/2) z_k) per sample, k = 0 ... n - 1; drift b (n - 1).
-
-    Args:
-        displacement: wheel -> plate displacement [m], shape (n,).
     """
     notices = []
     for wheel, z in displacement.items():

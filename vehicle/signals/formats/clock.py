@@ -1,7 +1,5 @@
 """Check time stamps: increasing, uniform, or rounded from a uniform clock; suggest options for other times."""
 
-from __future__ import annotations
-
 import numpy as np
 import scipy
 
@@ -62,11 +60,7 @@ def check_uniform(table: Table, time: Vector, remedy: str = "resample it to unif
 
 
 def without_rounding(time: Vector) -> tuple[Vector, tuple[str, ...]]:
-    """Replace rounded time stamps, shape (n,), by those of their clock, with a notice; return other times unchanged.
-
-    Args:
-        time: increasing times [s], shape (n,).
-    """
+    """Replace rounded, increasing stamps [s], (n,), by those of their clock, with a notice; others are unchanged."""
     clock = None if is_uniform(time) else clock_of_rounded(time)
     if clock is None:
         return time, ()
@@ -111,11 +105,7 @@ def clock_of_rounded(time: Vector) -> tuple[float, int] | None:
 
 
 def clock_of_stamps(time: Vector) -> StampClock | None:
-    """Return the clock of samples whose stamps do not show it, see `stamp_clock`; None if the stamps are usable.
-
-    Args:
-        time: stamps [s], (n,).
-    """
+    """Return the clock of samples whose stamps [s], (n,), hide it, see `stamp_clock`; None for usable stamps."""
     steps = np.diff(time)
     if steps.size < 2 or ((steps > 0.0).all() and (is_uniform(time) or clock_of_rounded(time) is not None)):
         return None
@@ -138,12 +128,9 @@ def check_stamps(where: object, time: Vector) -> None:
 
 
 def typical_rate(time: Vector) -> float:
-    """Return the sampling rate [Hz] of jittered times: number of samples over their span.
+    """Return the sampling rate [Hz] of jittered, increasing times [s], (n,): number of samples over their span.
 
     Steps of twice the median are those over a lost sample; they are left out if there are no other long steps.
-
-    Args:
-        time: increasing times without a pause [s], (n,).
     """
     steps = np.diff(time)
     multiples = steps / float(np.median(steps))
@@ -166,11 +153,7 @@ def _worst_step(time: Vector) -> tuple[float, int]:
 
 
 def time_remarks(time: Vector) -> tuple[str, ...]:
-    """Return messages on irregular times (rounded, not increasing, pauses, gaps, jitter) with their remedies.
-
-    Args:
-        time: sample times of a channel [s], shape (n,).
-    """
+    """Return messages on irregular times [s], (n,): rounded, not increasing, pauses, gaps, jitter; with remedies."""
     steps = np.diff(time)
     if steps.size < 2:
         return ()
@@ -201,13 +184,10 @@ def time_remarks(time: Vector) -> tuple[str, ...]:
 
 
 def clock_options(time: Vector) -> tuple[str, ...]:
-    """Return the command options that make a record with these times readable; () for uniform times.
+    """Return the command options that make a record with these times [s], (n,), readable; () for uniform times.
 
     --from and --to select the longest part without a gap; --resample at the rate of the samples removes jitter; --rate
     replaces stamps that are not the times of the samples.
-
-    Args:
-        time: sample times of a channel [s], shape (n,).
     """
     steps = np.diff(time)
     if steps.size < 2 or not (steps > 0.0).any():
@@ -252,8 +232,5 @@ def longest_gap(timestep: float) -> float:
     """Return the maximum distance of two samples [s] for interpolation: `LONGEST_GAP`, or one missing sample.
 
     One missing sample gives a step of 2 T, two give 3 T; 2.5 T allows for jitter.
-
-    Args:
-        timestep: median sampling interval [s].
     """
     return max(LONGEST_GAP, 2.5 * timestep)

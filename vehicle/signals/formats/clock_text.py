@@ -1,7 +1,5 @@
 """Convert dates, times of day, and counts since 1970 to seconds."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from datetime import UTC, date, datetime
@@ -41,11 +39,7 @@ LONGEST_CLOCK = 48
 
 
 def is_clock(cell: str) -> bool:
-    """Return True if a cell contains a date, a time of day, or both.
-
-    Args:
-        cell: text of the cell, stripped.
-    """
+    """Return True if a stripped cell contains a date, a time of day, or both."""
     if len(cell) > LONGEST_CLOCK:
         return False
     both = _BOTH.fullmatch(cell)

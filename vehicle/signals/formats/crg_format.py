@@ -1,7 +1,5 @@
 """Read OpenCRG road surfaces (ASAM OpenCRG 1.2): heights on a grid along a reference line, as text or binary."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -48,11 +46,7 @@ class Surface:
     curved: bool
 
     def height(self, v: float) -> Vector:
-        """Return the heights of a track [m], (n,), linear between sections as in OpenCRG; NaN outside the road.
-
-        Args:
-            v: lateral position of the track, positive to the left [m].
-        """
+        """Return the heights [m], (n,), of the track at v [m], linear between sections; NaN outside the road."""
         if not self.v[0] - 1e-9 <= v <= self.v[-1] + 1e-9:
             return np.full(self.u.size, np.nan)
         left = min(int(np.searchsorted(self.v, v, side="right")), self.v.size - 1)

@@ -4,8 +4,6 @@ A written file has one array per channel with the attributes name, unit, kind, s
 and uneven frequencies in the group `axes`.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 
@@ -41,12 +39,7 @@ AXES = "axes"
 
 
 def read(path: Path) -> Measurement:
-    """Read the structures of a MATLAB file, or all numeric arrays of another HDF5 file.
-
-    Raises:
-        MissingPartError: h5py is not installed.
-        DataError: the file is damaged, truncated, or without numbers.
-    """
+    """Read the structures of a MATLAB file, or all numeric arrays of another HDF5 file; errors as of `read_record`."""
     h5py = extra("h5py", "hdf5", "an HDF5 file (MAT 7.3)")
     start = ""
     with reading(path, "HDF5", "it may be truncated; export it again"), h5py.File(path, "r") as file:
@@ -198,7 +191,7 @@ def _coordinate(dataset: Any, count: int) -> Vector | None:
     factor = LONG_UNITS.get(unit.strip().lower()) or seconds_in(unit.strip())
     if not factor:
         return None
-    times = np.asarray(unpacked("", scales[0]).values, dtype=np.float64) * factor
+    times = np.asarray(unpacked("", scales[0])[0], dtype=np.float64) * factor
     return times - times[0] if since else times
 
 

@@ -1,7 +1,5 @@
 """Read column headers of logger files: names, units and sources in one or several lines, in any order."""
 
-from __future__ import annotations
-
 import csv
 import re
 from collections.abc import Mapping, Sequence
@@ -199,11 +197,7 @@ def _is_number(cell: str) -> bool:
 
 
 def bare_unit(cell: str) -> str:
-    """Strip enclosing blanks and brackets from a unit; return "" for a dash.
-
-    Args:
-        cell: text of the unit, such as "[m/s2]", "(g)", "m/(s^2)" or "-".
-    """
+    """Strip enclosing blanks and brackets from a unit, as "[m/s2]", "(g)", "m/(s^2)"; return "" for a dash."""
     text = cell.strip(" -")
     while len(text) > 1 and text[0] + text[-1] in ("[]", "()"):
         inner = text[1:-1]
@@ -260,11 +254,7 @@ def split_head(cell: str) -> tuple[str, str]:
 
 
 def time_key(heads: Mapping[str, tuple[str, str]]) -> str | None:
-    """Return the first column with the name and the unit of a time; None without one.
-
-    Args:
-        heads: column to its name and unit, see `split_head`.
-    """
+    """Return the first column with the name and the unit of a time, see `split_head`; None without one."""
     return next((key for key, (name, unit) in heads.items() if TIME_NAME.fullmatch(name) and seconds_in(unit)), None)
 
 

@@ -1,7 +1,5 @@
 """Read and write MAT files up to version 7: one structure per channel, as exported by Testlab, or plain arrays."""
 
-from __future__ import annotations
-
 import struct
 import warnings
 import zlib
@@ -26,11 +24,7 @@ HEADER = b"MATLAB 5.0 MAT-file, vehicle-on-shaker".ljust(116)
 
 
 def read(path: Path) -> Measurement:
-    """Read structures with x_values and y_values, numeric vectors, and columns of matrices as channels.
-
-    Raises:
-        DataError: the file is damaged, truncated, or without numbers.
-    """
+    """Read structures of x_values and y_values, numeric vectors and columns of matrices; errors as of `read_record`."""
     from scipy.io import loadmat
 
     objects = _check_elements(path)

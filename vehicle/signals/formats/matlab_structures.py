@@ -7,8 +7,6 @@ the names of its w columns separated by commas. ControlDesk: `X(i)` with `Data`,
 Sources: MathWorks, Simulink, "Data Format for Logged Simulation Data"; dSPACE, ControlDesk, "MAT File Format".
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -20,11 +18,7 @@ from vehicle.signals.formats.units import seconds_in
 
 
 def is_structure(record: Mapping[str, Any]) -> bool:
-    """Return True if the fields of a structure are those of Simulink or dSPACE.
-
-    Args:
-        record: field to value.
-    """
+    """Return True if the fields of a structure, with their values, are those of Simulink or dSPACE."""
     return _has(record, "signals", "values") or (_has(record, "X", "Data") and _has(record, "Y", "Data"))
 
 
@@ -104,11 +98,7 @@ def _has(record: Mapping[str, Any], field: str, inner: str) -> bool:
 
 
 def numbers(value: Any) -> Vector | None:
-    """Return a vector of numbers as floats, (n,); None if the value is no numeric vector.
-
-    Args:
-        value: field of a structure.
-    """
+    """Return a field of a structure as floats, (n,); None if it is no numeric vector."""
     array = np.asarray(value) if value is not None else np.zeros(0)
     vector = array.dtype.kind in "fiub" and array.size > 0 and array.size == max(array.shape, default=1)
     return array.astype(np.float64).ravel() if vector else None

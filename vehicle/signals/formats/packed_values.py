@@ -4,9 +4,7 @@ Sources: CF conventions 1.11, sections 2.5.1 and 8.1; NetCDF User Guide, attribu
 `_Unsigned`); NWB, TimeSeries (`conversion`, `offset`).
 """
 
-from __future__ import annotations
-
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,26 +19,16 @@ SET_BY_USER = 2
 """HDF5 state of a fill value that the program set (H5D_FILL_VALUE_USER_DEFINED); netCDF sets it for missing samples."""
 
 
-class Unpacked(NamedTuple):
-    """Values of an array.
-
-    Attributes:
-        values: unpacked values, NaN for missing values, shape of the array.
-        fault: reason why the unit is wrong for the values; empty if it is right.
-        notices: messages on unpacking.
-    """
-
-    values: NDArray[Any]
-    fault: str
-    notices: tuple[str, ...]
-
-
-def unpacked(name: str, dataset: Any) -> Unpacked:
+def unpacked(name: str, dataset: Any) -> tuple[NDArray[Any], str, tuple[str, ...]]:
     """Read an array and unpack it.
 
     Args:
         name: name of the array, for messages.
         dataset: numeric array of h5py.
+
+    Returns:
+        Values, NaN for missing values, shape of the array; the reason why the unit is wrong for them, empty if it is
+        right; and notices.
     """
     packed = np.asarray(dataset[()])
     attributes = dataset.attrs
@@ -70,7 +58,7 @@ def unpacked(name: str, dataset: Any) -> Unpacked:
         if missing.any():
             notices.append(f"array {name!r}: {np.count_nonzero(missing)} values are missing by its attributes")
             values[missing] = np.nan
-    return Unpacked(values, fault, tuple(notices))
+    return values, fault, tuple(notices)
 
 
 def _missing(dataset: Any, packed: NDArray[Any], values: NDArray[Any]) -> NDArray[np.bool_]:

@@ -1,7 +1,5 @@
 """Read Parquet files: numeric columns, with a column of dates or times as their axis."""
 
-from __future__ import annotations
-
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -19,12 +17,7 @@ from vehicle.signals.formats.unpacked_size import require_unpacked
 
 
 def read(path: Path) -> Measurement:
-    """Read all numeric columns of a flat table.
-
-    Raises:
-        MissingPartError: pyarrow is not installed.
-        DataError: the file is damaged, truncated, encrypted, too large, or without numbers.
-    """
+    """Read all numeric columns of a flat table; errors as of `read_record`, also for an encrypted or too large file."""
     extra("pyarrow", "parquet", "a Parquet file")
     parquet, arrow = import_module("pyarrow.parquet"), import_module("pyarrow.types")
     types = (

@@ -7,8 +7,6 @@ Integers: value = integer * SCALE.CHAN_n.
 Source: MTS, RPC III File Formats; the tests compare with the reader rpc3-file.
 """
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 
@@ -30,11 +28,7 @@ FRAMES = (2048, 1024, 512, 256, 128)
 
 
 def read(path: Path) -> Measurement:
-    """Read the channels of a time history file.
-
-    Raises:
-        DataError: another file type, damaged, or truncated.
-    """
+    """Read the channels of a time history file; errors as of `read_record`, also for another file type."""
     data = path.read_bytes()
     head = _header(path, data)
     for key, allowed in (("FORMAT", tuple(ORDERS)), ("FILE_TYPE", ("TIME_HISTORY",)), ("DATA_TYPE", tuple(WIDTHS))):

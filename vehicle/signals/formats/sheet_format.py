@@ -1,7 +1,5 @@
 """Read sheets of XLSX files as tables of a logger."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 
@@ -23,12 +21,7 @@ NO_VALUES = "formulas without saved values: open the file in a spreadsheet progr
 
 
 def read(path: Path) -> Measurement:
-    """Read the first sheet with a table of numbers.
-
-    Raises:
-        MissingPartError: openpyxl is not installed.
-        DataError: the file is damaged or has no table of numbers.
-    """
+    """Read the first sheet with a table of numbers; errors as of `read_record`."""
     sheets = _sheets(path)
     first_error: DataError | None = None
     for title, cells in sheets.items():

@@ -1,7 +1,5 @@
 """Recognise the format of a file by its first bytes."""
 
-from __future__ import annotations
-
 import re
 import struct
 import zipfile
@@ -90,11 +88,7 @@ def is_uff(head: Head) -> bool:
 
 
 def can_log_type(text: str) -> str:
-    """Return the name of the text format of a CAN log: asc, trc, candump; empty for other text.
-
-    Args:
-        text: first characters of the file.
-    """
+    """Return the type of the CAN log that begins with a text: asc, trc, candump; empty for other text."""
     if re.search(r"^base\s+(hex|dec)\s+timestamps\s+(absolute|relative)", text, re.MULTILINE):
         return "asc"
     if text.lstrip("\ufeff\xef\xbb\xbf").startswith((";$FILEVERSION=", ";####")) and (

@@ -1,7 +1,5 @@
 """Tables with named columns, as returned by the readers of table formats, and records over uniform time."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -13,7 +11,8 @@ from numpy.typing import NDArray
 
 from vehicle.errors import DataError
 from vehicle.signals.analysis import samples
-from vehicle.signals.analysis.samples import Vector as Vector
+
+Vector = samples.Vector
 
 TIME = "time [s]"
 """Header of the column of sample times."""

@@ -1,7 +1,5 @@
 """Read TDMS files of LabVIEW."""
 
-from __future__ import annotations
-
 import logging
 import warnings
 from collections.abc import Iterator, Mapping
@@ -72,12 +70,7 @@ def _axis(properties: Mapping[str, Any], count: int, later: float) -> dict[str, 
 
 
 def read(path: Path) -> Measurement:
-    """Read all numeric channels; the length is that of the data, not `wf_samples`.
-
-    Raises:
-        MissingPartError: npTDMS is not installed.
-        DataError: the file is damaged, truncated, or without numbers.
-    """
+    """Read all numeric channels, as long as their data, not as `wf_samples`; errors as of `read_record`."""
     nptdms = extra("nptdms", "tdms", "a TDMS file")
     channels: list[Channel] = []
     skipped, start = 0, ""

@@ -1,7 +1,5 @@
 """Find the table in a text file: first line, delimiter, and data types of the columns."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -178,24 +176,17 @@ def settled_kinds(path: Path, rows: Sequence[str], table: TextTable, names: Sequ
         cells = [row[column] for row in sampled if column < len(row)]
         kinds = {_kind(cell, table.delimiter) for cell in cells} - {"missing"}
         if settled_kind == "missing" and not kinds:  # a few rows may contain remarks
-            kinds = _kinds_of_column(rows, column, table.delimiter)
-        if "other" in kinds:
-            kinds = kinds - {"other"} | {"text"}
+            every = (cells_of(row, table.delimiter) for row in rows)
+            filled = {row[column] for row in every if column < len(row) and row[column]}
+            kinds = {_kind(cell, table.delimiter) for cell in filled} - {"missing"}
+        texts = sum(_kind(cell, table.delimiter) == "text" for cell in cells)
         if settled_kind == "missing":
             settled_kind = "number" if "number" in kinds or not kinds else "clock" if kinds == {"clock"} else "text"
-        elif (
-            settled_kind == "clock" and sum(_kind(cell, table.delimiter) == "text" for cell in cells) > len(cells) // 2
-        ):
+        elif settled_kind == "clock" and texts > len(cells) // 2:
             settled_kind = "text"
         settled.append(settled_kind)
     _check_alternation(path, rows, settled, table.delimiter, names)
     return tuple(settled)
-
-
-def _kinds_of_column(rows: Sequence[str], column: int, delimiter: str) -> set[Kind]:
-    """Return the types of the cells of a column in all rows, without missing cells."""
-    cells = (cells_of(row, delimiter) for row in rows)
-    return {_kind(row[column], delimiter) for row in cells if column < len(row) and row[column]} - {"missing"}
 
 
 def _check_alternation(

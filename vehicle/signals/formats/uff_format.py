@@ -4,8 +4,6 @@ Source: Universal File Datasets, University of Cincinnati SDRL, datasets 15, 18,
 and 2414.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from dataclasses import replace
 from pathlib import Path
@@ -22,11 +20,7 @@ from vehicle.signals.formats.uff_shapes import read_shape
 
 
 def read(path: Path) -> Measurement:
-    """Read all functions, mode shapes and the geometry of a file.
-
-    Raises:
-        DataError: the file is damaged, truncated, or without functions, shapes and nodes.
-    """
+    """Read functions, mode shapes and geometry; errors as of `read_record`, also for a file without any of them."""
     data = path.read_bytes()
     channels: list[Channel] = []
     results: list[tuple[int, str, list[bytes]]] = []

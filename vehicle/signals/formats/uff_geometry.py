@@ -3,9 +3,6 @@
 Source: Universal File Datasets, University of Cincinnati SDRL.
 """
 
-from __future__ import annotations
-
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
@@ -161,7 +158,10 @@ class Nodes:
         labels = [label for line in lines[2:] for label in wholes(line)]
         if len(labels) < count or any(labels[count:]):  # a line may be padded with zeros
             raise ValueError(f"{count} nodes stated, {len(labels)} present")
-        self.lines += [stroke for stroke in _strokes(labels[:count]) if len(stroke) > 1]
+        # A zero moves the pen without drawing.
+        breaks = [-1, *(n for n, label in enumerate(labels[:count]) if label == 0), count]
+        strokes = (labels[first + 1 : last] for first, last in pairwise(breaks))
+        self.lines += [stroke for stroke in strokes if len(stroke) > 1]
 
     def _elements(self, lines: list[bytes]) -> None:
         index = 0
@@ -193,9 +193,3 @@ class Nodes:
         points = {str(label): tuple((self.global_point(label) / units.length).tolist()) for label in self.at}
         lines = [[str(label) for label in line] for line in self.lines if all(label in self.at for label in line)]
         return Geometry(points=points, lines=lines)
-
-
-def _strokes(labels: list[int]) -> Iterator[list[int]]:
-    """Split a trace line at its zeros, which move the pen without drawing."""
-    breaks = [-1, *(n for n, label in enumerate(labels) if label == 0), len(labels)]
-    yield from (labels[first + 1 : last] for first, last in pairwise(breaks))

@@ -1,7 +1,5 @@
 """Units of measurement files: quantity and conversion to SI."""
 
-from __future__ import annotations
-
 import math
 import re
 from typing import NamedTuple
@@ -137,11 +135,7 @@ GRAMS = ("g/s", "mg/s", "g/km", "g/h", "g/min", "g/l")
 
 
 def find_ratio(text: str) -> Unit | None:
-    """Return the unit for a text or a ratio of units, such as (m/s2)/N, g/m or m/s2/N; None if ambiguous or unknown.
-
-    Args:
-        text: unit in the file.
-    """
+    """Return the unit for a text or a ratio of units, such as (m/s2)/N, g/m or m/s2/N; None if ambiguous or unknown."""
     whole = find_unit(text)
     if whole is not None or text.strip().lower() in GRAMS:
         return whole

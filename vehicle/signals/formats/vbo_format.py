@@ -5,8 +5,6 @@ Times are HHMMSS.sss UTC; latitude and longitude are in minutes of arc, longitud
 Source: Racelogic, VBO file format.
 """
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 
@@ -80,7 +78,10 @@ def read(path: Path) -> Measurement:
         unit, remark = units[index], ""
         if column in ("lat", "long"):
             latitude = values[:, columns.index("lat" if "lat" in columns else "long")]
-            unit, remark = _angle(latitude, column)
+            if np.nanmax(np.abs(latitude)) > 90.0:
+                unit, remark = "arcmin", "positive to the west" if column == "long" else ""
+            else:
+                unit, remark = "", "minutes of arc by the format, but no latitude is above 90: set --unit arcmin or deg"
         channels.append(Channel(name=column, values=values[:, index].copy(), unit=unit, axis=axis, remark=remark))
     program = next((line.strip() for _, line in sections.get("comments", [])), "VBOX")
     return Measurement(
@@ -119,13 +120,8 @@ def _units(columns: list[str], heads: list[str], unit_lines: list[str], notices:
         unit_lines = unit_lines[:-1]
     own_columns = [index for index, column in enumerate(columns) if column.lower() not in STANDARD]
     if unit_lines:
-        indices = (
-            range(len(columns))
-            if len(unit_lines) == len(columns)
-            else own_columns
-            if len(unit_lines) == len(own_columns)
-            else []
-        )
+        candidates = ([*range(len(columns))], own_columns)
+        indices = next((each for each in candidates if len(each) == len(unit_lines)), [])
         if not indices:
             notices.append(
                 f"{len(unit_lines)} units for {len(columns)} columns ({len(own_columns)} not standard): the assignment "
@@ -134,10 +130,3 @@ def _units(columns: list[str], heads: list[str], unit_lines: list[str], notices:
         for index, unit in zip(indices, unit_lines, strict=True) if indices else ():
             units[index] = units[index] or ("" if unit.lower() in ("(null)", "null", "-") else unit)
     return units
-
-
-def _angle(latitude: Vector, column: str) -> tuple[str, str]:
-    """Return unit and remark of latitude or longitude; latitudes up to 90 may be degrees."""
-    if not (np.nanmax(np.abs(latitude)) > 90.0):
-        return "", "minutes of arc by the format, but no latitude is above 90: set --unit arcmin or deg"
-    return "arcmin", "positive to the west" if column == "long" else ""

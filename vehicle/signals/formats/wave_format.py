@@ -1,7 +1,5 @@
 """Read WAV files of recorders: integers of 8 to 32 bits or floating point, relative to full scale."""
 
-from __future__ import annotations
-
 import struct
 import warnings
 from pathlib import Path
@@ -14,11 +12,7 @@ from vehicle.signals.formats.optional_library import reading
 
 
 def read(path: Path) -> Measurement:
-    """Read all channels; integers become fractions of full scale.
-
-    Raises:
-        DataError: the file is damaged, truncated, or compressed.
-    """
+    """Read all channels; integers become fractions of full scale; errors as of `read_record`."""
     from scipy.io import wavfile
 
     _check_chunks(path)

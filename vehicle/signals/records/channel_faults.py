@@ -1,7 +1,5 @@
 """Detect faults of measured channels: clipped sensors, stuck sensors, copied channels."""
 
-from __future__ import annotations
-
 from collections.abc import Container, Mapping
 
 import numpy as np
@@ -101,16 +99,13 @@ def faults(
 
 
 def clipped(values: Vector) -> list[tuple[str, float, float]]:
-    """Return the clipped sides of a channel: "largest value" or "smallest value", that value, share of the samples.
+    """Return the clipped sides of samples (n,): "largest value" or "smallest value", that value, share of the samples.
 
     The time for which a smooth signal is within d of its extreme falls to zero with d; that of a clipped signal does
     not. So a side is clipped if more samples are at its extreme value than in the band next to it, and than at the next
     values together: in a sine of a whole number of samples, or after rounding, all values are repeated. The flat parts
     must begin and end at the speed of the motion. A side that is flat most of the time, or for longer at an end of the
     record than anywhere else, is at rest there, and a channel that switches between two values is no clipped one.
-
-    Args:
-        values: samples, (n,).
     """
     spread, span = float(np.std(values)), float(np.ptp(values))
     steps = np.diff(values)
@@ -136,11 +131,7 @@ def clipped(values: Vector) -> list[tuple[str, float, float]]:
 
 
 def switches(values: Vector) -> bool:
-    """Return True for a channel that is at its largest or smallest value most of the time, as a square wave.
-
-    Args:
-        values: samples, (n,).
-    """
+    """Return True for samples (n,) at their largest or smallest value most of the time, as a square wave."""
     low, high = float(np.min(values)), float(np.max(values))
     margin = EQUAL * (high - low)
     ends = [float(np.mean(values >= high - margin)), float(np.mean(values <= low + margin))]
@@ -209,28 +200,19 @@ def stuck(values: Vector, time: Vector, others: list[Vector] | None = None) -> t
     moving = float(time[-1] - time[0]) - sum(float(time[last] - time[first]) for first, last in [*rested, (begin, end)])
     interval = max(moving, 0.0) / crossings
     minimum = max(STUCK_PERIODS * interval, min(CERTAIN, CERTAIN_PERIODS * interval))
-    if end + 1 - begin >= OUTLASTS * _second_longest(values):
+    ends = np.concatenate([[-1], np.flatnonzero(np.diff(values) != 0.0), [values.size - 1]])
+    if end + 1 - begin >= OUTLASTS * np.sort(np.diff(ends))[-2]:  # of all constant parts, the ends included
         minimum = min(minimum, CERTAIN)
     return (float(time[begin]), float(time[end])) if length >= minimum else None
 
 
 def constant_part(values: Vector) -> tuple[int, int] | None:
-    """Return the first and last index of the longest constant part between two motions; None if there is none.
-
-    Args:
-        values: samples, (n,).
-    """
+    """Return first and last index of the longest constant part of samples (n,) between two motions, or None."""
     moves = np.flatnonzero(np.diff(values) != 0.0)
     if moves.size < 2:
         return None
     longest = int(np.argmax(moves[1:] - moves[:-1]))
     return int(moves[longest]) + 1, int(moves[longest + 1])
-
-
-def _second_longest(values: Vector) -> int:
-    """Return the number of equal samples in a row in the second longest constant part, the ends included."""
-    ends = np.concatenate([[-1], np.flatnonzero(np.diff(values) != 0.0), [values.size - 1]])
-    return int(np.sort(np.diff(ends))[-2])
 
 
 def _rested_at_the_ends(values: Vector) -> list[tuple[int, int]]:
@@ -242,11 +224,7 @@ def _rested_at_the_ends(values: Vector) -> list[tuple[int, int]]:
 
 
 def copies(channels: Mapping[str, Vector]) -> list[tuple[str, str]]:
-    """Return the pairs of channels with identical samples except for sign and offset.
-
-    Args:
-        channels: name to samples, (n,).
-    """
+    """Return the pairs of channels (name to samples, (n,)) with identical samples except for sign and offset."""
     moving = {name: values - values.mean() for name, values in channels.items() if np.ptp(values) > 0.0}
     names = list(moving)
     return [

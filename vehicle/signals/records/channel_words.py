@@ -1,7 +1,5 @@
 """Words in the names of measured channels: wheel, axis, and the model channel that a name suggests."""
 
-from __future__ import annotations
-
 import re
 import shlex
 from collections.abc import Collection, Sequence
@@ -52,21 +50,13 @@ ROUTE = {"altitude", "alt", "distance", "odometer", "accuracy", "range", "streck
 
 
 def words_of(name: str) -> list[str]:
-    """Return the words of a channel name in small letters: split at signs, digits and capitals.
-
-    Args:
-        name: as in "Shaker_FR", "accSeatZ", "Feder vorn links".
-    """
+    """Return the words of a channel name, as "accSeatZ", in small letters: split at signs, digits and capitals."""
     parts = re.findall(r"[A-ZÄÖÜ]?[a-zäöüß]+|[A-ZÄÖÜ]+(?![a-zäöüß])", name)
     return [part.lower() for part in parts]
 
 
 def wheel_of(name: str) -> str:
-    """Return the wheel in the name of a channel; empty if there is none.
-
-    Args:
-        name: as "FR", "VL", "rear left", "hinten rechts", "LeftFront".
-    """
+    """Return the wheel in a channel name, as "FR", "VL", "rear left", "LeftFront"; empty if there is none."""
     parts = words_of(name)
     pair = next((PAIRS[word] for word in parts if word in PAIRS), "")
     if pair:
@@ -82,11 +72,7 @@ def _any(parts: Sequence[str], names: Sequence[str]) -> bool:
 
 
 def axis_of(channel: Channel) -> str:
-    """Return the axis of a channel, from its direction or its name; empty if it has none.
-
-    Args:
-        channel: of a measurement.
-    """
+    """Return the axis of a channel, from its direction or its name; empty if it has none."""
     if channel.direction:
         return channel.direction[-1].lower() if channel.direction[-1] in "XYZxyz" else ""
     parts = words_of(channel.name)
@@ -94,12 +80,9 @@ def axis_of(channel: Channel) -> str:
 
 
 def of_receiver(channels: Sequence[Channel]) -> bool:
-    """Return True if a file contains latitude and longitude: its heights are those of a satellite receiver.
+    """Return True if channels include latitude and longitude: their heights are those of a satellite receiver.
 
     A receiver gives the height above the sea in steps of 10 mm at best, with an error of metres: no road.
-
-    Args:
-        channels: channels of a measurement.
     """
     names = [set(words_of(channel.name)) for channel in channels]
     return any(each & LATITUDE for each in names) and any(each & LONGITUDE for each in names)

@@ -1,7 +1,5 @@
 """Select channels of a measurement and preprocess them: units, excerpt, resampling, trend removal."""
 
-from __future__ import annotations
-
 import fnmatch
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -17,7 +15,7 @@ from vehicle.signals.formats.table import USABLE, Vector
 from vehicle.signals.formats.text import LARGEST
 from vehicle.signals.formats.units import allowed_units, find_ratio, find_unit, seconds_in
 from vehicle.signals.records.channel_faults import MOTIONS, faults
-from vehicle.signals.records.common_span import Block, blocks_of, cut, need_resampling, without_times
+from vehicle.signals.records.common_span import Block, blocks_of, cut, need_resampling
 from vehicle.signals.records.resampled import resampled
 
 
@@ -251,7 +249,11 @@ def _blocks(
         selected = dict(blocks[0].channels) if len(blocks) == 1 else selected
     if choice.rate is None and "time" not in choice.channels:
         if not blocks:
-            raise without_times(path, next(channel for channel in channels.values() if channel.axis is None))
+            name = next(channel.name for channel in channels.values() if channel.axis is None)
+            raise DataError(
+                f"{path}: channel {name!r} has no times; set --rate HZ, or --channel time=NAME and --unit time=s "
+                "for the channel of the times"
+            )
         return blocks
     if len({channel.values.size for channel in selected.values()}) > 1:
         sizes = ", ".join(f"{role} {channel.values.size}" for role, channel in selected.items())

@@ -5,8 +5,6 @@ of one rate whose samples coincide there are cut; others need resampling, since 
 interpolation.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -38,11 +36,7 @@ class Block:
 
 
 def blocks_of(channels: Mapping[str, Channel]) -> list[Block]:
-    """Combine channels with the same times, in the order of the first channel of each group.
-
-    Args:
-        channels: role to channel with times.
-    """
+    """Combine channels (by role, with times) with the same times, in the order of the first channel of each group."""
     blocks: list[tuple[Vector, dict[str, Channel]]] = []
     for role, channel in channels.items():
         assert channel.axis is not None
@@ -134,14 +128,6 @@ def need_resampling(where: object, blocks: list[Block]) -> DataError:
     )
     remedy = f"set --resample {resampling_rate(blocks)}"
     return DataError(f"{where}: the samples of the channels are at different times ({rates}); {remedy}")
-
-
-def without_times(where: object, channel: Channel) -> DataError:
-    """Return the error for a channel without times."""
-    return DataError(
-        f"{where}: channel {channel.name!r} has no times; set --rate HZ, or --channel time=NAME and --unit time=s "
-        "for the channel of the times"
-    )
 
 
 def resampling_rate(blocks: list[Block]) -> str:

@@ -1,7 +1,5 @@
 """Compare measured channels with their simulated counterparts: detect faults of clock, sign and unit."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -181,11 +179,7 @@ def _common_drift(shifts: Sequence[TimeShift]) -> tuple[float, float]:
 
 
 def sign_and_unit(parts: Sequence[Counterpart]) -> list[str]:
-    """Return one message for each inverted channel and each channel with a wrong unit.
-
-    Args:
-        parts: comparisons returned by `counterparts`.
-    """
+    """Return one message for each inverted channel and each wrong unit among the result of `counterparts`."""
     messages: list[str] = []
     for part in parts:
         shift = part.reliable_shift
