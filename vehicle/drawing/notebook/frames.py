@@ -1,5 +1,7 @@
 """Conversion of time histories and FRFs to tables of pandas and xarray, if installed."""
 
+from __future__ import annotations
+
 import io
 from collections.abc import Sequence
 from importlib import import_module

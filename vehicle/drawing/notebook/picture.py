@@ -1,5 +1,7 @@
 """Tables of a notebook with a small drawing on their right."""
 
+from __future__ import annotations
+
 import html
 from collections.abc import Mapping
 

@@ -1,5 +1,7 @@
 """Picture of a body model: its first modes as wireframes, at rest and at the end of a swing."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any

@@ -1,5 +1,7 @@
 """Cameras of a film."""
 
+from __future__ import annotations
+
 import mujoco
 import numpy as np
 

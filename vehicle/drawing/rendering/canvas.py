@@ -1,5 +1,7 @@
 """Off-screen rendering of a scene."""
 
+from __future__ import annotations
+
 from importlib import import_module
 from typing import Any
 

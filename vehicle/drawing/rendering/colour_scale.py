@@ -1,5 +1,7 @@
 """Colours of a displacement."""
 
+from __future__ import annotations
+
 import numpy as np
 import numpy.typing as npt
 

@@ -1,5 +1,7 @@
 """Pictures of a replicated drive signal: target and response, the drive signal, and the convergence of the error."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from itertools import cycle
 from pathlib import Path

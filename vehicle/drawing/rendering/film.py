@@ -1,5 +1,7 @@
 """Film of a run: replay of the recording with exaggerated motion, without simulation."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 

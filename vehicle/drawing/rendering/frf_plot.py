@@ -1,5 +1,7 @@
 """The FRF picture of a run: many channels to one motion of the plates, or few channels to each of several plates."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from itertools import cycle
 from pathlib import Path

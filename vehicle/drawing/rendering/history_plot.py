@@ -1,5 +1,7 @@
 """Drawing of time histories, an axes for each channel."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from itertools import cycle, islice
 

@@ -1,5 +1,7 @@
 """Picture of load spectra: number of cycles over the range, for the largest loads of each type."""
 
+from __future__ import annotations
+
 import re
 from collections.abc import Sequence
 from pathlib import Path

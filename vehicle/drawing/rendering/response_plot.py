@@ -1,5 +1,7 @@
 """Drawing of FRFs over each other: magnitude, phase and coherence."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from itertools import cycle, islice
 from typing import Any

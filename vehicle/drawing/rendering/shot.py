@@ -1,5 +1,7 @@
 """Excerpt of a run, drawn frame by frame: the car, a close-up, and text."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Mapping
 from contextlib import closing
 from dataclasses import dataclass

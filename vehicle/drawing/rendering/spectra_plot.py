@@ -1,5 +1,7 @@
 """Pictures of spectra of one or several runs over each other: accelerations, and roads against ISO 8608."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from itertools import cycle, islice
 from pathlib import Path

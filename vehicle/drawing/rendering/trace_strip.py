@@ -1,5 +1,7 @@
 """Scrolling traces below the picture of a film, with the current time in the middle."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,5 +1,7 @@
 """Car as points and lines, with the displacement of each point over the velocity coordinates, to show modes."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -24,6 +24,8 @@ Sources: Bendat and Piersol, Random Data, 4th ed., chapter 8; Heidelberger and W
 (1981): variance of a mean from the spectrum near zero frequency.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from vehicle.signals.analysis.samples import Complex, Vector

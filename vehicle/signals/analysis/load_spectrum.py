@@ -1,5 +1,7 @@
 """Level, cycles and spectrum of a load."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Modal assurance criterion (MAC): correlation of two mode shapes."""
 
+from __future__ import annotations
+
 import numpy as np
 import numpy.typing as npt
 

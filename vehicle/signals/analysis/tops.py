@@ -1,5 +1,7 @@
 """Local maxima with their prominence, as of `scipy.signal.find_peaks`, whose import takes half a second."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from vehicle.signals.analysis.samples import Vector

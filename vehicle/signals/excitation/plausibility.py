@@ -1,5 +1,7 @@
 """Check the plausibility of plate displacements: level, acceleration, bandwidth, drift, pauses, clipping."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from pathlib import Path
 

@@ -1,5 +1,7 @@
 """Check the sampling rate of plate signals, and fill missing samples on request."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Check time stamps: increasing, uniform, or rounded from a uniform clock; suggest options for other times."""
 
+from __future__ import annotations
+
 import numpy as np
 import scipy
 

@@ -1,5 +1,7 @@
 """Digest of a file."""
 
+from __future__ import annotations
+
 import hashlib
 from pathlib import Path
 

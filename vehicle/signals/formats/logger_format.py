@@ -1,5 +1,7 @@
 """Read text files of loggers: free text, header lines, then rows of numbers, dates and times of day."""
 
+from __future__ import annotations
+
 import re
 from collections.abc import Sequence
 from dataclasses import replace

@@ -1,5 +1,7 @@
 """Read and write tables as `.npz`: the array `time`, one array per channel, and units as texts "name [unit]"."""
 
+from __future__ import annotations
+
 import hashlib
 import math
 import zipfile

@@ -1,5 +1,7 @@
 """Tables with named columns, as returned by the readers of table formats, and records over uniform time."""
 
+from __future__ import annotations
+
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

@@ -1,5 +1,7 @@
 """Table in a file: an archive of arrays, or text."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 from vehicle.signals.formats import npz_format, text_format

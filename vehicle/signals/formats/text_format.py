@@ -1,5 +1,7 @@
 """Read and write tables as text: UTF-8, `#` comments, one header line, one row per time or frequency."""
 
+from __future__ import annotations
+
 import csv
 import re
 from collections.abc import Sequence

@@ -3,6 +3,8 @@
 Source: Universal File Datasets, University of Cincinnati SDRL.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path

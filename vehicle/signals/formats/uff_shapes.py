@@ -3,6 +3,8 @@
 Source: Universal File Datasets, University of Cincinnati SDRL, datasets 55 and 2414.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from pathlib import Path
 

@@ -1,5 +1,7 @@
 """Units of measurement files: quantity and conversion to SI."""
 
+from __future__ import annotations
+
 import math
 import re
 from typing import NamedTuple
