@@ -45,6 +45,7 @@ ELSEWHERE = {
     "signals/formats/rpc_format.py": GIVEN,
     "signals/formats/text_format.py": GIVEN,
     "signals/formats/uff_writer.py": GIVEN,
+    "studies/sweeps/case_file.py": GIVEN,
     "studies/sweeps/effects.py": GIVEN,
     "studies/sweeps/sobol_sweep.py": GIVEN,
     "studies/sweeps/table_files.py": GIVEN,

@@ -58,6 +58,12 @@ def parser() -> Parser:
         "bounds of --vary PATH=LOW:HIGH; N times (parameters + 2) runs on each input",
     )
     parser.add_argument(
+        "--cases",
+        type=Path,
+        metavar="FILE.toml",
+        help="roads, speeds, laden states and variants of a file, every car on every input, in one table",
+    )
+    parser.add_argument(
         "--each",
         metavar="P%",
         help="change each parameter alone by P percent, down and up, and rank them by their effect on comfort; --vary "
@@ -78,6 +84,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.errors import ConfigurationError, SimulationError
     from vehicle.runs.car import Car
     from vehicle.runs.output.folder import study_folder, write_text, write_whole
+    from vehicle.studies.sweeps.case_file import CASES, case_results, read_cases, write_cases
     from vehicle.studies.sweeps.case_table import RowChanges
     from vehicle.studies.sweeps.differences import DIFFERENCES
     from vehicle.studies.sweeps.effects import EFFECTS, TORNADO, effect_lines, write_effects
@@ -91,9 +98,15 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.studies.sweeps.sweep_ranking import ranked_cars, ranking_lines
     from vehicle.studies.sweeps.sweep_table import read_variations
 
+    if options.cases is not None and any(
+        (options.vary, options.table, options.sobol, options.each, options.input, options.road)
+    ):
+        raise ConfigurationError(
+            "--cases: its file has inputs and variants; leave out --vary, --input, --road and so on"
+        )
     if options.each is not None and (options.table or options.sobol is not None):
         raise ConfigurationError("--each: takes --vary PATH, or no parameters; leave out --table and --sobol")
-    if options.each is None and bool(options.vary) == bool(options.table):
+    if options.cases is None and options.each is None and bool(options.vary) == bool(options.table):
         raise ConfigurationError("give either --vary PATH=A,B,C (once or more) or --table FILE.csv")
     if options.sobol is not None and (options.table or options.report is not None):
         raise ConfigurationError(
@@ -101,11 +114,14 @@ def _job(options: argparse.Namespace) -> None:
         )
     ranges = [] if options.sobol is None else ranges_of(options.vary)
     changes: Variations
-    car = Car.load(options.vehicle, options.overrides)
+    listed = None if options.cases is None else read_cases(options.cases)
+    car = Car.load((listed and listed.vehicle) or options.vehicle, options.overrides)
     parameters: dict[str, tuple[float, str]] = {}
     without: tuple[str, ...] = ()
     share = 0.0
-    if options.each is not None:
+    if listed is not None:
+        changes = list(listed.cars.values())
+    elif options.each is not None:
         share = percent_of(options.each)
         parameters = varied_parameters(car.vehicle, options.vary)
         changes, without = single_changes(car.vehicle, parameters, share)
@@ -114,7 +130,9 @@ def _job(options: argparse.Namespace) -> None:
     else:
         changes = RowChanges(*read_variations(options.table)) if options.table else every_combination(options.vary)
     settings = SweepSettings.of_options(options, executor=executor_factory(options.executor, options.jobs))
-    plan = plan_sweep(car, changes, chosen_inputs(options, car.vehicle), settings)
+    plan = plan_sweep(
+        car, changes, listed.inputs if listed is not None else chosen_inputs(options, car.vehicle), settings
+    )
     output = study_folder_of(options, options.output, rows=(ROWS,))
     report = None if options.report is None else report_path(options, output)
     notes = (*plan.notes, *plan.engine_notes())
@@ -131,7 +149,10 @@ def _job(options: argparse.Namespace) -> None:
             write_whole(folder / SOBOL, lambda path: write_indices(path, indices))
         effects = effects_of(table, parameters, share, without) if parameters else None
         # Read before the folder of the rows gets its name.
-        cars, failed = None if ranges or parameters else ranked_cars(table), table.failed
+        cars, failed = None if ranges or parameters or listed else ranked_cars(table), table.failed
+        results = None if listed is None else case_results(table, list(listed.cars))
+        if results is not None:
+            write_whole(folder / CASES, lambda path: write_cases(path, results))
         drawn = cars is not None and can_be_drawn(cars)
         caption = f"tyres {plan.tyres}, evaluated from {plan.skip:g} s on"
         if cars is not None and drawn:
@@ -143,13 +164,21 @@ def _job(options: argparse.Namespace) -> None:
             command = f"python -m vehicle sweep {shlex.join(options.words)}"
             head = {"author": options.author, "project": options.project}
             page = sweep_page(
-                table, car.vehicle.name, caption=caption, command=command, notes=notes, effects=effects, **head
+                table,
+                car.vehicle.name,
+                caption=caption,
+                command=command,
+                notes=notes,
+                effects=effects,
+                results=results,
+                **head,
             )
             write_text(folder / report if report.parent == Path() else report, page)
     if not options.quiet:
         more = "" if report is None else f"{report}, "
         more += f"{PICTURE}, " if drawn else ""
         more += f"{SOBOL}, " if ranges else ""
+        more += f"{CASES}, " if results is not None else ""
         more += f"{EFFECTS}, {TORNADO}, " if effects is not None else ""
         more += f"{DIFFERENCES} (comfort against the first car), " if (output / DIFFERENCES).exists() else ""
         print(
@@ -160,6 +189,8 @@ def _job(options: argparse.Namespace) -> None:
             print("\n".join(ranking_lines(cars)))
         if indices is not None:
             print("\n".join(index_lines(indices)))
+        if results is not None:
+            print("\n".join(results.lines()))
         if effects is not None:
             print("\n".join(effect_lines(effects)))
         for case, reason in failed[:5]:

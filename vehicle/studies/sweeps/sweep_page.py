@@ -15,6 +15,7 @@ from vehicle.runs.report.page import document, head_line
 from vehicle.runs.report.svg_figure import drawing
 from vehicle.signals.analysis.ride_comfort import MEANING, SEAT_VALUE, UNWEIGHTED, WEIGHTED
 from vehicle.studies.sweeps.case import parameter_cells
+from vehicle.studies.sweeps.case_file import CaseResults
 from vehicle.studies.sweeps.effects import Effects, effect_sentence
 from vehicle.studies.sweeps.sweep_picture import can_be_drawn, draw_ranked
 from vehicle.studies.sweeps.sweep_ranking import RankedCars, SweptCases, ranked_cars
@@ -26,38 +27,42 @@ MOST_ROWS = 2000
 
 
 def sweep_page(
-    results: SweptCases,
+    table: SweptCases,
     name: str,
     *,
     caption: str,
     command: str = "",
     notes: Sequence[str] = (),
     effects: Effects | None = None,
+    results: CaseResults | None = None,
     author: str = "",
     project: str = "",
 ) -> str:
     """Return the report of a sweep as one HTML document.
 
     Args:
-        results: table of the sweep.
+        table: table of the sweep.
         name: name of the car.
         caption: tyres and evaluated span.
         command: command line that made the sweep; empty for a sweep in Python.
         notes: messages on side effects of the varied parameters and on the engine.
+        results: results of the cases of a file; then no ranking of the cars.
         effects: effects of single parameters; then no ranking of the cars.
         author, project: names in the head of the page; may be empty.
     """
-    cars = ranked_cars(results) if effects is None else None
+    cars = ranked_cars(table) if effects is None and results is None else None
     parts: list[tuple[str, str, Markup]] = []
     if cars is not None:
         parts += [("Result", "result", _result(cars, caption)), ("Cars", "cars", _cars(cars))]
-    if effects is None:
-        parts.append(("All runs", "runs", _runs(results)))
-    else:
+    if effects is not None:
         parts.append(("Result", "result", _effects(effects, caption)))
-    parts.append(("How to repeat the sweep", "repeat", _repeating(cars, results, command, notes)))
-    inputs = ", ".join(str(source) for source in results.made.get("inputs", {}))
-    counts = f"{len(results.cases)} runs, {len(results.failed)} failed"
+    elif results is not None:
+        parts.append(("Result", "result", fill("cases", results=results)))
+    if effects is None:
+        parts.append(("All runs", "runs", _runs(table)))
+    parts.append(("How to repeat the sweep", "repeat", _repeating(cars, table, command, notes)))
+    inputs = ", ".join(str(source) for source in table.made.get("inputs", {}))
+    counts = f"{len(table.cases)} runs, {len(table.failed)} failed"
     head = f"{name} on {inputs}; {counts}; {caption}"
     return document(f"Sweep of {name}", (head, head_line(author, project)), parts)
 

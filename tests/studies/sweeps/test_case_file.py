@@ -1,0 +1,100 @@
+"""Cases of a file: every value is that of its single run; names, changes, sentence, resumed sweeps, wrong files."""
+
+from __future__ import annotations
+
+import csv
+
+import pytest
+
+from vehicle import Car, road
+from vehicle.commands.sweep import main
+from vehicle.errors import ConfigurationError
+from vehicle.studies.sweeps.case_file import UNCHANGED, CaseFile, read_cases
+
+FILE = """
+vehicle = "sedan"
+roads = ["A", "B"]
+speeds = [60]
+duration = 3
+
+[states.laden]
+body.mass = 1500
+
+[variants.soft]
+"rear.damper.viscous" = 1200
+"""
+
+
+def test_cars_and_inputs(tmp_path):
+    file = tmp_path / "cases.toml"
+    file.write_text(FILE, encoding="utf-8")
+    cases = read_cases(file)
+    assert cases.cars == {
+        UNCHANGED: (),
+        "soft": ("rear.damper.viscous=1200",),
+        "laden": ("body.mass=1500",),
+        "laden, soft": ("body.mass=1500", "rear.damper.viscous=1200"),
+    }
+    assert cases.inputs == [road("A", 60.0, duration=3.0), road("B", 60.0, duration=3.0)]
+    both = CaseFile(roads=("A", "cleat:20x50"), speeds=(30.0, 60.0), signals=("low.csv",), duration=5.0)
+    assert [getattr(each, "duration", None) for each in both.inputs] == [5.0, 5.0, None, None, None]
+
+
+def test_command(tmp_path, capsys, monkeypatch):
+    """Four cars on two roads: the values of single runs, in table and report; a resumed sweep computes nothing new."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "cases.toml").write_text(FILE, encoding="utf-8")
+    words = ["--cases", "cases.toml", "--engine", "reduced", "--output", "out"]
+    assert main([*words, "--report"]) == 0
+    said = capsys.readouterr().out
+    assert "8 runs, 0 failed" in said and "laden, soft" in said and "Over all inputs" in said
+    with (tmp_path / "out" / "cases.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [(row["input"], row["car"]) for row in rows][:5] == [
+        ("road_A_60", UNCHANGED), ("road_A_60", "soft"), ("road_A_60", "laden"), ("road_A_60", "laden, soft"),
+        ("road_B_60", UNCHANGED),
+    ]  # fmt: skip
+    car = Car.load("sedan")
+    changes = {"as it is": {}, "soft": {"rear.damper.viscous": 1200}, "laden": {"body.mass": 1500}}
+    for row in rows:
+        if row["car"] in changes:
+            ride = road(row["input"][5], 60, duration=3)
+            single = car.with_(changes[row["car"]]).run(ride, engine="reduced").comfort()
+            # Batches run in single precision.
+            assert float(row["weighted [m/s2]"]) == pytest.approx(single.weighted.overall, rel=2e-5)
+    base = {row["input"]: float(row["weighted [m/s2]"]) for row in rows if row["car"] == UNCHANGED}
+    for row in rows:
+        change = 100.0 * (float(row["weighted [m/s2]"]) / base[row["input"]] - 1.0)
+        assert float(row["change [%]"]) == pytest.approx(change, abs=1e-3)
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "laden, soft" in page and "mean change" in page
+    table = (tmp_path / "out" / "table.csv").read_bytes()
+    assert main([*words, "--resume", "--quiet"]) == 0
+    assert (tmp_path / "out" / "table.csv").read_bytes() == table
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "roads: no input"),
+        ('roads = ["C"]', "set roads and speeds"),
+        ('roads = ["C"]\nspeeds = [80]\nspeed = 3', "speed: unknown parameter"),
+        ('roads = "C"\nspeeds = [80]', "roads: found 'C', must be a list"),
+        ("roads = [", "not a TOML file"),
+    ],
+)
+def test_wrong_files(tmp_path, text, message):
+    file = tmp_path / "cases.toml"
+    file.write_text(text, encoding="utf-8")
+    with pytest.raises(ConfigurationError) as refusal:
+        read_cases(file)
+    assert str(refusal.value).startswith(str(file)) and message in str(refusal.value)
+
+
+def test_equal_cars_and_other_options_are_refused(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "cases.toml").write_text(FILE + '[variants.same]\n"rear.damper.viscous" = 1200\n', encoding="utf-8")
+    assert main(["--cases", "cases.toml"]) == 2
+    assert "cases 'soft' and 'same' are the same car" in capsys.readouterr().err
+    assert main(["--cases", "cases.toml", "--vary", "damper.viscous=1,2"]) == 2
+    assert "leave out --vary" in capsys.readouterr().err

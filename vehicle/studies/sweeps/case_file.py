@@ -1,0 +1,207 @@
+"""Cases of a file: roads and speeds, laden states and variants of a car, run as one sweep in one table."""
+
+from __future__ import annotations
+
+import csv
+import itertools
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.parameter_list import flattened
+from vehicle.model.parameters.paths import assignments
+from vehicle.model.parameters.toml_file import build, read_table
+from vehicle.runs.car.road import Road
+from vehicle.signals.analysis.ride_comfort import UNWEIGHTED, WEIGHTED
+from vehicle.studies.sweeps.sweep_ranking import RANKED_BY, SweptCases
+
+CASES = "cases.csv"
+"""Name of the file in the folder of a sweep."""
+
+UNCHANGED = "as it is"
+"""Name of the car without changes."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class CaseFile:
+    """Cases of a file: every car on every input; a car is a laden state with a variant.
+
+    Attributes:
+        roads: classes of ISO 8608 and obstacles, as "C" and "cleat:20x50".
+        speeds: speeds on each of them [km/h].
+        signals: signal files, or names of shipped ones.
+        duration: length of a class [s]; by default that of a run.
+        vehicle: name or file of the car; by default that of the command.
+        states: name of a laden state to its changed parameters.
+        variants: name of a variant to its changed parameters.
+
+    Raises:
+        ConfigurationError: no input, or roads without speeds.
+    """
+
+    roads: tuple[str, ...] = ()
+    speeds: tuple[float, ...] = ()
+    signals: tuple[str, ...] = ()
+    duration: float | None = None
+    vehicle: str = ""
+    states: Mapping[str, dict] = field(default_factory=dict)  # type: ignore[type-arg]
+    variants: Mapping[str, dict] = field(default_factory=dict)  # type: ignore[type-arg]
+
+    def __post_init__(self) -> None:
+        if not self.roads and not self.signals:
+            raise ConfigurationError('CaseFile.roads: no input; set roads = ["C"] and speeds = [80], or signals')
+        if bool(self.roads) != bool(self.speeds):
+            raise ConfigurationError("CaseFile.speeds: set roads and speeds [km/h] together")
+
+    @property
+    def inputs(self) -> list[Road | str]:
+        """Return every road at every speed, then the signals."""
+        return [
+            *(
+                Road(place, speed, duration=self.duration if len(place) == 1 else None)
+                for place, speed in itertools.product(self.roads, self.speeds)
+            ),
+            *self.signals,
+        ]
+
+    @property
+    def cars(self) -> dict[str, tuple[str, ...]]:
+        """Return name to texts "path=value" of every laden state with every variant, the unchanged car first."""
+        listed = {UNCHANGED: ()} | {
+            ", ".join(filter(None, names)): (*state, *variant)
+            for names, state, variant in (
+                ((first, second), _texts(self.states, first), _texts(self.variants, second))
+                for first, second in itertools.product(("", *self.states), ("", *self.variants))
+            )
+            if any(names)
+        }
+        named: dict[tuple[str, ...], str] = {}
+        for name, texts in listed.items():
+            if (other := named.setdefault(texts, name)) != name:
+                raise ConfigurationError(f"cases {other!r} and {name!r} are the same car: leave one out")
+        return listed
+
+
+def _texts(tables: Mapping[str, Mapping[str, Any]], name: str) -> tuple[str, ...]:
+    """Return the changes of a state or a variant; none for an empty name."""
+    return tuple(assignments(dict(flattened(tables[name], "")))) if name else ()
+
+
+def read_cases(file: Path) -> CaseFile:
+    """Read the cases of a TOML file.
+
+    Raises:
+        ConfigurationError: the file is missing, or a key is unknown or wrong; the message names file and key.
+    """
+    try:
+        return build(CaseFile, read_table(file))
+    except ConfigurationError as error:
+        text = str(error)
+        raise ConfigurationError(text if text.startswith(str(file)) else f"{file}: {text}") from None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class CaseResults:
+    """Comfort of every car on every input.
+
+    Attributes:
+        cars: names of the cars, the unchanged one first.
+        inputs: names of the inputs.
+        name: comfort value, as "weighted".
+        weighted, unweighted: comfort [m/s2], NaN for a failed run; (inputs, cars).
+    """
+
+    cars: tuple[str, ...]
+    inputs: tuple[str, ...]
+    name: str
+    weighted: npt.NDArray[np.float64]
+    unweighted: npt.NDArray[np.float64]
+
+    @property
+    def changes(self) -> npt.NDArray[np.float64]:
+        """Return the change of the weighted value from the unchanged car on the same input [%], (inputs, cars)."""
+        return np.asarray(100.0 * (self.weighted / self.weighted[:, :1] - 1.0))
+
+    def rows(self) -> list[list[str]]:
+        """Return the head and a row for each car as texts: weighted value and change on each input, mean change."""
+        heads = ["car", *(f"{name} [m/s2]" for name in self.inputs), "mean change"]
+        rows = [heads]
+        for number, car in enumerate(self.cars):
+            cells = []
+            for value, change in zip(self.weighted[:, number], self.changes[:, number], strict=True):
+                cell = f"{value:.4g}" if math.isfinite(value) else "failed"
+                cells.append(f"{cell} ({change:+.1f} %)" if number and math.isfinite(change) else cell)
+            mean = float(np.mean(self.changes[:, number]))
+            rows.append([car, *cells, "base" if not number else f"{mean:+.1f} %" if math.isfinite(mean) else "-"])
+        return rows
+
+    def lines(self) -> list[str]:
+        """Return the printed table and the sentence on the best car."""
+        rows = self.rows()
+        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+        table = [
+            "  ".join(
+                cell.ljust(width) if column == 0 else cell.rjust(width)
+                for column, (cell, width) in enumerate(zip(row, widths, strict=True))
+            ).rstrip()
+            for row in rows
+        ]
+        return [*table, f"{self.name}: RMS after the weightings of a seat (ISO 2631-1)", self.sentence]
+
+    @property
+    def sentence(self) -> str:
+        """Return a sentence on the car with the lowest mean change."""
+        means = np.mean(self.changes, axis=0)
+        if not np.isfinite(means).any():
+            return "No car ran on all inputs."
+        best = int(np.nanargmin(means))
+        if best == 0:
+            return "Over all inputs no car is smoother than the car as it is."
+        return (
+            f"Over all inputs the smoothest car is {self.cars[best]!r}: {means[best]:+.1f} % against the car as it is."
+        )
+
+
+def case_results(table: SweptCases, cars: Sequence[str]) -> CaseResults:
+    """Return the comfort of a sweep over the cars of a file.
+
+    Args:
+        table: the table, the inputs varying slowest.
+        cars: names of the cars, see `CaseFile.cars`.
+    """
+    name = next(each for each in RANKED_BY if each in table.units)
+    inputs = dict.fromkeys(case.source.name for case in table.cases)
+    return CaseResults(
+        cars=tuple(cars),
+        inputs=tuple(inputs),
+        name=name,
+        weighted=table.column(name).reshape(len(inputs), -1),
+        unweighted=table.column(name.replace(WEIGHTED, UNWEIGHTED)).reshape(len(inputs), -1),
+    )
+
+
+def write_cases(path: Path, results: CaseResults) -> None:
+    """Write a row for each car and input.
+
+    Args:
+        path: CSV file.
+        results: see `case_results`.
+    """
+    with path.open("w", encoding="utf-8", newline="") as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(["input", "car", f"{results.name} [m/s2]", "change [%]", "unweighted [m/s2]"])
+        for number, source in enumerate(results.inputs):
+            for car, *values in zip(
+                results.cars,
+                results.weighted[number],
+                results.changes[number],
+                results.unweighted[number],
+                strict=True,
+            ):
+                rows.writerow([source, car, *(f"{value:.6g}" if math.isfinite(value) else "" for value in values)])
