@@ -95,3 +95,37 @@ def test_channels_of_a_run(car):
     assert recorded_channels("main_spring_fr_force, seat_rail_acc_z", car.vehicle) == (*default, "main_spring_fr_force")
     with pytest.raises(ConfigurationError, match=r"no channel 'main_spring_force'; .* did you mean main_spring_f"):
         recorded_channels("main_spring_force", car.vehicle)
+
+
+def sine(folder, amplitude, duration):
+    """A run with a sine of 1 Hz about 4000 N that begins and ends at its mean."""
+    folder.mkdir()
+    time = np.arange(0.0, duration + 0.0005, 1e-3)
+    load = 4000.0 + amplitude * np.sin(2 * np.pi * time)
+    np.savetxt(folder / "time.csv", np.column_stack([time, load]), delimiter=",", comments="",
+               header="time [s],tyre_fr_force_z [N]")  # fmt: skip
+    return str(folder)
+
+
+def test_damage_of_a_schedule(tmp_path, capsys, monkeypatch):
+    """Sines of 300 and 600 N: with slope 5 a cycle of the larger does the damage of 32 of the smaller."""
+    pytest.importorskip("rainflow")
+    monkeypatch.chdir(tmp_path)
+    small, large = sine(tmp_path / "small", 300.0, 100.0), sine(tmp_path / "large", 600.0, 50.0)
+    assert main([small, large, "--repeats", "32,2", "--slope", "5", "--reference", small]) == 0
+    (row,) = rows_of(tmp_path / "schedule.csv")
+    # 3200 cycles of the smaller and 100 of the larger do the same damage; the ends of a record count by halves.
+    assert float(row["share of small [-]"]) == pytest.approx(0.5, abs=0.01)
+    assert float(row["damage_ratio [-]"]) == pytest.approx(64.0, rel=0.02)
+    equivalent = (2.0 * 3200.0 * 300.0**5 / 3300.0) ** 0.2
+    assert float(row["equivalent_amplitude"]) == pytest.approx(equivalent, rel=0.01)
+    assert "32 x small, 2 x large" in capsys.readouterr().out
+    assert main([small, "--repeats", "3", "--output", "once", "--quiet"]) == 0
+    assert float(rows_of(tmp_path / "once" / "schedule.csv")[0]["share of small [-]"]) == 1.0
+    for words, message in (
+        ([small, large, "--repeats", "3"], "--repeats: 1 numbers for 2 runs"),
+        ([small, large, "--repeats", "3,0"], "give a number above 0 for each run"),
+        ([small, large, "--repeats", "3,many"], "--repeats 3,many: must be numbers"),
+    ):
+        assert main([*words, "--output", "wrong"]) == 2
+        assert message in capsys.readouterr().err

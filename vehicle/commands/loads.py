@@ -16,6 +16,7 @@ from vehicle.errors import ConfigurationError
 
 if TYPE_CHECKING:
     from vehicle.model.parameters.vehicle import Vehicle
+    from vehicle.signals.analysis.load_schedule import CountedRun
     from vehicle.signals.analysis.load_spectrum import LoadSpectrum
 
 FILES = ("loads.csv", "load_spectra.csv", "loads.png")
@@ -26,7 +27,18 @@ SHOWN = 15
 def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser("loads", "Rainflow counts, load spectra and equivalent amplitudes of the loads of a run.")
-    parser.add_argument("run", type=Path, metavar="RUN", help="folder of a run, or a file of time histories")
+    parser.add_argument(
+        "runs",
+        type=Path,
+        nargs="+",
+        metavar="RUN",
+        help="folders of runs, or files of time histories; several are a "
+        "schedule, whose damage is written to schedule.csv",
+    )
+    parser.add_argument("--repeats", metavar="N,...", help="repeats of each run of the schedule; 1 by default")
+    parser.add_argument(
+        "--reference", type=Path, metavar="RUN", help="run, as of a reference road, whose damage is 1 in schedule.csv"
+    )
     parser.add_argument(
         "--channels", metavar="NAME,...", help="channels to count; all forces, torques and travels by default"
     )
@@ -53,11 +65,14 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.signals.formats.reader import read_columns, time_file
     from vehicle.signals.records.run_summary import available_summary
 
-    source = time_file(options.run)
+    source = time_file(options.runs[0])
     if not 1 <= options.classes <= 10000:
         raise ConfigurationError(f"--classes {options.classes}: must be 1 to 10000")
     if not 1.0 <= options.slope < 1000.0:
         raise ConfigurationError(f"--slope {options.slope:g}: must be at least 1, and below 1000")
+    if len(options.runs) > 1 or options.reference or options.repeats:
+        _schedule(options)
+        return
     record = read_columns(source)
     names = _chosen(options.channels, record.units, source)
     table, spectra, picture = output_files_of(options, source.parent, FILES)
@@ -80,6 +95,61 @@ def _job(options: argparse.Namespace) -> None:
     if not options.quiet:
         print(_report(spectra_of_channels, caption))
         print(f"files: {table.parent}: {', '.join(path.name for path in paths)}")
+
+
+SCHEDULE = "schedule.csv"
+
+
+def _schedule(options: argparse.Namespace) -> None:
+    """Write the damage of several runs, each repeated, and its ratio to that of a reference run."""
+    from vehicle.digits import number
+    from vehicle.runs.output.folder import write_text
+    from vehicle.signals.analysis.load_schedule import scheduled_loads
+
+    texts = options.repeats.split(",") if options.repeats else ["1"] * len(options.runs)
+    try:
+        repeats = [float(text) for text in texts]
+    except ValueError:
+        raise ConfigurationError(f"--repeats {options.repeats}: must be numbers, as --repeats 100,20") from None
+    runs = [_counted(run, options) for run in options.runs]
+    reference = None if options.reference is None else _counted(options.reference, options)
+    rows = scheduled_loads(runs, repeats, options.slope, reference)
+    (path,) = output_files_of(options, Path(), (SCHEDULE,))
+    parts = ", ".join(f"{count:g} x {run.name}" for count, run in zip(repeats, runs, strict=True))
+    against = "" if reference is None else f"; damage ratio: over that of {reference.name}"
+    caption = f"schedule {parts}; rainflow counts of ASTM E1049, slope {options.slope:g}{against}"
+    heads = ["channel", "unit", "equivalent_amplitude", *(f"share of {run.name} [-]" for run in runs)]
+    heads += [] if reference is None else ["damage_ratio [-]"]
+    lines = [f"# {caption}", ",".join(heads)]
+    for row in rows:
+        values = [row.equivalent_amplitude, *row.shares, *([] if reference is None else [row.ratio])]
+        lines.append(",".join([row.name, row.unit, *("" if value is None else f"{value:.6g}" for value in values)]))
+    write_text(path, "\n".join([*lines, ""]))
+    if options.quiet:
+        return
+    print(caption)
+    print(f"{'channel':<34}{'unit':>5}{'equivalent':>12}  {'damage ratio':>12}  shares")
+    strongest = sorted(rows, key=lambda row: -(row.ratio or row.equivalent_amplitude))[:SHOWN]
+    for row in strongest:
+        shares = ", ".join(f"{number(100.0 * share, 3)} %" for share in row.shares)
+        print(f"{row.name:<34}{row.unit:>5}{row.equivalent_amplitude:>12.5g}  {number(row.ratio):>12}  {shares}")
+    print(f"files: {path}" + (f"; {len(rows) - len(strongest)} more channels there" if len(rows) > SHOWN else ""))
+
+
+def _counted(run: Path, options: argparse.Namespace) -> CountedRun:
+    """Return the counted loads of a run."""
+    from vehicle.signals.analysis.load_schedule import CountedRun
+    from vehicle.signals.analysis.load_spectrum import load_spectrum
+    from vehicle.signals.formats.reader import read_columns, time_file
+
+    source = time_file(run)
+    record = read_columns(source)
+    duration = float(record.time[-1] - record.time[0])
+    loads = {
+        name: load_spectrum(name, record.units[name], record.channels[name], slope=options.slope, duration=duration)
+        for name in _chosen(options.channels, record.units, source)
+    }
+    return CountedRun(name=run.stem, duration=duration, loads=loads)
 
 
 def _chosen(text: str | None, units: Mapping[str, str], source: Path) -> list[str]:
