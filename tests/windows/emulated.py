@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-LONGEST = 1200.0
+LONGEST = 3600.0
 """Time after which a command counts as hung [s]."""
 
 

@@ -24,10 +24,11 @@ from vehicle.threads import prefer_one_thread
 
 INTERRUPTED = 130
 
-OPENGL = ("", "enable", "enabled", "on", "true", "1", "disable", "disabled", "off", "false", "0", "glfw", "glx", "egl",
-          "osmesa")  # fmt: skip
-"""Values of MUJOCO_GL that MuJoCo accepts on Linux; its import fails with any other."""
+OPENGL = {"win32": ("glfw", "wgl"), "darwin": ("glfw", "cgl")}.get(sys.platform, ("osmesa", "egl", "glfw", "glx"))
+"""OpenGL backends that MuJoCo accepts on this system; its import fails with any other value of MUJOCO_GL."""
 
+SWITCHES = ("", "enable", "enabled", "on", "true", "1", "disable", "disabled", "off", "false", "0")
+"""Further values of MUJOCO_GL."""
 
 COLLECTED = (20_000, 5, 5)
 """Thresholds of the garbage collector in a command, see `gc.set_threshold`. The imported libraries create half a
@@ -54,8 +55,8 @@ def run_command(job: Callable[[], None], *, debug: bool = False) -> int:
     lost = _stand_in_for_closed_streams()
     try:
         backend = os.environ.get("MUJOCO_GL", "").strip().lower()
-        if backend not in OPENGL:
-            raise ConfigurationError(f"MUJOCO_GL={backend}: no OpenGL backend; must be osmesa, egl, glfw or unset")
+        if backend not in (*OPENGL, *SWITCHES):
+            raise ConfigurationError(f"MUJOCO_GL={backend}: no OpenGL backend; must be {', '.join(OPENGL)} or unset")
         job()
         _flush()
         if lost is not None and lost.getvalue():

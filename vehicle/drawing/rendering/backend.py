@@ -17,9 +17,13 @@ from functools import cache
 
 from vehicle.errors import MissingPartError
 
-BACKENDS = ("osmesa", "egl", "glfw")
+BACKENDS, REMEDY = (
+    (("osmesa", "egl", "glfw"), "Install OSMesa, on Debian: apt-get install libosmesa6")
+    if sys.platform.startswith("linux")
+    else (("glfw",), "Install the graphics driver")
+)
 """OpenGL backends of MuJoCo, preferred ones first: OSMesa renders on the processor, the same picture on every machine;
-EGL needs a driver, GLFW also a display (or Windows, macOS)."""
+EGL needs a driver, GLFW also a display; Windows and macOS have only this one. And what is said where none works."""
 
 ENCODER = "libx264"
 PATIENCE = 120.0
@@ -96,8 +100,7 @@ def choose_backend(probe: Callable[[str], str | None] = probe) -> str:
         reasons[name] = reason
     failures = "; ".join(f"{name}: {reason}" for name, reason in reasons.items())
     raise MissingPartError(
-        f"video: no off-screen OpenGL library works on this machine ({failures}). "
-        "Install OSMesa, on Debian: apt-get install libosmesa6; or run without --video"
+        f"video: no off-screen OpenGL library works on this machine ({failures}). {REMEDY}; or run without --video"
     )
 
 

@@ -31,8 +31,9 @@ def program_digest() -> str:
     """Return a digest of the sources of this package and the versions of its libraries."""
     content = hashlib.sha256(repr(libraries()).encode())
     root = Path(__file__).parents[2]
-    for path in sorted([*root.rglob("*.py"), *(root / "core" / "source").glob("*.[ch]")]):
-        content.update(str(path.relative_to(root)).encode() + path.read_bytes())
+    paths = [*root.rglob("*.py"), *(root / "core" / "source").glob("*.[ch]")]
+    for name, path in sorted((path.relative_to(root).as_posix(), path) for path in paths):  # the same on Windows
+        content.update(name.encode() + path.read_bytes())
     return content.hexdigest()[:20]
 
 
