@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from vehicle.model.parameters.applied_force import AppliedForce
@@ -11,6 +12,9 @@ from vehicle.model.parameters.hardpoints import Point
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PlacedForce:
     """A force or a moment on a part along a fixed direction of the vehicle frame, or a torque on a joint.
+
+    Or a motion of the road under the tyre of one wheel alone: along z the height [m] that its run-out adds, without a
+    slope; along x the velocity [m/s] of its tread that its rolling radius adds.
 
     Attributes:
         name: name of the force.
@@ -22,6 +26,7 @@ class PlacedForce:
         law: its history.
         speed: angular speed of its angle [rad/s].
         path: path of its table in the vehicle file.
+        tyre: wheel whose tyre it changes, as "fr"; empty for a force or a torque.
     """
 
     name: str
@@ -34,6 +39,14 @@ class PlacedForce:
     law: AppliedForce
     speed: float
     path: str
+    tyre: str = ""
+
+    @property
+    def unit(self) -> str:
+        """Unit of the history."""
+        if self.tyre:
+            return "m" if self.force[2] else "m/s"
+        return "N" if any(self.force) else "N m"
 
     @property
     def ends(self) -> tuple[tuple[str, float], ...]:
@@ -49,3 +62,8 @@ class PlacedForce:
     def mean(self) -> float:
         """Constant part [N or N m]."""
         return self.law.mean if self.law.enabled else 0.0
+
+
+def on_parts(forces: Iterable[PlacedForce]) -> list[PlacedForce]:
+    """Return the forces on parts and joints: all but those that change a tyre, which come last."""
+    return [force for force in forces if not force.tyre]
