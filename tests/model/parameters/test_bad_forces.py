@@ -57,6 +57,19 @@ def test_a_wrong_force_is_refused(case):
     [
         ({"front.imbalance.mass": 20.0, "front.imbalance.radius": 0.2}, "20 g is 0.02"),
         ({"front.imbalance.mass": 0.02}, "front.imbalance.radius: missing"),
+        ({"front.nonuniformity.runout": [[1, 0.3, 0]]}, "front.nonuniformity.runout: found an amplitude of 0.3 m"),
+        ({"front.nonuniformity.rfv": [[1, 2000, 0]]}, "found an amplitude of 2000 N, must be at most 1000 N"),
+        ({"front.nonuniformity.lfv": [[0.5, 20, 0]]}, "front.nonuniformity.lfv: a wheel has whole orders"),
+        ({"front.nonuniformity.rolling_runout": [[0, 1e-4, 0]]}, "of order 0; a constant part shakes nothing"),
+        ({"front.nonuniformity.runout": [[1, -1e-4, 0]]}, "add 180 degrees to the phase"),
+        (
+            {"rear.right.nonuniformity.runout": [[1, 1e-4, 0]], "rear.right.nonuniformity.rfv": [[1, 20, 0]]},
+            "rear.right.nonuniformity.rfv: found with runout; set one of both",
+        ),
+        ({"front.brake_variation.torque": [[1, 20]]}, "front.brake_variation.torque: found [1.0, 20.0], must be three"),
+        ({"front.brake_variation.torque": [[1, 20, 0], [1, 5, 0]]}, "a second harmonic of order 1"),
+        ({"front.brake_variation.torque": [[1, 2e3, 0]]}, "2000 N m, must be at most 1000 N m"),
+        ({"front.nonuniformity.tfv": [[1, 20, 0]]}, "no parameter front.nonuniformity.tfv; the nearest is"),
         ({"crank.rpm": 12.5}, "crank.rpm: found 12.5 1/min, must be at least 300.0"),
     ],
 )

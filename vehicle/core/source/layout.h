@@ -213,7 +213,8 @@
   F(int64_t, pose_every) F(int64_t, body) F(int64_t, first_velocity) F(double, half)
 
 #define PLATES_FIELDS(F) \
-  F(Table, height) F(Table, velocity) F(Table, acceleration) F(Table, slope) F(Index, mocap) \
+  F(Table, height) F(Table, velocity) F(Table, acceleration) F(Table, slope) F(Table, tread) \
+  F(Table, tread_change) F(Index, mocap) \
   F(Table, mocap_position) F(Table, row_velocity) F(Table, row_acceleration) F(Vector, row_slope) \
   F(Table, force) F(Vector, applied)
 

@@ -9,13 +9,19 @@ static void copy(double *to, const double *from, int64_t count) {
   for (int64_t i = 0; i < count; i++) to[i] = from[i];
 }
 
-/* Plate heights of a step, the plate motion of the tyre rows, and the applied forces. */
+/* Plate heights of a step, the plate motion of the tyre rows, and the applied forces.
+ *
+ * A rolling tyre whose rolling radius varies has a tread with a velocity u along x: that of a road that moves by -u. */
 static void move_plates(int64_t step, const Plates *p) {
   for (int64_t plate = 0; plate < p->mocap.n[0]; plate++) {
     AT(p->mocap_position, p->mocap.at[plate], 2) = AT(p->height, step, plate);
     AT(p->row_velocity, plate, 2) = AT(p->velocity, step, plate);
     AT(p->row_acceleration, plate, 2) = AT(p->acceleration, step, plate);
     p->row_slope.at[plate] = AT(p->slope, step, plate);
+  }
+  for (int64_t plate = 0; plate < p->tread.n[1]; plate++) {
+    AT(p->row_velocity, plate, 0) = -AT(p->tread, step, plate);
+    AT(p->row_acceleration, plate, 0) = -AT(p->tread_change, step, plate);
   }
   copy(p->applied.at, ROW(p->force, step), p->force.n[1]);
 }

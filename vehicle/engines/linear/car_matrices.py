@@ -25,12 +25,13 @@ from vehicle.engines.linear.damper_elements import (
 from vehicle.engines.linear.displacement_laws import DIFFERENCE_STEP, DisplacementLaw, displacement_laws
 from vehicle.engines.linear.rolling_terms import rolling_terms
 from vehicle.engines.linear.system import LinearSystem
-from vehicle.engines.simulation.applied_forces import force_lines, force_rows
+from vehicle.engines.simulation.applied_forces import force_lines, force_rows, tyre_inputs
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.law_arrays import fluid_coordinates, model_numbers
 from vehicle.engines.simulation.row_layout import numeric, places_of, wheels_of
 from vehicle.engines.simulation.rows import Rows, joint_dampers
 from vehicle.engines.simulation.static_trim import StaticTrim
+from vehicle.engines.simulation.tyre_variation import RunOut
 from vehicle.model.assembly.element_numbers import DECOUPLER, FLUID
 from vehicle.model.parameters.placed_force import PlacedForce
 from vehicle.names import AXES
@@ -69,7 +70,9 @@ class CarMatrices:
             the road, a part of the inputs of `system`; (n, w), (n, 0) for standing tyres.
         modal: velocity coordinates of the flexible modes.
         fluids: velocity coordinates of fluids and decouplers of hydromounts, by names as "fluid of hydromount".
-        force_rows: generalised force of a unit of each applied force; (f, n).
+        force_rows: generalised force of a unit of each applied force, zero for those that change a tyre; (f, n).
+        force_slips: velocity of each Maxwell branch by a unit of each, that of the slip of a tread; (f, b).
+        force_heights: height of each plate by a unit of each, the run-out of a tyre; (f, w).
         lines, coefficients: frequencies of these forces, and their coefficients on the histories; (f, lines).
     """
 
@@ -94,17 +97,42 @@ class CarMatrices:
     sides: SideRows = field(default_factory=no_side_forces)
     slope: Vector = field(default_factory=lambda: np.zeros((0, 0)))
     force_rows: Vector = field(default_factory=lambda: np.zeros((0, 0)))
+    force_slips: Vector = field(default_factory=lambda: np.zeros((0, 0)))
+    force_heights: Vector = field(default_factory=lambda: np.zeros((0, 0)))
     lines: ForceLines = field(default_factory=ForceLines)
     coefficients: Vector = field(default_factory=lambda: np.zeros((0, 0)))
 
     def without_forces(self) -> CarMatrices:
         """Return the matrices without applied forces."""
-        return replace(self, force_rows=self.force_rows[:0], lines=ForceLines(), coefficients=np.zeros((0, 0)))
+        none = {name: getattr(self, name)[:0] for name in ("force_rows", "force_slips", "force_heights")}
+        return replace(self, **none, lines=ForceLines(), coefficients=np.zeros((0, 0)))
 
     @property
     def applied(self) -> Vector:
         """Generalised forces per unit of each history of the applied forces; (n, lines)."""
         return self.force_rows.T.reshape(self.system.size, -1) @ self.coefficients
+
+    @property
+    def slips(self) -> Vector:
+        """Rates of the forces of the Maxwell branches per unit of each history [N/s]; (b, lines)."""
+        return self.system.branch_stiffness[:, None] * (self.force_slips.T @ self.coefficients)
+
+    @property
+    def level_damping(self) -> Vector:
+        """Bc of plates without a slope: the damping of the tyres alone; (n, w)."""
+        return self.system.input_damping - self.slope if self.slope.size else self.system.input_damping
+
+    @property
+    def run_out(self) -> RunOut:
+        """Run-outs of the tyres, see `with_run_out`."""
+        found = []
+        constant = self.coefficients[:, : 2 * len(self.lines.frequencies)]
+        for wheel, of in zip(self.system.inputs, self.force_heights.T @ constant, strict=False):
+            lines = zip(self.lines.frequencies, of.reshape(-1, 2).tolist(), strict=True)
+            acting = {frequency: pair for frequency, pair in lines if any(pair)}
+            if acting:
+                found.append((wheel, tuple(acting), tuple(value for pair in acting.values() for value in pair)))
+        return tuple(found)
 
     def __repr__(self) -> str:
         """One line."""
@@ -135,6 +163,7 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim, forces: Sequence[Pla
     rows_of_bodies = _body_rows(model, data)
     laws = law_matrices(rows, jacobian, joint_dampers(model), static.preload)
     lines, coefficients = force_lines(forces)
+    slips, heights = tyre_inputs(forces, e, wheels_of(model))
     rolling_bodies = set(model.dof_bodyid[e.rolling.spins].tolist())
     return CarMatrices(
         system=LinearSystem(
@@ -173,7 +202,9 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim, forces: Sequence[Pla
             name.replace("/", " of ", 1): int(model.joint(name).dofadr[0])
             for name in fluid_coordinates(rows.laws, model_numbers(model))
         },
-        force_rows=force_rows(model, data, e) if forces else np.zeros((0, model.nv)),
+        force_rows=np.vstack([force_rows(model, data, e), np.zeros((len(forces) - len(e.applied.means), model.nv))]),
+        force_slips=slips,
+        force_heights=heights,
         lines=lines,
         coefficients=coefficients,
     )

@@ -1,10 +1,11 @@
 """Linear response of a car to its applied forces: with dampers that stick, or without their friction.
 
-    (s^2 M + s C + K + H' diag(K2/(s + 1/tau)) (s e + g)) u = l,    s = jW,    Jc u = 0
+    (s^2 M + s C + K + H' diag(K2/(s + 1/tau)) (s e + g)) u = l + B r - H' diag(K2/(s + 1/tau)) v,    Jc u = 0
 
-at each frequency W of the forces, with their complex amplitudes in l; see `vehicle.engines.linear.system`. Without
-friction the dampers have the slope of their curve at rest: the softest segment, which C contains, counts only at the
-velocities where it lies.
+at each frequency W of the forces, s = jW, with their complex amplitudes in l; see `vehicle.engines.linear.system`. The
+run-outs r of the tyres act by B = Bk + s Bc, Bc without that of slopes, and the velocities of their treads as slips v.
+Without friction the dampers have the slope of their curve at rest: the softest segment, which C contains, counts only
+at the velocities where it lies.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from vehicle.model.parameters.force_elements import Damper
 def forced_response(
     matrices: CarMatrices, channels: Sequence[str], dampers: Sequence[Damper], *, stuck: bool
 ) -> npt.NDArray[np.complex128]:
-    """Return the complex amplitudes of acceleration channels at the constant frequencies of the applied forces.
+    """Return the complex amplitudes of acceleration channels by each applied force alone, at all constant frequencies.
 
     Args:
         matrices: matrices of the car.
@@ -33,7 +34,8 @@ def forced_response(
         stuck: lock the dampers; else they move without friction.
 
     Returns:
-        Amplitudes of Re(Z exp(jWt)) [m/s2], (channels, frequencies in the order of `matrices.lines`).
+        Amplitudes of Re(Z exp(jWt)) [m/s2], (forces, channels, frequencies in the order of `matrices.lines`); their sum
+        over the forces is the answer of the car.
     """
     system = matrices.system
     if not stuck:
@@ -47,11 +49,14 @@ def forced_response(
     rows = np.array([system.output(name)[0] for name in channels]).reshape(-1, system.size) @ basis
     constant = matrices.coefficients[:, : 2 * len(matrices.lines.frequencies)]
     amplitudes = constant[:, ::2] - 1j * constant[:, 1::2]
-    result = np.zeros((len(rows), len(matrices.lines.frequencies)), dtype=complex)
-    for column, (frequency, force) in enumerate(zip(matrices.lines.frequencies, amplitudes.T, strict=True)):
+    result = np.zeros((len(amplitudes), len(rows), len(matrices.lines.frequencies)), dtype=complex)
+    for column, frequency in enumerate(matrices.lines.frequencies):
         s = 1j * frequency
-        branch = (system.branch_stiffness / (s + 1.0 / system.branch_time))[:, None] * (s * strains + drifts)
-        whole = s * s * mass + s * damping + stiffness + effects.T @ branch
-        motion = np.linalg.solve(whole, basis.T @ (matrices.force_rows.T @ force))
-        result[:, column] = s * s * (rows @ motion)
+        transfer = (system.branch_stiffness / (s + 1.0 / system.branch_time))[:, None]
+        whole = s * s * mass + s * damping + stiffness + effects.T @ (transfer * (s * strains + drifts))
+        tyres = system.input_stiffness + s * matrices.level_damping
+        pushed = basis.T @ (matrices.force_rows.T + tyres @ matrices.force_heights.T)
+        pushed = pushed - effects.T @ (transfer * matrices.force_slips.T)
+        motion = np.linalg.solve(whole, pushed * amplitudes[:, column])
+        result[:, :, column] = (s * s * (rows @ motion)).T
     return result

@@ -24,6 +24,7 @@ from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.engines.reduced.step_factors import SLOWEST, CarFactors, car_factors
 from vehicle.engines.reduced.table_layout import LANES, SINGLE
 from vehicle.engines.simulation.recording import Recording, Statistics
+from vehicle.engines.simulation.tyre_variation import with_plates, with_run_out
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.names import channel_units
@@ -105,6 +106,8 @@ def simulate_batch(
     """
     if not models:
         raise ConfigurationError("simulate_batch: the list of cars is empty")
+    excited = tuple(wheel for wheel in signal.wheels if np.ptp(signal.displacement[wheel]) > 0.0)
+    signal = with_plates(signal, [wheel for model in models for wheel, _, _ in model.matrices.run_out])
     samples, every = time_steps(signal, record_rate, step)
     interval, wheels = 1.0 / record_rate, models[0].matrices.system.inputs
     # Stops that are free at rest have the forces g of their laws, which follow the channels.
@@ -142,7 +145,7 @@ def simulate_batch(
             [factors[car] for car in cars],
             [dampers[car] for car in cars],
             [tyre_load[car] for car in cars],
-            signal,
+            with_run_out(signal, models[cars[0]].matrices.run_out),
             interval,
             every,
             SINGLE,
@@ -162,7 +165,7 @@ def simulate_batch(
         time=uniform_time(samples=samples, timestep=interval),
         channels=dict(zip(channels, table[: len(channels)], strict=True)),
         units=channel_units(tuple(channels)),
-        excited=tuple(wheel for wheel in signal.wheels if np.ptp(signal.displacement[wheel]) > 0.0),
+        excited=excited,
         statistics=tuple(statistics[car] for car in range(len(models))),
     )
 
@@ -206,8 +209,9 @@ def _loaded(stops: LoadRows) -> bool:
 
 
 def _nonlinear_elements(model: PoleModel) -> tuple[object, ...]:
-    """Return what is equal in a group: dampers with Jenkins elements or side forces, laws, histories of forces."""
+    """Return what is equal in a group: dampers with Jenkins elements or side forces, laws, forces, run-outs."""
     sliders, sides = model.matrices.sliders, model.matrices.sides
     laws = tuple((law.element, law.one_sided, law.friction) for law in model.laws)
     elements = tuple(sliders.dampers.tolist()), sliders.stiffness.shape, tuple(sides.dampers.tolist()), laws
-    return *elements, model.matrices.lines
+    # The text of the histories: a group is sorted, and histories have no order.
+    return *elements, repr(model.matrices.lines), model.matrices.run_out

@@ -108,7 +108,7 @@ class GroupRun:
 
     Args:
         models, factors, dampers, tyre_load: pole models, factors, damper laws and static tyre loads [N] of the cars.
-        signal: displacement of the plates.
+        signal: displacement of the plates, with the run-outs of the tyres, which are equal in a group.
         interval: time between two samples [s].
         every: steps between two samples.
         element: number type, see `vehicle.engines.reduced.table_layout`.

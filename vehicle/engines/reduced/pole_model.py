@@ -165,6 +165,8 @@ def pole_model(matrices: CarMatrices) -> PoleModel:
         slope = matrices.slope.reshape(len(form.basis), -1)
         effects = np.hstack([slope, scalars.T, matrices.applied])
         further[form.velocities] = np.linalg.solve(mass, form.basis.T @ effects)
+    if lines:
+        further[form.branches, further.shape[1] - lines :] = matrices.slips
     inputs = np.hstack([form.input, form.input_rate, form.friction, further])
     poles, vectors = np.linalg.eig(form.state)
     selected = np.concatenate([np.flatnonzero(poles.imag > 0.0), np.flatnonzero(poles.imag == 0.0)])

@@ -18,6 +18,7 @@ from vehicle.engines.reduced.step_factors import car_factors
 from vehicle.engines.reduced.table_layout import DOUBLE
 from vehicle.engines.simulation.recorder import lift_off_notices
 from vehicle.engines.simulation.recording import Recording
+from vehicle.engines.simulation.tyre_variation import with_run_out
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.names import channel_units, wheel_channels
 from vehicle.signals.excitation.signal import Signal, uniform_time
@@ -58,7 +59,8 @@ def simulate_reduced(
     Returns:
         The recording, without poses and energy balance.
     """
-    inputs = model.matrices.system.inputs
+    inputs, road = model.matrices.system.inputs, signal
+    signal = with_run_out(road, model.matrices.run_out)
     wheeled = wheel_channels(inputs, model.matrices.damper_names)
     asked = (*model.matrices.system.outputs, *wheeled) if channels is None else tuple(channels)
     # The force of a damper is that of its law and that of its stop.
@@ -112,7 +114,7 @@ def simulate_reduced(
         time=time,
         channels=histories,
         units=channel_units(asked),
-        excited=tuple(wheel for wheel in signal.wheels if np.ptp(signal.displacement[wheel]) > 0.0),
+        excited=tuple(wheel for wheel in road.wheels if np.ptp(road.displacement[wheel]) > 0.0),
         pose_time=np.zeros(0),
         poses=np.zeros((0, 0)),
         statistics=replace(statistics, notices=notices, errors=errors),

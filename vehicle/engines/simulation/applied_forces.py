@@ -13,7 +13,7 @@ from vehicle.engines.simulation.step_weights import FOURTH_ORDER
 from vehicle.errors import ConfigurationError
 from vehicle.model.assembly.element_numbers import FORCE, TORQUE
 from vehicle.model.parameters.applied_force import CRANK
-from vehicle.model.parameters.placed_force import PlacedForce
+from vehicle.model.parameters.placed_force import PlacedForce, on_parts
 from vehicle.signals.excitation.force_lines import ForceLines, History, SweptLine
 from vehicle.signals.excitation.force_record import ForceRecord
 
@@ -54,6 +54,26 @@ def force_rows(model: mujoco.MjModel, data: mujoco.MjData, layout: Layout) -> Ve
     return rows
 
 
+def tyre_inputs(forces: Sequence[PlacedForce], layout: Layout, wheels: Sequence[str]) -> tuple[Vector, Vector]:
+    """Return the velocities of the Maxwell branches, (f, b), and the heights of the plates, (f, w), per unit of forces.
+
+    Args:
+        forces: applied forces.
+        layout: elements of the car.
+        wheels: names of the wheels, in the order of the tyres.
+    """
+    present = layout.bushings.branch_stiffness > 0.0
+    branches = np.cumsum(present).reshape(present.shape) - 1
+    slips = np.zeros((len(forces), int(np.count_nonzero(present))))
+    heights = np.zeros((len(forces), len(wheels)))
+    for index, force in enumerate(forces):
+        if force.unit == "m":
+            heights[index, wheels.index(force.tyre)] = 1.0
+        elif force.unit == "m/s":
+            slips[index, branches[layout.tyres[wheels.index(force.tyre)], 0]] = 1.0
+    return slips, heights
+
+
 def force_lines(forces: Sequence[PlacedForce]) -> tuple[ForceLines, Vector]:
     """Return the histories of some forces, and the coefficients of each force on them; (f, lines)."""
     histories = [_histories(force) for force in forces]
@@ -80,10 +100,11 @@ def averaged_forces(forces: Sequence[PlacedForce], step: float, rows: slice) -> 
     """Return the forces at the ends of some steps, averaged over three steps like springs and plates; (rows, f).
 
     Args:
-        forces: applied forces.
+        forces: applied forces; f of them act on parts and joints.
         step: time step [s].
         rows: range of the steps.
     """
+    forces = on_parts(forces)
     lines, coefficients = force_lines(forces)
     values = lines.values(step * np.arange(rows.start - 1, rows.stop + 1))
     values = values[1:-1] + FOURTH_ORDER * np.diff(values, 2, axis=0)

@@ -13,6 +13,8 @@ import numpy.typing as npt
 
 from vehicle.engines.simulation.recorded_acceleration import continued
 from vehicle.engines.simulation.step_weights import FOURTH_ORDER
+from vehicle.engines.simulation.tyre_variation import tread_motion
+from vehicle.model.parameters.placed_force import PlacedForce
 from vehicle.signals.excitation.signal import Signal
 
 Vector = npt.NDArray[np.float64]
@@ -28,6 +30,7 @@ class PlateArrays:
     `row_velocity` is (1 - delta2/12) velocity, for the tyre rows: averaged over three steps like the other parts of
     their force. The central difference would be lower by w2 h2/12, 3 % of the damping at 100 Hz and 1 ms.
     `slope_velocity` is speed times slope of the road [m/s], averaged likewise: that of the signal, or `row_velocity`.
+    `tread` and `tread_change` are the velocity of the treads along x [m/s] and its change [m/s2], see `tread_motion`.
     """
 
     displacement: Vector
@@ -35,6 +38,8 @@ class PlateArrays:
     acceleration: Vector
     row_velocity: Vector
     slope_velocity: Vector
+    tread: Vector
+    tread_change: Vector
 
     @classmethod
     def of(
@@ -45,6 +50,7 @@ class PlateArrays:
         wheels: Sequence[str],
         beyond: int = 0,
         rows: slice = slice(None),
+        forces: Sequence[PlacedForce] = (),
     ) -> PlateArrays:
         """Evaluate a signal on the plates of wheels at the ends of the steps, and for some steps beyond them.
 
@@ -59,6 +65,7 @@ class PlateArrays:
             wheels: names of the wheels.
             beyond: number of further rows, with constant acceleration of the plates.
             rows: slice of the rows; all by default.
+            forces: applied forces, for the treads.
         """
         first, last, _ = rows.indices(count + 1 + beyond)
         # Averages need two rows on each side.
@@ -97,12 +104,15 @@ class PlateArrays:
             slope_velocity[len(index) :] = slope_velocity[len(index) - 1]
             slope_velocity[1:-1] += FOURTH_ORDER * np.diff(slope_velocity, 2, axis=0)
         requested = slice(first - begin, last - begin)
+        tread, tread_change = tread_motion(forces, wheels, step, first, last - first)
         return cls(
             displacement=displacement[requested],
             velocity=velocity[requested],
             acceleration=acceleration[requested],
             row_velocity=row_velocity[requested],
             slope_velocity=slope_velocity[requested],
+            tread=tread,
+            tread_change=tread_change,
         )
 
 
@@ -121,6 +131,7 @@ class PlateBlock:
         motion: rows of the block.
         offset: index of the first row of the block.
         height, velocity, acceleration, slope: values for the plates and for the tyre rows; (block, w).
+        tread, tread_change: likewise; (block, w) or (block, 0).
         force: applied forces; (block, f).
     """
 
@@ -138,6 +149,7 @@ class PlateBlock:
         shape = min(max(BLOCK, minimum), rows), len(level)
         self.height, self.velocity, self.acceleration, self.slope = np.zeros((4, *shape))
         self.force = np.zeros((shape[0], forces(slice(0, 1)).shape[1]))
+        self.tread, self.tread_change = np.zeros((2, shape[0], of(slice(0, 1)).tread.shape[1]))
         self._load(0)
 
     def _load(self, offset: int) -> None:
@@ -148,6 +160,7 @@ class PlateBlock:
         self.height[:size] = self.level + self.motion.displacement
         self.velocity[:size], self.acceleration[:size] = self.motion.row_velocity, self.motion.acceleration
         self.slope[:size] = self.motion.slope_velocity
+        self.tread[:size], self.tread_change[:size] = self.motion.tread, self.motion.tread_change
         self.force[:size] = self.forces(slice(offset, self.end))
 
     def reach(self, first: int, last: int) -> int:

@@ -282,6 +282,10 @@ class Recorder:
         # Rolling car: power of slope, moments and course control on all velocities, and of side slip on V psi.
         power_in = power_in + b.pushed
         power_in = power_in + np.sum(branch[:, e.rolling.tyres, 1] * b.heading * e.rolling.speeds, axis=1)
+        if motion.tread.shape[1]:
+            # What turns the wheel adds the velocity of the tread to the slip, half a step after its mean.
+            tread = (motion.tread + 0.5 * self.step * motion.tread_change)[steps]
+            power_in = power_in + np.sum(branch[:, e.tyres, 0] * tread, axis=1)
         present = bushings.branch_stiffness > 0.0
         dashpots = (bushings.branch_stiffness * bushings.branch_time)[present]
         loss = loss + np.sum(branch[:, present] ** 2 / dashpots, axis=1)

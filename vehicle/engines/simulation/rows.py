@@ -236,7 +236,9 @@ def weights(model: mujoco.MjModel, layout: Layout, preload: Vector, masses: Vect
     slope = np.where(present, b.branch_stiffness * series * 2.0 * share, 0.0)
     rise = branch_average * ((decay - 1.0) * slope + gain * h)
     branch = np.where(present, slope + rise, 0.0)
-    laws = layout.dampers.laws
+    laws, inertial = layout.dampers.laws, averaged[layout.tyres] * stiffness[layout.tyres] * h**2
+    # A tread that moves along x is a known part of the rate of the slip, and of its change in a step.
+    inertial[:, 0] += branch[layout.tyres, 0]
     return Weights(
         timestep=h,
         preload=preload,
@@ -245,7 +247,7 @@ def weights(model: mujoco.MjModel, layout: Layout, preload: Vector, masses: Vect
         slope=slope,
         average=branch_average,
         impedance=np.maximum(b.damping * h / 2 + averaged * stiffness * h**2 + branch, EMPTY_ROW),
-        inertial=averaged[layout.tyres] * stiffness[layout.tyres] * h**2,
+        inertial=inertial,
         spring_impedance=np.maximum(FOURTH_ORDER * springs * h**2, EMPTY_ROW),
         damper_impedance=np.maximum(laws["viscous_damping"] * h / 2, EMPTY_ROW),
         valve_impedance=np.maximum(layout.dampers.pieces[:, 0] * h / 2, EMPTY_ROW),

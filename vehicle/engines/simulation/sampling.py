@@ -10,12 +10,17 @@ from vehicle.engines.simulation.element_records import Index, Indices, ModalSpac
 
 
 class Plates(NamedTuple):
-    """Motion of the plates over the steps (steps, t), applied forces (steps, f), and their destination arrays."""
+    """Motion of the plates over the steps (steps, t), applied forces (steps, f), and their destination arrays.
+
+    `tread` and `tread_change` are (steps, 0) if no rolling radius varies.
+    """
 
     height: Table
     velocity: Table
     acceleration: Table
     slope: Table
+    tread: Table
+    tread_change: Table
     mocap: Index
     mocap_position: Table
     row_velocity: Table

@@ -30,7 +30,8 @@ class Weights(NamedTuple):
 
     `preload` contains the static force of every row in element axes [N], followed by the static torques of the
     rotations in the axes of their carriers [N m]; (rows + 3 m,). `decay`, `gain`, `slope` and `average` belong to the
-    Maxwell branches, (n, 3); `inertial` is the averaged stiffness of the tyres beta K h2, (t, 3).
+    Maxwell branches, (n, 3); `inertial` is the averaged stiffness of the tyres beta K h2, along x
+    with the branch of the slip, (t, 3).
     """
 
     timestep: float

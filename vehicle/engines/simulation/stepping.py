@@ -22,6 +22,7 @@ from vehicle.engines.simulation.recording import Recording, Statistics
 from vehicle.engines.simulation.rows import Rows
 from vehicle.engines.simulation.run_model import run_model
 from vehicle.engines.simulation.sampling import Loop, Plates
+from vehicle.engines.simulation.tyre_variation import run_out, with_run_out
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.laws.controller_fmu import controllers
 from vehicle.model.laws.damper import require_friction_laws
@@ -57,8 +58,8 @@ def simulate(
         Recording, sampled at `solver.record_rate`.
 
     Raises:
-        ConfigurationError: the recording rate is not an integer fraction of the step rate, or the core lacks a friction
-            law.
+        ConfigurationError: the recording rate is not an integer fraction of the step rate, the core lacks a friction
+            law, or the signal has too few samples for a run-out.
         MissingPartError: there is no core for this platform, or the installed MuJoCo does not match its declarations.
         SimulationError: the state is not finite, MuJoCo warned, or the energy balance does not close; the
             message contains time and joint.
@@ -76,20 +77,24 @@ def simulate(
     mocap = [int(model.body_mocapid[model.body(wheel.plate).id]) for wheel in car.vehicle.composition.wheels]
     level = data.mocap_pos[mocap, 2].copy()
     unit = every * pose_every
-    motion = partial(PlateArrays.of, signal, step, count, car.vehicle.wheels, AHEAD * every)
+    forces = car.vehicle.composition.forces
+    road = with_run_out(signal, run_out(forces))
+    motion = partial(PlateArrays.of, road, step, count, car.vehicle.wheels, AHEAD * every, forces=forces)
     block = PlateBlock(
         motion,
         count + 1 + AHEAD * every,
         level,
         unit=unit,
         minimum=(CHUNK + 1) * every + unit,
-        forces=partial(averaged_forces, car.vehicle.composition.forces, step),
+        forces=partial(averaged_forces, forces, step),
     )
     plates = Plates(
         height=block.height,
         velocity=block.velocity,
         acceleration=block.acceleration,
         slope=block.slope,
+        tread=block.tread,
+        tread_change=block.tread_change,
         mocap=np.array(mocap, dtype=np.int64),
         mocap_position=data.mocap_pos,
         row_velocity=rows.state.plate_velocity,

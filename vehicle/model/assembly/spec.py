@@ -12,6 +12,7 @@ import numpy.typing as npt
 from vehicle.model.assembly.element_builder import ElementBuilder
 from vehicle.model.flexbody.attached_mass import with_attached_masses
 from vehicle.model.flexbody.superelement import Superelement, attached_nodes
+from vehicle.model.parameters.placed_force import on_parts
 from vehicle.model.parameters.vehicle import Vehicle
 
 Vector = npt.NDArray[np.float64]
@@ -82,7 +83,7 @@ def assemble_on(vehicle: Vehicle, superelement: Superelement) -> Assembly:
     for damper in car.dampers:
         builder.add_damper(damper)
     builder.add_hold()
-    for force in car.forces:
+    for force in on_parts(car.forces):
         builder.add_force(force)
     for output in car.outputs:
         builder.add_output(output)

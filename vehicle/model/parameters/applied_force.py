@@ -15,6 +15,42 @@ CRANK = "crank"
 HIGHEST_ORDER = 100.0
 """Largest order of a harmonic."""
 
+Harmonics = tuple[tuple[float, ...], ...]
+"""Lists of order [-], amplitude and phase [deg]: the sum of A cos(order angle + phase)."""
+
+
+def require_harmonics(
+    path: str, harmonics: Harmonics, remedy: str = "set mean for the constant part", *, of_wheel: bool = False
+) -> None:
+    """Check the harmonics of a history.
+
+    Args:
+        path: their path, for messages.
+        harmonics: lists of order, amplitude and phase [deg].
+        remedy: what to do in place of order 0.
+        of_wheel: whole orders only.
+
+    Raises:
+        ConfigurationError: a list is no harmonic, or an order is wrong or twice there.
+    """
+    orders = []
+    for harmonic in harmonics:
+        message = f"{path}: found {list(harmonic)}"
+        if len(harmonic) != 3 or not all(map(math.isfinite, harmonic)):
+            raise ConfigurationError(f"{message}, must be three finite numbers: order, amplitude, phase [deg]")
+        order, amplitude, _ = harmonic
+        if order == 0.0:
+            raise ConfigurationError(f"{message}, of order 0; {remedy}")
+        if not 0.0 < order <= HIGHEST_ORDER:
+            raise ConfigurationError(f"{message}; the order must be above 0 and at most {HIGHEST_ORDER:g}")
+        if of_wheel and order % 1.0:
+            raise ConfigurationError(f"{path}: a wheel has whole orders; half orders are those of a crank")
+        if amplitude < 0.0:
+            raise ConfigurationError(f"{message}; the amplitude must be at least 0: add 180 degrees to the phase")
+        if order in orders:
+            raise ConfigurationError(f"{message}, a second harmonic of order {order:g}; give each order once")
+        orders.append(order)
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class AppliedForce:
@@ -25,7 +61,7 @@ class AppliedForce:
     measured history takes the place of the harmonics: F(t) = mean + factor times its channel.
     """
 
-    harmonics: tuple[tuple[float, ...], ...] = ()
+    harmonics: Harmonics = ()
     """lists of order [-], amplitude A [N or N m] and phase [deg]"""
     angle: str | None = quantity(
         "-", "what turns by the angle: crank, or a wheel, as wheel_fr; or none, with a frequency", default=None
@@ -63,21 +99,7 @@ class AppliedForce:
             raise ConfigurationError("AppliedForce.file: missing; channel, unit and ends_at_zero belong to a file")
         if self.file is not None and self.harmonics:
             raise ConfigurationError("AppliedForce.file: a force has harmonics or a file; apply two forces for both")
-        orders = []
-        for harmonic in self.harmonics:
-            message = f"AppliedForce.harmonics: found {list(harmonic)}"
-            if len(harmonic) != 3 or not all(map(math.isfinite, harmonic)):
-                raise ConfigurationError(f"{message}, must be three finite numbers: order, amplitude, phase [deg]")
-            order, amplitude, _ = harmonic
-            if order == 0.0:
-                raise ConfigurationError(f"{message}, of order 0; set mean for the constant part")
-            if not 0.0 < order <= HIGHEST_ORDER:
-                raise ConfigurationError(f"{message}; the order must be above 0 and at most {HIGHEST_ORDER:g}")
-            if amplitude < 0.0:
-                raise ConfigurationError(f"{message}; the amplitude must be at least 0: add 180 degrees to the phase")
-            if order in orders:
-                raise ConfigurationError(f"{message}, a second harmonic of order {order:g}; give each order once")
-            orders.append(order)
+        require_harmonics("AppliedForce.harmonics", self.harmonics)
         if self.harmonics and (self.angle is None) == (self.frequency is None):
             raise ConfigurationError(
                 "AppliedForce.angle: needed is either an angle (crank, or a wheel, as wheel_fr) or a frequency [Hz]"

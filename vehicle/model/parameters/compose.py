@@ -12,7 +12,7 @@ from vehicle.model.parameters.additions import further_connection, further_outpu
 from vehicle.model.parameters.applied_force import AppliedForce
 from vehicle.model.parameters.composition import Composition
 from vehicle.model.parameters.driving import Crank, crank_of
-from vehicle.model.parameters.further_forces import engine_forces, force_targets, further_force, wheel_forces
+from vehicle.model.parameters.further_forces import engine_forces, force_targets, further_force
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.instance import Instance, instances
 from vehicle.model.parameters.load_mass import Load
@@ -25,6 +25,7 @@ from vehicle.model.parameters.placed_elements import (
     placed_wheels,
 )
 from vehicle.model.parameters.placed_parts import placed_parts
+from vehicle.model.parameters.placed_wheel_forces import wheel_forces
 from vehicle.model.parameters.references import (
     require_aliases,
     require_geometry,
@@ -72,7 +73,7 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
     loads = [placed_load(name, entry, carriers, points) for name, entry in tables["load"].items()]
     body_cog: Point = convert(Point, table["body"]["cog"], "body.cog")
     targets = force_targets(parts, points, wheels, connections, crank_of(table), body_cog)
-    forces = [*wheel_forces(car, wheels, targets), *engine_forces(car, targets)]
+    forces = [*wheel_forces(car, wheels, parts, connections, targets), *engine_forces(car, targets)]
     forces += [further_force(name, entry, targets) for name, entry in tables["force"].items()]
     composition = Composition(
         parts=(*parts, *loads),
@@ -82,7 +83,8 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
         dampers=tuple(dampers),
         outputs=tuple(placed_outputs(car, further)),
         wheels=tuple(wheels),
-        forces=tuple(forces),
+        # Those of tyres act on no part of the model: they come last.
+        forces=tuple(sorted(forces, key=lambda force: bool(force.tyre))),
         speeds=targets.speeds,
         crank_run_up=targets.run_up,
         points=points,

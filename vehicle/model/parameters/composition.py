@@ -330,6 +330,11 @@ class Composition:
                     element.with_numbers(file, built) if element.path in chosen else element for element in before
                 )
                 left -= chosen
+                # The angle of a wheel and the run-out of its tyre depend on numbers of the tyre.
+                if self.forces and any(
+                    getattr(element, "rolling", None) for element in before if element.path in chosen
+                ):
+                    return None
         return None if left else replace(self, **updated)
 
     def turning(self, name: str | None = None) -> tuple[str, float]:

@@ -40,13 +40,24 @@ from vehicle.model.parameters.template import SHIPPED, read_template
 from vehicle.model.parameters.template_file import LISTS, TEMPLATE_KEYS, USE_KEYS, read_template_file
 from vehicle.model.parameters.topology import RolePart, SteeringAxis, Template, Wheel
 from vehicle.model.parameters.vehicle import Head, Solver
-from vehicle.model.parameters.wheel_forces import Imbalance
+from vehicle.model.parameters.wheel_forces import WHEEL_FORCES
 from vehicle.names import SIDE_SIGN
 
 Schema = dict[str, Any]
 
 DRAFT = "http://json-schema.org/draft-07/schema#"
-KINDS = (Part, Bushing, Tyre, Hydromount, MainSpring, SlideSpring, Stabilizer, Damper, Imbalance, EngineOrders)
+KINDS = (
+    Part,
+    Bushing,
+    Tyre,
+    Hydromount,
+    MainSpring,
+    SlideSpring,
+    Stabilizer,
+    Damper,
+    *WHEEL_FORCES.values(),
+    EngineOrders,
+)
 """Parameter classes of the tables of an instance."""
 
 TEXT: Schema = {"type": "string"}
@@ -197,7 +208,7 @@ def _tables(template: Template, required: Template | None) -> Schema:
     whole = required is not None
     elements: list[tuple[str, type]] = [(spring.name, spring_kind(template, spring)) for spring in template.spring]
     elements += [(damper.name, Damper) for damper in template.damper]
-    elements += [("imbalance", Imbalance)] if template.wheel is not None else []
+    elements += WHEEL_FORCES.items() if template.wheel is not None else []
     elements += [(ORDERS, EngineOrders)] if ENGINE in template.parts else []
     return _object(
         {

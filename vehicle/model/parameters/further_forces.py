@@ -11,7 +11,7 @@ from typing import Any
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.additions import named_part, named_point, new_loads
-from vehicle.model.parameters.applied_force import CRANK, AppliedForce
+from vehicle.model.parameters.applied_force import CRANK, AppliedForce, require_harmonics
 from vehicle.model.parameters.composition import PlacedConnection, PlacedPart, PlacedWheel
 from vehicle.model.parameters.driving import Crank, RunUp
 from vehicle.model.parameters.engine_orders import ENGINE, ORDERS, EngineOrders
@@ -20,8 +20,6 @@ from vehicle.model.parameters.instance import Instance
 from vehicle.model.parameters.placed_force import PlacedForce
 from vehicle.model.parameters.quantity import NAME_PATTERN
 from vehicle.model.parameters.toml_file import build, convert, nearest
-from vehicle.model.parameters.wheel_forces import Imbalance
-from vehicle.names import SIDE_SIGN
 
 PLACE_KEYS = ("on", "at", "force", "moment", "against", "joint")
 """Keys of a force other than those of its history."""
@@ -112,8 +110,7 @@ def further_force(name: str, value: Any, targets: ForceTargets) -> PlacedForce:
         near = nearest(law.angle, targets.speeds)
         raise ConfigurationError(f"{path}.angle: found {law.angle!r}, no angle; the nearest is {near}")
     speed = 2.0 * math.pi * law.frequency if law.frequency else targets.speeds.get(law.angle or "", 0.0)
-    if law.angle not in (None, CRANK) and any(order % 1.0 for order, _, _ in law.harmonics):
-        raise ConfigurationError(f"{path}.harmonics: a wheel has whole orders; half orders are those of a crank")
+    require_harmonics(f"{path}.harmonics", law.harmonics, of_wheel=law.angle not in (None, CRANK))
     if "joint" in table:
         return _torque(path, table, targets, law, speed)
     directions = [key for key in ("force", "moment") if key in table]
@@ -179,46 +176,6 @@ def _direction(path: str, value: Any) -> Point:
         raise ConfigurationError(f"{path}: found {list(direction)}; must be three numbers, not all zero")
     x, y, z = (component / length for component in direction)
     return (x, y, z)
-
-
-def wheel_forces(
-    car: Mapping[str, Instance], wheels: Iterable[PlacedWheel], targets: ForceTargets
-) -> list[PlacedForce]:
-    """Return the forces of the imbalances of all wheels: m r (V/R)^2 along x and along z, from the axle to the mass.
-
-    Args:
-        car: instances by name.
-        wheels: wheels of the car.
-        targets: what a force can refer to.
-
-    Raises:
-        ConfigurationError: a value is wrong.
-    """
-    forces = []
-    for wheel in wheels:
-        instance, side = car[wheel.axle], next(name for name, sign in SIDE_SIGN.items() if sign == wheel.side)
-        if not instance.table_paths(side, "imbalance"):
-            continue
-        mass = instance.get(Imbalance, side, "imbalance")
-        speed = targets.speeds[f"wheel_{wheel.name}"]
-        x, y, z = wheel.center
-        for axis, direction, behind in (("x", (1.0, 0.0, 0.0), 0.0), ("z", (0.0, 0.0, 1.0), 90.0)):
-            amplitude = mass.mass * mass.radius * speed**2
-            forces.append(
-                PlacedForce(
-                    name=f"imbalance_{wheel.name}_{axis}",
-                    on=wheel.part,
-                    at=(x, y + wheel.side * mass.offset, z),
-                    force=direction,
-                    moment=NONE,
-                    against="",
-                    joint="",
-                    law=AppliedForce(harmonics=((1.0, amplitude, mass.angle - behind),), angle=f"wheel_{wheel.name}"),
-                    speed=speed,
-                    path=f"{wheel.axle}.imbalance",
-                )
-            )
-    return forces
 
 
 def engine_forces(car: Mapping[str, Instance], targets: ForceTargets) -> list[PlacedForce]:

@@ -18,7 +18,7 @@ from vehicle.model.parameters.instance import instances
 from vehicle.model.parameters.paths import is_zero_vector
 from vehicle.model.parameters.quantity import type_hints
 from vehicle.model.parameters.semi_active_damper import SemiActiveDamper
-from vehicle.model.parameters.wheel_forces import Imbalance
+from vehicle.model.parameters.wheel_forces import WHEEL_FORCES
 from vehicle.names import AXES, SIDE_SIGN
 
 WITH_FILES = (Damper, ForceTable, MainSpring, Bushing)
@@ -54,8 +54,9 @@ def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
     # An ideal joint becomes a bushing by numbers.
     bushings = [f"{i.name}.bushings.{link.name}" for i in car.values() for link in i.template.connection]
     ideal = dict.fromkeys((path for path in bushings if path not in kinds), Bushing)
-    balanced = [f"{i.name}.imbalance" for i in car.values() if i.template.wheel is not None]
-    new: dict[str, type] = {**ideal, **dict.fromkeys((path for path in balanced if path not in kinds), Imbalance)}
+    axles = [i.name for i in car.values() if i.template.wheel is not None]
+    turning = {f"{axle}.{name}": kind for axle in axles for name, kind in WHEEL_FORCES.items()}
+    new: dict[str, type] = {**ideal, **{path: kind for path, kind in turning.items() if path not in kinds}}
     engines = [i for i in car.values() if ENGINE in i.template.parts]
     new |= {f"{i.name}.{ORDERS}": EngineOrders for i in engines if not i.has(ORDERS)}
     every = {**kinds, **new}

@@ -28,7 +28,7 @@ from vehicle.model.parameters.force_elements import (
 )
 from vehicle.model.parameters.instance import LEFT, Instance, elements
 from vehicle.model.parameters.rigid_part import Part
-from vehicle.model.parameters.wheel_forces import Imbalance
+from vehicle.model.parameters.wheel_forces import WHEEL_FORCES
 from vehicle.names import SIDE_SIGN
 
 
@@ -46,7 +46,7 @@ def element_kinds(car: Mapping[str, Instance]) -> dict[str, type]:
                 kinds[f"{i.name}.bushings.{connection.name}"] = _law_kind(i, connection)
         kinds |= {f"{i.name}.{damper.name}": Damper for damper in i.template.damper}
         kinds |= {f"{i.name}.{spring.name}": spring_kind(i.template, spring) for spring in i.template.spring}
-        kinds |= {f"{i.name}.imbalance": Imbalance} if i.has("imbalance") else {}
+        kinds |= {f"{i.name}.{name}": kind for name, kind in WHEEL_FORCES.items() if i.has(name)}
         kinds |= {f"{i.name}.{ORDERS}": EngineOrders} if i.has(ORDERS) else {}
     return kinds
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from vehicle.model.parameters.applied_force import AppliedForce
@@ -13,6 +14,9 @@ from vehicle.model.parameters.hardpoints import Point
 class PlacedForce:
     """A force or a moment on a part along a fixed direction of the vehicle frame, or a torque or force in a joint.
 
+    Or a motion of the road under the tyre of one wheel alone: along z the height [m] that its run-out adds, without a
+    slope; along x the velocity [m/s] of its tread that its rolling radius adds.
+
     Attributes:
         name: name of the force.
         on: part that it acts on; empty for a torque on a joint.
@@ -23,8 +27,9 @@ class PlacedForce:
         law: its history.
         speed: angular speed of its angle [rad/s]; in a run-up the highest.
         path: path of its table in the vehicle file.
-        unit: "N", or "N m" of a moment and of a torque in a hinge.
+        unit: "N", or "N m" of a moment and of a torque in a hinge; "m" and "m/s" of the motion below a tyre.
         run_up: run-up of its angle; None for a constant speed.
+        tyre: wheel whose tyre it changes, as "fr"; empty for a force or a torque.
     """
 
     name: str
@@ -39,6 +44,7 @@ class PlacedForce:
     path: str
     unit: str = "N"
     run_up: RunUp | None = None
+    tyre: str = ""
 
     @property
     def ends(self) -> tuple[tuple[str, float], ...]:
@@ -59,3 +65,8 @@ class PlacedForce:
     def mean(self) -> float:
         """Constant part [N or N m]."""
         return self.law.mean if self.law.enabled else 0.0
+
+
+def on_parts(forces: Iterable[PlacedForce]) -> list[PlacedForce]:
+    """Return the forces on parts and joints: all but those that change a tyre, which come last."""
+    return [force for force in forces if not force.tyre]

@@ -10,6 +10,7 @@ from pathlib import Path
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.force_elements import Tyre
 from vehicle.model.parameters.vehicle import Vehicle
+from vehicle.model.parameters.wheel_forces import WHEEL_FORCES
 from vehicle.settings import documented
 from vehicle.signals.excitation.iso_road import Side
 from vehicle.signals.excitation.obstacle import is_obstacle
@@ -62,7 +63,9 @@ class Road(RoadSettings):
             ConfigurationError: a value out of range or of another type of road, or a car that cannot roll.
         """
         # A single letter is a class, even if a file of this name exists.
-        if self.road == LEVEL and not vehicle.composition.forces:
+        # Tyres and brakes of a car that stands shake nothing, and are no forces.
+        kinds = {*vehicle.composition.kinds.values()}
+        if self.road == LEVEL and not vehicle.composition.forces and not kinds & {*WHEEL_FORCES.values()}:
             raise ConfigurationError(
                 f"--road {LEVEL}: moves no plate, and {vehicle.name} has no force that shakes it; add one, as --set "
                 "front.imbalance.mass=0.02 --set front.imbalance.radius=0.2, or a table [force.NAME]"

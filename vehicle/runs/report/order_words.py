@@ -13,7 +13,7 @@ def force_rows(summary: RunSummary) -> list[tuple[str, str]]:
     """Return name and harmonics of each applied force, for a table."""
     rows = []
     for name, force in summary.get("forces", {}).items():
-        unit = "N" if any(force["force"]) else "N m"
+        unit = force["unit"]
         parts = [f"{number(line['amplitude'])} {unit} at {number(line['frequency_hz'])} Hz" for line in force["lines"]]
         parts += [f"mean {number(force['mean'])} {unit}"] if force["mean"] else []
         rows.append((f"force {name} on {force['on']}", ", ".join(parts)))
@@ -29,7 +29,7 @@ def order_sentences(summary: RunSummary) -> list[str]:
             size, (stuck, free) = amplitude_words(line, point), _limits(line, point)
             sentences.append(
                 f"Forces at {line_words(line)} shake the {point_words(point)} by {size} (amplitudes). Dampers that "
-                f"stick would give {stuck}, dampers without friction {free} along z."
+                f"stick would give {stuck}, dampers without friction {free} along z.{_chance(line, point)}"
             )
     return sentences
 
@@ -38,6 +38,18 @@ def _limits(line: OrderSummary, point: str) -> tuple[str, str]:
     """Return the amplitudes along z of the linear car with locked dampers and with dampers without friction [m/s2]."""
     name = f"{point}_acc_z"
     return f"{number(line['stuck'][name])} m/s²", f"{number(line['without_friction'][name])} m/s²"
+
+
+def _chance(line: OrderSummary, point: str) -> str:
+    """Return a sentence with the ranges along z over the phases of the wheels; empty for a single wheel."""
+    if "stuck_range" not in line or "without_friction_range" not in line:
+        return ""
+    name = f"{point}_acc_z"
+    stuck, free = (
+        f"{number(low)} to {number(high)} m/s²"
+        for low, high in (line["stuck_range"][name], line["without_friction_range"][name])
+    )
+    return f" These figures hang on the phases of the wheels among each other: over all of them {stuck} and {free}."
 
 
 def line_words(line: OrderSummary) -> str:

@@ -93,7 +93,7 @@ class ObstacleSummary(TypedDict):
 
 
 class LineSummary(TypedDict):
-    """Harmonic of an applied force: order of its angle, frequency [Hz], amplitude [N or N m], phase [deg]."""
+    """Harmonic of an applied force: order of its angle, frequency [Hz], amplitude, phase [deg]."""
 
     order: float
     frequency_hz: float
@@ -102,9 +102,13 @@ class LineSummary(TypedDict):
 
 
 class ForceSummary(TypedDict):
-    """Applied force: part or joint that it acts on, point [m], directions, constant part [N or N m], harmonics."""
+    """Applied force: part, joint or tyre that it acts on, point [m], directions, constant part, harmonics.
+
+    `unit` is N or N m, or m of the run-out and m/s of the tread of a tyre.
+    """
 
     on: str
+    unit: str
     against: str
     at_m: list[float]
     force: list[float]
@@ -118,7 +122,8 @@ class OrderSummary(TypedDict):
     """Amplitude of a channel at a frequency of the applied forces, with the standard error of both: see `order_lines`.
 
     `order` is that of the angle of `of`, "wheels", "crank" or "frequency". `stuck` and `without_friction` are the
-    amplitudes of the linear car with locked dampers and with dampers without friction.
+    amplitudes of the linear car with locked dampers and with dampers without friction; the ranges are theirs over the
+    phases of the wheels among each other, if two or more wheels have this order.
     """
 
     order: float
@@ -128,6 +133,8 @@ class OrderSummary(TypedDict):
     standard_error: dict[str, float]
     stuck: dict[str, float]
     without_friction: dict[str, float]
+    stuck_range: NotRequired[dict[str, tuple[float, float]]]
+    without_friction_range: NotRequired[dict[str, tuple[float, float]]]
 
 
 class RunUpSummary(TypedDict):

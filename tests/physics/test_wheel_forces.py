@@ -1,0 +1,246 @@
+"""Non-uniform tyres and varying brakes in both engines: closed forms, matrices solved line by line, batches."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import mujoco
+import numpy as np
+import pytest
+
+from tests.engines.linear.plain_matrices import plain_matrices
+from tests.physics.test_applied_forces import energies_of
+from tests.validation import validated
+from vehicle import Car, Run, road
+from vehicle.engines.linear.car_matrices import CarMatrices
+from vehicle.engines.reduced.batch_simulation import simulate_batch
+from vehicle.engines.reduced.pole_model import pole_model
+from vehicle.engines.reduced.reduced_run import simulate_reduced
+from vehicle.model.parameters.force_elements import Tyre
+from vehicle.model.parameters.vehicle import load_vehicle
+from vehicle.runs.output.run_forces import force_values
+from vehicle.signals.analysis.order_lines import order_lines
+from vehicle.signals.excitation.force_lines import ForceLines
+from vehicle.signals.excitation.signal import Signal
+
+SPEED = 100.0
+FREE = {
+    "front.damper.coulomb_friction": 0.0,
+    "rear.damper.coulomb_friction": 0.0,
+    "driving.speed": SPEED / 3.6,
+    "solver.record_rate": 2000.0,
+}
+ORDERS = (1, 2, 3)
+CHANNELS = ("seat_rail_acc_z", "seat_rail_acc_x", "knuckle_fr_acc_z", "knuckle_fr_acc_x", "knuckle_fr_acc_y")
+TABLES: dict[str, dict[str, list[list[float]]]] = {
+    "run-out": {"front.right.nonuniformity.runout": [[1, 3e-4, 30], [2, 1e-4, -60], [3, 1e-4, 0]]},
+    "radial force variation": {"front.right.nonuniformity.rfv": [[1, 40, 30], [2, 20, -60], [3, 20, 0]]},
+    "lateral force variation": {"front.right.nonuniformity.lfv": [[1, 40, 30], [2, 20, -60], [3, 20, 0]]},
+    "rolling radius": {"front.right.nonuniformity.rolling_runout": [[1, 3e-4, 30], [2, 1e-4, -60], [3, 1e-4, 0]]},
+    "brake torque": {"front.right.brake_variation.torque": [[1, 20, 30], [2, 10, -60], [3, 10, 0]]},
+}
+
+
+def lines_of(time: np.ndarray, records: np.ndarray, speed: float, orders: tuple[int, ...] = ORDERS) -> np.ndarray:
+    """Complex amplitudes of records from their last two seconds, by least squares; (channels, orders)."""
+    last = time >= time[-1] - 2.0
+    angle = speed * np.outer(time[last], orders)
+    basis = np.hstack([np.cos(angle), np.sin(angle), np.ones((angle.shape[0], 1))])
+    found = np.linalg.lstsq(basis, records[:, last].T, rcond=None)[0]
+    return np.asarray((found[: len(orders)] - 1j * found[len(orders) : -1]).T)
+
+
+def records_of(run: Run) -> np.ndarray:
+    return np.array([run[name] for name in CHANNELS])
+
+
+def solved(car: Car, kind: str) -> np.ndarray:
+    """Answer of the linear car, line by line, with the rows of the right front wheel from its points and its law."""
+    system, model = car.matrices.system, car.model.model
+    data, (history,) = mujoco.MjData(model), TABLES[kind].values()
+    mujoco.mj_fwdPosition(model, data)
+    wheel = next(wheel for wheel in car.vehicle.composition.wheels if wheel.name == "fr")
+    tyre = next(tyre for tyre in car.vehicle.composition.connections if tyre.name == "tyre_fr")
+    law, hub, spin = tyre.law, model.body(tyre.moving).id, np.zeros(model.nv)
+    assert isinstance(law, Tyre) and law.carcass_longitudinal and law.slip_stiffness
+    radius, spin[model.joint("spin_fr").dofadr[0]] = wheel.center[2] - wheel.patch[2], 1.0
+    center, turned, patch = np.zeros((3, 3, model.nv))
+    mujoco.mj_jac(model, data, center, turned, np.array(wheel.center), hub)
+    mujoco.mj_jac(model, data, patch, None, np.array(wheel.patch), hub)
+    slip, joints = center[0] - radius * (turned[1] + spin), system.constraints
+    stiffness, damping, carcass = law.stiffness[2], law.damping[2], law.carcass_longitudinal
+    relaxation = law.slip_stiffness / (SPEED / 3.6 * carcass)
+    result = np.zeros((len(CHANNELS), len(ORDERS)), dtype=complex)
+    for column, (order, amplitude, phase) in enumerate(history):
+        s = 1j * order * SPEED / 3.6 / radius
+        unit = amplitude * np.exp(1j * np.radians(phase))
+        force = {
+            "run-out": (stiffness + s * damping) * patch[2],
+            "radial force variation": (1.0 + s * damping / stiffness) * patch[2],
+            "lateral force variation": patch[1],
+            "rolling radius": -slip * carcass / (s + 1.0 / relaxation) * SPEED / 3.6 / radius,
+            "brake torque": spin,
+        }[kind]
+        drifts = 0.0 if system.branch_drifts is None else system.branch_drifts
+        branch = (system.branch_stiffness / (s + 1.0 / system.branch_time))[:, None] * (s * system.branch_rows + drifts)
+        whole = system.stiffness + s * system.damping + s * s * system.mass + system.effects.T @ branch
+        matrix = np.block([[whole, joints.T], [joints, np.zeros((len(joints), len(joints)))]])
+        motion = np.linalg.solve(matrix, np.append(unit * force, np.zeros(len(joints))))[: system.size]
+        result[:, column] = [s * s * (system.outputs[name][: system.size] @ motion) for name in CHANNELS]
+    return result
+
+
+@pytest.mark.parametrize("kind", TABLES)
+def test_a_linear_car_answers_a_wheel_as_its_matrices_say(kind):
+    car = Car.load("focus_road", {**TABLES[kind], **FREE})
+    run = car.run(road("level", SPEED, duration=12), engine="reduced", channels=CHANNELS)
+    validated(
+        "Applied forces",
+        f"Reduced engine, {kind} of one wheel, orders 1 to 3 at 100 km/h: acceleration of seat rail and knuckle",
+        lines_of(run.time, records_of(run), car.vehicle.composition.speeds["wheel_fr"]),
+        solved(car, kind),
+        source="second derivation: matrices with the joints as constraints, line by line",
+        # The plates are a spline through samples at 1 kHz.
+        peak=1e-4 if kind in ("run-out", "radial force variation") else 1e-6,
+    )
+
+
+@pytest.mark.parametrize("kind", ["run-out", "rolling radius", "brake torque"])
+def test_mujoco_answers_a_wheel_as_the_matrices_say(kind):
+    car = Car.load("focus_road", {**TABLES[kind], **FREE})
+    run = car.run(road("level", SPEED, duration=8), channels=CHANNELS)
+    validated(
+        "Applied forces",
+        f"MuJoCo, {kind} of one wheel, order 1 at 100 km/h: acceleration of seat rail and knuckle",
+        lines_of(run.time, records_of(run), car.vehicle.composition.speeds["wheel_fr"])[:, :1],
+        solved(car, kind)[:, :1],
+        source="second derivation: matrices with the joints as constraints, line by line",
+        peak=1e-3,
+    )
+    assert energies_of(run).residual < 1e-3
+
+
+BODY, WHEEL, SPRING, DAMPING, TYRE, DRAG = 300.0, 40.0, 2e4, 1500.0, 2e5, 120.0
+"""Quarter car: masses [kg], stiffness [N/m] and damping [N s/m] of the suspension and of the tyre."""
+
+
+def quarter_cars() -> CarMatrices:
+    """Two quarter cars with locked dampers beside their linear damping; the run-out is that of the right tyre."""
+    link = np.array([[1.0, -1.0], [-1.0, 1.0]])
+    wheels = np.array([[0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
+    matrices: CarMatrices = plain_matrices(
+        mass=np.kron(np.eye(2), np.diag([BODY, WHEEL])),
+        damping=np.kron(np.eye(2), DAMPING * link) + DRAG * wheels.T @ wheels,
+        stiffness=np.kron(np.eye(2), SPRING * link) + TYRE * wheels.T @ wheels,
+        dampers=np.array([0, 2]),
+        viscous=np.zeros(2),
+        plate_stiffness=TYRE * wheels,
+        plate_damping=DRAG * wheels,
+        tyre_stiffness=np.full(2, TYRE),
+        tyre_damping=np.full(2, DRAG),
+        outputs={"knuckle_fr_acc_z": wheels[0], "suspension_mount_fr_acc_z": np.eye(4)[0]},
+        body_rows={"body": np.zeros((6, 4))},
+        body_masses={"body": np.eye(6)},
+    )
+    turn = 2.0 * np.pi * 12.3
+    return dataclasses.replace(
+        matrices,
+        force_rows=np.zeros((1, 4)),
+        force_slips=np.zeros((1, 0)),
+        force_heights=np.array([[1.0, 0.0]]),
+        lines=ForceLines((turn,)),
+        coefficients=np.array([[3e-4, 2e-4]]),
+    )
+
+
+def test_a_quarter_car_answers_a_run_out_as_the_closed_form():
+    matrices = quarter_cars()
+    (turn,) = matrices.lines.frequencies
+    still = np.zeros(12001)
+    free = dataclasses.replace(load_vehicle().damper, viscous=0.0, coulomb_friction=0.0)
+    names = ["suspension_mount_fr_acc_z", "knuckle_fr_acc_z", "tyre_fr_force_z"]
+    run = simulate_reduced(
+        pole_model(matrices),
+        Signal(time=np.arange(12001) / 1e3, displacement={"fr": still, "fl": still}),
+        dampers=[free] * 2,
+        record_rate=1000.0,
+        tyre_load={"fr": 1e4, "fl": 1e4},
+        channels=names,
+    )
+    s, r = 1j * turn, 3e-4 - 2e-4j
+    suspension, tyre = SPRING + s * DAMPING, TYRE + s * DRAG
+    # M s^2 b = -S (b - w), m s^2 w = S (b - w) + T (r - w)
+    body_share = suspension / (BODY * s * s + suspension)
+    wheel = tyre * r / (WHEEL * s * s + BODY * s * s * body_share + tyre)
+    validated(
+        "Applied forces",
+        "run-out of the tyre of a quarter car, 12.3 Hz: acceleration of body and wheel, load of the tyre",
+        lines_of(run.time, np.array([run[name] for name in names]), turn, (1,))[:, 0],
+        np.array([s * s * body_share * wheel, s * s * wheel, tyre * (r - wheel)]),
+        source="closed form: M s2 b = -S (b - w), m s2 w = S (b - w) + T (r - w)",
+        rel=1e-4,
+    )
+
+
+def test_a_run_out_is_no_slope_on_a_road_either():
+    """On a wave of 3.1 Hz, whose slope acts, a run-out adds what it adds on a level road, along x too."""
+    time = np.arange(12001) / 1e3
+    wave = 2e-3 * (1.0 - np.cos(2.0 * np.pi * 3.1 * time))
+    car, bare = (Car.load("focus_road", {**changes, **FREE}) for changes in (TABLES["run-out"], {}))
+    waves = Signal(time=time, displacement=dict.fromkeys(car.vehicle.wheels, wave))
+    level = road("level", SPEED, duration=12)
+    found, without, smooth = (
+        one.run(on, engine="reduced", channels=CHANNELS) for one, on in ((car, waves), (bare, waves), (car, level))
+    )
+    turns = car.vehicle.composition.speeds["wheel_fr"] / (2.0 * np.pi)
+    added, expected = (
+        order_lines(smooth.time, records, turns, [1], begin=4.0).amplitude[:, 0]
+        for records in (records_of(found) - records_of(without), records_of(smooth))
+    )
+    # The present load on the slope has products of both, at other frequencies.
+    assert np.max(np.abs(added / expected - 1.0)) < 1e-3
+
+
+def test_a_batch_answers_wheels_as_single_cars_do():
+    """Cars of one batch with different run-outs, and with equal ones, are those of single runs."""
+    changes = [
+        TABLES["run-out"],
+        {"front.right.nonuniformity.runout": [[1.0, 1e-4, 0.0]]},
+        TABLES["rolling radius"],
+    ]
+    rolling: dict[str, object] = {"driving.speed": SPEED / 3.6}
+    cars = [Car.load("focus_road", {**rolling, **change}) for change in changes for _ in range(4)]
+    smooth = road("level", SPEED, duration=6)
+    singles = [car.run(smooth, engine="reduced", channels=CHANNELS) for car in cars[::4]]
+    batch = simulate_batch(
+        [car.poles for car in cars],
+        singles[0].signal,
+        dampers=[[damper.law for damper in car.vehicle.composition.dampers] for car in cars],
+        record_rate=1000.0,
+        tyre_load=[car.static.tyre_load for car in cars],
+        channels=["seat_rail_acc_z", "knuckle_fr_acc_x"],
+        step=2e-4,
+    )
+    for name, histories in batch.channels.items():
+        for index, history in enumerate(histories):
+            single = singles[index // 4][name]
+            assert np.std(history - single) < 2e-4 * np.std(single)
+
+
+def test_the_range_over_the_phases_contains_every_car_and_reaches_its_ends():
+    rows = {"front.imbalance.mass": 0.02, "front.imbalance.radius": 0.19, "front.nonuniformity.rfv": [[1, 40, 90]]}
+    smooth, name = road("level", 120, duration=6), "seat_rail_acc_z"
+    limits = []
+    for phase in (0.0, 60.0, 120.0, 180.0, 240.0, 300.0):
+        left = {"front.left.imbalance.angle": phase, "front.left.nonuniformity.rfv": [[1, 40, 90 + phase]]}
+        run = Car.load("focus_road", {**rows, **left}).run(smooth, engine="reduced")
+        (line,) = force_values(run)["orders"]
+        assert line["stuck_range"][name][0] <= line["stuck"][name] <= line["stuck_range"][name][1]
+        limits.append([*line["stuck_range"][name], line["stuck"][name]])
+    ranges = np.array(limits)
+    # Both sides of a car are alike, so that the right and the left alone shake the middle alike, the rail nearly.
+    assert np.ptp(ranges[:, :2], axis=0) == pytest.approx(0.0, abs=1e-6 * ranges[0, 1])
+    assert np.max(ranges[:, 2]) > 0.85 * ranges[0, 1] and np.min(ranges[:, 2]) < 0.5 * ranges[0, 1]
+    one = Car.load("focus_road", {f"front.right.{key[6:]}": value for key, value in rows.items()})
+    (line,) = force_values(one.run(smooth, engine="reduced"))["orders"]
+    assert "stuck_range" not in line
