@@ -122,7 +122,7 @@ def test_another_copy_of_the_library_is_an_error(monkeypatch: pytest.MonkeyPatch
 def test_the_offsets_are_checked_once_in_a_process(car: Car, monkeypatch: pytest.MonkeyPatch) -> None:
     structures.offsets.cache_clear()
     CompiledRows(prepared(car))
-    monkeypatch.setattr(structures, "scalar_offsets", lambda data: pytest.fail("checked again"))
+    monkeypatch.setattr(structures, "step_address", lambda: pytest.fail("checked again"))
     CompiledRows(prepared(car))
 
 

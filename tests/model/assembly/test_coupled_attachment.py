@@ -9,6 +9,7 @@ import pytest
 
 from tests.validation import validated
 from vehicle.errors import ConfigurationError
+from vehicle.model.assembly.connections import ElementLaw
 from vehicle.model.assembly.coupled_attachment import coupled_law
 from vehicle.model.parameters.axes import axes_along
 from vehicle.model.parameters.composition import PlacedConnection
@@ -45,7 +46,9 @@ def connection(law, axes=None):
 def test_the_rows_have_the_dynamic_stiffness_of_the_series(law, axes):
     """Z = (G + (K + s B + branch)^-1)^-1; exact at rest, the damper to first order in w G B."""
     compliance, turn = flexibility(), np.eye(3) if axes is None else np.array(axes)
-    k, b, k2, tau, directions = coupled_law(connection(law, axes), compliance)
+    fields = coupled_law(connection(law, axes), compliance)
+    rows, directions = ElementLaw(**fields), fields["directions"]
+    k, b, k2, tau = rows.stiffness, rows.damping, rows.branch_stiffness, rows.branch_time
     for frequency, allowed in ((0.0, 1e-10), (5.0, 1e-3), (50.0, 5e-3)):
         s = 2j * np.pi * frequency
         own = np.diag(np.array(law.stiffness) + s * np.array(law.damping))
@@ -66,13 +69,14 @@ def test_the_rows_have_the_dynamic_stiffness_of_the_series(law, axes):
 
 def test_an_ideal_joint_becomes_the_sheet_metal_itself():
     compliance = flexibility()
-    k, b, _, _, directions = coupled_law(connection(None), compliance)
+    fields = coupled_law(connection(None), compliance)
+    k, directions = fields["stiffness"], fields["directions"]
     validated(
         "Bushings, springs and stops", "stiffness of an ideal joint on sheet metal",
         directions.T @ np.diag(k) @ directions, np.linalg.inv(compliance), rel=1e-9, unit="N/m",
         source="closed form: inverse of the flexibility",
     )  # fmt: skip
-    np.testing.assert_allclose(b, 1e-4 * k)
+    np.testing.assert_allclose(fields["damping"], 1e-4 * k)
 
 
 def test_a_table_in_series_is_rejected():

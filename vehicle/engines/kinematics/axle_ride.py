@@ -37,7 +37,7 @@ from vehicle.engines.kinematics.axle_curves import design_slopes, opposite_rates
 from vehicle.engines.kinematics.axle_statics import AxlePosition, AxleStatics
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.model.laws.damper import viscous_law
-from vehicle.model.parameters.composition import PlacedDamper, PlacedWheel
+from vehicle.model.parameters.composition import PlacedWheel
 
 DAMPER_VELOCITY = 0.1
 """Damper velocity [m/s] at which a damper counts as a viscous constant: low-speed damping, which rules body motions."""
@@ -132,9 +132,6 @@ def axle_ride(car: CarModel, axle: str, dampers: DamperState = "sliding") -> Axl
         axle: table of the axle in the vehicle file, with two wheels.
         dampers: "stuck" or "sliding".
 
-    Returns:
-        The parameters.
-
     Raises:
         SimulationError: the axle has no equilibrium near its design position.
     """
@@ -147,7 +144,7 @@ def axle_ride(car: CarModel, axle: str, dampers: DamperState = "sliding") -> Axl
     springs, bars = opposite_rates(held)
     load, gravity = _mean([car.static.tyre_load[wheel.name] for wheel in wheels]), car.vehicle.gravity
     unsprung = float(equal.mass_moment) / len(wheels)
-    tracks = [_track([getattr(wheel, point)[1] for wheel in wheels]) for point in ("center", "patch")]
+    tracks = [float(np.ptp([getattr(wheel, point)[1] for wheel in wheels])) for point in ("center", "patch")]
     arm = 0.5 * tracks[0] * tracks[1]
     damping, roll_damping = (0.0 if stuck else _wheel_damping(car, axle, free, motion) for motion in (equal, opposite))
     return AxleRide(
@@ -169,24 +166,18 @@ def axle_rides(car: CarModel, dampers: DamperState = "sliding") -> dict[str, Axl
     return {name: axle_ride(car, name, dampers) for name in names}
 
 
-def axle_dampers(car: CarModel, axle: str) -> list[PlacedDamper]:
-    """Return the dampers of an axle: those whose numbers are in its table."""
-    return [damper for damper in car.vehicle.composition.dampers if damper.path.split(".")[0] == axle]
-
-
-def damper_constant(damper: PlacedDamper) -> float:
-    """Return the secant constant of a damper at `DAMPER_VELOCITY`, mean of bump and rebound [N s/m]."""
-    rebound, bump = viscous_law(damper.law).force(np.array([DAMPER_VELOCITY, -DAMPER_VELOCITY]))
-    return float(rebound - bump) / (2.0 * DAMPER_VELOCITY)
-
-
 def _wheel_damping(car: CarModel, axle: str, statics: AxleStatics, motion: AxlePosition) -> float:
     """Return the sum of c i_d^2 of the dampers of an axle for a motion of its wheels, per wheel [N s/m]."""
     ratios = {
         str(car.model.joint(strut.joint).name): float(ratio)
         for strut, ratio in zip(statics.parts.struts, motion.dampers, strict=True)
     }
-    total = sum(damper_constant(damper) * ratios[damper.joint] ** 2 for damper in axle_dampers(car, axle))
+    total = 0.0
+    for damper in car.vehicle.composition.dampers:
+        if damper.path.split(".")[0] == axle:
+            # The secant constant, mean of bump and rebound.
+            rebound, bump = viscous_law(damper.law).force(np.array([DAMPER_VELOCITY, -DAMPER_VELOCITY]))
+            total += float(rebound - bump) / (2.0 * DAMPER_VELOCITY) * ratios[damper.joint] ** 2
     return total / len(statics.wheels)
 
 
@@ -197,11 +188,6 @@ def _tyre(car: CarModel, wheels: Sequence[PlacedWheel]) -> Support:
     return Support(
         stiffness=_mean([law.stiffness[2] for law in tyres]), damping=_mean([law.damping[2] for law in tyres])
     )
-
-
-def _track(positions: list[float]) -> float:
-    """Return the distance of the outermost positions across the car [m]."""
-    return max(positions) - min(positions)
 
 
 def _mean(values: Sequence[float]) -> float:

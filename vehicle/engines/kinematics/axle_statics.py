@@ -24,7 +24,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from vehicle.engines.kinematics.axle_parts import Spring, TieTable, axle_parts
+from vehicle.engines.kinematics.axle_parts import Spring, Ties, axle_parts
 from vehicle.errors import SimulationError
 from vehicle.model.parameters.composition import PlacedWheel
 
@@ -117,8 +117,7 @@ class AxleStatics:
             held = [model.jnt_dofadr[strut.joint] for strut in self.parts.struts]
             self.parts = replace(self.parts, struts=(), columns=np.setdiff1d(self.parts.columns, held))
         self.wheels, self.columns = self.parts.wheels, self.parts.columns
-        soft, hard = ([tie for tie in self.parts.ties if (tie.stiffness is None) is ideal] for ideal in (False, True))
-        self.soft, self.hard = (TieTable.of(ties, model.site_bodyid) for ties in (soft, hard))
+        self.soft, self.hard = self.parts.soft, self.parts.hard
         self.standing = standing
         self.ground = self.parts.standing if standing else np.zeros_like(self.parts.standing)
         mujoco.mj_forward(model, self.data)
@@ -159,9 +158,6 @@ class AxleStatics:
         Args:
             travel: travel of each wheel [m], upwards.
             loads: force [N] and moment [N m] on each wheel at its contact point, (wheels, 6); none by default.
-
-        Returns:
-            Pose of each wheel.
 
         Raises:
             SimulationError: the iteration does not converge, or the linkage cannot reach the travel.
@@ -211,9 +207,8 @@ class AxleStatics:
 
     def jacobian(self, body: int, point: Vector) -> tuple[Vector, Vector]:
         """Return the Jacobians of displacement and rotation at a point of a body, (3, columns) each."""
-        moved, turned = np.zeros((3, self.model.nv)), np.zeros((3, self.model.nv))
-        mujoco.mj_jac(self.model, self.data, moved, turned, point, body)
-        return moved[:, self.columns], turned[:, self.columns]
+        moved, turned = self._jacobians(np.array([body]), point[None])
+        return moved[0], turned[0]
 
     def _jacobians(self, bodies: npt.NDArray[np.intp], points: Vector) -> tuple[Vector, Vector]:
         """Return the Jacobians of displacement and rotation at a point of each body, (k, 3, columns) each."""
@@ -223,24 +218,25 @@ class AxleStatics:
         own = both[..., self.columns]
         return own[:, 0], own[:, 1]
 
-    def _gaps(self, ties: TieTable) -> tuple[Vector, Vector, Vector]:
+    def _gaps(self, ties: Ties) -> tuple[Vector, Vector, Vector]:
         """Return displacements r [m], (k, 3), axes of the laws and of the carriers as columns, (k, 3, 3) each."""
         # Forces act along the directions of the law, torques about the axes of the carrier.
-        frames = self.data.site_xmat[ties.carrier].reshape(-1, 3, 3)
+        moving, carriers = ties.sites.T
+        frames = self.data.site_xmat[carriers].reshape(-1, 3, 3)
         axes = frames @ ties.ways
-        away = self.data.site_xpos[ties.moving] - self.data.site_xpos[ties.carrier]
+        away = self.data.site_xpos[moving] - self.data.site_xpos[carriers]
         return np.einsum("kij,ki->kj", axes, away), axes, frames
 
-    def _relative(self, ties: TieTable) -> tuple[Vector, Vector, Vector, Vector]:
+    def _relative(self, ties: Ties) -> tuple[Vector, Vector, Vector, Vector]:
         """Return r [m] and sin(angle) n of the moving parts in axes of the carriers, (k, 3), and their Jacobians."""
         gaps, axes, frames = self._gaps(ties)
-        count, points = len(gaps), self.data.site_xpos[ties.moving]
+        count, points = len(gaps), self.data.site_xpos[ties.sites[:, 0]]
         # The Jacobian of the carrier is that of its point under the moving part.
         moved, turned = (
             each[:count] - each[count:] for each in self._jacobians(ties.bodies, np.concatenate([points, points]))
         )
         back = frames.transpose(0, 2, 1)
-        relative = back @ self.data.site_xmat[ties.moving].reshape(-1, 3, 3)
+        relative = back @ self.data.site_xmat[ties.sites[:, 0]].reshape(-1, 3, 3)
         # sin(angle) n, the law of the runs (`vehicle/core/source/rotations.h`).
         angles = 0.5 * np.stack([relative[:, i, j] - relative[:, j, i] for i, j in ((2, 1), (0, 2), (1, 0))], axis=1)
         return gaps, angles, axes.transpose(0, 2, 1) @ moved, back @ turned
@@ -340,6 +336,8 @@ class AxleStatics:
         side = float(np.sign(self.at_rest[index][0][1]))
         # Outwards; along y in the design position.
         axle = side * self.data.xmat[self.wheels[index]].reshape(3, 3)[:, 1]
+        hub, seats = self.data.xpos[self.wheels[index]], self.data.site_xpos
+        nearest = min(self.parts.springs, key=lambda spring: np.linalg.norm(seats[spring.lower] - hub), default=None)
         return WheelPose(
             wheel_travel_m=float(center[2]),
             lateral_m=float(side * center[1]),
@@ -349,19 +347,8 @@ class AxleStatics:
             camber_deg=float(np.degrees(np.arcsin(-axle[2]))),
             toe_deg=float(np.degrees(np.arctan2(-axle[0], side * axle[1]))),
             load_n=float("nan") if self.ideal else load,
-            strut_length_m=self._shortened(index),
+            strut_length_m=float("nan") if nearest is None else self._length(nearest)[0] - nearest.length,
         )
-
-    def _shortened(self, index: int) -> float:
-        """Return the change of length of the spring nearest to a wheel [m]; nan for an axle without springs."""
-        away = [
-            float(np.linalg.norm(self.data.site_xpos[spring.lower] - self.data.xpos[self.wheels[index]]))
-            for spring in self.parts.springs
-        ]
-        if not away:
-            return float("nan")
-        spring = self.parts.springs[int(np.argmin(away))]
-        return self._length(spring)[0] - spring.length
 
 
 def _solved(system: Vector, right: Vector) -> Vector:

@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.engines.linear.part_motions import cross_matrix
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.row_layout import read_layout
 from vehicle.model.assembly.spec import fixed_masses
@@ -100,10 +101,6 @@ class BodyChange:
             stiffness[self.first + 3 : self.first + 6, self.modes] = -np.cross(displacements, support_force, axis=0)
         return stiffness + stiffness.T
 
-    def transformed(self, matrix: Vector) -> Vector:
-        """Transform a matrix A over the reference coordinates to T' A T, (n, n)."""
-        return matrix if self.whole is None else self.whole.T @ matrix @ self.whole
-
     def displaced_matrix(self, matrix: Vector) -> Vector:
         """Transform a matrix A, (n, n), to T' A T for a displaced origin of the body.
 
@@ -149,7 +146,7 @@ def body_change(vehicle: Vehicle, reference: CarModel, trimmed: Superelement) ->
     first = int(model.joint("body").dofadr[0])
     move, hanging = np.eye(size), np.zeros((size, size))
     turns = slice(first + 3, first + 6)
-    move[first : first + 3, turns] = _cross(shift)
+    move[first : first + 3, turns] = cross_matrix(shift)
     up = np.array([0.0, 0.0, 1.0])
     hanging[turns, turns] = shift[2] * np.eye(3) - np.outer(up, shift)
     if factor == 1.0:
@@ -167,9 +164,3 @@ def body_change(vehicle: Vehicle, reference: CarModel, trimmed: Superelement) ->
     return BodyChange(
         trimmed=scaled, body=after.body, move=move, whole=whole, shift=shift, hanging=hanging, first=first, modes=modes
     )
-
-
-def _cross(d: Vector) -> Vector:
-    """Return the matrix of the cross product d x, (3, 3)."""
-    x, y, z = d
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -26,7 +26,7 @@ from vehicle.engines.linear.displacement_laws import DIFFERENCE_STEP, Displaceme
 from vehicle.engines.linear.rolling_terms import rolling_terms
 from vehicle.engines.linear.system import LinearSystem
 from vehicle.engines.simulation.applied_forces import force_lines, force_rows, tyre_inputs
-from vehicle.engines.simulation.callbacks import installed
+from vehicle.engines.simulation.callbacks import standing_data
 from vehicle.engines.simulation.law_arrays import fluid_coordinates, model_numbers
 from vehicle.engines.simulation.row_layout import numeric, places_of, wheels_of
 from vehicle.engines.simulation.rows import Rows, joint_dampers
@@ -146,22 +146,30 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim, forces: Sequence[Pla
         model: compiled and trimmed car (not yet prepared for stepping).
         static: preloads of the car.
         forces: applied forces of the car, in the order of the model.
-
-    Returns:
-        The matrices.
     """
-    data = mujoco.MjData(model)
     rows = Rows(model, static.preload)
-    e = rows.layout
-    stiffness = _tangent_stiffness(rows)
-    with installed(rows):
-        mujoco.mj_forward(model, data)
+    e, soft = rows.layout, rows
+    if e.rubber.elements.size:
+        # The tangent has rubber friction without its limits.
+        soft = rows.anew()
+        soft.layout = e._replace(rubber=e.rubber._replace(limit=np.full_like(e.rubber.limit, np.inf)))
+    stiffness = -differences(soft, lambda data: data.qfrc_passive - data.qfrc_bias + data.qfrc_applied)
+    data = standing_data(rows)
     mass = np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, mass)
     jacobian = data.efc_J.reshape(e.row_count, model.nv).copy()
     dofs, still = e.dampers.dofs, np.zeros(len(e.tyres))
-    rows_of_bodies = _body_rows(model, data)
-    laws = law_matrices(rows, jacobian, joint_dampers(model), static.preload)
+    # Rows of velocity and angular velocity, and masses with inertia tensors, of the bodies that are parts.
+    rows_of_bodies, masses = dict[str, Vector](), dict[str, Vector]()
+    for body in range(1, model.nbody):
+        name = str(model.body(body).name)
+        if model.body_mocapid[body] < 0 and not name.startswith(COORDINATES):
+            rows_of_bodies[name], masses[name] = np.zeros((6, model.nv)), np.zeros((6, 6))
+            mujoco.mj_jacBodyCom(model, data, rows_of_bodies[name][:3], rows_of_bodies[name][3:], body)
+            masses[name][:3, :3] = model.body_mass[body] * np.eye(3)
+            frame = data.ximat[body].reshape(3, 3)
+            masses[name][3:, 3:] = frame @ np.diag(model.body_inertia[body]) @ frame.T
+    system_of_laws, car_of_laws = law_matrices(rows, jacobian, joint_dampers(model), static.preload)
     lines, coefficients = force_lines(forces)
     slips, heights = tyre_inputs(forces, e, wheels_of(model))
     rolling_bodies = set(model.dof_bodyid[e.rolling.spins].tolist())
@@ -179,11 +187,11 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim, forces: Sequence[Pla
             outputs={
                 name: np.concatenate([row, still]) for name, row in _outputs(model, data, e.modes.velocities).items()
             },
-            **laws.system,
+            **system_of_laws,
         ),
         dampers=dofs,
         damper_names=rows.laws.dampers,
-        **laws.car,
+        **car_of_laws,
         sensors=_sensors(rows, data),
         one_sided=frozenset(
             wheel for wheel, tyre in zip(wheels_of(model), e.tyres, strict=True) if tyre in e.bushings.one_sided
@@ -192,7 +200,7 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim, forces: Sequence[Pla
             str(model.body(i).name) for i, root in enumerate(model.body_weldid) if int(root) in rolling_bodies
         ),
         body_rows=rows_of_bodies,
-        body_masses=_body_masses(model, data),
+        body_masses=masses,
         body_centres={name: data.xipos[model.body(name).id].copy() for name in rows_of_bodies},
         carried_by={
             str(model.body(i).name): str(model.body(int(root)).name) for i, root in enumerate(model.body_weldid)
@@ -210,15 +218,10 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim, forces: Sequence[Pla
     )
 
 
-class LawMatrices(NamedTuple):
-    """Fields of `LinearSystem` and of `CarMatrices` that follow from the laws, except the stiffness matrix."""
-
-    system: dict[str, Any]
-    car: dict[str, Any]
-
-
-def law_matrices(rows: Rows, jacobian: Vector, joint_damping: Vector, preload: Vector) -> LawMatrices:
-    """Return the fields of `LinearSystem` and of `CarMatrices` that depend on the parameters of the laws.
+def law_matrices(
+    rows: Rows, jacobian: Vector, joint_damping: Vector, preload: Vector
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the fields of `LinearSystem` and of `CarMatrices` that follow from the laws, except the stiffness matrix.
 
     Args:
         rows: rows of the car at rest.
@@ -244,8 +247,8 @@ def law_matrices(rows: Rows, jacobian: Vector, joint_damping: Vector, preload: V
         rolling = rolling_terms(rows, preload)
         damping += rolling.damping
         inputs["input_damping"] = inputs["input_damping"] + rolling.slope
-    return LawMatrices(
-        system={
+    return (
+        {
             "damping": damping,
             "branch_rows": branch_rows,
             **({} if rolling is None else rolling.branches(branch_rows, present)),
@@ -254,7 +257,7 @@ def law_matrices(rows: Rows, jacobian: Vector, joint_damping: Vector, preload: V
             "branch_time": bushings.branch_time[present],
             **inputs,
         },
-        car={
+        {
             "viscous": viscous,
             "laws": over_displacement,
             "sliders": slider_elements(rows),
@@ -264,15 +267,6 @@ def law_matrices(rows: Rows, jacobian: Vector, joint_damping: Vector, preload: V
             "slope": np.zeros((len(damping), 0)) if rolling is None else rolling.slope,
         },
     )
-
-
-def _tangent_stiffness(rows: Rows) -> Vector:
-    """Return K = -dF/du of all static forces, by central differences; rubber friction without its limits."""
-    rubber = rows.layout.rubber
-    if rubber.elements.size:
-        rows = rows.anew()
-        rows.layout = rows.layout._replace(rubber=rubber._replace(limit=np.full_like(rubber.limit, np.inf)))
-    return -differences(rows, lambda data: data.qfrc_passive - data.qfrc_bias + data.qfrc_applied)
 
 
 def differences(rows: Rows, read: Callable[[mujoco.MjData], Vector]) -> Vector:
@@ -330,25 +324,3 @@ def _outputs(model: mujoco.MjModel, data: mujoco.MjData, modes: slice) -> dict[s
         for axis, row in zip(AXES, jacobian, strict=True):
             outputs[f"{point}_acc_{axis}"] = row
     return outputs
-
-
-def _body_rows(model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, Vector]:
-    velocity_rows = {}
-    for body in range(1, model.nbody):
-        if model.body_mocapid[body] < 0 and not model.body(body).name.startswith(COORDINATES):
-            rows = np.zeros((6, model.nv))
-            mujoco.mj_jacBodyCom(model, data, rows[:3], rows[3:], body)
-            velocity_rows[model.body(body).name] = rows
-    return velocity_rows
-
-
-def _body_masses(model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, Vector]:
-    mass_matrices = {}
-    for body in range(1, model.nbody):
-        if model.body_mocapid[body] < 0 and not model.body(body).name.startswith(COORDINATES):
-            matrix = np.zeros((6, 6))
-            matrix[:3, :3] = model.body_mass[body] * np.eye(3)
-            frame = data.ximat[body].reshape(3, 3)
-            matrix[3:, 3:] = frame @ np.diag(model.body_inertia[body]) @ frame.T
-            mass_matrices[model.body(body).name] = matrix
-    return mass_matrices

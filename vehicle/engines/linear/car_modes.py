@@ -14,7 +14,7 @@ from vehicle.engines.linear.modal_scale import modal_a
 from vehicle.engines.linear.motion_names import description, motion_shares
 from vehicle.engines.linear.natural_modes import grows, natural_modes
 from vehicle.engines.linear.part_motions import group_of, rigid_rows
-from vehicle.engines.linear.strained_part import holding_parameter
+from vehicle.engines.linear.strained_part import parameter_text, strained_elements
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.errors import ConfigurationError
 
@@ -133,10 +133,11 @@ def require_stable(car: CarModel, matrices: CarMatrices, poles: npt.NDArray[np.c
             "alone, or check cornering_stiffness: the front axle may have too much of it. If the car is "
             "unstable with driving.speed=0 too, its springs are too soft: see python -m vehicle.modes"
         )
+    strained = strained_elements(car, fastest.growth + 0j, fastest.shape)
     raise ConfigurationError(
         f"the car is statically unstable: {fastest.description.removeprefix('grows: ')} grows by a factor e in "
         f"{1.0 / fastest.growth:.3g} s. Its springs cannot support its weight and preloads; most strained is "
-        f"{holding_parameter(car, fastest.growth + 0j, fastest.shape)}. Check this parameter against "
+        f"{parameter_text(car, strained[0].path)}. Check this parameter against "
         f"body.mass ({vehicle.body.mass:g} kg), body.cog and gravity ({vehicle.gravity:g} m/s2), or see "
         "python -m vehicle.modes"
     )

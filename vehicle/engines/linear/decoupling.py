@@ -25,6 +25,7 @@ import scipy
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.first_order import first_order
 from vehicle.engines.linear.natural_modes import natural_modes
+from vehicle.engines.linear.part_motions import cross_matrix
 from vehicle.engines.linear.system import LinearSystem
 from vehicle.errors import ConfigurationError
 
@@ -159,19 +160,15 @@ def _rigid(matrices: CarMatrices, part: str) -> tuple[Vector, Vector]:
     centre = masses @ centres / np.sum(masses)
     inertia = np.diag([*[float(np.sum(masses))] * 3, 0.0, 0.0, 0.0])
     for body, mass, position in zip(bodies, masses, centres, strict=True):
-        arm = _cross(position - centre)
+        arm = cross_matrix(position - centre)
         inertia[3:, 3:] += matrices.body_masses[body][3:, 3:] - mass * arm @ arm
     rows = matrices.body_rows[part].copy()
-    rows[:3] -= _cross(centre - matrices.body_centres[part]) @ rows[3:]
+    rows[:3] -= cross_matrix(centre - matrices.body_centres[part]) @ rows[3:]
     return rows, inertia
 
 
 def _hung(matrices: CarMatrices, rows: Vector, part: str) -> Vector:
-    """Return a basis of the motions of a part, and of what hangs between it and the body alone; (n, motions).
-
-    Raises:
-        ConfigurationError: the part is on joints, or hangs on other parts than the body.
-    """
+    """Return a basis of the motions of a part, and of what hangs between it and the body alone; (n, motions)."""
     system = matrices.system
     body = np.any(matrices.body_rows["body"] != 0.0, axis=0)
     body[matrices.modal] = True
@@ -199,9 +196,3 @@ def _mount_stiffness(system: LinearSystem, rows: Vector, hung: Vector) -> Vector
     stiffness = whole.T @ hung.T @ system.stiffness @ hung @ whole
     coupling, condensed = stiffness[:6, 6:], stiffness[6:, 6:]
     return np.asarray(stiffness[:6, :6] - coupling @ np.linalg.pinv(condensed) @ coupling.T)
-
-
-def _cross(arm: Vector) -> Vector:
-    """Return the matrix of the cross product arm x v."""
-    x, y, z = arm
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

@@ -47,9 +47,6 @@ def steady_motion(
         frequency: lines [Hz], (m,).
         driven: amplitude of each input relative to the driven displacement, (w,).
         stuck: lock the sliding pairs; otherwise they have no friction.
-
-    Returns:
-        The motion.
     """
     s = 2j * np.pi * np.atleast_1d(np.asarray(frequency, dtype=float))
     share, basis = np.asarray(driven, dtype=float), free_basis(system, stuck=stuck)
@@ -90,13 +87,7 @@ def _friction(
 ) -> Complex:
     """Return the forces of locked sliding pairs, which the equation of motion lacks; (p, m).
 
-    Args:
-        system: a single system.
-        s: complex frequencies; (m,).
-        motion: displacements; (n, m).
-        branch: forces of the Maxwell branches; (b, m).
-        driving: forces of the driven displacements; (n, m).
-        stuck: True if the sliding pairs are locked; otherwise the forces are zero.
+    `driving` are the forces of the driven displacements, (n, m); the other arguments are those of `SteadyMotion`.
     """
     if not (stuck and len(system.slide_rows)):
         return np.zeros((len(system.slide_rows), len(s)), dtype=complex)

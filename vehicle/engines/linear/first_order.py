@@ -118,9 +118,6 @@ def first_order(system: LinearSystem, *, stuck: bool = False) -> FirstOrder:
     Args:
         system: the matrices.
         stuck: lock the sliding pairs (of a single system) instead of leaving their forces open.
-
-    Returns:
-        The first-order form.
     """
     basis = free_basis(system, stuck=stuck)
     mass = basis.T @ system.mass @ basis

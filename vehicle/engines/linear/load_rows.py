@@ -21,8 +21,9 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.linear.car_matrices import CarMatrices
-from vehicle.engines.linear.displacement_laws import BUSHING, DIFFERENCE_STEP, SPRING, STOP, DisplacementLaw, law_rows
-from vehicle.engines.simulation.callbacks import installed
+from vehicle.engines.linear.displacement_laws import BUSHING, DIFFERENCE_STEP, SPRING, STOP, law_rows
+from vehicle.engines.linear.part_motions import cross_matrix
+from vehicle.engines.simulation.callbacks import standing_data
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.load_channels import LoadPlaces, spring_coordinates
 from vehicle.engines.simulation.rows import Rows
@@ -86,15 +87,12 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
         The rows in the order of `LoadPlaces.names`.
     """
     model, system = car.model, matrices.system
-    rows, data = Rows(model, car.static.preload), mujoco.MjData(model)
-    with installed(rows):
-        mujoco.mj_forward(model, data)
+    rows = Rows(model, car.static.preload)
+    data = standing_data(rows)
     jacobian = data.efc_J.reshape(-1, model.nv).copy()
     load_places, bushings, preload = LoadPlaces(car, rows), rows.layout.bushings, car.static.preload
     joint_forces = _joint_forces(matrices)
-    widths = [model.nv] * 3 + [len(system.branch_time)] + [len(system.inputs)] * 2
-    widths += [len(matrices.dampers), len(matrices.laws), matrices.slope.shape[1]]
-    fields = ("displacement", "velocity", "acceleration", "branch", "height", "height_rate", "friction", "law", "slope")
+    widths = _widths(matrices)
     terms_of: dict[str, tuple[float, dict[str, Vector]]] = {}
     with_law = {int(row_indices[0]): index for index, row_indices in enumerate(bushings.rows)}
     branches = np.cumsum(bushings.branch_stiffness.ravel() > 0.0).reshape(bushings.rows.shape) - 1
@@ -106,7 +104,7 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
             terms = {key: frame.T @ rows_[first : first + 3] for key, rows_ in joint_forces.items()}
             rotation = np.zeros((3, model.nv))
             mujoco.mj_jacBody(model, data, None, rotation, carrier)
-            terms["displacement"] = terms["displacement"] + frame.T @ _cross(preload[row_indices]) @ rotation
+            terms["displacement"] = terms["displacement"] + frame.T @ cross_matrix(preload[row_indices]) @ rotation
             static = frame.T @ preload[row_indices]
         else:
             index = with_law[int(row_indices[0])]
@@ -115,10 +113,11 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
             terms = {
                 "displacement": -bushings.stiffness[index][:, None] * element_rows,
                 "velocity": -bushings.damping[index][:, None] * element_rows,
-                "branch": np.zeros((3, widths[3])),
-                "height": np.zeros((3, widths[4])),
-                "height_rate": np.zeros((3, widths[4])),
-                "law": np.array([-_axis_of(law, index) for law in matrices.laws]).reshape(-1, 3).T,
+                **{field: np.zeros((3, widths[field])) for field in ("branch", "height", "height_rate")},
+                "law": np.reshape(
+                    [-(law.element[:2] == (BUSHING, index)) * np.eye(3)[law.element[2]] for law in matrices.laws],
+                    (-1, 3),
+                ).T,
             }
             for axis in np.flatnonzero(bushings.branch_stiffness[index] > 0.0).tolist():
                 terms["branch"][axis, branches[index, axis]] = -1.0
@@ -147,7 +146,7 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
         terms_of[f"tyre_{wheel}_force_x"] = static, {**slip, "height_rate": along, "slope": along}
     stops = stop_rows(matrices, [damper.law for damper in car.vehicle.composition.dampers])
     for index, name in enumerate(stops.names):
-        terms_of[name] = float(stops.static[index]), {field: getattr(stops, field)[index] for field in fields}
+        terms_of[name] = float(stops.static[index]), {field: getattr(stops, field)[index] for field in widths}
     for index, ((name, row), stiffness) in enumerate(
         zip(load_places.springs, rows.layout.springs.stiffness, strict=True)
     ):
@@ -172,7 +171,7 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
     selected = [terms_of[name] for name in load_places.names]
     arrays = {
         field: np.array([terms.get(field, np.zeros(width)) for _, terms in selected]).reshape(len(selected), width)
-        for field, width in zip(fields, widths, strict=True)
+        for field, width in widths.items()
     }
     return LoadRows(names=load_places.names, static=np.array([static for static, _ in selected]), **arrays)
 
@@ -207,25 +206,22 @@ def displacement_rows(matrices: CarMatrices, rows: Vector) -> LoadRows:
         matrices: matrices of the car.
         rows: rows over u; (l, n).
     """
-    system, count = matrices.system, len(rows)
-    wheels = len(system.inputs)
+    count = len(rows)
+    names = tuple(f"coordinate_{index}" for index in range(count))
+    none = {field: np.zeros((count, width)) for field, width in _widths(matrices).items()}
+    return LoadRows(names=names, static=np.zeros(count), **{**none, "displacement": rows})
 
-    def none(columns: int) -> Vector:
-        return np.zeros((count, columns))
 
-    return LoadRows(
-        names=tuple(f"coordinate_{index}" for index in range(count)),
-        static=np.zeros(count),
-        displacement=rows,
-        velocity=none(len(system.mass)),
-        acceleration=none(len(system.mass)),
-        branch=none(len(system.branch_time)),
-        height=none(wheels),
-        height_rate=none(wheels),
-        friction=none(len(matrices.dampers)),
-        law=none(len(matrices.laws)),
-        slope=none(matrices.slope.shape[1]),
-    )
+def _widths(matrices: CarMatrices) -> dict[str, int]:
+    """Return the numbers of columns of the rows of loads."""
+    system, wheels = matrices.system, len(matrices.system.inputs)
+    widths = dict.fromkeys(("displacement", "velocity", "acceleration"), len(system.mass))
+    widths |= {"branch": len(system.branch_time), "height": wheels, "height_rate": wheels}
+    return widths | {
+        "friction": len(matrices.dampers),
+        "law": len(matrices.laws),
+        "slope": matrices.slope.shape[1],
+    }
 
 
 def _joint_forces(matrices: CarMatrices) -> dict[str, Vector]:
@@ -243,14 +239,3 @@ def _joint_forces(matrices: CarMatrices) -> dict[str, Vector]:
         "law": split @ law_rows(matrices.laws, system.size).T,
         "slope": -split @ matrices.slope,
     }
-
-
-def _axis_of(law: DisplacementLaw, bushing: int) -> Vector:
-    """Return the unit vector of the axis of a law of a bushing; zeros for the law of another element."""
-    return np.asarray((law.element[:2] == (BUSHING, bushing)) * np.eye(3)[law.element[2]])
-
-
-def _cross(vector: Vector) -> Vector:
-    """Return the matrix [a]x of the cross product a x b."""
-    x, y, z = vector
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

@@ -108,9 +108,6 @@ def participation(
         stuck: True for locked dampers, False for their viscous part without friction.
         wheel: wheel whose plate moves.
 
-    Returns:
-        The contributions.
-
     Raises:
         ConfigurationError: the channel is not an acceleration of the body, or the body is rigid.
     """

@@ -51,9 +51,6 @@ def mode_shares(
         frequency: lines [Hz], (m,).
         plates: complex amplitudes of the plate displacements at the lines [m], (w, m).
         stuck: True for locked dampers, False for their viscous part without friction.
-
-    Returns:
-        The shares.
     """
     form = first_order(system, stuck=stuck)
     lines, driven = 2j * np.pi * np.asarray(frequency, dtype=float), np.asarray(plates, dtype=complex)

@@ -69,11 +69,8 @@ def _unit_rows(matrices: CarMatrices, bodies: list[str]) -> Vector:
     momentum = np.zeros_like(matrices.body_rows[bodies[0]][:3])
     angular_momentum, inertia = np.zeros_like(momentum), np.zeros((3, 3))
     for body, mass, position in zip(bodies, masses, centres, strict=True):
-        rows, body_inertia, arm = (
-            matrices.body_rows[body],
-            matrices.body_masses[body][3:, 3:],
-            _cross(position - centre),
-        )
+        rows, body_inertia = matrices.body_rows[body], matrices.body_masses[body][3:, 3:]
+        arm = cross_matrix(position - centre)
         momentum += mass * rows[:3]
         angular_momentum += body_inertia @ rows[3:] + mass * arm @ rows[:3]
         inertia += body_inertia - mass * arm @ arm
@@ -83,7 +80,7 @@ def _unit_rows(matrices: CarMatrices, bodies: list[str]) -> Vector:
     return np.vstack([momentum / np.sqrt(total), root @ angular_momentum])
 
 
-def _cross(arm: Vector) -> Vector:
-    """Return the matrix of the cross product arm x v."""
+def cross_matrix(arm: Vector) -> Vector:
+    """Return the matrix [a]x of the cross product a x b, (3, 3)."""
     x, y, z = arm
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

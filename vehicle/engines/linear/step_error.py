@@ -99,9 +99,6 @@ def accurate_step(car: CarModel, matrices: CarMatrices) -> float:
         car: compiled and trimmed car with the first step to try.
         matrices: matrices of the car.
 
-    Returns:
-        The time step [s].
-
     Raises:
         ConfigurationError: the car is unstable, or fails at every step down to `SMALLEST_STEP`; the message names the
             moving part and the responsible parameter.
@@ -283,9 +280,7 @@ class _StepCheck:
     def _ringing(self, one_step: StepMap, step: float) -> StepError | None:
         """Return the acceleration with the largest error of its ringing after a step of friction, if above the limit.
 
-        Args:
-            one_step: one-step map of the car with sliding dampers.
-            step: time step [s].
+        `one_step` is the one-step map of the car with sliding dampers.
         """
         values, vectors = np.linalg.eig(one_step.matrix)
         form = self.forms[False]

@@ -19,13 +19,12 @@ import copy
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import mujoco
 import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.first_order import FirstOrder
-from vehicle.engines.simulation.callbacks import installed
+from vehicle.engines.simulation.callbacks import standing_data
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.rows import Rows, damping_factors, joint_dampers, joint_weights
 
@@ -80,11 +79,8 @@ def step_rows(
     model = copy.copy(car.model)
     model.opt.timestep = timestep
     rows = Rows(model, car.static.preload)
-    data = mujoco.MjData(model)
-    with installed(rows):
-        mujoco.mj_forward(model, data)
     e, weights_of_step = rows.layout, rows.weights
-    jacobian = data.efc_J.reshape(e.row_count, model.nv)
+    jacobian = standing_data(rows).efc_J.reshape(e.row_count, model.nv)
     weights = np.zeros(e.row_count)
     weights[e.bushings.rows] = weights_of_step.impedance
     weights[e.springs.rows] = weights_of_step.spring_impedance
@@ -111,9 +107,6 @@ def step_map(rows: StepRows, form: FirstOrder) -> StepMap:
     Args:
         rows: terms of the rows for the step.
         form: first-order form of the car with its dampers stuck or sliding.
-
-    Returns:
-        The one-step map.
     """
     h, basis, system = rows.timestep, form.basis, form.system
     branch, size, position_count = system.branch_rows @ basis, basis.shape[1], form.placed

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import mujoco
 import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.displacement_laws import DIFFERENCE_STEP, STOP
-from vehicle.engines.simulation.callbacks import installed
+from vehicle.engines.simulation.callbacks import standing_data
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.force_curves import curve_of
 from vehicle.engines.simulation.row_layout import numeric
@@ -71,9 +70,7 @@ def strained_elements(car: CarModel, pole: complex, shape: Complex) -> list[Stra
         shape: displacements of the mode; (n,).
     """
     rows = Rows(car.model, car.static.preload)
-    data = mujoco.MjData(car.model)
-    with installed(rows):
-        mujoco.mj_forward(car.model, data)
+    data = standing_data(rows)
     e, b, dampers = rows.layout, rows.layout.bushings, rows.layout.dampers
     jacobian = data.efc_J.reshape(e.row_count, car.model.nv)
     speed, unit = abs(pole), np.eye(car.model.nv)
@@ -149,12 +146,3 @@ def parameter_text(car: CarModel, path: str) -> str:
         return f"{path} ({value_of(car.vehicle, path):g})"
     except ConfigurationError:
         return path
-
-
-def holding_parameter(car: CarModel, pole: complex, shape: Complex) -> str:
-    """Return path and value of the parameter whose element has the largest work in a mode.
-
-    Args:
-        car, pole, shape: see `strained_elements`.
-    """
-    return parameter_text(car, strained_elements(car, pole, shape)[0].path)

@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -77,7 +77,7 @@ class VariantTerms:
         self.rows = Rows(model)
         rows_at_rest = self.rows.anew(car.static.preload)
         self.numbers = element_numbers(car.vehicle, car.superelement)
-        self.rest_state = at_rest(self.rows, mujoco.MjData(self.rows.model))
+        self.rest_state = at_rest(self.rows)
         geometric, self.by_preload = _geometric_stiffness(rows_at_rest)
         same = BodyChange(trimmed=trimmed_body, body=car.superelement)
         self.sum = self._stiffness(rows_at_rest, joint_springs(model), car.static.preload, self.rest_state, same)
@@ -127,15 +127,18 @@ class VariantTerms:
         for name, (stiffness, damping) in _fields(values, "joint/"):
             dof = rows.model.joint(name).dofadr[0]
             springs[dof], dampers[dof] = stiffness, damping
-        to_new, parts = change.columns, self._masses(element_values, change)
-        rest_state = AtRest(
-            jacobian=to_new(_with_fluid_columns(self.rest_state.jacobian, rows)),
-            turned=change.rotations(self.rest_state.turned),
-            weight=parts.weight,
-        )
+        to_new, (bodies, mass, weight, geometric) = change.columns, self._masses(element_values, change)
+        # The rows of the fluids contain Kb/K0 of their mounts.
+        fluids, jacobian = rows.layout.fluids, self.rest_state.jacobian.copy()
+        jacobian[rows.layout.bushings.rows[fluids.elements, 2], fluids.dofs] = fluids.factors
+        turned = change.rotations(self.rest_state.turned)
+        rest_state = AtRest(jacobian=to_new(jacobian), turned=turned, weight=weight)
         settled = settle(rows, rest_state, springs)
-        if _near_breakpoint(rows):
-            return None
+        tables = rows.layout.tables
+        for index in np.flatnonzero(tables.kinds < 2).tolist():
+            # So near to a breakpoint a law has no tangent.
+            if np.any(np.abs(curve_of(tables, index).knots - tables.at[index]) < BREAKPOINT_MARGIN):
+                return None
         preload, count = settled.preload, len(rest_state.jacobian)
         residual = (
             unsolved(rows.layout, rest_state.weight)
@@ -146,18 +149,17 @@ class VariantTerms:
         residual[rows.layout.rolling.spins] = 0.0
         static = static_loads(rows, settled, residual)
         require_standing(vehicle, rows, static)
-        laws, reference = law_matrices(rows, rest_state.jacobian, dampers, preload), self.matrices.system
-        stiffness = parts.geometric + self._stiffness(rows, springs, preload, rest_state, change)
+        system_of_laws, car_of_laws = law_matrices(rows, rest_state.jacobian, dampers, preload)
+        reference = self.matrices.system
+        stiffness = geometric + self._stiffness(rows, springs, preload, rest_state, change)
         stiffness += change.weight_stiffness(rest_state.weight)
         system = replace(
             reference,
-            mass=parts.mass,
+            mass=mass,
             stiffness=stiffness,
             constraints=rest_state.jacobian[rows.layout.joints.ravel()],
-            outputs=reference.outputs
-            if change.same
-            else {name: to_new(row) for name, row in reference.outputs.items()},
-            **laws.system,
+            outputs={name: to_new(row) for name, row in reference.outputs.items()},
+            **system_of_laws,
         )
         lines, coefficients = force_lines(vehicle.composition.forces)
         matrices = replace(
@@ -167,10 +169,9 @@ class VariantTerms:
             force_rows=to_new(self.matrices.force_rows),
             lines=lines,
             coefficients=coefficients,
-            body_rows=parts.rows,
-            body_masses=parts.masses,
             body_centres={**self.matrices.body_centres, "body": np.array(vehicle.body.cog)},
-            **laws.car,
+            **bodies,
+            **car_of_laws,
         )
         return CarVariant(matrices=matrices, static=static, change=change)
 
@@ -182,7 +183,8 @@ class VariantTerms:
         diagonal = np.zeros(e.row_count)
         diagonal[e.bushings.rows], diagonal[e.springs.rows] = e.bushings.stiffness, e.springs.stiffness
         stiffness: Vector = j.T @ (diagonal[:, None] * j)
-        stiffness += change.transformed((self.by_preload @ preload).reshape(j.shape[1], -1))
+        preloaded = (self.by_preload @ preload).reshape(j.shape[1], -1)
+        stiffness += preloaded if change.whole is None else change.whole.T @ preloaded @ change.whole
         rotations = rest_state.turned.reshape(-1, j.shape[1])
         stiffness += rotations.T @ (np.repeat(e.rotations.stiffness, 3)[:, None] * rotations)
         stiffness[np.diag_indices(len(stiffness))] += springs
@@ -195,8 +197,13 @@ class VariantTerms:
             stiffness[dof, dof] += (end_forces[1] - end_forces[0]) / (2.0 * DIFFERENCE_STEP)
         return stiffness
 
-    def _masses(self, element_values: list[Numbers], change: BodyChange) -> _Masses:
-        """Return the mass terms of a car with other masses of its parts."""
+    def _masses(
+        self, element_values: list[Numbers], change: BodyChange
+    ) -> tuple[dict[str, Any], Vector, Vector, Vector]:
+        """Return the mass terms of a car with other masses of its parts.
+
+        Rows and masses of the parts, M, generalised weight, and the geometric stiffness of the weight.
+        """
         masses, system = dict(self.matrices.body_masses), self.matrices.system
         mass, weight, geometric = system.mass, self.rest_state.weight, system.stiffness - self.sum
         gravity, body_rows = float(self.car.model.opt.gravity[2]), self.matrices.body_rows
@@ -204,11 +211,8 @@ class VariantTerms:
             # Remove the trimmed body before its origin moves, and add it at the new origin.
             value, rows = masses["body"], body_rows["body"]
             mass, weight = mass - rows.T @ value @ rows, weight - gravity * value[0, 0] * rows[2]
-            mass, geometric, weight = (
-                change.displaced_matrix(mass),
-                change.displaced_matrix(geometric),
-                change.displaced_rows(weight),
-            )
+            mass, geometric = change.displaced_matrix(mass), change.displaced_matrix(geometric)
+            weight = change.displaced_rows(weight)
             body_rows = {
                 name: element if name == "body" else change.displaced_rows(element)
                 for name, element in body_rows.items()
@@ -216,9 +220,10 @@ class VariantTerms:
             mass, weight = mass + rows.T @ value @ rows, weight + gravity * value[0, 0] * rows[2]
         for element, reference in zip(element_values, self.numbers, strict=True):
             for name, value in _fields({} if element is reference else element, "mass/"):
-                old_mass, rows = masses[name], body_rows[name]
-                masses[name] = _mass_matrix(value)
-                added = masses[name] - old_mass
+                rows, (body_mass, xx, yy, zz, xy, xz, yz) = body_rows[name], value
+                tensor = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
+                new = np.asarray(scipy.linalg.block_diag(body_mass * np.eye(3), tensor))
+                added, masses[name] = new - masses[name], new
                 mass = mass + rows.T @ added @ rows
                 weight = weight + gravity * added[0, 0] * rows[2]
                 geometric = geometric + added[0, 0] * change.displaced_matrix(self.weight_terms[name])
@@ -229,17 +234,7 @@ class VariantTerms:
                 mass[dof, dof] = inertia
         if change.hanging is not None:
             geometric = geometric + change.displaced_matrix(gravity * masses["body"][0, 0] * change.hanging)
-        return _Masses(masses=masses, rows=body_rows, mass=mass, weight=weight, geometric=geometric)
-
-
-class _Masses(NamedTuple):
-    """Masses of the parts and their rows, M, generalised weight, and the geometric stiffness of the weight."""
-
-    masses: dict[str, Vector]
-    rows: dict[str, Vector]
-    mass: Vector
-    weight: Vector
-    geometric: Vector
+        return {"body_rows": body_rows, "body_masses": masses}, mass, weight, geometric
 
 
 def same_geometry(vehicle: Vehicle, other: Vehicle) -> bool:
@@ -264,24 +259,17 @@ def same_geometry(vehicle: Vehicle, other: Vehicle) -> bool:
         for part, other_part in zip(car.parts, reference.parts, strict=False):
             if part.parent == "body" and (part.numbers != other_part.numbers or (scaled and part.seat is None)):
                 return False
-    return (
-        _differ_only_in(car.parts, reference.parts, "numbers")
-        and _differ_only_in(car.connections, reference.connections, "law", "rolling")
-        and _differ_only_in(car.springs, reference.springs, "law")
-        and _differ_only_in(car.joint_springs, reference.joint_springs, "law")
-        and _differ_only_in(car.dampers, reference.dampers, "law")
-        and _differ_only_in(car.forces, reference.forces, "law", "speed")
-        and [force.mean for force in car.forces] == [force.mean for force in reference.forces]
-    )
-
-
-def _differ_only_in(elements: tuple[Any, ...], reference: tuple[Any, ...], *fields: str) -> bool:
-    """Return True if elements differ only in the given fields."""
-    return len(elements) == len(reference) and all(
-        element is reference_element
-        or replace(element, **{name: getattr(reference_element, name) for name in fields}) == reference_element
-        for element, reference_element in zip(elements, reference, strict=True)
-    )
+    # The fields in which elements may differ.
+    free = {"parts": ("numbers",), "connections": ("law", "rolling"), "forces": ("law", "speed")}
+    for name in ("parts", "connections", "springs", "joint_springs", "dampers", "forces"):
+        elements, others = getattr(car, name), getattr(reference, name)
+        if len(elements) != len(others):
+            return False
+        for element, one in zip(elements, others, strict=True):
+            varied = {field: getattr(one, field) for field in free.get(name, ("law",))}
+            if element is not one and replace(element, **varied) != one:
+                return False
+    return [force.mean for force in car.forces] == [force.mean for force in reference.forces]
 
 
 def _same_fields(values: Numbers, reference: Numbers) -> bool:
@@ -300,29 +288,6 @@ def _same_fields(values: Numbers, reference: Numbers) -> bool:
 def _fields(values: Mapping[str, Vector], prefix: str) -> Iterator[tuple[str, Vector]]:
     """Return the fields whose name has a prefix, by the rest of their name."""
     return ((name.removeprefix(prefix), value) for name, value in values.items() if name.startswith(prefix))
-
-
-def _with_fluid_columns(jacobian: Vector, rows: Rows) -> Vector:
-    """Return the Jacobian of the rows with the factors of the fluids of the rows: they contain Kb/K0 of the mounts."""
-    fluids = rows.layout.fluids
-    changed = jacobian.copy()
-    changed[rows.layout.bushings.rows[fluids.elements, 2], fluids.dofs] = fluids.factors
-    return changed
-
-
-def _near_breakpoint(rows: Rows) -> bool:
-    """Return True if a law over displacement is at rest so near to a breakpoint that it has no tangent."""
-    tables = rows.layout.tables
-    return any(
-        bool(np.any(np.abs(curve_of(tables, index).knots - tables.at[index]) < BREAKPOINT_MARGIN))
-        for index in np.flatnonzero(tables.kinds < 2).tolist()
-    )
-
-
-def _mass_matrix(numbers: Vector) -> Vector:
-    """Return mass [kg] and inertia tensor [kg m2] of a part, (6, 6), from the values of `mass_numbers`."""
-    mass, xx, yy, zz, xy, xz, yz = numbers
-    return np.asarray(scipy.linalg.block_diag(mass * np.eye(3), [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]))
 
 
 def _geometric_stiffness(rows: Rows) -> tuple[Vector, Any]:

@@ -98,9 +98,6 @@ def simulate_batch(
         channels: names of the recorded channels; load channels are not possible.
         step: maximum time step [s].
 
-    Returns:
-        The channels of all cars.
-
     Raises:
         ConfigurationError: the list of cars is empty.
     """

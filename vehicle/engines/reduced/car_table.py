@@ -314,11 +314,7 @@ def _rubber(laws: Sequence[DisplacementLaw], effects: Vector, count: int) -> dic
 
 
 def _require_rising(law: DisplacementLaw, slopes: Vector) -> None:
-    """Check the slopes of x + G g(x)/2 of a law.
-
-    Raises:
-        SimulationError: a slope is not positive.
-    """
+    """Check that all slopes of x + G g(x)/2 of a law are positive."""
     if np.any(slopes <= 0.0):
         raise SimulationError(
             f"{law.name}: its tangent at rest is not positive in this car, so the reduced engine cannot follow its "

@@ -93,14 +93,7 @@ def sensor_outputs(
         return velocities
     tyres, loads = list(columns), tyre_outputs(model)
     static = np.array([tyre_load[inputs[tyre]] for tyre in tyres])[:, None]
-    return (
-        Outputs(
-            poles=loads.poles[tyres] / static,
-            height=loads.height[tyres] / static,
-            velocity=loads.velocity[tyres] / static,
-        )
-        + velocities
-    )
+    return loads.part(tyres).changed(lambda rows: rows / static) + velocities
 
 
 def sensor_laws(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Mapping, Sequence
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,6 @@ import numpy.typing as npt
 
 from vehicle.core.library import core
 from vehicle.core.records import checked, packed
-from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.displacement_laws import forces_at_start
 from vehicle.engines.linear.load_rows import LoadRows
 from vehicle.engines.reduced.car_table import CarTable, damper_nodes
@@ -76,16 +74,9 @@ def packed_cars(
         timestep: time step [s].
     """
     columns = factors[0].columns
-    sensors = [
-        sensor_outputs(model, laws, columns, static)
-        for model, laws, static in zip(models, dampers, tyre_load, strict=True)
-    ]
-    sides = [model.matrices.sides for model in models]
-    heard = [
-        sensor_laws(model, laws, columns, static)
-        for model, laws, static in zip(models, dampers, tyre_load, strict=True)
-        if model.laws
-    ]
+    listed = [(model, laws, columns, static) for model, laws, static in zip(models, dampers, tyre_load, strict=True)]
+    sensors, sides = [sensor_outputs(*car) for car in listed], [model.matrices.sides for model in models]
+    heard = [sensor_laws(*car) for car in listed if car[0].laws]
     cars = CarTable(factors, dampers, start, element, sensors, [side.static for side in sides], heard, whole)
     owners, tyres = factors[0].sliders.dampers, len(columns) if tyre_load[0] is not None else 0
     return cars, feedback_at_rest(dampers[0], owners, sides[0].dampers, tyres, factors[0].plate_inputs, timestep)
@@ -185,12 +176,18 @@ class GroupRun:
                     damper_nodes(laws[rows[name] - speeds - count])[0]["rest_force"] for laws in self.dampers
                 ]
             elif name not in rows:
-                table[row, rows_of_cars] = self._plate(name, table.shape[2])
+                wheel, table[row, rows_of_cars] = name.removeprefix("plate_").removesuffix("_displacement"), 0.0
+                if wheel in self.driven:
+                    displacement = self.plates[: table.shape[2] * self.every : self.every]
+                    table[row, rows_of_cars] = displacement[:, 3 * self.driven.index(wheel)]
         modal_weights = [car.weights(model.modal) for car, model in zip(self.factors, self.models, strict=True)]
-        positions, rotations = (
-            [rows_of(model.matrices) @ shape for model, shape in zip(self.models, modal_weights, strict=True)]
-            for rows_of in (partial(_position_rows, names=position_names), partial(_rotation_rows, bodies=bodies))
-        )
+        positions, rotations = list[Vector](), list[Vector]()
+        for model, shape in zip(self.models, modal_weights, strict=True):
+            # Acceleration channels from positions, see `recorded_acceleration`; rotations about three axes.
+            car_rows, size = model.matrices, model.matrices.system.size
+            at = np.array([car_rows.system.outputs[name][:size] for name in position_names]).reshape(-1, size)
+            positions.append(at @ shape)
+            rotations.append(np.concatenate([car_rows.body_rows[body][3:] for body in bodies]) @ shape)
         linear = [self._levels(model, watched) for model in self.models]
         reading = OutputTiles(
             positions=self.cars.tiles(positions),
@@ -238,21 +235,10 @@ class GroupRun:
 
     def _levels(self, model: PoleModel, watched: int) -> Outputs:
         """Return the levels of a car as outputs: linear tyre loads, filled up to `watched` rows, then loads."""
-        outputs = tyre_outputs(model)
-        idle = ((0, watched - len(outputs.poles)), (0, 0))
-        outputs = Outputs(
-            poles=np.pad(outputs.poles, idle),
-            height=np.pad(outputs.height, idle),
-            velocity=np.pad(outputs.velocity, idle),
-        )
+        tyres = tyre_outputs(model)
+        idle = ((0, watched - len(tyres.poles)), (0, 0))
+        outputs = tyres.changed(lambda rows: np.pad(rows, idle))
         return outputs if self.loads is None else outputs + load_outputs(model, self.loads)
-
-    def _plate(self, channel: str, samples: int) -> Vector | float:
-        """Return the displacement of a plate at the samples [m]."""
-        for column, wheel in enumerate(self.driven):
-            if channel == f"plate_{wheel}_displacement":
-                return self.plates[: samples * self.every : self.every][:, 3 * column]
-        return 0.0
 
     def _step_blocks(
         self, reading: OutputTiles, y: Vector, peaks: Vector, table: Vector, rows_of_cars: Sequence[int]
@@ -312,14 +298,3 @@ class GroupRun:
             within_validity=validity.within_limits,
             energies=None,
         )
-
-
-def _position_rows(matrices: CarMatrices, names: Sequence[str]) -> Vector:
-    """Return the rows of acceleration channels over the coordinates; see `recorded_acceleration`."""
-    size = matrices.system.size
-    return np.array([matrices.system.outputs[name][:size] for name in names]).reshape(-1, size)
-
-
-def _rotation_rows(matrices: CarMatrices, bodies: Sequence[str]) -> Vector:
-    """Return the rows of the rotations of bodies about three axes over the coordinates."""
-    return np.concatenate([matrices.body_rows[body][3:] for body in bodies])

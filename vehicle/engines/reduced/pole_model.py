@@ -14,8 +14,9 @@ plus direct terms of z, z' and f. Only one pole of a conjugate pair is stored.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -41,9 +42,13 @@ class Outputs:
     height: Vector
     velocity: Vector
 
-    def part(self, rows: slice) -> Outputs:
+    def changed(self, change: Callable[[Any], Any]) -> Outputs:
+        """Return the outputs with a change of each array."""
+        return Outputs(poles=change(self.poles), height=change(self.height), velocity=change(self.velocity))
+
+    def part(self, rows: slice | list[int]) -> Outputs:
         """Return some of the outputs."""
-        return Outputs(poles=self.poles[rows], height=self.height[rows], velocity=self.velocity[rows])
+        return self.changed(lambda array: array[rows])
 
     def __add__(self, other: Outputs) -> Outputs:
         """Return these outputs followed by others."""
@@ -103,13 +108,6 @@ class PoleModel:
         """Return the displacements x of the laws over displacement as outputs."""
         return self.scalar_rows.part(slice(self.groups, None))
 
-    def without_laws(self) -> PoleModel:
-        """Return the model with linear laws over displacement, each with its tangent at rest."""
-        groups = slice(0, self.groups)
-        return replace(
-            self, scalar_rows=self.scalar_rows.part(groups), scalar_force=self.scalar_force[:, groups], laws=()
-        )
-
     def without_forces(self) -> PoleModel:
         """Return the model without applied forces."""
         return replace(self, applied=self.applied[:, :0], matrices=self.matrices.without_forces())
@@ -120,39 +118,24 @@ class PoleModel:
         Args:
             channels: names of `vehicle.names`.
         """
-        rows_of_channels = [self._tyre(name) if name.startswith("tyre_") else self._position(name) for name in channels]
-        count, wheels = len(self.poles), len(self.matrices.system.inputs)
-        return Outputs(
-            poles=np.array([row[0] for row in rows_of_channels]).reshape(-1, count),
-            height=np.array([row[1] for row in rows_of_channels]).reshape(-1, wheels),
-            velocity=np.array([row[2] for row in rows_of_channels]).reshape(-1, wheels),
-        )
-
-    def _position(self, channel: str) -> tuple[Complex, Vector, Vector]:
-        """Return the displacement of an acceleration channel; see `simulation.recorded_acceleration`."""
-        no_plates = np.zeros(len(self.matrices.system.inputs))
-        return self.matrices.system.output(channel)[0] @ self.modal, no_plates, no_plates
-
-    def _tyre(self, channel: str) -> tuple[Complex, Vector, Vector]:
-        """Return the tyre force on the wheel: k (z - J u) + c (z' - J u')."""
         m, wheels = self.matrices, self.matrices.system.inputs
-        index = wheels.index(channel.removeprefix("tyre_").removesuffix("_force_z"))
-        spring = (m.tyre_rows[index] * m.tyre_stiffness[index]) @ self.modal
-        drag = ((m.tyre_rows[index] * m.tyre_damping[index]) @ self.modal) * self.poles
-        at_wheel = np.zeros(len(wheels))
-        at_wheel[index] = 1.0
-        return -(spring + drag), m.tyre_stiffness[index] * at_wheel, m.tyre_damping[index] * at_wheel
+        poles = np.zeros((len(channels), len(self.poles)), dtype=np.complex128)
+        height, velocity = np.zeros((2, len(channels), len(wheels)))
+        for row, channel in enumerate(channels):
+            if not channel.startswith("tyre_"):
+                poles[row] = m.system.output(channel)[0] @ self.modal
+                continue
+            # The tyre force on the wheel: k (z - J u) + c (z' - J u').
+            index = wheels.index(channel.removeprefix("tyre_").removesuffix("_force_z"))
+            spring = (m.tyre_rows[index] * m.tyre_stiffness[index]) @ self.modal
+            drag = ((m.tyre_rows[index] * m.tyre_damping[index]) @ self.modal) * self.poles
+            poles[row] = -(spring + drag)
+            height[row, index], velocity[row, index] = m.tyre_stiffness[index], m.tyre_damping[index]
+        return Outputs(poles=poles, height=height, velocity=velocity)
 
 
 def pole_model(matrices: CarMatrices) -> PoleModel:
-    """Return poles, residues and outputs of a car in continuous time.
-
-    Args:
-        matrices: matrices of the assembled car.
-
-    Returns:
-        The pole model.
-    """
+    """Return poles, residues and outputs of an assembled car in continuous time."""
     form = first_order(matrices.system)
     w = len(form.system.inputs)
     scalars = np.concatenate(
@@ -176,6 +159,11 @@ def pole_model(matrices: CarMatrices) -> PoleModel:
     weighted = vectors[:, selected] * np.where(np.arange(len(selected)) < pairs, 2.0, 1.0)
     modal = form.shapes(weighted, poles[selected])
     forces, slopes = np.cumsum([2 * w + form.friction.shape[1], matrices.slope.shape[1]])
+    # Displacements x = d + tau d' of the scalar elements, over the plates of their tyres.
+    displacements, groups = scalars @ modal, len(scalars) - len(matrices.laws)
+    rate_time = np.concatenate([np.zeros(groups), [law.rate_time for law in matrices.laws]])[:, None]
+    plates = np.array([-1] * groups + [law.plate for law in matrices.laws], dtype=int)[:, None]
+    over = -1.0 * (plates == np.arange(w))
     return PoleModel(
         poles=poles[selected].astype(complex),
         pairs=pairs,
@@ -187,23 +175,10 @@ def pole_model(matrices: CarMatrices) -> PoleModel:
         branch=weighted[form.branches],
         slope=residues[:, forces:slopes],
         matrices=matrices,
-        scalar_rows=_scalar_rows(matrices, scalars @ modal, poles[selected]),
+        scalar_rows=Outputs(
+            poles=displacements + rate_time * displacements * poles[selected], height=over, velocity=rate_time * over
+        ),
         scalar_force=residues[:, slopes : residues.shape[1] - lines],
         applied=residues[:, residues.shape[1] - lines :],
         laws=matrices.laws,
     )
-
-
-def _scalar_rows(matrices: CarMatrices, displacements: Complex, poles: Complex) -> Outputs:
-    """Return the displacements x = d + tau d' of the scalar elements, over the plates of their tyres.
-
-    Args:
-        matrices: matrices of the car.
-        displacements: displacements d of the elements over the poles; (g, p).
-        poles: the poles; (p,).
-    """
-    groups, wheels = len(displacements) - len(matrices.laws), len(matrices.system.inputs)
-    rate_time = np.concatenate([np.zeros(groups), [law.rate_time for law in matrices.laws]])[:, None]
-    plates = np.array([-1] * groups + [law.plate for law in matrices.laws], dtype=int)[:, None]
-    height = -1.0 * (plates == np.arange(wheels))
-    return Outputs(poles=displacements + rate_time * displacements * poles, height=height, velocity=rate_time * height)

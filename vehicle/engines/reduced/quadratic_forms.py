@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.linear.equations_of_motion import Equations
-from vehicle.engines.reduced.linear_motion import BAND, RATE, MotionRows, input_effects, motion_rows, state_spectra
+from vehicle.engines.reduced.linear_motion import BAND, RATE, input_effects, motion_rows, state_spectra
 from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.row_layout import places_of
@@ -68,8 +68,12 @@ def quadratic_forms(car: CarModel, model: PoleModel) -> QuadraticForms:
         car: assembled car.
         model: its pole model.
     """
-    rows, system = motion_rows(model), model.matrices.system
-    whole, seen, sums = np.vstack(rows), _seen(model, rows), _state_products(model)
+    rows, system, matrices = motion_rows(model), model.matrices.system, model.matrices
+    whole, sums = np.vstack(rows), _state_products(model)
+    # What must be right in a pattern, over the state: rotations, their rates, inertia and joint forces.
+    turns = np.vstack([body[3:] for name, body in matrices.body_rows.items() if name not in matrices.spinning])
+    inertia = np.sqrt(np.diag(system.mass))[:, None] * rows.acceleration
+    seen = [turns @ rows.displacement, turns @ rows.velocity, inertia, rows.branch, rows.joints]
     levels = [np.sqrt(np.sum((part @ sums) * part)) for part in seen]
     seen = [part / max(level, 1e-30) for part, level in zip(seen, levels, strict=True)]
     usual, projection = _components(np.vstack(seen), sums)
@@ -108,15 +112,6 @@ def quadratic_forms(car: CarModel, model: PoleModel) -> QuadraticForms:
         len(system.inputs),
     )
     return QuadraticForms(metrics=metrics, projection=projection, forms=forms, sizes=sizes, channels=points)
-
-
-def _seen(model: PoleModel, rows: MotionRows) -> list[Vector]:
-    """Return what must be right in a pattern, over the state: rotations, their rates, inertia and joint forces."""
-    turns = np.vstack(
-        [body[3:] for name, body in model.matrices.body_rows.items() if name not in model.matrices.spinning]
-    )
-    inertia = np.sqrt(np.diag(model.matrices.system.mass))[:, None] * rows.acceleration
-    return [turns @ rows.displacement, turns @ rows.velocity, inertia, rows.branch, rows.joints]
 
 
 def _components(rows: Vector, sums: Vector) -> tuple[Vector, Vector]:

@@ -13,7 +13,7 @@ perturbation, Nayfeh and Mook, Nonlinear Oscillations, 1979, chapter 2. Against 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -163,26 +163,7 @@ def rms_errors_of(
             for law, damper in zip(dampers, model.matrices.damper_names, strict=True)
         ]
     )
-
-    def inputs(part: slice) -> Vector:
-        block = {name: values[part] for name, values in record.items()}
-        return run_inputs(model, plate_inputs(model, signal, time[part], block, tyre_load), block, time[part])
-
-    channels = {name: record[name] for name in names}
-    return rms_errors(SecondOrder(model, forms, damping), inputs, channels, time)
-
-
-def rms_errors(
-    second: SecondOrder, inputs: Callable[[slice], Vector], channels: Mapping[str, Vector], time: Vector
-) -> dict[str, float]:
-    """Return the error RMS(y_1)/RMS(y_1 + y_2) - 1 of each recorded channel that has a second order.
-
-    Args:
-        second: response of the car.
-        inputs: function of a part of the record that returns `linear_motion.run_inputs`.
-        channels: record of the run; (n,) each.
-        time: its times [s]; (n,).
-    """
+    second, channels = SecondOrder(model, forms, damping), {name: record[name] for name in names}
     interval = float(time[1] - time[0])
     every = max(int(1.0 / (interval * RATE)), 1)
     names = [name for name in second.channels if name in channels]
@@ -197,7 +178,9 @@ def rms_errors(
     sums, count, start, end = np.zeros((4, len(names))), 0, None, None
     for first in range(0, time.size, length):
         part = slice(first, min(first + length, time.size))
-        histories = inputs(part)
+        block = {name: values[part] for name, values in record.items()}
+        plates = plate_inputs(model, signal, time[part], block, tyre_load)
+        histories = run_inputs(model, plates, block, time[part])
         # The car is at rest at the first sample of the record.
         start = histories[:, :1] if start is None else start
         spectra, samples = periodic_spectra(histories - start, interval, every)

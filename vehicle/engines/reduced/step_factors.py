@@ -223,9 +223,6 @@ def car_factors(
         columns: indices of the driven plates.
         exact: all poles are integrated, for double precision.
         present_load: slope forces of rolling tyres are inputs.
-
-    Returns:
-        Factors of each car.
     """
     if not models:
         return []
@@ -289,14 +286,7 @@ def car_factors(
 
 
 def _steepness(model: PoleModel) -> Vector:
-    """Return the smallest and the largest slopes of the mean forces of a step of dampers and scalar elements.
-
-    Args:
-        model: pole model of the car.
-
-    Returns:
-        Slopes; (2, d + g).
-    """
+    """Return smallest and largest slopes of the mean forces of a step, dampers and scalar elements; (2, d + g)."""
     stiff, d = np.full(model.force.shape[1], np.inf), model.force.shape[1]
     if not model.scalar_force.size:
         return np.stack([np.zeros(d), stiff])
@@ -347,10 +337,7 @@ class _Inputs:
 def _integrated(model: PoleModel, inputs: Complex, timestep: float) -> npt.NDArray[np.bool_]:
     """Return a mask of the poles that are integrated, True for an integrated pole.
 
-    Args:
-        model: pole model of the car.
-        inputs: residues of z' of the driven plates and of the forces; (n, m + d + g).
-        timestep: time step [s].
+    `inputs` are the residues of z' of the driven plates and of the forces; (n, m + d + g).
     """
     system, s, n = model.matrices.system, model.poles, len(model.poles)
     positions = np.array([row[: system.size] for row in system.outputs.values()]).reshape(-1, system.size)

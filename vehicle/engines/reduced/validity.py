@@ -61,20 +61,15 @@ class Validity:
     one_sided: frozenset[str]
 
     @property
-    def small_angles(self) -> bool:
-        """Return True if no part rotated by more than `LARGEST_ANGLE`."""
-        return all(angle <= LARGEST_ANGLE for angle in self.angles.values())
-
-    @property
     def within_limits(self) -> bool:
-        """Return True if the motion stayed within the valid range of the matrices."""
-        return self.small_angles
+        """Return True if the motion stayed within the valid range of the matrices, `LARGEST_ANGLE` for every part."""
+        return all(angle <= LARGEST_ANGLE for angle in self.angles.values())
 
     def warnings(self) -> tuple[str, ...]:
         """Return warnings for the exceeded limits."""
         messages = []
         largest = max(self.angles, key=lambda body: self.angles[body])
-        if not self.small_angles:
+        if not self.within_limits:
             messages.append(
                 f"{largest} rotated by {self.angles[largest]:.3f} rad; the reduced engine, whose geometry is linear, "
                 f"is valid up to {LARGEST_ANGLE:g} rad{REMEDY}"

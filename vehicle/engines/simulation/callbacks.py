@@ -69,6 +69,14 @@ def installed(rows: Rows, compiled: CompiledRows | None = None) -> Iterator[None
             compiled.detach()
 
 
+def standing_data(rows: Rows) -> mujoco.MjData:
+    """Return a state of a car in its design position, evaluated with its rows."""
+    data = mujoco.MjData(rows.model)
+    with installed(rows):
+        mujoco.mj_forward(rows.model, data)
+    return data
+
+
 def _write_log(log: mujoco.MjLogConfig, *, console: bool, file: bool) -> None:
     """Switch the console and file output of MuJoCo's messages."""
     log.logto_console, log.logto_file = console, file

@@ -52,9 +52,6 @@ def build_model(vehicle: Vehicle, trimmed_body: Superelement) -> CarModel:
         vehicle: parameters.
         trimmed_body: superelement of the body.
 
-    Returns:
-        The car model.
-
     Raises:
         ConfigurationError: the car is physically impossible; the message names the parameter.
         SimulationError: MuJoCo rejects the model, or the car can move without resistance.

@@ -92,12 +92,10 @@ class SteppingLoop:
         self.library.core_set_plates_d(self.record.address, index)
 
     def keep_sample(self, row: int, half: float) -> None:
-        """Store forces, rates and positions of the present time.
+        """Store forces, rates and positions of the present time in a row of the buffers.
 
-        Args:
-            row: row in the buffers.
-            half: minus half a step after a step, half a step after an evaluation [s]: MuJoCo's velocity is that of the
-                middle of a step, and `half` times the acceleration extrapolates to the present.
+        MuJoCo's velocity is that of the middle of a step: `half`, minus half a step after a step and half a step after
+        an evaluation [s], times the acceleration extrapolates to the present.
         """
         self.library.core_keep_row_d(self.record.address, row, half)
 

@@ -6,21 +6,14 @@ Friction rows follow the equality rows: those of joints in their order, then tho
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
 
 import mujoco
 import numpy as np
 
 from vehicle.engines.simulation.element_records import Dampers, Index, Presliding, SideForces
-from vehicle.engines.simulation.law_arrays import LawNames, Numbers, friction_tendons
+from vehicle.engines.simulation.law_arrays import LawNames, Numbers, friction_tendons, whole_numbers
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.damper import unpack
-
-
-def whole_numbers(values: Any, columns: int = 0) -> Index:
-    """Convert values to 64-bit integers, (n,) or (n, columns)."""
-    array = np.array(values, dtype=np.int64, order="C")
-    return array.reshape(-1, columns) if columns else array.reshape(-1)
 
 
 def damper_rows(model: mujoco.MjModel, rows_of: Callable[[Sequence[str]], Index], first: int) -> Dampers:

@@ -73,9 +73,6 @@ def judge_energy(energies: Energies, rate: float) -> tuple[str, ...]:
         energies: energy balance of the run.
         rate: rate of the samples in the sums [Hz].
 
-    Returns:
-        Warnings.
-
     Raises:
         SimulationError: the residual exceeds `RESIDUAL_FAILED`.
     """

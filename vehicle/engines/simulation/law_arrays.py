@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.simulation.element_records import Layout, OwnDampers, RubberFriction, Tables, Vector
+from vehicle.engines.simulation.element_records import Index, Layout, OwnDampers, RubberFriction, Tables, Vector
 from vehicle.engines.simulation.force_curves import tables_through
 from vehicle.model.assembly.element_numbers import AVERAGED, DECOUPLER, FLUID, TURNING
 from vehicle.model.laws.control_laws import NUMBERS, in_steps
 from vehicle.model.laws.damper import unpack
 from vehicle.model.laws.friction_by_address import friction_by_address
-from vehicle.model.laws.law_by_address import RECORD, LawByAddress, law_by_address
+from vehicle.model.laws.law_by_address import RECORD, law_by_address
 from vehicle.names import AXES
 
 Numbers = Mapping[str, Vector]
@@ -59,12 +59,7 @@ def friction_tendons(model: mujoco.MjModel, *, presliding: bool) -> list[int]:
 
 def model_numbers(model: mujoco.MjModel) -> dict[str, Vector]:
     """Return the custom fields of a compiled car and the parameters of its actuators, by name."""
-    numbers = {}
-    for index in range(model.nnumeric):
-        start = model.numeric_adr[index]
-        numbers[str(model.numeric(index).name)] = np.array(
-            model.numeric_data[start : start + model.numeric_size[index]]
-        )
+    numbers = {str(model.numeric(index).name): np.array(model.numeric(index).data) for index in range(model.nnumeric)}
     for index in range(model.nu):
         # The parameters of an actuator are ten; a longer record is in a custom field.
         numbers.setdefault(f"actuator/{model.actuator(index).name}", np.array(model.actuator_biasprm[index]))
@@ -95,26 +90,29 @@ def with_numbers(layout: Layout, names: LawNames, numbers: Numbers, timestep: fl
     Raises:
         ConfigurationError: a law by address is not registered in this process.
     """
-    laws, present = laws_of(names, numbers), laws_of(names, numbers)[:, 6:9] > 0.0
-    stiffness, rubber = laws[:, 0:3].copy(), _rubber(names, numbers)
+
+    def fields(kind: str, elements: Sequence[str], width: int) -> Vector:
+        """Return the fields of a kind of those of the elements that have one; (n, width)."""
+        present = [numbers[f"{kind}/{name}"] for name in elements if f"{kind}/{name}" in numbers]
+        return np.concatenate([np.zeros(0), *present]).reshape(-1, width)
+
+    laws = laws_of(names, numbers)
+    stiffness, rubber, branched = laws[:, 0:3].copy(), _rubber(names, numbers), laws[:, 6:9] > 0.0
     np.add.at(stiffness, (rubber.elements, rubber.axes), rubber.stiffness)
-    rolling = [numbers[f"rolling/{name}"] for name in names.bushings if f"rolling/{name}" in numbers]
-    rolling_numbers = np.reshape(rolling, (-1, 5)).astype(float)
-    own = _own_laws(names, numbers)
-    controls = [numbers[f"control/{name}"] for name in names.dampers if f"control/{name}" in numbers]
+    rolling = fields("rolling", names.bushings, 5)
+    own = [(index, law_by_address(law)) for index, law in _words(names, numbers, "function")]
+    presliding = fields("presliding", tuple(dict.fromkeys(names.presliding)), 2)
     return layout._replace(
         bushings=layout.bushings._replace(
             stiffness=stiffness,
             damping=laws[:, 3:6].copy(),
             branch_stiffness=laws[:, 6:9].copy(),
-            branch_time=np.divide(laws[:, 9:12], laws[:, 6:9], out=np.zeros((len(laws), 3)), where=present),
+            branch_time=np.divide(laws[:, 9:12], laws[:, 6:9], out=np.zeros((len(laws), 3)), where=branched),
             further=laws[:, AVERAGED + 1 :].copy(),
-            averaged=_integers(laws[:, AVERAGED] > 0.0),
+            averaged=whole_numbers(laws[:, AVERAGED] > 0.0),
             one_sided=_true_indices(f"one_sided/{name}" in numbers for name in names.bushings),
             oblique=_true_indices(f"directions/{name}" in numbers for name in names.bushings),
-            directions=np.array(
-                [numbers[f"directions/{name}"] for name in names.bushings if f"directions/{name}" in numbers]
-            ).reshape(-1, 9),
+            directions=fields("directions", names.bushings, 9),
         ),
         rubber=rubber,
         rotations=layout.rotations._replace(stiffness=laws[laws[:, TURNING] > 0.0, TURNING].copy()),
@@ -125,22 +123,20 @@ def with_numbers(layout: Layout, names: LawNames, numbers: Numbers, timestep: fl
             laws=_damper_records(names, numbers),
             pieces=np.reshape([numbers[f"law/{name}"] for name in names.valves], (-1, 3)).astype(float),
         ),
-        presliding=layout.presliding._replace(
-            stiffness=_elements(names, numbers)[:, 0].copy(), share=_elements(names, numbers)[:, 1].copy()
-        ),
+        presliding=layout.presliding._replace(stiffness=presliding[:, 0].copy(), share=presliding[:, 1].copy()),
         controls=layout.controls._replace(
             dampers=_true_indices(f"control/{name}" in numbers for name in names.dampers),
-            laws=in_steps(np.reshape(controls, (-1, NUMBERS)), timestep),
+            laws=in_steps(fields("control", names.dampers, NUMBERS), timestep),
         ),
         own=OwnDampers(
-            dampers=_integers([index for index, _ in own]),
+            dampers=whole_numbers([index for index, _ in own]),
             laws=np.array([law.record(timestep) for _, law in own], dtype=RECORD),
         ),
         tables=_tables(names, numbers),
         rolling=layout.rolling._replace(
-            speeds=rolling_numbers[:, 0].copy(),
-            trails=rolling_numbers[:, 1].copy(),
-            arms=rolling_numbers[:, 2:].copy(),
+            speeds=rolling[:, 0].copy(),
+            trails=rolling[:, 1].copy(),
+            arms=rolling[:, 2:].copy(),
             hold=np.array(numbers.get("hold/body", np.zeros(0))),
         ),
         fluids=layout.fluids._replace(
@@ -152,21 +148,8 @@ def with_numbers(layout: Layout, names: LawNames, numbers: Numbers, timestep: fl
                 ]
             ),
         ),
-        round=layout.round._replace(
-            radii=np.array(
-                [float(numbers[f"round/{name}"][0]) for name in names.bushings if f"round/{name}" in numbers]
-            ),
-        ),
+        round=layout.round._replace(radii=fields("round", names.bushings, 1)[:, 0].copy()),
     )
-
-
-def _own_laws(names: LawNames, numbers: Numbers) -> list[tuple[int, LawByAddress]]:
-    """Return the dampers with a law by address, and these laws.
-
-    Raises:
-        ConfigurationError: a law is not registered in this process.
-    """
-    return [(index, law_by_address(law)) for index, law in _words(names, numbers, "function")]
 
 
 def _words(names: LawNames, numbers: Numbers, kind: str) -> list[tuple[int, str]]:
@@ -178,11 +161,7 @@ def _words(names: LawNames, numbers: Numbers, kind: str) -> list[tuple[int, str]
 
 
 def _damper_records(names: LawNames, numbers: Numbers) -> npt.NDArray[Any]:
-    """Return the records of the dampers, with the addresses of friction laws of the user's own.
-
-    Raises:
-        ConfigurationError: a law is not registered in this process.
-    """
+    """Return the records of the dampers, with the addresses of friction laws of the user's own."""
     records = unpack([numbers[f"actuator/{name}"] for name in names.dampers])
     for index, law in _words(names, numbers, "limit"):
         records["friction_law"][index] = friction_by_address(law).call.address
@@ -198,7 +177,7 @@ def _rubber(names: LawNames, numbers: Numbers) -> RubberFriction:
             if field is not None:
                 elements_of_axes.append(field.reshape(-1, 2))
                 indices += [(index, column)] * len(elements_of_axes[-1])
-    elements, axes = (np.ascontiguousarray(column) for column in _integers(indices).reshape(-1, 2).T)
+    elements, axes = (np.ascontiguousarray(column) for column in whole_numbers(indices, 2).T)
     stiffness, limit = (column.copy() for column in np.concatenate(elements_of_axes).T)
     return RubberFriction(elements=elements, axes=axes, stiffness=stiffness, limit=limit)
 
@@ -208,12 +187,6 @@ def fluid_coordinates(names: LawNames, numbers: Numbers) -> list[str]:
     fluids = [name for name in names.bushings if name.startswith(FLUID)]
     pairs = [name for fluid in fluids for name in (fluid, fluid.replace(FLUID, DECOUPLER, 1))]
     return [name for name in pairs if f"inertia/{name}" in numbers]
-
-
-def _elements(names: LawNames, numbers: Numbers) -> Vector:
-    """Return stiffness and share of the limit of the Jenkins elements of all dampers; (m, 2)."""
-    fields = [numbers[f"presliding/{name}"] for name in dict.fromkeys(names.presliding)]
-    return np.concatenate([np.zeros(0), *fields]).reshape(-1, 2)
 
 
 def _tables(names: LawNames, numbers: Numbers) -> Tables:
@@ -227,11 +200,12 @@ def _tables(names: LawNames, numbers: Numbers) -> Tables:
     return tables_through([(points.reshape(2, -1), where) for points, where in read if points is not None])
 
 
-def _integers(values: Sequence[Any] | Any) -> Any:
-    """Convert values to an array of 64-bit integers."""
-    return np.array(values, dtype=np.int64)
+def whole_numbers(values: Any, columns: int = 0) -> Index:
+    """Convert values to 64-bit integers, (n,) or (n, columns)."""
+    array = np.array(values, dtype=np.int64, order="C")
+    return array.reshape(-1, columns) if columns else array.reshape(-1)
 
 
-def _true_indices(present: Any) -> Any:
+def _true_indices(present: Iterable[bool]) -> Index:
     """Return the indices of the true values."""
-    return _integers([index for index, value in enumerate(present) if value])
+    return np.flatnonzero(list(present)).astype(np.int64)

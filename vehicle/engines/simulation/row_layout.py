@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -10,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.simulation.applied_forces import applied_record
-from vehicle.engines.simulation.damper_rows import damper_rows, presliding_rows, side_forces, whole_numbers
+from vehicle.engines.simulation.damper_rows import damper_rows, presliding_rows, side_forces
 from vehicle.engines.simulation.element_records import (
     Bushings,
     Controls,
@@ -35,6 +36,7 @@ from vehicle.engines.simulation.law_arrays import (
     law_names,
     laws_of,
     model_numbers,
+    whole_numbers,
     with_numbers,
 )
 from vehicle.model.assembly.element_numbers import FLUID, TURNING
@@ -76,7 +78,8 @@ def read_layout(model: mujoco.MjModel) -> Layout:
         elif types[index] == kinds.mjEQ_TENDON:
             ends[name] = model.site(f"{name}/lower").id, model.site(f"{name}/upper").id
     rolling = [name for name in names if f"rolling/{name}" in numbers]
-    spins = {name: _spin(model, ends[name]) for name in rolling}
+    hubs = {name: str(model.body(model.site_bodyid[ends[name][1]]).name).removeprefix("plate_") for name in rolling}
+    spins = {name: (int(model.joint(f"spin_{wheel}").dofadr[0]),) for name, wheel in hubs.items()}
 
     coordinates = [(name, name.partition("/")[2]) for name in fluid_coordinates(law, numbers)]
     moved = [(row, name) for name, mount in coordinates for row in (f"{FLUID}{mount}", f"bushing/{mount}")]
@@ -85,13 +88,16 @@ def read_layout(model: mujoco.MjModel) -> Layout:
         further[row] = (*further.get(row, ()), int(model.joint(name).dofadr[0]))
 
     def modal_at(name: str) -> range:
-        return range(0) if numeric(model, f"shape/{name}") is None else modal
+        return modal if f"shape/{name}" in numbers else range(0)
 
-    nonzero = [
-        run
-        for name, sites in ends.items()
-        for run in _reach(model, sites, (*modal_at(name), *further.get(name, ())), equalities[name], first_rows)
-    ]
+    nonzero = []
+    for name, sites in ends.items():
+        # First row, number of rows, first column and end of the nonzero columns of a connection.
+        moving = [column for site in sites for column in _above(model, model.site_bodyid[site])]
+        columns = np.unique([*moving, *modal_at(name), *further.get(name, ())])
+        row, end = first_rows[equalities[name]], first_rows[equalities[name] + 1]
+        runs = np.split(columns, np.flatnonzero(np.diff(columns) > 1) + 1)
+        nonzero += [(row, end - row, run[0], run[-1] + 1) for run in runs if len(run)]
 
     def rows_of(chosen: Sequence[str]) -> Index:
         return whole_numbers([first_rows[equalities[name]] for name in chosen])
@@ -137,9 +143,7 @@ def read_layout(model: mujoco.MjModel) -> Layout:
         controls=_controls(model, [name for name in law.dampers if f"control/{name}" in numbers], modes),
         own=OwnDampers(whole_numbers([]), np.zeros(0, dtype=RECORD)),
         tables=tables_through([]),
-        modes=_modes(
-            model, [name for name in balls if numeric(model, f"shape/{name}") is not None], ends, rows_of, modal
-        ),
+        modes=_modes(model, [name for name in balls if f"shape/{name}" in numbers], ends, rows_of, modal),
         space=ModalSpace(none, none, none, none, spread=np.zeros((0, 0))),
         rolling=_rolling(model, [(names.index(name), ends[name], spins[name][0]) for name in rolling], plates),
         round=_round_tyres(model, [(names.index(name), ends[name]) for name in names if f"round/{name}" in numbers]),
@@ -178,12 +182,9 @@ def _triples(first: Index) -> Indices:
 
 def _modal_joints(model: mujoco.MjModel) -> list[int]:
     """Return the ids of the joints of the modal coordinates."""
-    joints: list[int] = []
-    while True:
-        index = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, f"mode_{len(joints) + 1}")
-        if index < 0:
-            return joints
-        joints.append(index)
+    names = (f"mode_{number}" for number in itertools.count(1))
+    found = (mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name) for name in names)
+    return list(itertools.takewhile(lambda index: index >= 0, found))
 
 
 def _shapes(model: mujoco.MjModel, names: Sequence[str], modes: int) -> Table:
@@ -236,9 +237,9 @@ def _controls(model: mujoco.MjModel, chosen: Sequence[str], modes: int) -> Contr
 def _turning(model: mujoco.MjModel, sites: Sequence[tuple[int, int]]) -> Indices:
     """Return element, coordinate and sign: +1 if it rotates the moving part, -1 the carrier; both cancel."""
     signs = np.zeros((len(sites), model.nv), dtype=np.int64)
-    for row, (moving, carrier) in zip(signs, sites, strict=True):
-        row[_moved_by(model, moving)] += 1
-        row[_moved_by(model, carrier)] -= 1
+    for row, ends in zip(signs, sites, strict=True):
+        for site, sign in zip(ends, (1, -1), strict=True):
+            row[_above(model, model.site_bodyid[site])] += sign
     signs[:, ~_turns(model)] = 0
     pairs = np.argwhere(signs)
     return whole_numbers(np.column_stack([pairs, signs[tuple(pairs.T)]]), 3)
@@ -274,30 +275,19 @@ def _spring_dofs(model: mujoco.MjModel, sites: Sequence[tuple[int, int]]) -> Ind
         (spring, end, dof, int(model.body_rootid[model.dof_bodyid[dof]]))
         for spring, ends in enumerate(sites)
         for end, site in enumerate(ends)
-        for dof in _moved_by(model, site)
+        for dof in _above(model, model.site_bodyid[site])
     ]
     return whole_numbers(entries, 4)
 
 
-def _moved_by(model: mujoco.MjModel, site: int) -> list[int]:
-    """Return the velocity coordinates that move a site."""
-    return _above(model, int(model.site_bodyid[site]))
-
-
-def _above(model: mujoco.MjModel, body: int) -> list[int]:
-    """Return the velocity coordinates that move a body, from the body down to the world."""
-    columns: list[int] = []
+def _above(model: mujoco.MjModel, number: Any) -> list[int]:
+    """Return the velocity coordinates that move a body, given by its number, from the body down to the world."""
+    columns, body = list[int](), int(number)
     while body > 0:
         first = int(model.body_dofadr[body])
         columns += range(first, first + int(model.body_dofnum[body]))
         body = int(model.body_parentid[body])
     return columns
-
-
-def _spin(model: mujoco.MjModel, sites: tuple[int, int]) -> tuple[int]:
-    """Return the velocity coordinate about the axle of the wheel on a plate."""
-    wheel = str(model.body(model.site_bodyid[sites[1]]).name).removeprefix("plate_")
-    return (int(model.joint(f"spin_{wheel}").dofadr[0]),)
 
 
 def _rolling(
@@ -347,12 +337,7 @@ def _rolling(
 
 
 def _round_tyres(model: mujoco.MjModel, tyres: Sequence[tuple[int, tuple[int, int]]]) -> RoundTyres:
-    """Return the record of the round tyres at rest, with radii of zero.
-
-    Args:
-        model: compiled car.
-        tyres: index among the bushings and sites of each tyre.
-    """
+    """Return the record of the round tyres at rest, with radii of zero, from index among the bushings and sites."""
     hubs = [int(model.site_bodyid[sites[0]]) for _, sites in tyres]
     return RoundTyres(
         tyres=whole_numbers([index for index, _ in tyres]),
@@ -360,13 +345,3 @@ def _round_tyres(model: mujoco.MjModel, tyres: Sequence[tuple[int, tuple[int, in
         radii=np.zeros(len(tyres)),
         dofs=whole_numbers([(n, dof) for n, hub in enumerate(hubs) for dof in _above(model, hub)], 2),
     )
-
-
-def _reach(
-    model: mujoco.MjModel, sites: tuple[int, int], further: Sequence[int], equality: int, first_rows: Index
-) -> list[tuple[int, int, int, int]]:
-    """Return first row, number of rows, first column and end of the nonzero columns of a connection."""
-    columns = np.unique([*_moved_by(model, sites[0]), *_moved_by(model, sites[1]), *further])
-    runs = np.split(columns, np.flatnonzero(np.diff(columns) > 1) + 1)
-    row, rows = int(first_rows[equality]), int(first_rows[equality + 1] - first_rows[equality])
-    return [(row, rows, int(run[0]), int(run[-1]) + 1) for run in runs if len(run)]

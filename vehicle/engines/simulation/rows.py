@@ -208,9 +208,6 @@ def weights(model: mujoco.MjModel, layout: Layout, preload: Vector, masses: Vect
         layout: elements of the model.
         preload: static forces of the rows [N], then the torques of the rotations [N m]; see `StaticTrim`.
         masses: effective mass of each element row [kg]; (n, 3).
-
-    Returns:
-        Weights of the rows.
     """
     b, h = layout.bushings, float(model.opt.timestep)
     # A step that is stable for the steepest segment of a curve is stable for all.

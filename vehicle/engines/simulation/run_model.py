@@ -34,7 +34,11 @@ def run_model(car: CarModel) -> tuple[mujoco.MjModel, ModalSpace | None]:
     if not modes.size:
         return model, None
     numbers = model_numbers(model)
-    shapes = [shape.reshape(3, modes.size) for name, shape in numbers.items() if _is_seen(name)]
+    # Mode shapes of the nodes with a force or a sensor.
+    seen = [
+        name for name in numbers if name.startswith(("shape/", "rotation/")) and not name.startswith("shape/place/")
+    ]
+    shapes = [numbers[name].reshape(3, modes.size) for name in seen]
     mass = model.dof_M0[modes.velocities]
     scaled = np.concatenate([np.zeros((0, modes.size)), *shapes]) / np.sqrt(mass)
     _, values, basis = np.linalg.svd(scaled, full_matrices=False)
@@ -53,11 +57,6 @@ def run_model(car: CarModel) -> tuple[mujoco.MjModel, ModalSpace | None]:
     fewer = assemble_on(car.vehicle, car.superelement.combined(spread, dict.fromkeys(nodes.values())))
     before, after = np.split(car.model.qpos_spring, [modes.positions.start, modes.positions.stop])[::2]
     return prepared(fewer.spec, np.concatenate([before, np.zeros(count), after])), space
-
-
-def _is_seen(name: str) -> bool:
-    """Return True for a field with the mode shape of a node with a force or a sensor."""
-    return name.startswith(("shape/", "rotation/")) and not name.startswith("shape/place/")
 
 
 def prepared(spec: mujoco.MjSpec, unstrained: Vector) -> mujoco.MjModel:

@@ -12,12 +12,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import mujoco
 import numpy as np
 import numpy.typing as npt
 import scipy
 
-from vehicle.engines.simulation.callbacks import installed
+from vehicle.engines.simulation.callbacks import standing_data
 from vehicle.engines.simulation.element_records import Layout
 from vehicle.engines.simulation.force_curves import curve_of, standing_on
 from vehicle.engines.simulation.row_layout import wheels_of
@@ -78,16 +77,9 @@ class AtRest:
     weight: Vector
 
 
-def at_rest(rows: Rows, data: mujoco.MjData) -> AtRest:
-    """Read the design position of a compiled car.
-
-    Args:
-        rows: rows of the car, without static forces.
-        data: state of its model in the design position; evaluated in place.
-    """
-    dampers = rows.layout.dampers
-    with installed(rows):
-        mujoco.mj_forward(rows.model, data)
+def at_rest(rows: Rows) -> AtRest:
+    """Read the design position of a compiled car; `rows`: its rows, without static forces."""
+    dampers, data = rows.layout.dampers, standing_data(rows)
     # Remove the constant forces of the dampers and of the springs inside joints.
     weight = data.qfrc_smooth - data.qfrc_passive - unsolved(rows.layout, np.zeros(rows.model.nv))
     weight[dampers.dofs] += dampers.laws["shift"] - dampers.laws["rest_force"]
@@ -114,17 +106,12 @@ def trim(rows: Rows) -> StaticTrim:
     """
     model = rows.model
     model.qpos_spring[:] = model.qpos0
-    data = mujoco.MjData(model)
-    design, joint_stiffness = at_rest(rows, data), joint_springs(model)
+    design, joint_stiffness = at_rest(rows), joint_springs(model)
     settled = settle(rows, design, joint_stiffness)
     sprung = joint_stiffness[model.jnt_dofadr] > 0.0
     places, dofs = model.jnt_qposadr[sprung], model.jnt_dofadr[sprung]
     model.qpos_spring[places] = model.qpos0[places] - settled.displacement[dofs]
-    standing = rows.anew(settled.preload)
-    mujoco.mj_resetData(model, data)
-    with installed(standing):
-        mujoco.mj_forward(model, data)
-    left = data.qfrc_smooth.copy()
+    left = standing_data(rows.anew(settled.preload)).qfrc_smooth.copy()
     left[rows.layout.dampers.dofs] += rows.layout.dampers.laws["shift"] - rows.layout.dampers.laws["rest_force"]
     return static_loads(rows, settled, left)
 

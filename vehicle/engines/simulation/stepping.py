@@ -126,7 +126,13 @@ def simulate(
                 index = last
             else:
                 loop.move_plates(index - offset)
-                _step(model, data, recorder, loop, recorded=index % every == 0, moved=index < count)
+                recorded, moved = index % every == 0, index < count
+                if recorded:
+                    recorder.before_step()
+                # The final state is evaluated without a step.
+                (mujoco.mj_step if moved else mujoco.mj_forward)(model, data)
+                if recorded:
+                    recorder.after_step(loop, moved=moved)
             if index == count or recorder.filled == CHUNK:
                 check()
                 _check_state(model, data, recorder, every * step)
@@ -141,7 +147,8 @@ def simulate(
                 recorder.keep_ahead((index + 1 - count) // every - 1)
         check()
         wall = clock.perf_counter() - started
-    warnings = _warnings(data)
+    counts = [int(warning.number) for warning in data.warning]
+    warnings = [f"{mujoco.mjtWarning(kind).name} ({count} times)" for kind, count in enumerate(counts) if count]
     if warnings:
         raise SimulationError(
             f"MuJoCo warned during the run: {'; '.join(warnings)}; its results are discarded: check the input and the "
@@ -159,20 +166,6 @@ def simulate(
         notices=recorder.notices(),
     )
     return recorder.recording(signal, statistics)
-
-
-def _step(
-    model: mujoco.MjModel, data: mujoco.MjData, recorder: Recorder, loop: SteppingLoop, *, recorded: bool, moved: bool
-) -> None:
-    """Take a step, or evaluate the final state if not `moved`; store a sample if `recorded`."""
-    if recorded:
-        recorder.before_step()
-    if moved:
-        mujoco.mj_step(model, data)
-    else:
-        mujoco.mj_forward(model, data)
-    if recorded:
-        recorder.after_step(loop, moved=moved)
 
 
 def record_every(car: CarModel) -> int:
@@ -204,14 +197,3 @@ def _check_state(model: mujoco.MjModel, data: mujoco.MjData, recorder: Recorder,
         "the step is stable for the car at rest, but not for this motion: check the input and the changed parameters",
         state={"time": np.array(pose_time), "qpos": pose},
     )
-
-
-def _warnings(data: mujoco.MjData) -> list[str]:
-    """Return the warnings that MuJoCo counted during the run."""
-    kinds = mujoco.mjtWarning
-    messages = []
-    for warning_type in range(int(kinds.mjNWARNING)):
-        number = int(data.warning[warning_type].number)
-        if number:
-            messages.append(f"{kinds(warning_type).name} ({number} times)")
-    return messages

@@ -110,20 +110,6 @@ def _ctype(declared: Any) -> Any:
     raise LookupError(f"type {name!r}")
 
 
-def user_size_offset(model: mujoco.MjModel) -> int:
-    """Return the byte offset of `nuserdata` in mjModel.
-
-    Raises:
-        LookupError: one of the sizes before `nuserdata` differs from its declaration.
-    """
-    structure = layout("mjModel", "nuserdata")
-    seen = structure.from_address(model._address)
-    for name, field_type in structure._fields_:  # type: ignore[misc]
-        if field_type is ctypes.c_int64 and hasattr(model, name) and getattr(seen, name) != getattr(model, name):
-            raise LookupError(f"mjModel.{name}")
-    return int(structure.nuserdata.offset)
-
-
 def pointer_offsets(data: mujoco.MjData, names: Iterable[str]) -> dict[str, int]:
     """Return the byte offsets of array pointers in mjData.
 
@@ -146,20 +132,6 @@ def pointer_offsets(data: mujoco.MjData, names: Iterable[str]) -> dict[str, int]
             raise LookupError(f"mjData.{name}")
         offset_by_name[name] = int(getattr(structure, name).offset)
     return offset_by_name
-
-
-def scalar_offsets(data: mujoco.MjData) -> tuple[int, int, int]:
-    """Return the byte offsets of `time`, `nefc` and `nJ` in mjData.
-
-    Raises:
-        LookupError: a value has another offset than declared.
-    """
-    structure = layout("mjData")
-    seen = structure.from_address(data._address)
-    for name in ("time", "nefc", "nJ"):
-        if getattr(seen, name) != getattr(data, name):
-            raise LookupError(f"mjData.{name}")
-    return int(structure.time.offset), int(structure.nefc.offset), int(structure.nJ.offset)
 
 
 def step_address() -> int:
@@ -196,12 +168,18 @@ def offsets() -> Offsets:
     # A nonzero time, so that a zero field does not pass the check.
     data.time = 0.734
     try:
-        time, row_count, nonzeros = scalar_offsets(data)
+        sizes, scalars = layout("mjModel", "nuserdata"), layout("mjData")
+        whole = [name for name, kind in sizes._fields_ if kind is ctypes.c_int64 and hasattr(model, name)]  # type: ignore[misc]
+        for checked, structure, names in ((model, sizes, whole), (data, scalars, ("time", "nefc", "nJ"))):
+            seen = structure.from_address(checked._address)
+            for name in names:
+                if getattr(seen, name) != getattr(checked, name):
+                    raise LookupError(f"{structure.__name__}.{name}")
         return Offsets(
-            user_size=user_size_offset(model),
-            time=time,
-            row_count=row_count,
-            nonzeros=nonzeros,
+            user_size=int(sizes.nuserdata.offset),
+            time=int(scalars.time.offset),
+            row_count=int(scalars.nefc.offset),
+            nonzeros=int(scalars.nJ.offset),
             pointers=pointer_offsets(data, POINTERS),
             step=step_address(),
         )

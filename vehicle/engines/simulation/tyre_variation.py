@@ -33,7 +33,9 @@ def run_out(forces: Sequence[PlacedForce]) -> RunOut:
     for force in forces:
         if force.unit == "m" and force.harmonics:
             lines = ForceLines(tuple(sorted(force.harmonics)))
-            found.append((force.tyre, lines.frequencies, tuple(lines.coefficients(dict(force.harmonics.items())).tolist())))
+            found.append(
+                (force.tyre, lines.frequencies, tuple(lines.coefficients(dict(force.harmonics.items())).tolist()))
+            )
     return tuple(found)
 
 

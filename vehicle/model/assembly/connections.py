@@ -23,14 +23,6 @@ from vehicle.names import AXES
 Vector = npt.NDArray[np.float64]
 
 
-def _zeros() -> Vector:
-    return np.zeros(3)
-
-
-def _rigid() -> Vector:
-    return np.full(3, np.inf)
-
-
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class ElementLaw:
     """f = -K r - B r' - f2 - t along each axis, with f2' = K2 r' - f2 / tau (Maxwell branch); torque = -K_rot angle.
@@ -50,11 +42,11 @@ class ElementLaw:
 
     stiffness: Vector
     damping: Vector
-    branch_stiffness: Vector = field(default_factory=_zeros)
-    branch_time: Vector = field(default_factory=_zeros)
+    branch_stiffness: Vector = field(default_factory=lambda: np.zeros(3))
+    branch_time: Vector = field(default_factory=lambda: np.zeros(3))
     rotational_stiffness: float = 0.0
     averaged: bool = False
-    local: Vector = field(default_factory=_rigid)
+    local: Vector = field(default_factory=lambda: np.full(3, np.inf))
     directions: Vector | None = None
     friction: tuple[Jenkins | None, ...] = (None, None, None)
 
@@ -76,15 +68,10 @@ def element_law(connection: PlacedConnection, body: TrimmedBody, superelement: S
         return _rolling_law(connection.law, connection.rolling.speed)
     flexibility = _flexibility(connection, body, superelement)
     if flexibility is not None and (connection.axes is not None or is_coupled(flexibility)):
-        stiffness, damping, branch, time, directions = coupled_law(connection, flexibility)
         return ElementLaw(
-            stiffness=stiffness,
-            damping=damping,
-            branch_stiffness=branch,
-            branch_time=time,
+            **coupled_law(connection, flexibility),
             rotational_stiffness=0.0 if connection.law is None else connection.law.rotational_stiffness,
             averaged=connection.law is None,
-            directions=directions,
         )
     local = None if flexibility is None else 1.0 / np.diag(flexibility)
     if connection.law is not None:
@@ -128,7 +115,7 @@ def fluid_law(connection: PlacedConnection, body: TrimmedBody, superelement: Sup
     flexibility = _flexibility(connection, body, superelement)
     share = 0.0 if flexibility is None else _chamber(parameters) * float(flexibility[2, 2])
     stiffness = np.array([0.0, 0.0, _chamber(parameters) / (1.0 + share)])
-    law = ElementLaw(stiffness=stiffness, damping=_zeros(), directions=None if connection.axes is None else axes)
+    law = ElementLaw(stiffness=stiffness, damping=np.zeros(3), directions=None if connection.axes is None else axes)
     fluid = FluidLaw(law=law, mass=parameters.track_mass or 0.0, damping=parameters.track_damping or 0.0, share=share)
     if not parameters.decoupler_gap:
         return fluid
@@ -206,7 +193,7 @@ def _bushing_law(parameters: LinearBushing | Hydromount, local: Vector | None) -
         branch_stiffness=branch[0],
         branch_time=branch[1],
         rotational_stiffness=parameters.rotational_stiffness,
-        local=_rigid() if local is None else local,
+        local=np.full(3, np.inf) if local is None else local,
         friction=tuple(friction),
     )
 

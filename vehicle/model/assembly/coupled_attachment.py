@@ -10,6 +10,8 @@ K_s is exact. The damper is to first order in G w B, the share by which its own 
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import scipy
 
@@ -18,7 +20,7 @@ from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.laws.maxwell import Maxwell
 from vehicle.model.laws.series import in_series
 from vehicle.model.parameters.composition import PlacedConnection
-from vehicle.model.parameters.force_elements import Hydromount, LinearBushing
+from vehicle.model.parameters.force_elements import Hydromount
 from vehicle.names import AXES
 
 STRUCTURAL_LOSS_TIME = 1e-4
@@ -39,9 +41,7 @@ def is_coupled(flexibility: FloatArray) -> bool:
     return bool(coupling > _COUPLED * diagonal.max() or diagonal.min() < _STIFFEST)
 
 
-def coupled_law(
-    connection: PlacedConnection, flexibility: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
+def coupled_law(connection: PlacedConnection, flexibility: FloatArray) -> dict[str, Any]:
     """Return the rows of a connection in series with an attachment.
 
     Args:
@@ -49,19 +49,17 @@ def coupled_law(
         flexibility: G in the axes of the carrier [m/N], shape (3, 3).
 
     Returns:
-        Stiffness [N/m], damping [N s/m], branch stiffness [N/m] and branch time [s] along three directions, shape (3,);
-        the directions as rows, shape (3, 3).
+        Fields of `ElementLaw` along three directions, shape (3,), and these directions as rows, shape (3, 3).
 
     Raises:
         ConfigurationError: the law has a table over displacement, rubber friction, or an inertia track.
     """
     values, vectors = np.linalg.eigh(flexibility)
     attachment = vectors @ np.diag(np.maximum(values, _STIFFEST)) @ vectors.T
-    none = np.zeros(3)
     law = connection.law
     if law is None:
         stiffness = 1.0 / np.maximum(values, _STIFFEST)
-        return stiffness, STRUCTURAL_LOSS_TIME * stiffness, none, none, vectors.T
+        return {"stiffness": stiffness, "damping": STRUCTURAL_LOSS_TIME * stiffness, "directions": vectors.T}
     nonlinear = {f"table_{name}": "a table" for name in AXES if getattr(law, f"table_{name}", None) is not None}
     if any(friction := getattr(law, "friction_force", ())):
         nonlinear["friction_force"] = f"{list(friction)} N"
@@ -80,29 +78,23 @@ def coupled_law(
     static = bushing_stiffness @ share
     static = 0.5 * (static + static.T)
     damping = share.T @ (axes.T * law.damping) @ axes @ share
-    branch = _branch(law)
-    if branch is None:
+    if not isinstance(law, Hydromount) or law.maxwell is None:
         stiffness, drag, directions = _diagonalised(static, damping, np.eye(3))
-        return stiffness, drag, none, none, directions
+        return {"stiffness": stiffness, "damping": drag, "directions": directions}
+    branch = Maxwell(stiffness=law.stiffness[2], branch_stiffness=law.maxwell[0], branch_damping=law.maxwell[1])
     joined = in_series(1.0 / float(axes[2] @ attachment @ axes[2]), branch)
     along = share.T @ axes[2] / np.linalg.norm(share.T @ axes[2])
     own_part = 1.0 / float(along @ np.linalg.solve(static, along))
     remainder = static - own_part * np.outer(along, along)
     _, basis = np.linalg.eigh(remainder)
     stiffness, drag, directions = _diagonalised(remainder, damping, basis[:, 1:])
-    return (
-        np.append(stiffness, own_part),
-        np.append(drag, 0.0),
-        np.array([0.0, 0.0, float(joined.branch_stiffness)]),
-        np.array([0.0, 0.0, float(joined.relaxation_time)]),
-        np.vstack([directions, along]),
-    )
-
-
-def _branch(law: LinearBushing | Hydromount) -> Maxwell | None:
-    if not isinstance(law, Hydromount) or law.maxwell is None:
-        return None
-    return Maxwell(stiffness=law.stiffness[2], branch_stiffness=law.maxwell[0], branch_damping=law.maxwell[1])
+    return {
+        "stiffness": np.append(stiffness, own_part),
+        "damping": np.append(drag, 0.0),
+        "branch_stiffness": np.array([0.0, 0.0, float(joined.branch_stiffness)]),
+        "branch_time": np.array([0.0, 0.0, float(joined.relaxation_time)]),
+        "directions": np.vstack([directions, along]),
+    }
 
 
 def _diagonalised(

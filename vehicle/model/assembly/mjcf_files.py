@@ -49,19 +49,15 @@ def mjcf_files(vehicle: Vehicle, trimmed_body: Superelement) -> dict[str, bytes]
     borne = {spring.name: spring.parts[0] for spring in springs}
     spec.meshdir = "meshes"
     files: dict[str, bytes] = {}
-    assets: dict[str, bytes] = {}
     for name, shape in shapes.items():
         mesh = shape.mesh.copy()
         mesh.apply_translation(-assembly.origins[borne.get(shape.part, shape.part)])
         content = io.BytesIO()
         mesh.export(content, file_type="stl")
-        assets[f"{name}.stl"] = content.getvalue()
-        files[f"meshes/{name}.stl"] = content.getvalue()
+        files[f"meshes/{name}.stl"] = spec.assets[f"{name}.stl"] = content.getvalue()
         entry = spec.mesh(name)
         entry.uservert, entry.userface = [], []
         entry.file = f"{name}.stl"
-    for name, content_bytes in assets.items():
-        spec.assets[name] = content_bytes
     spec.compile()
     header = f"<!-- {vehicle.name}: {GENERATED} -->\n".encode()
     text = _tidy(spec.to_xml())

@@ -44,9 +44,6 @@ def assemble(vehicle: Vehicle, trimmed_body: Superelement) -> Assembly:
         vehicle: parameters.
         trimmed_body: modal model of the trimmed body.
 
-    Returns:
-        The assembly; `spec.compile()` gives the model.
-
     Raises:
         DataError: the superelement lacks a node at a point where a force acts.
     """

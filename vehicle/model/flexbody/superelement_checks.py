@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -39,25 +40,15 @@ def check_superelement(body: Superelement) -> None:
     Raises:
         DataError: a check failed; the message contains the item, its value, the limit and the remedy.
     """
-    _check_counts(body)
-    _check_values(body)
-    _check_units(body)
-    _check_rigid(body)
-    if body.frequencies.size:
-        if body.node_mass is not None:
-            _check_modes(body, body.node_mass)
-        else:
-            _check_likeness(body)
+    for faults in (_counts(body), _values(body), _units(body), _rigid(body), _modes(body)):
+        for fault in faults:
+            raise DataError(f"superelement {body.name!r}, {fault}")
 
 
-def _refuse(body: Superelement, text: str) -> None:
-    raise DataError(f"superelement {body.name!r}, {text}")
-
-
-def _check_counts(body: Superelement) -> None:
+def _counts(body: Superelement) -> Iterator[str]:
     nodes, modes = len(body.nodes), body.frequencies.size
     if nodes < 3:
-        _refuse(body, f"size: found {nodes} nodes, must be at least 3.")
+        yield f"size: found {nodes} nodes, must be at least 3."
     required: dict[str, tuple[int, ...]] = {
         "positions": (nodes, 3),
         "frequencies": (modes,),
@@ -69,212 +60,198 @@ def _check_counts(body: Superelement) -> None:
     for name, shape in required.items():
         actual = getattr(body, name).shape
         if actual != shape:
-            _refuse(
-                body,
+            yield (
                 f"{name}: shape {actual}, but {nodes} nodes and {modes} frequencies need {shape}. "
-                "Export every array for the same nodes and modes.",
+                "Export every array for the same nodes and modes."
             )
     if len(body.mode_names) != modes:
-        _refuse(body, f"mode_names: {len(body.mode_names)} names for {modes} frequencies. Specify a name per mode.")
+        yield f"mode_names: {len(body.mode_names)} names for {modes} frequencies. Specify a name per mode."
     duplicates = sorted(name for name, count in Counter(body.nodes).items() if count > 1)
     if duplicates:
-        _refuse(body, f"nodes: {', '.join(map(repr, duplicates))} given more than once. Node names must be unique.")
+        yield f"nodes: {', '.join(map(repr, duplicates))} given more than once. Node names must be unique."
     if body.edges.size and not (body.edges.min() >= 0 and body.edges.max() < nodes):
-        _refuse(body, f"edges: found index {body.edges.min()} to {body.edges.max()}, must be 0 to {nodes - 1}.")
+        yield f"edges: found index {body.edges.min()} to {body.edges.max()}, must be 0 to {nodes - 1}."
     for name, node_values in (("rotations", body.rotations), ("residual", body.residual)):
         for node in node_values:
             if node not in body.nodes:
-                _refuse(body, f"{name}: no node {node!r}. Its nodes are: {', '.join(body.nodes)}.")
+                yield f"{name}: no node {node!r}. Its nodes are: {', '.join(body.nodes)}."
     for node, rotation in body.rotations.items():
         if rotation.shape != (modes, 3) or not np.all(np.isfinite(rotation)):
-            _refuse(
-                body, f"rotations of {node!r}: shape {rotation.shape}, must be {modes} rows of three finite numbers."
-            )
+            yield f"rotations of {node!r}: shape {rotation.shape}, must be {modes} rows of three finite numbers."
     for node, flexibility in body.residual.items():
         if flexibility.shape != (3, 3):
-            _refuse(body, f"residual of {node!r}: shape {flexibility.shape}, must be three rows of three numbers.")
-        _check_residual(body, node, flexibility)
+            yield f"residual of {node!r}: shape {flexibility.shape}, must be three rows of three numbers."
+        yield from _residual(node, flexibility)
 
 
-def _check_residual(body: Superelement, node: str, flexibility: FloatArray) -> None:
+def _residual(node: str, flexibility: FloatArray) -> Iterator[str]:
     if not np.all(np.isfinite(flexibility)):
-        _refuse(body, f"residual of {node!r}: {flexibility.tolist()}; every number must be finite. Correct the export.")
+        yield f"residual of {node!r}: {flexibility.tolist()}; every number must be finite. Correct the export."
     largest = float(np.abs(flexibility).max())
     if np.abs(flexibility - flexibility.T).max() > _SYMMETRY * largest:
-        _refuse(body, f"residual of {node!r}: {flexibility.tolist()} m/N is not symmetric. Specify G = G'.")
+        yield f"residual of {node!r}: {flexibility.tolist()} m/N is not symmetric. Specify G = G'."
     lowest = float(np.linalg.eigvalsh(flexibility)[0])
     if lowest < -_SYMMETRY * largest:
-        _refuse(
-            body,
+        yield (
             f"residual of {node!r}: its smallest principal value is {lowest:.4g} m/N, must not be negative (negative "
-            "spring in series). Use modes and residual of the same model.",
+            "spring in series). Use modes and residual of the same model."
         )
     if largest > _SOFTEST_RESIDUAL:
-        _refuse(
-            body,
+        yield (
             f"residual of {node!r}: found {largest:.4g} m/N, must be at most {_SOFTEST_RESIDUAL:g} for a car; probably "
             "mm/N, or a node at a soft spot. Use m/N in a file, [mm/N] in the head of a --residual table; import "
-            "matrices with their --length-unit and --mass-unit, and points on more nodes with --spread.",
+            "matrices with their --length-unit and --mass-unit, and points on more nodes with --spread."
         )
 
 
-def _check_values(body: Superelement) -> None:
+def _values(body: Superelement) -> Iterator[str]:
     for name in ("positions", "node_mass", "frequencies", "damping_ratio", "shapes"):
         array = getattr(body, name)
         if array is not None and not np.all(np.isfinite(array)):
             where = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
-            _refuse(body, f"{name}{list(where)}: {array[where]}; every number must be finite. Correct the export.")
+            yield f"{name}{list(where)}: {array[where]}; every number must be finite. Correct the export."
     if body.node_mass is not None and (body.node_mass.min() < 0.0 or body.node_mass.sum() <= 0.0):
         worst = int(body.node_mass.argmin())
-        _refuse(
-            body,
+        yield (
             f"node_mass of {body.nodes[worst]!r}: {body.node_mass[worst]:g} kg; masses must not be negative and "
-            "their sum must be positive.",
+            "their sum must be positive."
         )
     if not 0.0 < body.hardpoint_tolerance <= LARGEST_TOLERANCE:
-        _refuse(
-            body,
+        yield (
             f"hardpoint_tolerance: found {body.hardpoint_tolerance:g} m, must be above 0 and at most "
-            f"{LARGEST_TOLERANCE:g} m: a node farther away is a different point of the body.",
+            f"{LARGEST_TOLERANCE:g} m: a node farther away is a different point of the body."
         )
     if np.any(body.frequencies <= 0.0):
         worst = int(body.frequencies.argmin())
-        _refuse(
-            body,
+        yield (
             f"frequencies[{worst}]: {body.frequencies[worst]:g} Hz; elastic modes have positive frequencies. "
-            "Omit rigid-body modes: they follow from the masses.",
+            "Omit rigid-body modes: they follow from the masses."
         )
     falls = np.flatnonzero(np.diff(body.frequencies) < 0.0)
     if falls.size:
         i = int(falls[0])
-        _refuse(
-            body,
+        yield (
             f"frequencies: mode {i + 2} ({body.frequencies[i + 1]:g} Hz) is below mode {i + 1} "
-            f"({body.frequencies[i]:g} Hz). Sort the modes by frequency, their shapes and damping with them.",
+            f"({body.frequencies[i]:g} Hz). Sort the modes by frequency, their shapes and damping with them."
         )
     bad = np.flatnonzero((body.damping_ratio < 0.0) | (body.damping_ratio > HIGHEST_DAMPING))
     if bad.size:
         i = int(bad[0])
-        _refuse(
-            body,
+        yield (
             f"damping_ratio[{i}]: found {body.damping_ratio[i]:g}, must be 0 to {HIGHEST_DAMPING:g}. Specify the "
-            "fraction of critical damping, 0.02 for 2 %.",
+            "fraction of critical damping, 0.02 for 2 %."
         )
 
 
-def _check_units(body: Superelement) -> None:
+def _units(body: Superelement) -> Iterator[str]:
     extent = float(np.ptp(body.positions, axis=0).max())
     if extent > _LARGEST_BODY:
         limit = f"must be at most {_LARGEST_BODY:g} m"
-        _refuse(body, f"positions: the body is {extent:g} m long, {limit}; probably mm. Convert to m.")
+        yield f"positions: the body is {extent:g} m long, {limit}; probably mm. Convert to m."
     if extent < _SMALLEST_BODY:
-        _refuse(body, f"positions: the body is {extent:g} m long, must be at least {_SMALLEST_BODY:g} m. Convert to m.")
+        yield f"positions: the body is {extent:g} m long, must be at least {_SMALLEST_BODY:g} m. Convert to m."
     first = float(body.frequencies[0]) if body.frequencies.size else 0.0
     if first > HIGHEST_FIRST_MODE:
-        _refuse(
-            body,
+        yield (
             f"frequencies: the first mode is at {first:g} Hz, must be at most {HIGHEST_FIRST_MODE:g} Hz; probably "
-            f"rad/s ({first / (2.0 * np.pi):.4g} Hz). Convert to Hz.",
+            f"rad/s ({first / (2.0 * np.pi):.4g} Hz). Convert to Hz."
         )
 
 
-def _check_rigid(body: Superelement) -> None:
+def _rigid(body: Superelement) -> Iterator[str]:
     """Check mass, CoG and inertia, from the node masses or specified directly."""
     if (body.node_mass is None) == (body.mass_properties is None):
         mass_data = "neither" if body.node_mass is None else "both"
-        _refuse(body, f"mass: found {mass_data}; specify mass, CoG and inertia, or the mass of every node.")
+        yield f"mass: found {mass_data}; specify mass, CoG and inertia, or the mass of every node."
     rigid = body.rigid
     numbers = np.array([rigid.mass, *np.ravel(rigid.cog), *np.ravel(rigid.inertia)])
     if numbers.size != 13 or not np.all(np.isfinite(numbers)) or rigid.mass <= 0.0:
-        _refuse(
-            body,
+        yield (
             f"mass {rigid.mass:g} kg, cog {np.ravel(rigid.cog).tolist()} m, inertia "
-            f"{np.ravel(rigid.inertia).tolist()} kg m2; must be a positive mass, three and nine finite numbers.",
+            f"{np.ravel(rigid.inertia).tolist()} kg m2; must be a positive mass, three and nine finite numbers."
         )
     low, high = body.positions.min(axis=0), body.positions.max(axis=0)
     room = 0.5 * float(np.max(high - low))
     if np.any(rigid.cog < low - room) or np.any(rigid.cog > high + room):
-        _refuse(
-            body,
+        yield (
             f"cog: {np.asarray(rigid.cog).tolist()} m lies far outside the nodes, {low.tolist()} to {high.tolist()} m. "
-            "Specify the CoG in the frame and unit of the nodes.",
+            "Specify the CoG in the frame and unit of the nodes."
         )
     if not body.frequencies.size:
         return
     low_moment, middle, top = np.linalg.eigvalsh(rigid.inertia)
     if low_moment <= 1e-9 * top:
-        _refuse(body, "node_mass: all mass is on one line, so the body has no inertia about the line. Add mass off it.")
+        yield "node_mass: all mass is on one line, so the body has no inertia about the line. Add mass off it."
     if not np.allclose(rigid.inertia, np.transpose(rigid.inertia), rtol=0.0, atol=_SYMMETRY * top):
-        _refuse(body, f"inertia: {np.asarray(rigid.inertia).tolist()} kg m2 is not symmetric.")
+        yield f"inertia: {np.asarray(rigid.inertia).tolist()} kg m2 is not symmetric."
     if low_moment + middle < top * (1.0 - 1e-6):
-        _refuse(
-            body,
+        yield (
             f"inertia: principal moments {low_moment:.4g}, {middle:.4g} and {top:.4g} kg m2; the sum of the two "
-            "smaller must be at least the largest. Specify the tensor about the CoG with negative products.",
+            "smaller must be at least the largest. Specify the tensor about the CoG with negative products."
         )
 
 
-def _check_likeness(body: Superelement) -> None:
-    """Check shapes without node masses: plausible unit, different shapes, and no shape a rigid motion."""
+def _modes(body: Superelement) -> Iterator[str]:
+    """Check shapes; without node masses: plausible unit, different shapes, and no shape a rigid motion."""
+    if not body.frequencies.size:
+        return
+    if body.node_mass is not None:
+        yield from _normalised(body, body.node_mass)
+        return
     level = float(np.sqrt(np.mean(body.shapes**2)) * np.sqrt(3.0 * body.mass))
     if not 1e-2 < level < 1e2:
-        _refuse(
-            body,
+        yield (
             f"shapes: their RMS is {level:.3g} times that of a rigid motion with modal mass 1, must be about 1. "
-            "Use shapes with modal masses of 1 kg in kg^-1/2 (from mm and tonnes: divide by sqrt(1000)).",
+            "Use shapes with modal masses of 1 kg in kg^-1/2 (from mm and tonnes: divide by sqrt(1000))."
         )
     motions, _ = body.rigid.rigid_motions(body.positions)
     basis, _ = np.linalg.qr(motions.reshape(6, -1).T)
     flat = body.shapes.reshape(len(body.shapes), -1)
     still = np.flatnonzero(~flat.any(axis=1))
     if still.size:
-        _refuse(body, f"shapes: mode {still[0] + 1} is zero at all nodes. Omit the mode, or add nodes that it moves.")
+        yield f"shapes: mode {still[0] + 1} is zero at all nodes. Omit the mode, or add nodes that it moves."
     share = np.sum((flat @ basis) ** 2, axis=1) / np.sum(flat**2, axis=1)
     if share.max() > _RIGID_LIKENESS:
         mode = int(share.argmax())
-        _refuse(
-            body,
+        yield (
             f"shapes: mode {mode + 1} ({body.frequencies[mode]:g} Hz) is a rigid motion (share {share[mode]:.4%}, must "
-            f"be at most {_RIGID_LIKENESS:.1%}). Omit rigid-body modes: they follow from mass and inertia.",
+            f"be at most {_RIGID_LIKENESS:.1%}). Omit rigid-body modes: they follow from mass and inertia."
         )
     twins = mac(body.shapes, body.shapes) - np.eye(len(body.shapes))
     if twins.max(initial=0.0) > _RIGID_LIKENESS:
         mode_a, mode_b = sorted(int(k) for k in np.unravel_index(int(twins.argmax()), twins.shape))
-        _refuse(
-            body,
+        yield (
             f"shapes: modes {mode_a + 1} ({body.frequencies[mode_a]:g} Hz) and {mode_b + 1} "
             f"({body.frequencies[mode_b]:g} Hz) have the same shape (MAC {twins.max():.4f}). Omit one mode, or add "
-            "nodes.",
+            "nodes."
         )
 
 
-def _check_modes(body: Superelement, node_mass: FloatArray) -> None:
+def _normalised(body: Superelement, node_mass: FloatArray) -> Iterator[str]:
     gram = np.einsum("ank,bnk,n->ab", body.shapes, body.shapes, node_mass)
     scale = np.diag(gram)
     for factor, unit in ((1e6, "probably mm: divide the shapes by 1000"), (1e-6, "probably km: multiply by 1000")):
         if np.allclose(scale, factor, rtol=0.01):
-            _refuse(body, f"shapes: modal masses are {scale[0]:.4g} instead of 1; {unit}.")
+            yield f"shapes: modal masses are {scale[0]:.4g} instead of 1; {unit}."
     for factor, unit in ((1e3, "masses or shapes"), (1e-3, "masses or shapes")):
         if np.allclose(scale, factor, rtol=0.01):
-            _refuse(body, f"shapes: modal masses are {scale[0]:.4g} instead of 1; probably tonnes in {unit}. Use kg.")
+            yield f"shapes: modal masses are {scale[0]:.4g} instead of 1; probably tonnes in {unit}. Use kg."
     error = np.abs(gram - np.eye(len(gram)))
     if error.max() > NORMALISATION:
         i, j = (int(k) for k in np.unravel_index(int(error.argmax()), error.shape))
-        _refuse(
-            body,
+        yield (
             f"shapes: modes {i + 1} and {j + 1} have phi^T M phi = {gram[i, j]:.8g} instead of {float(i == j):g} "
             f"(within {NORMALISATION:g}): not mass-normalised with these node masses. Export mass-normalised modes "
-            "and the corresponding masses.",
+            "and the corresponding masses."
         )
     rigid, _ = body.rigid.rigid_motions(body.positions)
     content = np.abs(np.einsum("ank,bnk,n->ab", rigid, body.shapes, node_mass))
     if content.max() > NORMALISATION:
         motion, mode = (int(k) for k in np.unravel_index(int(content.argmax()), content.shape))
         rigid_motion = "translation along" if motion < 3 else "rotation about"
-        _refuse(
-            body,
+        yield (
             f"shapes: mode {mode + 1} ({body.frequencies[mode]:g} Hz) contains {content[motion, mode]:.3g} of the "
             f"rigid {rigid_motion} {'xyz'[motion % 3]}, must be at most {NORMALISATION:g}: "
             "not a free-free mode of these masses. Export free-free modes and the masses of their computation, without "
-            "rigid-body modes.",
+            "rigid-body modes."
         )

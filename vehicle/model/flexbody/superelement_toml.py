@@ -62,20 +62,24 @@ def of_tables(content: dict[str, Any]) -> Superelement:
                 f"mode {i + 1}, shape_per_sqrt_kg: {shape[0] if shape else 0} rows, must be {len(names)} rows of three "
                 "numbers, one per node."
             )
-    residual = {}
+    residual, with_mass = {}, ["mass_kg" in node for node in nodes]
     for node in nodes:
         where = f"node {node['name']!r}"
-        if _OF_VERSION_1 in node:
-            residual[str(node["name"])] = _of_stiffness(numbers(node[_OF_VERSION_1], f"{where}, {_OF_VERSION_1}"))
-        elif "residual_flexibility_m_per_n" in node:
-            key = "residual_flexibility_m_per_n"
-            residual[str(node["name"])] = numbers(node[key], f"{where}, {key}")
+        for key in (_OF_VERSION_1, "residual_flexibility_m_per_n"):
+            if key in node:
+                values = numbers(node[key], f"{where}, {key}")
+                residual[str(node["name"])] = _of_stiffness(values) if key == _OF_VERSION_1 else values
+                break
+    if any(with_mass) and not all(with_mass):
+        raise DataError(
+            f"node {with_mass.index(False) + 1}: key 'mass_kg' is missing; set it for every node or for no node."
+        )
     return Superelement(
         name=str(content["name"]),
         nodes=names,
         positions=_column(nodes, "node", "position_m"),
         edges=np.array(edges, dtype=int).reshape(-1, 2),
-        node_mass=_column(nodes, "node", "mass_kg") if _all_or_none(nodes, "node", "mass_kg") else None,
+        node_mass=_column(nodes, "node", "mass_kg") if all(with_mass) else None,
         mass_properties=given_rigid({key: content[key] for key in RIGID if key in content}),
         frequencies=_column(modes, "mode", "frequency_hz"),
         damping_ratio=_column(modes, "mode", "damping_ratio"),
@@ -143,16 +147,6 @@ def _tables(content: dict[str, Any], table_type: str, older: bool) -> list[dict[
         free = {"mass_kg": 0.0} if table_type == "node" and "mass_kg" in content and not older else {}
         _check_keys({**free, **table}, table_type, f"{table_type} {i + 1}", older)
     return tables
-
-
-def _all_or_none(tables: list[dict[str, Any]], table_type: str, key: str) -> bool:
-    present = [key in table for table in tables]
-    if any(present) and not all(present):
-        raise DataError(
-            f"{table_type} {present.index(False) + 1}: key {key!r} is missing; set it for every "
-            f"{table_type} or for no {table_type}."
-        )
-    return all(present)
 
 
 def numbers(value: Any, where: str) -> FloatArray:

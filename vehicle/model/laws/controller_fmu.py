@@ -142,11 +142,7 @@ def read_controller(path: Path, digest: str | None) -> ControllerFile:
 
 
 def _with_variables(path: Path, content: bytes, description: Any) -> ControllerFile:
-    """Return a controller with the references of its variables.
-
-    Raises:
-        DataError: an input or the output is missing or has another name or type.
-    """
+    """Return a controller with the references of its variables; raise if one is missing or has another name or type."""
     variables = {entry.name: entry for entry in description.modelVariables}
     numbers = {name: entry for name, entry in variables.items() if entry.type in REALS and not entry.dimensions}
     inputs = [name for name, entry in variables.items() if entry.causality == "input"]
@@ -354,11 +350,7 @@ def require_controllers(controls: Iterable[SemiActiveDamper | None]) -> None:
 
 
 def _fmpy() -> Any:
-    """Import FMPy.
-
-    Raises:
-        MissingPartError: FMPy is not installed.
-    """
+    """Import FMPy; raise if it is not installed."""
     try:
         import fmpy
     except ImportError:

@@ -8,18 +8,15 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.model.laws.law import Numbers
-from vehicle.model.parameters.quantity import quantity, validate
+from vehicle.model.parameters.quantity import Validated, quantity
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Kelvin:
+class Kelvin(Validated):
     """F = K u + B u', the linear bushing."""
 
     stiffness: Numbers = quantity("N/m", "stiffness K", at_least=0.0)
     damping: Numbers = quantity("N s/m", "damping constant B", at_least=0.0)
-
-    def __post_init__(self) -> None:
-        validate(self)
 
     def force(self, extension: Numbers, rate: Numbers) -> npt.NDArray[np.float64]:
         """Return the force [N] at an extension [m] and its rate [m/s]."""

@@ -9,11 +9,11 @@ import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.law import Numbers
-from vehicle.model.parameters.quantity import quantity, validate
+from vehicle.model.parameters.quantity import Validated, quantity
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Maxwell:
+class Maxwell(Validated):
     """F = K1 u + F2 with F2' = K2 u' - (K2/D2) F2, so K(s) = K1 + K2 D2 s / (D2 s + K2).
 
     A branch with K2 = 0 or D2 = 0 is absent: its force is zero at all times.
@@ -24,9 +24,6 @@ class Maxwell:
     stiffness: Numbers = quantity("N/m", "static stiffness K1", at_least=0.0)
     branch_stiffness: Numbers = quantity("N/m", "spring K2 of the Maxwell branch", at_least=0.0)
     branch_damping: Numbers = quantity("N s/m", "damper D2 of the Maxwell branch", at_least=0.0)
-
-    def __post_init__(self) -> None:
-        validate(self)
 
     @property
     def relaxation_time(self) -> npt.NDArray[np.float64]:
@@ -61,17 +58,16 @@ class Maxwell:
         frequency = np.sqrt(self.stiffness / total) / self.relaxation_time
         return frequency, np.arctan(self.branch_stiffness / (2.0 * np.sqrt(self.stiffness * total)))
 
-    def step_coefficients(self, timestep: Numbers) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-        """Return the coefficients of the exact step: F2(t + h) = decay F2(t) + gain (u(t + h) - u(t)).
+    def step(self, branch_force: Numbers, extension_change: Numbers, timestep: Numbers) -> npt.NDArray[np.float64]:
+        """Return the branch force F2 [N] after a step, exact for an extension that is linear in time.
 
-        decay = exp(-h/tau) and gain = D2 (1 - exp(-h/tau)) / h with tau = D2/K2; exact if u is linear
-        in time.
+        F2(t + h) = exp(-h/tau) F2(t) + D2 (1 - exp(-h/tau)) / h (u(t + h) - u(t)) with tau = D2/K2; zero if the branch
+        is absent.
 
         Args:
+            branch_force: F2 [N] at the start of the step.
+            extension_change: u(t + h) - u(t) [m].
             timestep: step h [s].
-
-        Returns:
-            decay [-] and gain [N/m]; both zero if the branch is absent.
 
         Raises:
             ConfigurationError: a step that is not a finite number above zero.
@@ -82,18 +78,5 @@ class Maxwell:
         tau = self.relaxation_time
         present = tau > 0.0
         exponent = np.where(present, h / np.where(present, tau, 1.0), np.inf)
-        return np.exp(-exponent), np.asarray(self.branch_stiffness * tau * -np.expm1(-exponent) / h)
-
-    def step(self, branch_force: Numbers, extension_change: Numbers, timestep: Numbers) -> npt.NDArray[np.float64]:
-        """Return the branch force F2 [N] after a step, exact for an extension that is linear in time.
-
-        Args:
-            branch_force: F2 [N] at the start of the step.
-            extension_change: u(t + h) - u(t) [m].
-            timestep: step h [s].
-
-        Returns:
-            F2 [N] at the end of the step.
-        """
-        decay, gain = self.step_coefficients(timestep)
-        return np.asarray(decay * branch_force + gain * np.asarray(extension_change))
+        gain = self.branch_stiffness * tau * -np.expm1(-exponent) / h
+        return np.asarray(np.exp(-exponent) * branch_force + gain * np.asarray(extension_change))

@@ -22,9 +22,6 @@ def in_series(local_stiffness: Numbers, element: Kelvin | Maxwell) -> Maxwell:
         local_stiffness: spring K0 [N/m] of the attachment point.
         element: bushing (K, B) or elastomer (K1, K2, D2) in series with the spring.
 
-    Returns:
-        The equivalent elastomer (K1', K2', D2').
-
     Raises:
         ConfigurationError: a local stiffness that is not a finite number above zero.
     """

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -57,7 +57,15 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
     tables = {key: convert(dict, table.get(key, {}), key) for key in NAMED_TABLES}
     file_points = {name: point_of(f"hardpoints.{name}", value) for name, value in tables["hardpoints"].items()}
     car = instances(table, folders, file_points)
-    points = _points(car, file_points)
+    points = {
+        i.label(name, side): i.point(name, side)
+        for i in car.values()
+        for name, side in itertools.product(i.template.hardpoints, i.sides())
+        if side is not None or not i.template.mirrored
+    }
+    if twice := sorted(set(file_points) & set(points)):
+        raise ConfigurationError(f"hardpoints.{twice[0]}: an instance has a point of this name; rename one of both")
+    points = {**file_points, **points}
     require_geometry(car)
     wheels = list(placed_wheels(car))
     names = {"body", "world", *(wheel.plate for wheel in wheels)}
@@ -96,20 +104,6 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
     require_points(table, car)
     require_aliases(table)
     return composition
-
-
-def _points(car: Mapping[str, Instance], file_points: Mapping[str, Point]) -> dict[str, Point]:
-    """Return all hardpoints by their names in the model [m]; raise if an instance and the file share a name."""
-    points = dict(itertools.chain.from_iterable(map(_instance_points, car.values())))
-    if twice := sorted(set(file_points) & set(points)):
-        raise ConfigurationError(f"hardpoints.{twice[0]}: an instance has a point of this name; rename one of both")
-    return {**file_points, **points}
-
-
-def _instance_points(instance: Instance) -> Iterator[tuple[str, Point]]:
-    for name, side in itertools.product(instance.template.hardpoints, instance.sides()):
-        if side is not None or not instance.template.mirrored:
-            yield instance.label(name, side), instance.point(name, side)
 
 
 def parameter_kinds(car: Mapping[str, Instance], table: Mapping[str, Any]) -> dict[str, type]:

@@ -220,11 +220,7 @@ class Hydromount:
 
 
 def _require_stroke(law: Bushing | Hydromount) -> None:
-    """Check that each axis with rubber friction has a stroke.
-
-    Raises:
-        ConfigurationError: the stroke is missing or too short.
-    """
+    """Check that each axis with rubber friction has a stroke that is long enough."""
     for axis, force, stroke in zip(AXES, law.friction_force, law.friction_stroke, strict=True):
         if force > 0.0 and stroke < SHORTEST_STROKE:
             raise ConfigurationError(
@@ -367,11 +363,7 @@ class Damper:
             )
 
     def _check_presliding(self) -> None:
-        """Check that the presliding curve rises to the limit, with falling slopes that begin with K.
-
-        Raises:
-            ConfigurationError: a wrong number or order of the values.
-        """
+        """Check that the presliding curve rises to the limit, with falling slopes that begin with K."""
         ends, slopes = self.presliding_force, self.presliding_slope
         if len(ends) != len(slopes) or not 1 <= len(ends) <= MAX_SLIDERS:
             numbers = f"found {len(slopes)} numbers for {len(ends)} of presliding_force"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -84,10 +84,10 @@ def parameter_list(vehicle: Vehicle, file: Path | None, folder: Path | None = No
     for path, value in flattened(vehicle.table):
         parameters.append(_parameter(vehicle, path, value, _source(file, path, value)))
     home = folder or (Path() if file is None else file.parent)
-    for path in _single(optional_paths(vehicle.table, home)):
+    for path in optional_paths(vehicle.table, home):
+        if set(SIDE_SIGN) & set(path.split(".")) or path.rpartition(".")[2] in AXES:
+            continue  # listed for both sides, and as a vector
         declared = vehicle.quantity_of(path)
-        if path.rpartition(".")[2] in AXES:
-            continue  # listed as a vector
         parent = path.rpartition(".")[0]
         present = parent in ("", "driving", "solver") or isinstance(value_at(vehicle.table, parent), Mapping)
         if present and declared.get("default") not in (None, ()):
@@ -177,11 +177,6 @@ def flattened(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str,
                 yield from flattened(value, f"{prefix}{key}.")
         else:
             yield prefix + key, value
-
-
-def _single(paths: Iterable[str]) -> list[str]:
-    """Return the paths without those of a single side."""
-    return [path for path in paths if not {"right", "left"} & set(path.split("."))]
 
 
 def _parameter(vehicle: Vehicle, path: str, value: Any, source: str) -> Parameter:

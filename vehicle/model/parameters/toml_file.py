@@ -27,9 +27,6 @@ def read_table(path: Path) -> dict[str, Any]:
     Args:
         path: the file.
 
-    Returns:
-        The tables of the file.
-
     Raises:
         ConfigurationError: the file is missing, not a file, too large, not UTF-8 or not TOML.
     """
@@ -62,9 +59,6 @@ def build(cls: type[T], table: Mapping[str, Any], path: str = "") -> T:
         cls: a dataclass whose fields are numbers, texts, vectors (tuples), parameter classes or mappings of them.
         table: values by the names of the fields.
         path: dotted path of this table, shown in messages.
-
-    Returns:
-        The validated object.
 
     Raises:
         ConfigurationError: an unknown name (with the nearest known name), a missing name or a wrong type.

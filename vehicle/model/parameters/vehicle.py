@@ -19,7 +19,7 @@ from vehicle.model.parameters.further_forces import new_tables
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.optional_keys import optional_paths
 from vehicle.model.parameters.plausible import require_plausible, require_rolling
-from vehicle.model.parameters.quantity import field_quantity, quantity, validate
+from vehicle.model.parameters.quantity import Validated, field_quantity, quantity
 from vehicle.model.parameters.shipped import FOCUS_FILE, vehicle_file
 from vehicle.model.parameters.toml_file import build, convert
 from vehicle.model.parameters.whole_body import varied_table
@@ -30,7 +30,7 @@ FIRST_STEP = 1e-3
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Solver:
+class Solver(Validated):
     """Numerics of the time simulation."""
 
     record_rate: float = quantity("Hz", "sampling rate of the recorded channels", at_least=125.0, at_most=1e5)
@@ -39,9 +39,6 @@ class Solver:
         default=None,
     )  # fmt: skip
 
-    def __post_init__(self) -> None:
-        validate(self)
-
     @property
     def step(self) -> float:
         """Time step [s]; `FIRST_STEP` if the file has none."""
@@ -49,7 +46,7 @@ class Solver:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Head:
+class Head(Validated):
     """Parameters of a vehicle file outside all tables."""
 
     name: str = quantity("-", "name of the car")
@@ -66,9 +63,6 @@ class Head:
         choices=("right", "left", "unsaid"),
         default="unsaid",
     )
-
-    def __post_init__(self) -> None:
-        validate(self)
 
 
 HEAD = tuple(Head.__dataclass_fields__)
@@ -190,11 +184,8 @@ class Vehicle:
         upwards from the design position. Parts of a sum: `<damper>_stop_force` of `<damper>_force`, and of
         `tyre_<wheel>_force_x` of a rolling tyre `tyre_<wheel>_slip_force_x` and `tyre_<wheel>_slope_force_x`.
         """
-        car, kinds = (
-            self.composition,
-            {joint.name: joint.kind for part in self.composition.parts for joint in part.joints},
-        )
-        ends = {"slide": "spring_force"}
+        car, ends = self.composition, {"slide": "spring_force"}
+        kinds = {joint.name: joint.kind for part in car.parts for joint in part.joints}
         channels = [f"{link.name}_force_{axis}" for link in car.connections for axis in AXES]
         channels += [f"{link.name}_{term}_force_x" for link in car.connections if link.rolling
                      for term in ("slip", "slope")]  # fmt: skip
@@ -237,12 +228,10 @@ class Vehicle:
         kinds: dict[str, type] = {"body": TrimmedBody, "solver": Solver, "driving": Driving, **self.composition.kinds}
         keys = path.removesuffix(".").split(".")
         # The table ends one, two (component of a vector) or three (mode of the body) keys before the end.
-        for path_of_table, inner in (
-            (".".join(keys[:at]), ".".join(keys[at:])) for at in range(len(keys) - 1, len(keys) - 4, -1)
-        ):
-            sideless = ".".join(word for word in path_of_table.split(".") if word not in ("right", "left"))
+        for at in range(len(keys) - 1, len(keys) - 4, -1):
+            sideless = ".".join(key for key in keys[:at] if key not in ("right", "left"))
             if sideless in kinds:
-                return field_quantity(kinds[sideless], inner)
+                return field_quantity(kinds[sideless], ".".join(keys[at:]))
         keys_of_point = path.removesuffix(".x").removesuffix(".y").removesuffix(".z").split(".")
         if "hardpoints" in keys_of_point[-2:-1] or (
             keys_of_point[0] in ("outputs", "connection", "load", "force") and keys_of_point[-1] == "at"
@@ -273,10 +262,7 @@ def vehicle_of(table: Mapping[str, Any], folder: Path | None = None) -> Vehicle:
     folders = () if folder is None else (folder, folder / "templates")
     vehicle = Vehicle(
         table=table,
-        name=head.name,
-        gravity=head.gravity,
-        shaker_wheel=head.shaker_wheel,
-        shaker_wheel_in_source=head.shaker_wheel_in_source,
+        **{name: getattr(head, name) for name in HEAD},
         body=body,
         solver=solver,
         driving=driving_of(table),

@@ -17,7 +17,7 @@ from vehicle.model.parameters.plausible import require_body, require_parts
 from vehicle.model.parameters.quantity import type_hints
 from vehicle.model.parameters.toml_file import build
 from vehicle.model.parameters.vehicle import Solver, Vehicle
-from vehicle.model.parameters.whole_body import body_moves, followers
+from vehicle.model.parameters.whole_body import body_moves, followers, put
 from vehicle.names import AXES, SIDE_SIGN
 
 SINGLE_TABLES: dict[str, type] = {"body": TrimmedBody, "solver": Solver}
@@ -67,12 +67,11 @@ class VehicleVariants:
                 value = parsed_value(assignment, text, 0.0)
                 if isinstance(value, bool) or not isinstance(value, int | float):
                     return None
-                _put(table, path, value, copies)
+                put(table, {path: value}, copies)
                 changed[owner] = None
         if body_moves(self.vehicle.table, table):
             user_paths = {path for text in overrides for path, _ in self._numbers[text.partition("=")[0].strip()] or ()}
-            for path, value in followers(self.vehicle.table["body"], table["body"], user_paths).items():
-                _put(table, path, value, copies)
+            put(table, followers(self.vehicle.table["body"], table["body"], user_paths), copies)
         return self._with_tables(table, changed)
 
     def _numbers_of(self, name: str) -> list[tuple[str, str]] | None:
@@ -113,16 +112,3 @@ class VehicleVariants:
         if "body" in objects:
             require_body(vehicle)
         return vehicle
-
-
-def _put(table: dict[str, Any], path: str, value: float, copies: set[int]) -> None:
-    """Put a number into a table; copy the tables above it once, whose identities are in `copies`."""
-    *parents, name = path.split(".")
-    outer: Any = table
-    for parent in parents:
-        key: Any = AXES.index(parent) if isinstance(outer, list) else parent
-        if id(outer[key]) not in copies:
-            outer[key] = outer[key].copy()
-            copies.add(id(outer[key]))
-        outer = outer[key]
-    outer[AXES.index(name) if isinstance(outer, list) else name] = value

@@ -64,20 +64,27 @@ def restated(
     return [f"body.{path}={float(value)!r}" for path, value in values.items()]
 
 
-def put(table: dict[str, Any], values: Mapping[str, float]) -> None:
+def put(table: dict[str, Any], values: Mapping[str, float], copies: set[int] | None = None) -> None:
     """Set numbers in a vehicle file.
 
     Args:
         table: the file, changed in place; inner tables on the path of a value are replaced by copies.
         values: whole path to value.
+        copies: identities of the inner tables that are copies already; new ones are added.
     """
+    copied = set[int]() if copies is None else copies
     for path, value in values.items():
         *parents, name = path.split(".")
-        inner = table
-        for key in parents:
-            inner[key] = dict(inner.get(key, {}))
-            inner = inner[key]
-        inner[name] = value
+        outer: Any = table
+        for parent in parents:
+            key: Any = AXES.index(parent) if isinstance(outer, list) else parent
+            inner = outer.get(key, {}) if isinstance(outer, dict) else outer[key]
+            if id(inner) not in copied:
+                inner = inner.copy() if isinstance(inner, list) else dict(inner)
+                copied.add(id(inner))
+                outer[key] = inner
+            outer = inner
+        outer[AXES.index(name) if isinstance(outer, list) else name] = value
 
 
 def body_moves(before: Mapping[str, Any], after: Mapping[str, Any]) -> bool:

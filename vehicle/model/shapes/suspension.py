@@ -238,9 +238,6 @@ def rods(points: Sequence[Array], radius: float = 0.009, end: float = 0.015, nut
         radius: radius of the rods [m]
         end: radius of the balls at the points [m]
         nut: position of a hexagonal nut on a rod between two points, as a share of the length
-
-    Returns:
-        list of a single piece
     """
     middle = [points[0]] if len(points) == 2 else [np.mean(points, axis=0)]
     far = [point for point in points if np.linalg.norm(point - middle[0]) > 1e-6]

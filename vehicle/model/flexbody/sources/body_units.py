@@ -164,12 +164,7 @@ def require_level(vectors: FloatArray, modal_mass: FloatArray, mass: float, unit
 
 
 def _unit(ratio: float, units: Units) -> str | None:
-    """Return the unit that brings a mass within half a power of 1000 of the expected mass; None if no unit does so.
-
-    Args:
-        ratio: mass in the units of the source over the expected mass [1].
-        units: units of the source.
-    """
+    """Return the unit that brings a mass, `ratio` times the expected mass, within half a power of 1000 of it."""
     for name in (FOLLOWING[units.length], *MASSES):
         if abs(np.log10(ratio * MASSES[name] / MASSES[units.mass])) < 1.5:
             return name

@@ -131,13 +131,7 @@ def modes_of_matrices(
 def _near_enough(
     body: BodyMatrices, free: FreeModes, moved: list[Any], limit: float
 ) -> tuple[ReducedModes, int, float, float]:
-    """Reduce a body by Craig-Bampton with enough fixed-interface modes for the accuracy `NEAR`.
-
-    Args:
-        body: K and M.
-        free: free-free modes, the reference of the accuracy.
-        moved: N of each attachment; see `craig_bampton`.
-        limit: highest mode of the reduced body [Hz].
+    """Reduce a body by Craig-Bampton with enough fixed-interface modes for the accuracy `NEAR`; see `craig_bampton`.
 
     Returns:
         Modes of the reduced body; number of fixed-interface modes; their frequency limit [Hz]; largest relative error
