@@ -11,7 +11,7 @@ Noise, 2008: rounding to a step q adds white noise of variance q^2 / 12.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import cache, lru_cache, partial
+from functools import cache, lru_cache
 
 import numpy as np
 import scipy
@@ -101,7 +101,9 @@ def tapered_power(samples: Vector, rounding: float, lines: int | None = None) ->
     transform = RecordLines(count, 0, computed)
     power, total = np.zeros(computed), 0.0
     for number in range(TAPERS):
-        window = partial(_window, number, count)
+
+        def window(part: slice, number: int = number) -> Vector:
+            return _window(number, count, part.start, part.stop)
 
         def tapered(part: slice, window: Callable[[slice], Vector] = window) -> Vector:
             return np.asarray((samples[part] - mean) * window(part))
@@ -138,14 +140,9 @@ def slepian_tapers() -> Vector:
     return np.ascontiguousarray(vectors[:, ::-1].T)
 
 
-def _window(number: int, count: int, part: slice) -> Vector:
-    """Return a part of a taper over a record of `count` samples."""
-    return _window_samples(number, count, part.start, part.stop)
-
-
 @lru_cache(maxsize=1)
-def _window_samples(number: int, count: int, start: int, stop: int) -> Vector:
-    """Return samples of a taper; the last part is stored, because energy and spectrum need it one after the other."""
+def _window(number: int, count: int, start: int, stop: int) -> Vector:
+    """Return samples of a taper over `count` samples; the last part is stored, as energy and spectrum each need it."""
     values: Vector = _taper_splines()[number](np.minimum(np.arange(start, stop) * (1.0 / (count - 1)), 1.0))
     return values
 

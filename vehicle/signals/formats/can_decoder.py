@@ -160,7 +160,10 @@ def _message(source: Source, databases: Sequence[Any]) -> tuple[Any, bool] | Non
 
     Of several messages of a PGN, that for any source address is taken.
     """
-    frames = [(frame, _is_j1939(frame, database)) for database in databases for frame in database.frames]
+    frames = []
+    for database in databases:
+        of_bus = str(database.attributes.get("ProtocolType", "")).lower() == "j1939"
+        frames += [(f, bool(f.arbitration_id.extended) and (bool(f.is_j1939) or of_bus)) for f in database.frames]
     for frame, j1939 in frames:
         if (frame.arbitration_id.id, bool(frame.arbitration_id.extended)) == (source.identifier, source.extended):
             return frame, j1939
@@ -171,11 +174,6 @@ def _message(source: Source, databases: Sequence[Any]) -> tuple[Any, bool] | Non
     ]
     any_source = [frame for frame in group if frame.arbitration_id.j1939_source == NULL_ADDRESS]
     return next(((candidates[0], True) for candidates in (any_source, group) if len(candidates) == 1), None)
-
-
-def _is_j1939(frame: Any, database: Any) -> bool:
-    of_bus = str(database.attributes.get("ProtocolType", "")).lower() == "j1939"
-    return bool(frame.arbitration_id.extended) and (bool(frame.is_j1939) or of_bus)
 
 
 def parameter_group(identifier: int) -> int:

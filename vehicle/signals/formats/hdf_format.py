@@ -41,7 +41,7 @@ AXES = "axes"
 
 
 def read(path: Path) -> Measurement:
-    """Read the structures of a MATLAB file, or all numeric arrays of another HDF5 file; errors as of `read_record`."""
+    """Read the structures of a MATLAB file, or all numeric arrays of another HDF5 file; errors: see `read_record`."""
     h5py = extra("h5py", "hdf5", "an HDF5 file (MAT 7.3)")
     start = ""
     with reading(path, "HDF5", "it may be truncated; export it again"), h5py.File(path, "r") as file:

@@ -118,12 +118,13 @@ def read_lines(path: Path, text: Text, format_name: str) -> Measurement:
         channels = joined(channels)
     if axis.values is None:
         notices += _rates_above(lines[:start])
+    above = [line.strip(' \t#;,"') for line in lines[: heads.first] if not line.strip('" ').lower().startswith("sep=")]
     return Measurement(
         path=path,
         format=format_name,
         channels=channels,
         sha256=text.sha256,
-        program=_program(lines[: heads.first]),
+        program=next((line for line in above if line), "")[:80],
         start=axis.start,
         notices=tuple(notices),
     )
@@ -264,12 +265,6 @@ def _clock_axis(path: Path, heads: Heads, texts: dict[int, list[str]], numbers: 
         clocks.append(_Axis(seconds, columns, "time", start, (notice, *notices)))
     rising = [clock for clock in clocks if clock.values is not None and (np.diff(clock.values) > 0.0).all()]
     return next(iter((*rising, *clocks)), None)
-
-
-def _program(above: Sequence[str]) -> str:
-    """Return the first non-empty line above the column headers."""
-    texts = [line.strip(' \t#;,"') for line in above if not line.strip('" ').lower().startswith("sep=")]
-    return next((line for line in texts if line), "")[:80]
 
 
 def _rates_above(above: Sequence[str]) -> list[str]:

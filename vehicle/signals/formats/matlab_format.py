@@ -26,7 +26,7 @@ HEADER = b"MATLAB 5.0 MAT-file, vehicle-on-shaker".ljust(116)
 
 
 def read(path: Path) -> Measurement:
-    """Read structures of x_values and y_values, numeric vectors and columns of matrices; errors as of `read_record`."""
+    """Read structures of x_values and y_values, numeric vectors and columns of matrices; errors: see `read_record`."""
     from scipy.io import loadmat
 
     objects = _check_elements(path)
@@ -258,10 +258,9 @@ def _check_elements(path: Path) -> dict[str, str]:
                 except (zlib.error, struct.error) as error:
                     raise DataError(f"{path}: element at byte {position}: {error}; save the file again") from None
             check_matrix(path, body, order, f"element at byte {position}")
-            named_object = object_name(path, body, order) if data_type in (MATRIX, COMPRESSED) else None
-            if named_object is not None:
+            if named_object := object_name(path, body, order):
                 objects[named_object[0]] = named_object[1]
-            position += 8 + count if data_type == 15 else 8 + count + -count % 8
+            position += 8 + count if data_type == COMPRESSED else 8 + count + -count % 8
         if position != size and size - position > 7:
             raise DataError(f"{path}: the file ends within an element; it is truncated; save it again")
     return objects

@@ -19,7 +19,7 @@ from vehicle.signals.formats.unpacked_size import require_unpacked
 
 
 def read(path: Path) -> Measurement:
-    """Read all numeric columns of a flat table; errors as of `read_record`, also for an encrypted or too large file."""
+    """Read all numeric columns of a flat table; errors: see `read_record`, also for an encrypted or too large file."""
     extra("pyarrow", "parquet", "a Parquet file")
     parquet, arrow = import_module("pyarrow.parquet"), import_module("pyarrow.types")
     types = (

@@ -30,7 +30,7 @@ FRAMES = (2048, 1024, 512, 256, 128)
 
 
 def read(path: Path) -> Measurement:
-    """Read the channels of a time history file; errors as of `read_record`, also for another file type."""
+    """Read the channels of a time history file; errors: see `read_record`, also for another file type."""
     data = path.read_bytes()
     head = _header(path, data)
     for key, allowed in (("FORMAT", tuple(ORDERS)), ("FILE_TYPE", ("TIME_HISTORY",)), ("DATA_TYPE", tuple(WIDTHS))):

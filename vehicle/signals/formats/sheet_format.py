@@ -23,7 +23,7 @@ NO_VALUES = "formulas without saved values: open the file in a spreadsheet progr
 
 
 def read(path: Path) -> Measurement:
-    """Read the first sheet with a table of numbers; errors as of `read_record`."""
+    """Read the first sheet with a table of numbers; errors: see `read_record`."""
     sheets = _sheets(path)
     first_error: DataError | None = None
     for title, cells in sheets.items():

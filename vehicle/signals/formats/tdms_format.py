@@ -72,7 +72,7 @@ def _axis(properties: Mapping[str, Any], count: int, later: float) -> dict[str, 
 
 
 def read(path: Path) -> Measurement:
-    """Read all numeric channels, as long as their data, not as `wf_samples`; errors as of `read_record`."""
+    """Read all numeric channels, as long as their data, not as `wf_samples`; errors: see `read_record`."""
     nptdms = extra("nptdms", "tdms", "a TDMS file")
     channels: list[Channel] = []
     skipped, start = 0, ""

@@ -35,7 +35,8 @@ def read(path: Path, wanted: Wanted) -> Table:
             comma, or a violated requirement of `wanted`.
     """
     text = read_text(path)
-    head, first = _first_line(text)
+    numbered = ((n, line) for start, lines in text.pieces() for n, line in enumerate(lines, start))
+    head, first = next(((n, line) for n, line in numbered if not _is_comment(line)), (0, ""))
     if not head:
         raise DataError(f"{path}: only comments; needed are the columns {wanted.needed} in a header line and one row "
                         "per sample")  # fmt: skip
@@ -58,15 +59,6 @@ def read(path: Path, wanted: Wanted) -> Table:
         values = fast(rows, header)
         parsed = careful(numbers, rows, header, key, wanted) if values is None else values, np.array(numbers)
     return Table(header=header, key=key, values=parsed[0], lines=parsed[1], notices=tuple(notices), sha256=text.sha256)
-
-
-def _first_line(text: Text) -> tuple[int, str]:
-    """Return number and content of the first line other than a comment; number 0 if there is none."""
-    for start, lines in text.pieces():
-        for number, line in enumerate(lines, start):
-            if not _is_comment(line):
-                return number, line
-    return 0, ""
 
 
 def _plain(text: Text, header: Header) -> tuple[Vector, NDArray[np.int64]] | None:

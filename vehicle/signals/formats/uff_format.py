@@ -22,7 +22,7 @@ from vehicle.signals.formats.uff_shapes import read_shape
 
 
 def read(path: Path) -> Measurement:
-    """Read functions, mode shapes and geometry; errors as of `read_record`, also for a file without any of them."""
+    """Read functions, mode shapes and geometry; errors: see `read_record`, also for a file without any of them."""
     data = path.read_bytes()
     channels: list[Channel] = []
     results: list[tuple[int, str, list[bytes]]] = []

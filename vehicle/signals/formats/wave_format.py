@@ -14,7 +14,7 @@ from vehicle.signals.formats.optional_library import reading
 
 
 def read(path: Path) -> Measurement:
-    """Read all channels; integers become fractions of full scale; errors as of `read_record`."""
+    """Read all channels; integers become fractions of full scale; errors: see `read_record`."""
     from scipy.io import wavfile
 
     _check_chunks(path)

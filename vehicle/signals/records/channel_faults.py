@@ -191,7 +191,8 @@ def stuck(values: Vector, time: Vector, others: list[Vector] | None = None) -> t
     if crossings < 2 or switches(values):
         return None
     part = constant_part(values)
-    rested = _rested_at_the_ends(values)
+    moves = np.flatnonzero(np.diff(values) != 0.0)  # not empty, as it crosses its mean
+    rested = [(0, int(moves[0])), (int(moves[-1]) + 1, values.size - 1)]
     candidates = [part] if part is not None else []
     if any(float(np.std(other[rested[1][0] :])) > OTHERS_MOVE * float(np.std(other)) > 0.0 for other in others or []):
         candidates.append(rested[1])
@@ -202,7 +203,7 @@ def stuck(values: Vector, time: Vector, others: list[Vector] | None = None) -> t
     moving = float(time[-1] - time[0]) - sum(float(time[last] - time[first]) for first, last in [*rested, (begin, end)])
     interval = max(moving, 0.0) / crossings
     minimum = max(STUCK_PERIODS * interval, min(CERTAIN, CERTAIN_PERIODS * interval))
-    ends = np.concatenate([[-1], np.flatnonzero(np.diff(values) != 0.0), [values.size - 1]])
+    ends = np.concatenate([[-1], moves, [values.size - 1]])
     if end + 1 - begin >= OUTLASTS * np.sort(np.diff(ends))[-2]:  # of all constant parts, the ends included
         minimum = min(minimum, CERTAIN)
     return (float(time[begin]), float(time[end])) if length >= minimum else None
@@ -215,14 +216,6 @@ def constant_part(values: Vector) -> tuple[int, int] | None:
         return None
     longest = int(np.argmax(moves[1:] - moves[:-1]))
     return int(moves[longest]) + 1, int(moves[longest + 1])
-
-
-def _rested_at_the_ends(values: Vector) -> list[tuple[int, int]]:
-    """Return the first and last index of the constant parts at the beginning and at the end."""
-    moves = np.flatnonzero(np.diff(values) != 0.0)
-    if not moves.size:
-        return [(0, values.size - 1)] * 2
-    return [(0, int(moves[0])), (int(moves[-1]) + 1, values.size - 1)]
 
 
 def copies(channels: Mapping[str, Vector]) -> list[tuple[str, str]]:
