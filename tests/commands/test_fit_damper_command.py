@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import tomllib
 from pathlib import Path
 
@@ -101,3 +102,48 @@ def test_wrong_files_are_named(tmp_path, capsys):
     path = records(tmp_path)[0]
     assert main([path, path, "--output", str(tmp_path / "out")]) == 2
     assert "2 files of tests: name one or more, each once" in capsys.readouterr().err
+
+
+def headless(folder, columns, factor=1e3):
+    """The same tests without a header, with or without the velocity, in millimetres or other units."""
+    paths = []
+    for path in records(folder):
+        table = np.loadtxt(path, delimiter=",", skiprows=1)
+        table[:, 1:3] *= 1e-3 * factor
+        paths.append(str(Path(path).with_suffix(".txt")))
+        np.savetxt(paths[-1], table[:, columns], fmt="%.7e")
+    return paths
+
+
+def fitted(capsys, words):
+    assert main([*words, "--json", "--force"]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+@pytest.mark.parametrize("columns", [[0, 1, 2, 3], [0, 1, 3]], ids=["with velocity", "without velocity"])
+def test_files_without_a_header(tmp_path, capsys, columns):
+    """Time, displacement [mm], perhaps velocity [mm/s], force [N]; the JSON has law, parameters and errors."""
+    paths = headless(tmp_path, columns)
+    found = fitted(capsys, [*paths, "--output", str(tmp_path / "out")])
+    assert [test["file"] for test in found["tests"]] == ["sine20", "sine4"]
+    assert all(test["rms_relative"] < 0.05 and test["left_out"] < 0.1 for test in found["tests"])
+    values = {each["path"]: each for each in found["parameters"]}
+    assert values["damper.damping_1"]["value"] == pytest.approx(1200.0, rel=0.05)
+    assert values["damper.damping_1"]["unit"] == "N s/m" and values["damper.damping_1"]["standard_error"] > 0.0
+    assert any(text.startswith("damper.coulomb_friction=") for text in found["set"]) and found["chosen"]
+    assert any("no header: columns taken as time [s], displacement [mm]" in text for text in found["notices"])
+
+
+def test_units_of_columns_and_metres_without_a_unit(tmp_path, capsys):
+    """A displacement below 1 may be in metres: it is asked for; a unit may name its column."""
+    paths = headless(tmp_path, [0, 1, 2, 3], factor=1.0)
+    words = [*paths, "--output", str(tmp_path / "out")]
+    assert main(words) == 3
+    assert "in m or in mm; set --unit displacement=m or --unit displacement=mm" in capsys.readouterr().err
+    by_role = fitted(capsys, [*words, "--unit", "displacement=m", "--unit", "velocity=m/s"])
+    by_column = fitted(capsys, [*words, "--unit", "2=m", "--unit", "column 3=m/s"])
+    assert by_column == by_role
+    values = {each["path"]: each["value"] for each in by_role["parameters"]}
+    assert values["damper.damping_1"] == pytest.approx(1200.0, rel=0.05)
+    assert main([*words, "--unit", "load=N"]) == 2
+    assert "'load' is no column of the test and no role" in capsys.readouterr().err

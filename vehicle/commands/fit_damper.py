@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 from functools import partial
 from pathlib import Path
 
@@ -37,6 +38,7 @@ def parser() -> Parser:
         help="conditions in the names of the files without ending, in braces, with * for the rest, as '*Hz{current}A'",
     )  # fmt: skip
     output_options(parser, None, default=f"damper.toml, {TABLE} and damper.png in runs/damper")
+    parser.add_argument("--json", action="store_true", help="print JSON: law, parameters, errors of the tests")
     message_options(parser, quiet=True)
     return parser
 
@@ -45,12 +47,20 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.drawing.rendering.damper_plot import DamperLoop, plot_damper
     from vehicle.runs.output.folder import whole_files, write_text, write_whole
     from vehicle.signals.records.choice import pairs
-    from vehicle.studies.dampers.damper_text import caption_of, control_lines, summary_lines, tests_text, vehicle_lines
+    from vehicle.studies.dampers.damper_text import (
+        caption_of,
+        control_lines,
+        fit_json,
+        summary_lines,
+        tests_text,
+        vehicle_lines,
+    )
     from vehicle.studies.dampers.fitted_damper import fit_damper
 
+    named = pairs("--unit", options.units, "")  # by role, or by the name or number of a column
     fits = fit_damper(
         options.files,
-        record_choice(options, "", known=("time", "displacement", "force", "velocity")),
+        record_choice(options, "", known=("time", "displacement", "force", "velocity", *named)),
         compression=options.positive == "compression",
         conditions=pairs("--condition", options.condition, ""),
         pattern=options.pattern,
@@ -73,7 +83,10 @@ def _job(options: argparse.Namespace) -> None:
                         partial(plot_damper, loops=loops, title=title, caption=caption_of(fitted)))  # fmt: skip
         if len(fits) > 1:
             write_text(new[CONTROL], control_lines(fits))
-    if not options.quiet:
+    if options.json:
+        found = [fit_json(fitted) for fitted in fits]
+        print(json.dumps(found[0] if len(found) == 1 else {"dampers": found}, indent=2, allow_nan=False))
+    elif not options.quiet:
         for fitted in fits:
             print("\n".join(summary_lines(fitted)))
         print(f"files: {paths[TABLE].parent}: {', '.join(path.name for path in paths.values())}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from vehicle.errors import ConfigurationError, DataError
+from vehicle.errors import ConfigurationError
 from vehicle.signals.records.choice import Choice
 from vehicle.studies.dampers.damper_test import by_conditions, read_test
 
@@ -36,14 +36,14 @@ def test_channels_are_found_and_converted(tmp_path):
     assert 0.35 < inside[0] < 0.75 and 3.25 < inside[-1] < 3.65 and not test.settled[0]
 
 
-def test_a_file_without_a_header_needs_roles_and_units(tmp_path):
+def test_a_file_without_a_header_has_usual_columns_unless_they_are_named(tmp_path):
     path = write(tmp_path / "12mm0x5Hz1x5A.txt", head="", columns=(0, 1, 3))
-    with pytest.raises(DataError, match="no channels may be the displacement; set --channel displacement=NAME"):
-        read_test(path)
+    usual = read_test(path)
+    assert any("no header: columns taken as time [s], displacement [mm], force [N]" in text for text in usual.notices)
     channels = {"time": "1", "displacement": "2", "force": "3"}
     choice = Choice(channels=channels, units={"time": "s", "displacement": "mm", "force": "kN"})
     test = read_test(path, choice, pattern="*Hz{current}A")
-    assert test.conditions == {"current": 1.5}
+    assert test.conditions == {"current": 1.5} and test.scale == pytest.approx(1000.0 * usual.scale)
     assert any("Savitzky-Golay filter of 5 samples: no delay, within 1 % up to" in text for text in test.notices)
     reference = read_test(write(tmp_path / "a.csv"))
     error = (test.velocity - reference.velocity)[test.settled]

@@ -17,7 +17,7 @@ from vehicle.digits import number
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.formats.channel import Measurement
 from vehicle.signals.formats.reader import read_record
-from vehicle.signals.records.choice import Choice, choose
+from vehicle.signals.records.choice import Choice, choose, pick
 from vehicle.studies.dampers.damper_force import Motion
 
 Vector = npt.NDArray[np.float64]
@@ -44,6 +44,15 @@ EQUAL = 0.05
 STEPS = 200
 """Minimum number of steps of a cycle in the solution of a series stiffness: with 83, the force of a friction of 60 N
 behind 2e7 N/m at 12 Hz is 2 % off, with 167 0.5 %."""
+
+HEADLESS = {3: ("displacement", "force"), 4: ("displacement", "velocity", "force")}
+"""Roles of the columns behind the time in a file without a header, by the number of its columns."""
+
+HEADLESS_UNITS = {"time": "s", "displacement": "mm", "velocity": "mm/s", "force": "N"}
+"""Units of these columns, as test machines write them."""
+
+LONGEST_STROKE = 1.0
+"""Largest displacement of a damper [m]: a column with more in a file without units is in millimetres."""
 
 LEAST_SAMPLES = 50
 """Minimum number of samples of a test."""
@@ -127,7 +136,8 @@ def read_test(path: Path, choice: Choice | None = None, *, compression: bool = F
         DataError: a missing channel, bad data, or too few samples.
     """
     measurement = read_record(path, choice.databases if choice is not None else ())
-    complete = _complete(measurement, choice or Choice())
+    notices: list[str] = []
+    complete = _complete(measurement, _headless(measurement, choice or Choice(), notices))
     chosen = choose(measurement, complete)
     chosen.require_uniform(path)
     for role, quantity in chosen.quantities.items():
@@ -138,7 +148,6 @@ def read_test(path: Path, choice: Choice | None = None, *, compression: bool = F
         raise DataError(f"{path}: {time.size} samples, must be at least {LEAST_SAMPLES}; record a longer test")
     x, force = sign * chosen.values["displacement"], sign * chosen.values["force"]
     measured = sign * chosen.values["velocity"] if "velocity" in chosen.values else None
-    notices: list[str] = []
     velocity = _velocity(x, measured, float(np.mean(np.diff(time))), notices)
     if np.sum(force * velocity) < 0.0:
         force = -force
@@ -150,6 +159,45 @@ def read_test(path: Path, choice: Choice | None = None, *, compression: bool = F
         name=path.stem, time=time, displacement=x, velocity=velocity, force=force, settled=settled, sine=sine,
         conditions=_conditions(path, measurement, conditions or {}, pattern), notices=tuple(notices),
     )  # fmt: skip
+
+
+def _headless(measurement: Measurement, choice: Choice, notices: list[str]) -> Choice:
+    """Return the choice with the columns of a file without a header, and with the units of columns by role.
+
+    Raises:
+        DataError: the file has no units, and a displacement that may be in metres.
+    """
+    columns = measurement.channels
+    channels, units = dict(choice.channels), dict(choice.units)
+    bare = all(each.name == f"column {i + 1}" and not each.unit for i, each in enumerate(columns))
+    roles = HEADLESS.get(len(columns), ()) if bare else ()
+    if roles and not channels:
+        channels = {"time": "1"} | {role: str(i + 2) for i, role in enumerate(roles)}
+    units = _units_by_role(measurement, channels, units)
+    if roles and "" not in units:
+        assumed = {role: unit for role, unit in HEADLESS_UNITS.items() if role in channels and role not in units}
+        if "displacement" in assumed and channels["displacement"].isdecimal():
+            largest = float(np.max(np.abs(columns[int(channels["displacement"]) - 1].values)))
+            if largest <= LONGEST_STROKE:
+                raise DataError(
+                    f"{measurement.path}: no header, and a displacement of up to {number(largest)}, in m or in mm; set "
+                    "--unit displacement=m or --unit displacement=mm"
+                )
+        units = assumed | units
+        taken = ", ".join(f"{role} [{units[role]}]" for role in channels)
+        notices.append(f"no header: columns taken as {taken}; --channel and --unit change it")
+    return dataclasses.replace(choice, channels=channels, units=units)
+
+
+def _units_by_role(measurement: Measurement, channels: Mapping[str, str], units: Mapping[str, str]) -> dict[str, str]:
+    """Return the units by the roles of the channels, those of the number or the name of a column among them."""
+    by_role = dict(units)
+    for role, column in channels.items():
+        index = pick(measurement, column)
+        for name in (str(index + 1), measurement.channels[index].name):
+            if name in by_role:
+                by_role[role] = by_role.pop(name)
+    return by_role
 
 
 def _complete(measurement: Measurement, choice: Choice) -> Choice:
@@ -171,7 +219,14 @@ def _complete(measurement: Measurement, choice: Choice) -> Choice:
                 f"{measurement.path}: {len(matches) or 'no'} channels may be the {role}; set --channel {role}=NAME, "
                 f"and --unit {role}=UNIT where the file has none, to one of: {listed}"
             )
-    return dataclasses.replace(choice, channels=channels)
+    units = _units_by_role(measurement, channels, choice.units)
+    unknown = next((name for name in units if name not in ("", "time", *ROLES)), None)
+    if unknown is not None:
+        raise ConfigurationError(
+            f"--unit {unknown}={units[unknown]}: {unknown!r} is no column of the test and no role; the roles are time, "
+            f"{', '.join(ROLES)}"
+        )
+    return dataclasses.replace(choice, channels=channels, units=units)
 
 
 def _velocity(x: Vector, measured: Vector | None, step: float, notices: list[str]) -> Vector:

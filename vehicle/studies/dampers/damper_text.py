@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -131,6 +133,44 @@ def control_lines(fits: Sequence[FittedDamper]) -> str:
         f"maximum_damping = {_short(max(dampings))}  # [N s/m]",
     ]
     return "\n".join(lines) + "\n"
+
+
+def fit_json(fitted: FittedDamper) -> dict[str, Any]:
+    """Return the fit for `--json`: law, parameters, lines for `--set`, and the errors of the tests.
+
+    `rms_relative` is the RMS error over the standard deviation of the force, without run-up and run-down of a sine;
+    `left_out` the same of the law fitted to the other tests; None for a single test.
+    """
+    fit = fitted.fit
+    lines = (line.partition("#")[0].strip() for line in vehicle_lines(fitted).splitlines())
+    errors = zip(fitted.tests, fit.fitted.tolist(), fit.left_out.tolist(), fit.whole.tolist(), strict=True)
+    return {
+        "conditions": dict(fitted.conditions),
+        "chosen": fit.law.title,
+        "parameters": [
+            {
+                "path": f"damper.{name}",
+                "value": value,
+                "standard_error": error if math.isfinite(error) else None,
+                "unit": unit,
+            }
+            for (name, unit), value, error in zip(
+                fit.law.parameters.items(), fit.values.tolist(), fit.errors.tolist(), strict=True
+            )
+        ],
+        "set": [f"damper.{line.replace(' = ', '=', 1)}" for line in lines if line],
+        "tests": [
+            {
+                "file": test.name,
+                "rms_relative": inside,
+                "left_out": outside if math.isfinite(outside) else None,
+                "whole": whole,
+            }
+            for test, inside, outside, whole in errors
+        ],
+        "not_determined": fitted.left_open(),
+        "notices": [f"{test.name}: {text}" for test in fitted.tests for text in test.notices],
+    }
 
 
 def tests_text(fits: Sequence[FittedDamper]) -> str:
