@@ -145,5 +145,5 @@ def test_units_of_columns_and_metres_without_a_unit(tmp_path, capsys):
     assert by_column == by_role
     values = {each["path"]: each["value"] for each in by_role["parameters"]}
     assert values["damper.damping_1"] == pytest.approx(1200.0, rel=0.05)
-    assert main([*words, "--unit", "load=N"]) == 2
+    assert main([*words, "--unit", "displacement=m", "--unit", "load=N"]) == 2
     assert "'load' is no column of the test and no role" in capsys.readouterr().err
