@@ -143,7 +143,8 @@ def _install(packages: Path, version: str) -> None:
 
 
 def _add_runtime(python: Path) -> None:
-    """Lay the C runtime of Microsoft beside python.exe."""
+    """Lay the C runtime of Microsoft beside python.exe, and take away what wine 8 cannot run."""
+    (python / "_wmi.pyd").unlink(missing_ok=True)  # `platform` asks it first from Python 3.12 on; it ends the process
     name, release, libraries = RUNTIME
     folder = python.parent / "runtime"
     subprocess.run(

@@ -44,6 +44,9 @@ PROGRESS = re.compile(r"\w+: +\d+ %.*|Matplotlib is building.*")
 SKIPPED = {".png", ".html", ".mp4", ".fmu", ".h5", ".svg", MARKER, "timing.csv"}
 """Endings and names of files of which only the existence is compared."""
 
+TRIANGLE = np.dtype([("numbers", "<f4", 12), ("unused", "<u2")])
+"""Normal and corners of a triangle in a binary STL file."""
+
 UNEQUAL = {
     "software",
     "platform",
@@ -124,7 +127,11 @@ def _pairs(first: Path, second: Path) -> Iterator[tuple[str, Any, Any]]:
             yield "arrays", " ".join(one), " ".join(two)
             for key in one:
                 if np.issubdtype(one[key].dtype, np.number):
-                    yield key, np.abs(one[key]), np.abs(two[key])
+                    yield key, one[key], two[key]
+        return
+    if first.suffix == ".stl":
+        one, two = (np.frombuffer(path.read_bytes(), TRIANGLE, offset=84)["numbers"] for path in (first, second))
+        yield "triangles", one, two
         return
     texts = [path.read_text(encoding="utf-8", errors="replace").replace("\r\n", "\n") for path in (first, second)]
     if first.suffix == ".json":

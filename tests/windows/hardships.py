@@ -11,8 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-import numpy as np
-
+from tests.windows.comparison import differences
 from tests.windows.emulated import LONGEST, Windows, ended, here
 
 SWEEP = (
@@ -36,13 +35,13 @@ def sweep_killed_twice(windows: Windows, this: Path, other: Path) -> str:
     folder = other / "runs" / ".killed.partial"
     arguments = ["-m", "vehicle", *SWEEP, "--jobs", "2"]
     kept: list[int] = []
-    for rows in (50, 110):
+    for number in (50, 110):
         process = windows.start([*arguments, *(["--resume"] if kept else [])], other)
         end = time.monotonic() + LONGEST
-        while _rows(folder) < rows:
+        while _rows(folder) < number:
             if process.poll() is not None or time.monotonic() > end:
                 windows.end()
-                return f"no {rows} rows: {process.communicate()[0]}"
+                return f"no {number} rows: {process.communicate()[0]}"
             time.sleep(0.1)
         process.kill()  # python.exe itself; its workers end with it
         process.communicate(timeout=60.0)
@@ -50,15 +49,10 @@ def sweep_killed_twice(windows: Windows, this: Path, other: Path) -> str:
     last = windows.run([*arguments, "--resume"], other)
     if last.code or here([*SWEEP, "--jobs", "2"], this).code:
         return f"exit {last.code}: {last.text}"
-    one, two = (list(csv.reader((base / "runs/killed/table.csv").open(encoding="utf-8"))) for base in (this, other))
-    if [len(table) for table in (one, two)] != [201, 201] or len({tuple(row[2:4]) for row in two[1:]}) != 200:
-        return f"{len(one)} and {len(two)} lines, {len({tuple(row) for row in two})} different ones"
-    if [row[:4] + row[19:] for row in one] != [row[:4] + row[19:] for row in two]:
-        return "other cases, or another order"
-    values = [np.array([[float(cell or "nan") for cell in row[4:19]] for row in table[1:]]) for table in (one, two)]
-    worst = np.nanmax(np.abs(values[0] - values[1]) / np.nanmax(np.abs(values[0]), axis=0, initial=1e-300))
-    if worst > 1e-8 or not 50 <= kept[0] < kept[1] < 200:
-        return f"differs by {worst:.1e}; rows at the kills: {kept}"
+    worst, faults = differences(this / "runs/killed", other / "runs/killed", {"table.csv"})
+    rows = list(csv.reader((other / "runs/killed/table.csv").open(encoding="utf-8")))[1:]
+    if faults or len(rows) != 200 or len({tuple(row[2:4]) for row in rows}) != 200 or not 50 <= kept[0] < kept[1] < 200:
+        return f"{len(rows)} rows, at the kills {kept}; {faults}"
     return f"= {kept[0]} and {kept[1]} rows at the kills; 200 rows, within {worst:.1e}"
 
 
