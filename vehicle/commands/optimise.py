@@ -18,7 +18,7 @@ from vehicle.commands.options import (
     vehicle_options,
 )
 from vehicle.commands.parser import Parser
-from vehicle.studies.sweeps.sweep_settings import SweepSettings
+from vehicle.studies.optimisation.search_settings import SearchSettings
 
 
 def parser() -> Parser:
@@ -44,61 +44,15 @@ def parser() -> Parser:
         "lowest_load, slip_share [-], travel [m]; one axis or wheel is weighted_z, travel_fr; after the @ an input, "
         "as road_A_120 or the stem of a file, or mean or worst of all; may be repeated",
     )
-    search.add_argument(
-        "--maximise", action="append", default=[], metavar="NUMBER[@INPUT]", help="an objective to maximise"
-    )
-    search.add_argument(
-        "--limit",
-        action="append",
-        default=[],
-        metavar="NUMBER[@INPUT]<=VALUE",
-        help="constraint, as 'travel<=0.06' or 'lowest_load>=0.1', in the unit of the number; applies to "
-        "every input by default; may be repeated",
-    )
-    search.add_argument("--cars", type=int, default=2000, metavar="N", help="cars to try; %(default)s by default")
-    search.add_argument(
-        "--population",
-        type=int,
-        default=64,
-        metavar="N",
-        help="cars of a generation, at least 8; %(default)s by default",
-    )
-    search.add_argument(
-        "--search-seed", type=int, default=1, metavar="N", help="one seed is one search; %(default)s by default"
-    )
-    parser.add_argument(
-        "--tolerance",
-        action="append",
-        default=[],
-        metavar="PATH=SIZE",
-        help="half of the band of a parameter, varied or not: in its unit, or in percent: 15%%; may be repeated",
-    )
+    setting_options(search, SearchSettings, "maximise", "limits", "cars", "population", "seed")
+    setting_options(parser, SearchSettings, "tolerances")
     tolerances = parser.scoped_group(
         "cars as they are made",
         needs="--tolerance PATH=SIZE, and there is none",
-        active=lambda options: bool(options.tolerance),
+        active=lambda options: bool(options.tolerances),
     )
-    tolerances.add_argument(
-        "--samples",
-        type=int,
-        metavar="K",
-        help="cars within the tolerances for each car tried; 8 by default, more where the quantile needs them",
-    )
-    tolerances.add_argument(
-        "--quantile",
-        type=float,
-        metavar="Q",
-        help="of their numbers that counts, 0.5 to below 1; 1 is the worst of the K cars; their mean by default. A "
-        "quantile Q needs 1/(1 - Q) cars; with it, 64 new cars around each named one show what share reaches its "
-        "numbers",
-    )
-    setting_options(parser, SweepSettings, "engine", default="reduced")
-    setting_options(parser, SweepSettings, "skip")
-    setting_options(parser, SweepSettings, "jobs")
-    setting_options(parser, SweepSettings, "executor")
-    parser.add_argument(
-        "--check", action="store_true", help="run the named cars with MuJoCo too and report the difference"
-    )
+    setting_options(tolerances, SearchSettings, "samples", "quantile")
+    setting_options(parser, SearchSettings, "engine", "skip", "jobs", "executor", "check")
     parser.add_argument(
         "--beside", type=Path, metavar="DIR", help="another search with these objectives: drawn with its distance"
     )
@@ -113,42 +67,26 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.model.parameters.ranges import parsed_variation
     from vehicle.runs.car import Car
     from vehicle.runs.output.folder import study_folder
-    from vehicle.studies.optimisation.car_search import plan_search, require_counts
+    from vehicle.studies.optimisation.car_search import plan_search
     from vehicle.studies.optimisation.car_table import CARS
     from vehicle.studies.optimisation.problem import parsed_tolerance
     from vehicle.studies.optimisation.search_files import read_other_front
     from vehicle.studies.optimisation.stored_search import SEARCH
     from vehicle.studies.sweeps.executors import executor_factory
 
-    require_counts(cars=options.cars, population=options.population, search_seed=options.search_seed)
-    car = Car.load(options.vehicle, options.overrides)
-    plan = plan_search(
-        car,
-        [parsed_variation("--vary", text).range() for text in options.vary],
-        chosen_inputs(options, car.vehicle),
-        options.minimise,
-        maximise=options.maximise,
-        limits=options.limit,
-        tolerances=[parsed_tolerance(text) for text in options.tolerance],
-        samples=options.samples,
-        quantile=options.quantile,
-        engine=options.engine,
-        skip=options.skip,
-        seed=options.search_seed,
+    settings = SearchSettings.of_options(
+        options,
+        executor=executor_factory(options.executor, options.jobs) if options.executor else None,
+        tolerances=[parsed_tolerance(text) for text in options.tolerances or ()],
     )
+    car = Car.load(options.vehicle, options.overrides)
+    vary = [parsed_variation("--vary", text).range() for text in options.vary]
+    plan = plan_search(car, vary, chosen_inputs(options, car.vehicle), options.minimise, settings)
     beside = None if options.beside is None else read_other_front(options.beside, plan.trials.problem)
-    make = executor_factory(options.executor, options.jobs)
     rows = (CARS, SEARCH)
     output = study_folder_of(options, options.output, rows=rows)
     with study_folder(output, force=options.force, resume=options.resume, rows=rows) as folder:
-        cars = plan.run(
-            folder,
-            cars=options.cars,
-            population=options.population,
-            executor=make if options.executor or options.jobs > 1 else None,
-            check=options.check,
-            progress=ProgressLine("optimise  ", enabled=not options.quiet),
-        )
+        cars = plan.run(folder, progress=ProgressLine("optimise  ", enabled=not options.quiet))
         cars.write(folder, beside=beside, command=f"python -m vehicle optimise {shlex.join(options.words)}")
     if not options.quiet:
         print(cars.text(output, beside))
