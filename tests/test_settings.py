@@ -11,9 +11,19 @@ import pytest
 import vehicle
 from vehicle.errors import ConfigurationError
 from vehicle.settings import Settings, require_within
+from vehicle.studies.optimisation.search_settings import SearchSettings
+from vehicle.studies.replication.drive_settings import DriveSettings
 from vehicle.studies.sweeps.sweep_settings import SobolSettings, SweepSettings
+from vehicle.studies.tuning.fit_settings import HistorySettings, ResponseSettings
 
-DECLARED = {"sweep": (SweepSettings, "sweep"), "sobol": (SobolSettings, "sweep")}
+DECLARED: dict[str, tuple[type[Settings], str]] = {
+    "sweep": (SweepSettings, "sweep"),
+    "sobol": (SobolSettings, "sweep"),
+    "replicate_drive": (DriveSettings, "drive"),
+    "measured_responses": (ResponseSettings, "tune"),
+    "measured_histories": (HistorySettings, "tune"),
+    "optimise": (SearchSettings, "optimise"),
+}
 """Public function to its settings and the command that has their options."""
 
 OF_PYTHON_ALONE = {"executor", "progress", "notice", "measure", "folder", "base"}
@@ -36,7 +46,8 @@ def test_a_function_has_the_declared_settings_with_their_defaults(name):
 @pytest.mark.parametrize("name", DECLARED)
 def test_the_options_left_out_are_the_defaults_of_python(name):
     settings, command = DECLARED[name]
-    options = import_module(f"vehicle.commands.{command}").parser().parse_args([])
+    needed = {"drive": ["--target", "FILE"], "tune": ["focus"]}.get(command, [])
+    options = import_module(f"vehicle.commands.{command}").parser().parse_args(needed)
     assert settings.of_options(options) == settings()
 
 

@@ -20,6 +20,7 @@ Class = TypeVar("Class", bound=type)
 A = TypeVar("A")
 B = TypeVar("B")
 C = TypeVar("C")
+D = TypeVar("D")
 P = ParamSpec("P")
 R = TypeVar("R")
 S = TypeVar("S", bound="Settings")
@@ -73,7 +74,9 @@ class Settings:
             more: values of further settings.
         """
         for name, declared in cls.declared().items():
-            if name not in more and declared["option"] and (value := getattr(options, name, None)) is not None:
+            option = declared["option"]
+            if name not in more and option and (value := getattr(options, option.get("dest", name), None)) is not None:
+                value = tuple(value) if isinstance(value, list) else value
                 more[name] = value if declared["factor"] == 1.0 else declared["factor"] * value
         return cls(**more)
 
@@ -127,6 +130,27 @@ def require_within(flag: str, number: float, within: str, factor: float = 1.0) -
     raise ConfigurationError(f"{flag} {number:g}{'' if factor == 1.0 else ' %'}: must be {allowed}")
 
 
+def pair(flag: str, needed: str, *, above: float | None = None) -> Callable[[str], tuple[float, float]]:
+    """Return the reader of two ascending numbers of at least 0, separated by a colon.
+
+    Args:
+        flag: name of the option, for the message.
+        needed: what must be given, as "LOW:HIGH in Hz, as 3:45".
+        above: number above which both are, in place of at least 0.
+    """
+
+    def read(text: str) -> tuple[float, float]:
+        try:
+            low, high = (float(part) for part in text.split(":"))
+        except ValueError:
+            low = high = 0.0
+        if not (0.0 <= low < high and (above is None or low > above)):
+            raise ConfigurationError(f"{flag} {text}: must be {needed}")
+        return low, high
+
+    return read
+
+
 def meanings(settings: type[Settings]) -> str:
     """Return a line for each setting with its meaning, for a docstring."""
     return "".join(
@@ -142,7 +166,7 @@ def documented(decorated: Class) -> Class:
 
 
 class _WithSettings(Protocol[P, S_co]):
-    """Decorator of a function of one to three arguments and its settings: they become its keyword arguments."""
+    """Decorator of a function of one to four arguments and its settings: they become its keyword arguments."""
 
     @overload
     def __call__(self, function: Callable[[A, S_co], R]) -> Callable[Concatenate[A, P], R]: ...
@@ -150,34 +174,35 @@ class _WithSettings(Protocol[P, S_co]):
     def __call__(self, function: Callable[[A, B, S_co], R]) -> Callable[Concatenate[A, B, P], R]: ...
     @overload
     def __call__(self, function: Callable[[A, B, C, S_co], R]) -> Callable[Concatenate[A, B, C, P], R]: ...
+    @overload
+    def __call__(self, function: Callable[[A, B, C, D, S_co], R]) -> Callable[Concatenate[A, B, C, D, P], R]: ...
 
 
-def with_settings(made: Callable[P, S]) -> _WithSettings[P, S]:
+def with_settings(settings_class: Callable[P, S]) -> _WithSettings[P, S]:
     """Return the decorator that turns the settings of a function, its last argument, into keyword arguments.
 
     The settings are added to the arguments in the docstring of the function.
 
     Args:
-        made: class of `Settings`.
+        settings_class: class of `Settings`.
     """
+    assert isinstance(settings_class, type) and issubclass(settings_class, Settings)
+    attributes, further = meanings(settings_class), inspect.signature(settings_class).parameters.values()
 
     def decorate(function: Callable[..., R]) -> Callable[..., R]:
-        *first, _ = inspect.signature(function).parameters.values()
-        further = inspect.signature(made).parameters.values()
-        names = [each.name for each in first]
+        signature = inspect.signature(function)
+        *first, _ = signature.parameters.values()
+        count, names = len(first), [each.name for each in first]
 
         def with_keywords(*arguments: Any, **keywords: Any) -> R:
-            own = {name: keywords.pop(name) for name in names[len(arguments) :] if name in keywords}
-            return function(*arguments[: len(first)], **own, settings=made(*arguments[len(first) :], **keywords))
+            named = {name: keywords.pop(name) for name in names[len(arguments) :] if name in keywords}
+            return function(*arguments[:count], **named, settings=settings_class(*arguments[count:], **keywords))
 
         update_wrapper(with_keywords, function)
-        with_keywords.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
-            [*first, *further], return_annotation=inspect.signature(function).return_annotation
-        )
-        head, arguments, rest = (function.__doc__ or "").partition("    Args:\n")
-        own_lines, blank, after = rest.partition("\n\n")
-        assert arguments and isinstance(made, type) and issubclass(made, Settings)
-        with_keywords.__doc__ = f"{head}{arguments}{own_lines}{meanings(made)}{blank}{after}"
+        with_keywords.__signature__ = signature.replace(parameters=[*first, *further])  # type: ignore[attr-defined]
+        head, arguments, after = (function.__doc__ or "").partition("    Args:\n")
+        lines, blank, end = after.partition("\n\n")
+        with_keywords.__doc__ = f"{head}{arguments}{lines}{attributes}{blank}{end}"
         return with_keywords
 
     return decorate

@@ -41,9 +41,10 @@ from vehicle.model.parameters.ranges import Range
 from vehicle.runs.car import Car, Run
 from vehicle.runs.output.folder import write_whole
 from vehicle.studies.tuning.fit_result import TuningResult
+from vehicle.studies.tuning.fit_settings import SPACING
 from vehicle.studies.tuning.full_steps import FullSteps, full_steps
 from vehicle.studies.tuning.least_squares import fit
-from vehicle.studies.tuning.measured_targets import SPACING, MeasuredTarget
+from vehicle.studies.tuning.measured_targets import MeasuredTarget
 from vehicle.studies.tuning.record_target import RecordTarget
 from vehicle.studies.tuning.target import Target
 from vehicle.studies.tuning.tuning_figures import plot_correlation, plot_histories, plot_responses

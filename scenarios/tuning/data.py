@@ -22,8 +22,9 @@ from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal_file import read_signal
 from vehicle.signals.formats.frf_file import read_frf, write_frf
 from vehicle.signals.formats.table import Record
+from vehicle.studies.tuning.fit_settings import BAND, SPACING
 from vehicle.studies.tuning.frf_target import FrfTarget
-from vehicle.studies.tuning.measured_targets import BAND, SPACING, MeasuredTarget
+from vehicle.studies.tuning.measured_targets import MeasuredTarget
 from vehicle.studies.tuning.record_target import RecordTarget
 
 CHANNELS = ("knuckle_{wheel}_acc_z", "engine_acc_z", "suspension_mount_{wheel}_acc_z", "seat_rail_acc_z")

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import argparse
-import re
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,7 +23,7 @@ from vehicle.commands.options import (
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS
-from vehicle.studies.sweeps.sweep_settings import SweepSettings
+from vehicle.studies.replication.drive_settings import DriveSettings
 
 if TYPE_CHECKING:
     from vehicle.signals.records.choice import Choice
@@ -43,43 +43,13 @@ def parser() -> Parser:
         "one channel; at least as many channels as plates",
     )
     delay_option(channels)
-    vehicle_options(parser).add_argument(
-        "--wheel",
-        dest="wheels",
-        action="append",
-        choices=sorted(CORNERS),
-        help="wheel whose plate is driven; by default the wheels in the names of the channels, else the shaker wheel "
-        "of the vehicle file; may be repeated",
-    )
+    setting_options(vehicle_options(parser), DriveSettings, "wheels")
     iteration = parser.add_argument_group("the iteration")
-    iteration.add_argument(
-        "--band",
-        default="1:50",
-        metavar="A:B",
-        help="frequency range of the replication [Hz]; %(default)s by default; begin where the target exceeds "
-        "the noise of its sensor",
-    )
-    iteration.add_argument(
-        "--iterations", type=int, default=15, metavar="N", help="maximum number of runs; %(default)s by default"
-    )
-    iteration.add_argument(
-        "--gain",
-        type=float,
-        default=0.8,
-        metavar="G",
-        help="iteration gain: applied part of the correction [-], above 0 and up to 1; %(default)s by default",
-    )
-    iteration.add_argument(
-        "--target-error",
-        type=float,
-        default=0.1,
-        metavar="PERCENT",
-        help="stop if the RMS error in the band is below this part of the RMS of the target [%%]; %(default)s",
-    )
+    setting_options(iteration, DriveSettings, "band", "iterations", "gain", "target_error")
     parser.former(
         "--tolerance", "--tolerance: the error at which the iteration ends is given by --target-error PERCENT"
     )
-    setting_options(iteration, SweepSettings, "engine")
+    setting_options(iteration, DriveSettings, "engine")
     output_options(parser, None, default="runs/drive_<name of the target>")
     figures_option(parser)
     message_options(parser, quiet=True)
@@ -90,27 +60,19 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.runs.car import Car
     from vehicle.signals.records.delays import parsed_delays
     from vehicle.studies.replication.drive_files import save_drive
-    from vehicle.studies.replication.drive_search import replicate_drive, require_iteration
+    from vehicle.studies.replication.drive_search import replicate_drive
 
     inputs = tuple(path for path in (options.target, options.vehicle) if path is not None)
-    band, target_error = _band(options.band), 0.01 * options.target_error
-    require_iteration(band, options.iterations, options.gain, target_error)
-    output = output_folder_of(options, Path("runs") / f"drive_{options.target.stem}", protect=inputs)
-    names, choice = _channels(options)
-    drive = replicate_drive(
-        Car.load(options.vehicle, options.overrides),
-        options.target,
-        names,
-        choice=choice,
-        wheels=[CORNERS[word] for word in options.wheels] if options.wheels else None,
-        band=band,
-        iterations=options.iterations,
-        gain=options.gain,
-        target_error=target_error,
+    settings = DriveSettings.of_options(
+        options,
+        wheels=[CORNERS[word] for word in options.wheels or ()] or None,
         delay=parsed_delays(options.delay),
-        engine=options.engine,
         progress=lambda step: None if options.quiet else _say(step, options.iterations),
     )
+    output = output_folder_of(options, Path("runs") / f"drive_{options.target.stem}", protect=inputs)
+    names, choice = _channels(options)
+    car = Car.load(options.vehicle, options.overrides)
+    drive = replicate_drive(car, options.target, names, **replace(settings, choice=choice).given())
     summary = save_drive(drive, output, force=options.force, figures=options.figures, protect=inputs)
     if not options.quiet:
         print(report(summary, output))
@@ -124,22 +86,6 @@ def _say(step: Step, iterations: int) -> None:
         file=sys.stderr,
         flush=True,
     )
-
-
-def _band(text: str) -> tuple[float, float]:
-    """Return the edges of the band of an option [Hz]; their order is checked with the other settings.
-
-    Raises:
-        ConfigurationError: the text is not A:B.
-    """
-    match = re.fullmatch(r"([\d.]+):([\d.]+)", text)
-    try:
-        low, high = (float(part) for part in match.groups()) if match else (0.0, 0.0)
-    except ValueError:
-        low = high = 0.0
-    if not 0.0 < low < high:
-        raise ConfigurationError(f"--band {text}: must be two frequencies [Hz], the lower first, as 1:50")
-    return low, high
 
 
 def _channels(options: argparse.Namespace) -> tuple[dict[str, str], Choice]:

@@ -18,7 +18,7 @@ from vehicle.commands.options import (
     vehicle_options,
 )
 from vehicle.commands.parser import Parser
-from vehicle.studies.sweeps.sweep_settings import SweepSettings
+from vehicle.studies.optimisation.search_settings import SearchSettings
 
 
 def parser() -> Parser:
@@ -45,17 +45,6 @@ def parser() -> Parser:
         "as road_A_120 or the stem of a file, or mean or worst of all; may be repeated",
     )
     search.add_argument(
-        "--maximise", action="append", default=[], metavar="NUMBER[@INPUT]", help="an objective to maximise"
-    )
-    search.add_argument(
-        "--limit",
-        action="append",
-        default=[],
-        metavar="NUMBER[@INPUT]<=VALUE",
-        help="constraint, as 'travel<=0.06' or 'lowest_load>=0.1', in the unit of the number; applies to "
-        "every input by default; may be repeated",
-    )
-    search.add_argument(
         "--targets",
         metavar="FILE.toml",
         help="in place of objectives: the smallest change of at most 8 parameters with which all figures of the file "
@@ -68,50 +57,15 @@ def parser() -> Parser:
         metavar="PATH=C",
         help="with --targets: a change of this parameter counts C times; 1 by default; may be repeated",
     )
-    search.add_argument("--cars", type=int, default=2000, metavar="N", help="cars to try; %(default)s by default")
-    search.add_argument(
-        "--population",
-        type=int,
-        default=64,
-        metavar="N",
-        help="cars of a generation, at least 8; %(default)s by default",
-    )
-    search.add_argument(
-        "--search-seed", type=int, default=1, metavar="N", help="one seed is one search; %(default)s by default"
-    )
-    parser.add_argument(
-        "--tolerance",
-        action="append",
-        default=[],
-        metavar="PATH=SIZE",
-        help="half of the band of a parameter, varied or not: in its unit, or in percent: 15%%; may be repeated",
-    )
+    setting_options(search, SearchSettings, "maximise", "limits", "cars", "population", "seed")
+    setting_options(parser, SearchSettings, "tolerances")
     tolerances = parser.scoped_group(
         "cars as they are made",
         needs="--tolerance PATH=SIZE, and there is none",
-        active=lambda options: bool(options.tolerance),
+        active=lambda options: bool(options.tolerances),
     )
-    tolerances.add_argument(
-        "--samples",
-        type=int,
-        metavar="K",
-        help="cars within the tolerances for each car tried; 8 by default, more where the quantile needs them",
-    )
-    tolerances.add_argument(
-        "--quantile",
-        type=float,
-        metavar="Q",
-        help="of their numbers that counts, 0.5 to below 1; 1 is the worst of the K cars; their mean by default. A "
-        "quantile Q needs 1/(1 - Q) cars; with it, 64 new cars around each named one show what share reaches its "
-        "numbers",
-    )
-    setting_options(parser, SweepSettings, "engine", default="reduced")
-    setting_options(parser, SweepSettings, "skip")
-    setting_options(parser, SweepSettings, "jobs")
-    setting_options(parser, SweepSettings, "executor")
-    parser.add_argument(
-        "--check", action="store_true", help="run the named cars with MuJoCo too and report the difference"
-    )
+    setting_options(tolerances, SearchSettings, "samples", "quantile")
+    setting_options(parser, SearchSettings, "engine", "skip", "jobs", "executor", "check")
     parser.add_argument(
         "--beside", type=Path, metavar="DIR", help="another search with these objectives: drawn with its distance"
     )
@@ -126,7 +80,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.model.parameters.ranges import parsed_variation
     from vehicle.runs.car import Car
     from vehicle.runs.output.folder import study_folder
-    from vehicle.studies.optimisation.car_search import plan_search, require_counts
+    from vehicle.studies.optimisation.car_search import plan_search
     from vehicle.studies.optimisation.car_table import CARS
     from vehicle.studies.optimisation.problem import parsed_tolerance
     from vehicle.studies.optimisation.search_files import read_other_front
@@ -136,35 +90,19 @@ def _job(options: argparse.Namespace) -> None:
     if options.targets is not None:
         _meet_targets(options)
         return
-    require_counts(cars=options.cars, population=options.population, search_seed=options.search_seed)
-    car = Car.load(options.vehicle, options.overrides)
-    plan = plan_search(
-        car,
-        [parsed_variation("--vary", text).range() for text in options.vary],
-        chosen_inputs(options, car.vehicle),
-        options.minimise,
-        maximise=options.maximise,
-        limits=options.limit,
-        tolerances=[parsed_tolerance(text) for text in options.tolerance],
-        samples=options.samples,
-        quantile=options.quantile,
-        engine=options.engine,
-        skip=options.skip,
-        seed=options.search_seed,
+    settings = SearchSettings.of_options(
+        options,
+        executor=executor_factory(options.executor, options.jobs) if options.executor else None,
+        tolerances=[parsed_tolerance(text) for text in options.tolerances or ()],
     )
+    car = Car.load(options.vehicle, options.overrides)
+    vary = [parsed_variation("--vary", text).range() for text in options.vary]
+    plan = plan_search(car, vary, chosen_inputs(options, car.vehicle), options.minimise, settings)
     beside = None if options.beside is None else read_other_front(options.beside, plan.trials.problem)
-    make = executor_factory(options.executor, options.jobs)
     rows = (CARS, SEARCH)
     output = study_folder_of(options, options.output, rows=rows)
     with study_folder(output, force=options.force, resume=options.resume, rows=rows) as folder:
-        cars = plan.run(
-            folder,
-            cars=options.cars,
-            population=options.population,
-            executor=make if options.executor or options.jobs > 1 else None,
-            check=options.check,
-            progress=ProgressLine("optimise  ", enabled=not options.quiet),
-        )
+        cars = plan.run(folder, progress=ProgressLine("optimise  ", enabled=not options.quiet))
         cars.write(folder, beside=beside, command=f"python -m vehicle optimise {shlex.join(options.words)}")
     if not options.quiet:
         print(cars.text(output, beside))
@@ -180,9 +118,10 @@ def _meet_targets(options: argparse.Namespace) -> None:
     from vehicle.runs.targets.verdict import read_targets
     from vehicle.studies.optimisation.target_search import meet_targets
 
-    for name in ("minimise", "maximise", "limit", "tolerance", "check", "beside", "resume"):
+    for name in ("minimise", "maximise", "limits", "tolerances", "check", "beside", "resume"):
         if getattr(options, name):
-            raise ConfigurationError(f"--targets: searches by the limits of its file; leave out --{name}")
+            option = f"--{name.removesuffix('s')}"
+            raise ConfigurationError(f"--targets: searches by the limits of its file; leave out {option}")
     if options.input or options.road:
         raise ConfigurationError("--targets: its file names the inputs; leave out --input and --road")
     car, figures = Car.load(options.vehicle, options.overrides), read_targets(options.targets)

@@ -51,9 +51,11 @@ def setting_options(
     for name in names or [name for name, each in all_declared.items() if each["option"]]:
         declared = all_declared[name]
         default, factor = declared["default"], declared["factor"]
+        if isinstance(default, tuple):  # numbers, or values to append to
+            default = ":".join(f"{each:g}" for each in default) if "type" in declared["option"] else list(default)
         arguments: dict[str, Any] = {
             "dest": name,
-            "default": default if default is None or factor == 1.0 else default / factor,
+            "default": default / factor if isinstance(default, float) else default,
             "help": declared["meaning"],
             **declared["option"],
             **more,

@@ -27,6 +27,7 @@ from vehicle.commands.tune_measurements import has_files, measured_targets, meas
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
+from vehicle.studies.tuning.fit_settings import HistorySettings, PosteriorSettings, ResponseSettings
 
 if TYPE_CHECKING:
     from vehicle.model.parameters.ranges import Range
@@ -57,69 +58,17 @@ def parser() -> Parser:
         needs="--frf, or to --levels",
         active=lambda options: has_files(options, "frf") or any(each.levels for each in options.measurements),
     )
-    responses.add_argument(
-        "--band", default="3:45", metavar="A:B", help="fitted frequencies [Hz]; %(default)s by default"
-    )
-    responses.add_argument(
-        "--spacing",
-        type=float,
-        default=0.3,
-        metavar="HZ",
-        help="minimum distance of the fitted frequencies [Hz]; %(default)g by default",
-    )
-    responses.add_argument(
-        "--window",
-        type=float,
-        metavar="S",
-        help="length of the Hann windows of measured FRFs [s]; those of the model are estimated in the same way; by "
-        "default the whole record is evaluated",
-    )
-    responses.add_argument(
-        "--averages",
-        type=float,
-        default=1.0,
-        metavar="N",
-        help="number of independent averages of FRFs from a file without random errors; with 1, the default, their "
-        "noise is overestimated",
-    )
+    setting_options(responses, ResponseSettings, "band", "spacing", "window", "averages")
     records = parser.scoped_group(
         "time histories", needs="--record", active=lambda options: has_files(options, "record")
     )
     drift_option(records)
-    records.add_argument(
-        "--stretch",
-        metavar="FROM:TO",
-        help="fitted part of the signal [s]; the whole record by default, on a road from 2 s on",
-    )
-    records.add_argument(
-        "--lowpass",
-        type=float,
-        default=100.0,
-        metavar="HZ",
-        help="corner of the low-pass filter on measurement and model [Hz]; %(default)g by default",
-    )
+    setting_options(records, HistorySettings, "stretch", "lowpass")
     parser.add_argument(
         "--posterior", action="store_true", help="posterior distribution of the parameters given the FRFs (emcee)"
     )
     posterior = parser.scoped_group("posterior", needs="--posterior", active=lambda options: options.posterior)
-    posterior.add_argument(
-        "--samples", type=int, default=256, metavar="K", help="cars of the emulator; %(default)s by default"
-    )
-    posterior.add_argument(
-        "--discrepancy",
-        type=float,
-        default=10.0,
-        metavar="PERCENT",
-        help="standard deviation of the error of the model in each third octave [%%]; %(default)g by default",
-    )
-    posterior.add_argument(
-        "--rival",
-        nargs="+",
-        default=[],
-        metavar="PATH=VALUE",
-        help="another law with its evidence against the fitted one: settings, as damper.viscous_law=degressive, and "
-        "further parameters with bounds, as damper.degressive_viscous=2e3:1e4",
-    )
+    setting_options(posterior, PosteriorSettings)
     setting_options(parser, SweepSettings, "engine", default="mujoco")
     output_options(parser, OUTPUT)
     head_options(parser)
@@ -201,8 +150,9 @@ def _posteriors(
 
     targets = [each.target for each in measured if isinstance(each.target, FrfTarget)]
     laws: list[tuple[str, Car, Sequence[Range]]] = [("fitted law", car, parameters)]
-    if options.rival:
-        rival = [parsed_variation("--rival", text) for text in options.rival]
+    chosen = PosteriorSettings.of_options(options)
+    if chosen.rival:
+        rival = [parsed_variation("--rival", text) for text in chosen.rival]
         settings = [f"{each.path}={each.values[0]}" for each in rival if each.bounds is None]
         fixed = {each.path for each in rival if each.bounds is None}
         other = Car.load(options.car, [*options.overrides, *settings])
@@ -213,8 +163,8 @@ def _posteriors(
     posteriors = []
     for name, law_car, law_parameters in laws:
         progress = ProgressLine(f"{name:<10}", enabled=not options.quiet)
-        emulated = emulated_car(law_car, law_parameters, targets, cars=options.samples, progress=progress)
-        posteriors.append((name, posterior_of(emulated, discrepancy=0.01 * options.discrepancy)))
+        emulated = emulated_car(law_car, law_parameters, targets, cars=chosen.samples, progress=progress)
+        posteriors.append((name, posterior_of(emulated, discrepancy=chosen.discrepancy)))
     return posteriors
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,6 +14,7 @@ from vehicle.commands.options import setting_options
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 from vehicle.signals.excitation.road_settings import RoadSettings
+from vehicle.studies.tuning.fit_settings import HistorySettings, LevelSettings, ResponseSettings
 
 if TYPE_CHECKING:
     from vehicle.runs.car import Car
@@ -89,12 +89,7 @@ def measurement_options(parser: Parser) -> None:
         help="plate displacement of the files of the preceding --frf or --record, in any format of `inspect`; --map "
         "plate_fl_displacement=NAME names its channels too; the plate in each file by default",
     )
-    files.add_argument(
-        "--stuck",
-        nargs=0,
-        action=_OfMeasurement,
-        help="the dampers stick at the level of the preceding --frf: linear car, no plate signal needed",
-    )
+    setting_options(files, ResponseSettings, "stuck", action=_OfMeasurement)
     files.add_argument(
         "--road",
         action=_OfMeasurement,
@@ -111,20 +106,7 @@ def measurement_options(parser: Parser) -> None:
     )
     words = "contact with the road of the preceding --road; patch by default, cams on an obstacle"
     setting_options(files, RoadSettings, "contact", action=_OfMeasurement, help=words)
-    files.add_argument(
-        "--levels",
-        type=int,
-        action=_OfMeasurement,
-        metavar="N",
-        help="compare the preceding --record by FRFs in N classes of the input level in place of its time histories",
-    )
-    files.add_argument(
-        "--reference",
-        action=_OfMeasurement,
-        metavar="CHANNEL",
-        help="input of the FRFs of --levels: a plate, or a measured channel, as knuckle_fl_acc_z; the plate of the "
-        "shaker wheel by default",
-    )
+    setting_options(files, LevelSettings, "levels", "reference", action=_OfMeasurement)
     files.add_argument(
         "--any-level", action="store_true", help="accept levels and accelerations of the plates beyond a shaker"
     )
@@ -198,49 +180,16 @@ def measured_targets(options: argparse.Namespace, car: Car) -> list[MeasuredTarg
     targets = []
     for each in options.measurements:
         if each.content == "frf":
-            target = measured_responses(
-                car,
-                each.file,
-                each.signal,
-                stuck=bool(each.stuck),
-                band=_pair("--band", options.band, "LOW:HIGH in Hz, as 3:45"),
-                spacing=options.spacing,
-                window=options.window,
-                averages=options.averages,
-                **shared,
-            )
+            frf = ResponseSettings.of_options(options, signal=each.signal, stuck=bool(each.stuck), **shared)
+            targets.append(measured_responses(car, each.file, **frf.given()))
+            continue
+        source = _road_of(each, road_choice) or each.signal
+        if each.levels is None and each.reference is not None:
+            raise ConfigurationError(f"--reference {each.reference}: belongs to --levels N")
+        times = {"signal": source, "delay": delay, "drift": drift, **shared}
+        if each.levels is None:
+            targets.append(measured_histories(car, each.file, **HistorySettings.of_options(options, **times).given()))
         else:
-            stretch = _pair("--stretch", options.stretch, "FROM:TO in s, as 4.9:6.5") if options.stretch else None
-            source = _road_of(each, road_choice) or each.signal
-            times: dict[str, Any] = {"delay": delay, "drift": drift, "stretch": stretch, "lowpass": options.lowpass}
-            if each.levels is None and each.reference is not None:
-                raise ConfigurationError(f"--reference {each.reference}: belongs to --levels N")
-            if each.levels is None:
-                target = measured_histories(car, each.file, source, **times, **shared)
-            else:
-                target = measured_levels(
-                    car,
-                    each.file,
-                    source,
-                    levels=each.levels,
-                    reference=each.reference,
-                    window=options.window,
-                    band=_pair("--band", options.band, "LOW:HIGH in Hz, as 3:45"),
-                    spacing=options.spacing,
-                    **times,
-                    **shared,
-                )
-        targets.append(target)
+            times |= {"levels": each.levels, "reference": each.reference}
+            targets.append(measured_levels(car, each.file, **LevelSettings.of_options(options, **times).given()))
     return targets
-
-
-def _pair(option: str, text: str, needed: str) -> tuple[float, float]:
-    """Return two ascending numbers of at least 0, separated by a colon."""
-    numbers: Sequence[float]
-    try:
-        numbers = [float(part) for part in text.split(":")]
-    except ValueError:
-        numbers = []
-    if len(numbers) != 2 or not 0.0 <= numbers[0] < numbers[1]:
-        raise ConfigurationError(f"{option} {text}: must be {needed}")
-    return numbers[0], numbers[1]

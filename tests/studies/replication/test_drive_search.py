@@ -14,6 +14,7 @@ from vehicle.engines.linear.response import frequency_response
 from vehicle.engines.reduced.equivalent_damping import equivalent_damping, linearised_response
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.signal import Signal
+from vehicle.studies.replication.drive_settings import DriveSettings
 from vehicle.studies.replication.driven_car import DrivenCar
 from vehicle.studies.replication.inverse import Lines
 from vehicle.studies.replication.iteration import replicate
@@ -39,10 +40,7 @@ def test_a_known_plate_is_replicated_from_one_knuckle_channel(car, tmp_path, nam
     signal = random_road(rms=LEVELS[name], seed=SEED, wheel="fr", lower_band_edge=6.0, roll_off_order=2)
     target = target_of(car, signal, tmp_path)
     plant = DrivenCar(car, ("fr",), target, "reduced")
-    replication = replicate(
-        plant, target.values, target.lines, iterations=iterations, gain=0.8, tolerance=1e-3, possible=plant.possible,
-        settled=plant.settled,
-    )  # fmt: skip
+    replication = replicate(plant, target.values, target.lines, DriveSettings(iterations=iterations))
     exact = signal.displacement["fr"]
     error = np.std(target.lines.in_band(replication.drive[0] - exact)) / np.std(target.lines.in_band(exact))
     assert error < tolerance and replication.error < tolerance

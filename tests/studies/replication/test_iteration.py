@@ -7,8 +7,9 @@ import pytest
 import scipy
 
 from tests.validation import validated
+from vehicle.studies.replication.drive_settings import DriveSettings
 from vehicle.studies.replication.inverse import LEAST_SHARE, Lines, regularised_inverse
-from vehicle.studies.replication.iteration import HALVINGS, replicate
+from vehicle.studies.replication.iteration import HALVINGS, Plant, replicate
 
 STEP, SAMPLES, BAND = 1e-3, 8000, (1.0, 50.0)
 MASS, SPRING, DASHPOT = np.diag([40.0, 60.0]), np.array([[2.5e5, -4e4], [-4e4, 3e5]]), np.diag([900.0, 1200.0])
@@ -16,7 +17,7 @@ PLATES = np.diag([2.1e5, 2.6e5])
 """M x'' + C x' + K x = B z."""
 
 
-class TwoMasses:
+class TwoMasses(Plant):
     """Two masses with an exact time integration for piecewise linear plate signals, and closed-form FRFs.
 
     Linear interpolation weakens 30 Hz by sinc^2(30 Hz STEP), 0.3 %.
@@ -58,7 +59,7 @@ def test_a_linear_system_is_met_in_few_steps(plates, outputs):
     """
     plant, lines = TwoMasses(outputs=outputs), Lines(SAMPLES, STEP, BAND)
     target = plant.run(plates)
-    replication = replicate(plant, target, lines, iterations=9, gain=1.0, tolerance=1e-3)
+    replication = replicate(plant, target, lines, DriveSettings(iterations=9, gain=1.0, target_error=1e-3))
     assert replication.reached and replication.steps[0].error < 0.02 and len(replication.steps) <= 3
     assert (np.std(lines.in_band(replication.drive - plates), axis=1) < 0.01 * np.std(plates)).all()
 
@@ -66,7 +67,7 @@ def test_a_linear_system_is_met_in_few_steps(plates, outputs):
 def test_a_smaller_gain_leaves_a_share_of_the_error(plates):
     """Check that a step of gain G leaves 1 - G of the error of a linear system."""
     plant, lines = TwoMasses(), Lines(SAMPLES, STEP, BAND)
-    replication = replicate(plant, plant.run(plates), lines, iterations=3, gain=0.6, tolerance=1e-6)
+    replication = replicate(plant, plant.run(plates), lines, DriveSettings(iterations=3, gain=0.6, target_error=1e-6))
     validated(
         "Sweeps, tuning and optimisation", "error of a drive after one, two and three iterations with gain 0.6",
         np.array([step.error for step in replication.steps]), np.array([0.4, 0.16, 0.064]), rel=0.05,
@@ -79,18 +80,17 @@ def test_a_false_frf_diverges_and_is_stopped(plates):
     """Use an FRF of the wrong sign: every step increases the error and is undone."""
     plant, lines = TwoMasses(sign=-1.0), Lines(SAMPLES, STEP, BAND)
     target = plant.run(plates)
-    replication = replicate(plant, target, lines, iterations=20, gain=0.8, tolerance=1e-3)
+    replication = replicate(plant, target, lines, DriveSettings(iterations=20, gain=0.8, target_error=1e-3))
     assert [step.gain for step in replication.steps] == [0.8 / 2**n for n in range(HALVINGS)]
     assert "diverging" in replication.outcome and replication.error > 1.0 and not replication.drive.any()
 
 
-def test_an_infeasible_drive_ends_the_iteration(plates):
+def test_an_infeasible_drive_ends_the_iteration(plates, monkeypatch):
     plant, lines = TwoMasses(), Lines(SAMPLES, STEP, BAND)
     target = plant.run(plates)
-    replication = replicate(
-        plant, target, lines, iterations=9, gain=0.5, tolerance=1e-3,
-        possible=lambda drive: (drive, "too far" if np.std(drive[0]) > 0.8 * np.std(plates[0]) else ""),
-    )  # fmt: skip
+    limit = 0.8 * np.std(plates[0])
+    monkeypatch.setattr(plant, "possible", lambda drive: (drive, "too far" if np.std(drive[0]) > limit else ""))
+    replication = replicate(plant, target, lines, DriveSettings(iterations=9, gain=0.5, target_error=1e-3))
     assert replication.outcome == "too far" and [step.kept for step in replication.steps] == [True, True]
     assert replication.error == pytest.approx(0.25, rel=0.05)
 

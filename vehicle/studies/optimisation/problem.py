@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -93,6 +93,10 @@ class Tolerance:
     def value_at(self, value: float, position: float) -> float:
         """Return the value at a position from -1 to 1 in the band, in the unit of the parameter."""
         return value * (1.0 + position * self.width) if self.relative else value + position * self.width
+
+
+Tolerances = Mapping[str, float | str] | Sequence[Tolerance]
+"""Path to half of the band: in the unit of the parameter, or as "15%"."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

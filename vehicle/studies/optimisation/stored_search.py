@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +14,7 @@ from vehicle.runs.output.locks import folder_lock
 from vehicle.studies.optimisation.car_table import CARS, CarTable
 from vehicle.studies.optimisation.problem import Vector
 from vehicle.studies.optimisation.search import TriedCars, search
+from vehicle.studies.optimisation.search_settings import SearchSettings
 from vehicle.studies.optimisation.trials import Trials
 from vehicle.studies.sweeps.case import digest
 from vehicle.studies.sweeps.case_keys import case_keys
@@ -24,18 +24,13 @@ SEARCH = "search.json"
 change."""
 
 
-def stored_search(
-    trials: Trials, folder: Path, *, cars: int, population: int, seed: int, progress: Callable[[float], None]
-) -> tuple[TriedCars, list[TriedCars]]:
+def stored_search(trials: Trials, folder: Path, settings: SearchSettings) -> tuple[TriedCars, list[TriedCars]]:
     """Run a search and store every car in `cars.csv`.
 
     Args:
         trials: evaluation of the cars.
         folder: existing folder; stored generations are not computed again.
-        cars: number of cars to try, rounded up to whole generations.
-        population: number of cars of a generation.
-        seed: seed of the search.
-        progress: called with the finished fraction.
+        settings: settings of the search; the number of cars is rounded up to whole generations.
 
     Returns:
         The unmodified car; the generations.
@@ -44,12 +39,12 @@ def stored_search(
         ConfigurationError: the folder contains another search.
         DataError, OutputError, MissingPartError: see `CarTable` and `search`.
     """
-    problem = trials.problem
+    problem, population, progress = trials.problem, settings.population, settings.progress
     unmodified = np.full((1, len(problem.ranges)), math.nan)
     keys = case_keys(trials.cases(unmodified), trials.measure)
     spread = [repr(trials.spread.tolerances), trials.spread.bands.tolist(), trials.spread.quantile]
-    identity = {"search": digest([keys, repr(problem), spread, population, seed])}
-    generations = math.ceil(cars / population)
+    identity = {"search": digest([keys, repr(problem), spread, population, settings.seed])}
+    generations = math.ceil(settings.cars / population)
     with folder_lock(folder.resolve()):
         if (folder / CARS).exists() and _identity(folder / SEARCH) != identity:
             raise ConfigurationError(
@@ -63,13 +58,14 @@ def stored_search(
             values, reasons = trials(points)
             tried = TriedCars(points=points, values=values, reasons=tuple(reasons))
             table.add(tried)
-            progress(min((len(table.generations) - 1) / generations, 1.0))
+            if progress is not None:
+                progress(min((len(table.generations) - 1) / generations, 1.0))
             return tried
 
         stored = list(table.generations)
         base = stored[0] if stored else attempt(unmodified)
         return base, search(
-            problem, attempt, population=population, generations=generations, seed=seed, stored=stored[1:]
+            problem, attempt, population=population, generations=generations, seed=settings.seed, stored=stored[1:]
         )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -13,21 +13,17 @@ import numpy as np
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.names import CORNERS, in_order
 from vehicle.runs.car import Car, Run
+from vehicle.settings import with_settings
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.formats.reader import read_record
 from vehicle.signals.records.choice import Choice
 from vehicle.signals.records.delays import split_delay
 from vehicle.studies.replication.channel_delays import ChannelDelay, against_median, delays_between
+from vehicle.studies.replication.drive_settings import DriveSettings
 from vehicle.studies.replication.driven_car import DrivenCar
-from vehicle.studies.replication.iteration import Replication, Step, replicate
+from vehicle.studies.replication.iteration import Replication, replicate
 from vehicle.studies.replication.target import Target, read_target
 from vehicle.threads import one_blas_thread
-
-BAND = (1.0, 50.0)
-"""Default band of the replicated response [Hz]."""
-
-MOST_ITERATIONS = 1000
-"""Maximum number of iterations."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -83,21 +79,10 @@ class FoundDrive:
         return self.plant.last
 
 
+@with_settings(DriveSettings)
 @one_blas_thread()
 def replicate_drive(
-    car: Car,
-    target: Path | str,
-    channels: Mapping[str, str] | Sequence[str],
-    *,
-    choice: Choice | None = None,
-    wheels: Sequence[str] | None = None,
-    band: tuple[float, float] = BAND,
-    iterations: int = 15,
-    gain: float = 0.8,
-    target_error: float = 1e-3,
-    delay: Mapping[str, float] | None = None,
-    engine: str = "auto",
-    progress: Callable[[Step], None] = lambda step: None,
+    car: Car, target: Path | str, channels: Mapping[str, str] | Sequence[str], settings: DriveSettings
 ) -> FoundDrive:
     """Find the plate signals that make the car respond with measured accelerations.
 
@@ -106,16 +91,6 @@ def replicate_drive(
         target: measured accelerations, of any format.
         channels: channel of the car to channel of the file, as {"knuckle_fr_acc_z": "Dof 12 +Z"}; or a list of channels
             of the car if the file uses the same names or has a single channel. At least as many channels as plates.
-        choice: units, rate and excerpt of the file.
-        wheels: wheels whose plates are driven, as ("fr",); by default the wheels in the names of the channels, or the
-            wheel on the shaker.
-        band: frequency band in which the response is replicated [Hz]; begin above the noise of the sensor.
-        iterations: maximum number of runs.
-        gain: share of the correction that a step makes [-], above 0 and up to 1.
-        target_error: relative RMS error at which the iteration ends [-].
-        delay: delays that are taken out of the file, as {"seat_*": 0.0123}: channel, pattern or group to seconds.
-        engine: as in `Car.run`.
-        progress: called with each step of the iteration.
 
     Returns:
         The best drive with its error; `save_drive` writes all files.
@@ -125,9 +100,8 @@ def replicate_drive(
         DataError: bad data, another quantity than acceleration, or nothing in the band.
         SimulationError: no drive responds better than plates at rest.
     """
-    require_iteration(band, iterations, gain, target_error)
-    path, options = Path(target), choice or Choice()
-    begin, delays = split_delay(delay or {})
+    path, options = Path(target), settings.choice or Choice()
+    begin, delays = split_delay(settings.delay or {})
     if begin:
         raise ConfigurationError(
             f"--delay {begin:g}: the start of the record only moves the drive; name the channels that lag, as "
@@ -136,46 +110,12 @@ def replicate_drive(
     options = replace(options, delays={**options.delays, **delays})
     names = dict(channels) if isinstance(channels, Mapping) else named_channels(path, channels, options)
     car.vehicle.require_channels(names, car.vehicle.acceleration_channels)
-    wanted = read_target(path, names, options, band, car.vehicle.solver.record_rate)
-    plant = DrivenCar(car, driven_wheels(wheels, wanted, car.vehicle.shaker_wheel), wanted, engine)
-    replication = replicate(
-        plant,
-        wanted.values,
-        wanted.lines,
-        iterations=iterations,
-        gain=gain,
-        tolerance=target_error,
-        possible=plant.possible,
-        settled=plant.settled,
-        progress=progress,
-    )
+    wanted = read_target(path, names, options, settings.band, car.vehicle.solver.record_rate)
+    plant = DrivenCar(car, driven_wheels(settings.wheels, wanted, car.vehicle.shaker_wheel), wanted, settings.engine)
+    replication = replicate(plant, wanted.values, wanted.lines, settings)
     if not any(step.kept for step in replication.steps):
         raise SimulationError(f"{path}: no drive has a smaller error than plates at rest; {replication.outcome}")
     return FoundDrive(replication=replication, plant=plant)
-
-
-def require_iteration(band: tuple[float, float], iterations: int, gain: float, target_error: float) -> None:
-    """Check the settings of an iteration.
-
-    Args:
-        band: lower and upper edge [Hz].
-        iterations: maximum number of runs.
-        gain: share of the correction [-].
-        target_error: relative error at which the iteration ends [-].
-
-    Raises:
-        ConfigurationError: a setting is out of range.
-    """
-    if not 0.0 < band[0] < band[1]:
-        raise ConfigurationError(
-            f"--band {band[0]:g}:{band[1]:g}: must be two frequencies above 0 Hz, the lower one first: 1:50"
-        )
-    if not 1 <= iterations <= MOST_ITERATIONS:
-        raise ConfigurationError(f"--iterations {iterations}: must be 1 to {MOST_ITERATIONS}")
-    if not 0.0 < gain <= 1.0:
-        raise ConfigurationError(f"--gain {gain:g}: must be above 0 and up to 1")
-    if not 0.0 < target_error < 1.0:
-        raise ConfigurationError(f"--target-error {100.0 * target_error:g} %: must be above 0 and below 100")
 
 
 def named_channels(file: Path, names: Sequence[str], choice: Choice) -> dict[str, str]:

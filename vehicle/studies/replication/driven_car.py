@@ -15,10 +15,11 @@ from vehicle.signals.excitation.plausibility import (
 from vehicle.signals.excitation.rest import RAMP_S, start_from_rest
 from vehicle.signals.excitation.signal import Signal
 from vehicle.studies.replication.inverse import Complex, Vector
+from vehicle.studies.replication.iteration import Plant
 from vehicle.studies.replication.target import Target
 
 
-class DrivenCar:
+class DrivenCar(Plant):
     """Car on driven plates, the `Plant` of the iteration.
 
     Args:

@@ -9,13 +9,13 @@ repeated with half the gain.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.studies.replication.drive_settings import DriveSettings
 from vehicle.studies.replication.inverse import Complex, Lines, Vector, regularised_inverse
 
 HALVINGS = 3
@@ -25,14 +25,26 @@ STALLED = 0.02
 """Minimum relative reduction of the error by a step with gain 1; the iteration ends below it."""
 
 
-class Plant(Protocol):
-    """Driven system: a car on plates, or a test system."""
+class Plant(ABC):
+    """Driven system: a car on plates, or a test system.
 
+    Attributes:
+        settled: index of the first sample whose error is included.
+    """
+
+    settled: int = 0
+
+    @abstractmethod
     def run(self, drive: Vector) -> Vector:
         """Return responses (k, n) to drives (p, n)."""
 
+    @abstractmethod
     def frf(self, frequency: Vector) -> Complex:
         """Return FRFs (k, p, m) at frequencies (m,) [Hz], linearised about the last run; before it about rest."""
+
+    def possible(self, drive: Vector) -> tuple[Vector, str]:
+        """Return a feasible drive for a drive, and a message if there is none, else ""."""
+        return drive, ""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -78,42 +90,27 @@ class Replication:
         return min((step.error for step in self.steps), default=1.0)
 
 
-def replicate(
-    plant: Plant,
-    target: Vector,
-    lines: Lines,
-    *,
-    iterations: int,
-    gain: float,
-    tolerance: float,
-    possible: Callable[[Vector], tuple[Vector, str]] = lambda drive: (drive, ""),
-    progress: Callable[[Step], None] = lambda step: None,
-    settled: int = 0,
-) -> Replication:
+def replicate(plant: Plant, target: Vector, lines: Lines, settings: DriveSettings) -> Replication:
     """Find the drive whose response is nearest to a target.
 
     Args:
         plant: driven system, at rest before its first run.
         target: target responses (k, n).
         lines: spectral lines of the record, with the band.
-        iterations: maximum number of runs.
-        gain: gain G, above 0 and up to 1 [-].
-        tolerance: relative error at which the iteration ends [-].
-        possible: function that returns a feasible drive for a drive, and a message if there is none, else "".
-        progress: called with the step of each run.
-        settled: index of the first sample whose error is included.
+        settings: number of iterations, gain G and error at which the iteration ends.
 
     Returns:
         The best drive; a drive at rest with an error of 1 if no run has a smaller error.
     """
+    settled, iterations, tolerance = plant.settled, settings.iterations, settings.target_error
     wanted = lines.in_band(target)[:, settled:]
     sizes = np.sqrt(np.mean(wanted**2, axis=1))
     drive, response = np.zeros((plant.frf(lines.frequency[:1]).shape[1], target.shape[1])), np.zeros_like(target)
     inverse = regularised_inverse(plant.frf(lines.frequency), lines.frequency, sizes)
-    smallest, current_gain, failures, steps = 1.0, gain, 0, list[Step]()
+    smallest, current_gain, failures, steps = 1.0, settings.gain, 0, list[Step]()
     outcome = f"maximum number of {iterations} iterations reached"
     for number in range(1, iterations + 1):
-        tried, obstacle = possible(drive + current_gain * lines.correction(inverse, target - response))
+        tried, obstacle = plant.possible(drive + current_gain * lines.correction(inverse, target - response))
         if obstacle:
             outcome = obstacle
             break
@@ -123,7 +120,8 @@ def replicate(
         error = float(np.sqrt(np.mean(errors**2)))
         kept = error < smallest
         steps.append(Step(number=number, gain=current_gain, error=error, errors=errors, kept=kept))
-        progress(steps[-1])
+        if settings.progress is not None:
+            settings.progress(steps[-1])
         if not kept:
             failures, current_gain = failures + 1, 0.5 * current_gain
             if failures == HALVINGS:

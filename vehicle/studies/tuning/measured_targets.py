@@ -2,39 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
+from vehicle.settings import with_settings
 from vehicle.signals.analysis.response_name import ResponseName, plates_of
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.formats.channel import uniform_axis
 from vehicle.signals.formats.table import Record
 from vehicle.signals.records.choice import Choice
 from vehicle.signals.records.counterpart import clock_advice, counterparts, run_times, sign_and_unit
-from vehicle.signals.records.delays import Delay, split_delay
+from vehicle.signals.records.delays import split_delay
 from vehicle.signals.records.measured import Measured, read_measured
 from vehicle.signals.records.resampled import at_times
 from vehicle.studies.tuning.fit_result import LEAST_VALUES
+from vehicle.studies.tuning.fit_settings import HistorySettings, LevelSettings, ReadingSettings, ResponseSettings
 from vehicle.studies.tuning.frf_target import FrfTarget, motions_of, to_driven_plates
 from vehicle.studies.tuning.level_target import LevelTarget, level_target
 from vehicle.studies.tuning.plate_signal import plate_choices, plate_signal
 from vehicle.studies.tuning.record_target import KEPT, RecordTarget, signal_until
 from vehicle.studies.tuning.response_delays import response_delays
 from vehicle.studies.tuning.road_car import RoadCar
-
-BAND = (3.0, 45.0)
-"""Default band of a fit [Hz]: shaker signals excite the car well above 3 Hz, and the body model ends at 43 Hz."""
-
-SPACING = 0.3
-"""Default distance of the fitted frequencies [Hz]: a record of 60 s has 17 lines of 1/60 Hz in this distance, from
-which the FRF is estimated."""
 
 LEVEL_WINDOW = 4.0
 """Default length of the windows of classes of the input level [s]: four periods at 1 Hz, and short enough for the level
@@ -60,41 +54,13 @@ class MeasuredTarget:
     notices: tuple[str, ...] = ()
 
 
-def measured_responses(
-    car: Car,
-    file: Path | str,
-    signal: Signal | Path | str | None = None,
-    channels: Mapping[str, str] | None = None,
-    *,
-    stuck: bool = False,
-    choice: Choice | None = None,
-    inverted: Collection[str] = (),
-    fitted: Sequence[str] = (),
-    band: tuple[float, float] = BAND,
-    spacing: float = SPACING,
-    window: float | None = None,
-    averages: float = 1.0,
-    delay: Mapping[str, float] | None = None,
-) -> MeasuredTarget:
+@with_settings(ResponseSettings)
+def measured_responses(car: Car, file: Path | str, settings: ResponseSettings) -> MeasuredTarget:
     """Read measured FRFs of one excitation level as a target of a fit.
 
     Args:
         car: the car, with the channel names of the model.
         file: measurement file of any format, with FRFs, or with time histories of accelerations and their plate.
-        signal: plate displacement of the measurement: a signal, a file, or the name of a shipped file; by default the
-            plate in the measurement file.
-        channels: channel of the model to channel of the file; by default equal names.
-        stuck: True if the dampers stick at this level: the FRFs of the linear car follow from its matrices, and no
-            signal is needed.
-        choice: units, rate and excerpt of the file.
-        inverted: channels measured with the opposite sign.
-        fitted: channels to be fitted; by default all of `channels`.
-        band: lowest and highest frequency [Hz].
-        spacing: minimum distance of the frequencies [Hz].
-        window: length of the Hann windows of the estimate [s]; by default the whole record is evaluated.
-        averages: number of independent averages of FRFs without a random error; 1 if unknown.
-        delay: known delays of groups, channels or patterns, as {"accelerations": 0.0123} [s]; those of the other
-            groups are unknowns of the fit.
 
     Returns:
         The target; without a measured coherence all lines have equal weights.
@@ -104,18 +70,21 @@ def measured_responses(
         DataError: bad data, no FRF, or too few frequencies.
     """
     path = Path(file)
-    asked, plates = plate_choices(_asked(choice, channels, delay), path, signal)
-    measured = _read(car, path, asked, inverted, window)
+    signal = settings.signal
+    if isinstance(signal, Road):
+        raise ConfigurationError(f"{path}: a road belongs to time histories; FRFs need the signal of a plate")
+    asked, plates = plate_choices(_asked(settings), path, signal)
+    measured = _read(car, path, asked, settings.inverted, settings.window)
     frf = measured.frf
     if frf is None:
         raise DataError(
             f"{path}: contains no FRFs, and no plate with accelerations to estimate FRFs from; for time histories use "
             "--record FILE"
         )
-    data = frf.select(tuple(fitted) or frf.channels, band=band, spacing=spacing)
+    data = frf.select(tuple(settings.fitted) or frf.channels, band=settings.band, spacing=settings.spacing)
     unknown = ~np.isfinite(data.coherence).any(axis=1, keepdims=True)
     data.coherence[:] = np.where(unknown, 1.0, data.coherence)
-    driving = None if stuck else plate_signal(signal, car, path, measured, asked, inverted, plates)
+    driving = None if settings.stuck else plate_signal(signal, car, path, measured, asked, settings.inverted, plates)
     if driving is not None:
         data = to_driven_plates(data, motions_of(driving), str(path))
     else:
@@ -124,39 +93,24 @@ def measured_responses(
     sample = 0.0 if not measured.estimator or measured.record is None else measured.record.step
     delays = response_delays(measured, tuple(dict.fromkeys(data.channels)), asked.delays, contained=signal is None)
     target = FrfTarget(
-        name=path.stem, data=data, signal=driving, window=window, averages=averages, delays=delays, sample=sample
+        name=path.stem,
+        data=data,
+        signal=driving,
+        window=settings.window,
+        averages=settings.averages,
+        delays=delays,
+        sample=sample,
     )
     return MeasuredTarget(target=target, signal=driving, notices=_notices(path, measured, []))
 
 
-def measured_histories(
-    car: Car,
-    file: Path | str,
-    signal: Signal | Road | Path | str | None = None,
-    channels: Mapping[str, str] | None = None,
-    *,
-    choice: Choice | None = None,
-    inverted: Collection[str] = (),
-    fitted: Sequence[str] = (),
-    delay: Delay = 0.0,
-    drift: float = 0.0,
-    stretch: tuple[float, float] | None = None,
-    lowpass: float = 100.0,
-) -> MeasuredTarget:
+@with_settings(HistorySettings)
+def measured_histories(car: Car, file: Path | str, settings: HistorySettings) -> MeasuredTarget:
     """Read measured time histories as a target of a fit, at the times of a run.
 
     Args:
         car: car at the start of the fit; a run of this car shows wrong clocks, signs and units of the file.
         file: measurement file of any format with time histories.
-        signal: plate displacement: a signal, a file, or the name of a shipped file; or the road that was driven, with
-            its speed; by default the plate in the measurement file, at the times of the record.
-        channels, choice, inverted: see `measured_responses`.
-        fitted: channels to be fitted; by default all except plates.
-        delay: start of the record after the start of the signal [s]; or known delays of groups, channels or patterns,
-            as {"record": 0.2, "accelerations": 0.0123}. Those of the other groups are unknowns of the fit.
-        drift: relative lag of the clock of the record [-].
-        stretch: begin and end of the included part of the signal [s]; by default the measured part.
-        lowpass: maximum frequency of the comparison of model and measurement [Hz].
 
     Returns:
         The target.
@@ -166,45 +120,24 @@ def measured_histories(
         DataError: bad data, no time history, no plate signal, no overlap with the signal, or a record that is too
             short.
     """
-    target, _, notices = _histories(
-        car, file, signal, channels, choice=choice, inverted=inverted, fitted=fitted, delay=delay, drift=drift,
-        stretch=stretch, lowpass=lowpass,
-    )  # fmt: skip
+    target, notices = _histories(car, file, settings)
     return MeasuredTarget(target=target, signal=target.signal, notices=notices)
 
 
-def measured_levels(
-    car: Car,
-    file: Path | str,
-    signal: Signal | Road | Path | str | None = None,
-    channels: Mapping[str, str] | None = None,
-    *,
-    levels: int,
-    reference: str | None = None,
-    window: float | None = None,
-    band: tuple[float, float] = BAND,
-    spacing: float = SPACING,
-    **reading: Any,
-) -> MeasuredTarget:
+@with_settings(LevelSettings)
+def measured_levels(car: Car, file: Path | str, settings: LevelSettings) -> MeasuredTarget:
     """Read measured time histories as FRFs in classes of the input level, see `LevelTarget`.
 
     Args:
-        car, file, signal, channels: see `measured_histories`.
-        levels: number of classes.
-        reference: input of the FRFs: a plate, as "plate_fl_displacement", or a measured channel, as the acceleration
-            of a knuckle; the plate of the shaker wheel, or the first that moves, by default.
-        window: length of the Hann windows [s]; `LEVEL_WINDOW` by default.
-        band: lowest and highest frequency [Hz].
-        spacing: minimum distance of the frequencies [Hz].
-        reading: further arguments of `measured_histories`.
+        car, file: see `measured_histories`.
 
     Raises:
         ConfigurationError, DataError: see `measured_histories` and `level_target`; an unknown reference.
     """
-    target, driven, notices = _histories(car, file, signal, channels, keep=reference, **reading)
+    target, notices = _histories(car, file, settings, keep=settings.reference)
     wheels = target.signal.wheels
     wheel = car.vehicle.shaker_wheel if car.vehicle.shaker_wheel in wheels else wheels[0]
-    reference = reference or f"plate_{wheel}_displacement"
+    reference = settings.reference or f"plate_{wheel}_displacement"
     plates = [f"plate_{name}_displacement" for name in wheels]
     if reference not in (*plates, *target.record.channels):
         raise ConfigurationError(
@@ -216,47 +149,35 @@ def measured_levels(
         others = {name: group for name, group in target.delays.fitted.items() if group != reference_group}
         target = replace(target, delays=replace(target.delays, fitted=others))
     front = [name for name in plates if name[len("plate_")] == wheel[0]]
-    run = target.run(driven, channels=list(dict.fromkeys([*front, *(name for name in plates if name == reference)])))
+    run = target.run(car, channels=list(dict.fromkeys([*front, *(name for name in plates if name == reference)])))
     excitation = target.record.channels[reference] if reference in target.record.channels else run[reference]
     classes = level_target(
         target,
         reference,
         np.asarray(excitation),
         np.array([run[name] for name in front]),
-        levels=levels,
-        window=window or LEVEL_WINDOW,
-        band=band,
-        spacing=spacing,
+        levels=settings.levels,
+        window=settings.window or LEVEL_WINDOW,
+        band=settings.band,
+        spacing=settings.spacing,
     )
     return MeasuredTarget(target=classes, signal=target.signal, notices=notices)
 
 
 def _histories(
-    car: Car,
-    file: Path | str,
-    signal: Signal | Road | Path | str | None,
-    channels: Mapping[str, str] | None,
-    *,
-    choice: Choice | None = None,
-    inverted: Collection[str] = (),
-    fitted: Sequence[str] = (),
-    delay: Delay = 0.0,
-    drift: float = 0.0,
-    stretch: tuple[float, float] | None = None,
-    lowpass: float = 100.0,
-    keep: str | None = None,
-) -> tuple[RecordTarget, Car, tuple[str, ...]]:
-    """Return the target of `measured_histories`, the car at the start, and the notices.
+    car: Car, file: Path | str, settings: HistorySettings, keep: str | None = None
+) -> tuple[RecordTarget, tuple[str, ...]]:
+    """Return the target of `measured_histories`, and the notices.
 
     Args:
-        car, file, signal, channels, choice, inverted, fitted: see `measured_histories`.
-        delay, drift, stretch, lowpass: likewise.
+        car, file, settings: see `measured_histories`.
         keep: a channel that is read in addition to `fitted`.
     """
-    path, contained = Path(file), signal is None
-    begin, groups = split_delay(delay)
-    asked, plates = plate_choices(_asked(choice, channels, groups), path, signal)
-    measured = _read(car, path, asked, inverted, None, histories_only=True)
+    path, signal, contained = Path(file), settings.signal, settings.signal is None
+    drift, stretch, lowpass, fitted = settings.drift, settings.stretch, settings.lowpass, settings.fitted
+    begin, _ = split_delay(settings.delay)
+    asked, plates = plate_choices(_asked(settings), path, signal)
+    measured = _read(car, path, asked, settings.inverted, None, histories_only=True)
     held = measured.record
     names = [] if held is None else [channel for channel in held.channels if not channel.startswith("plate_")]
     if held is None or not names:
@@ -275,7 +196,7 @@ def _histories(
         road, settled = RoadCar(start=car, rolling=car.with_(drive.overrides)), drive.skip
         signal = drive.signal()
     else:
-        signal = plate_signal(signal, car, path, measured, asked, inverted, plates)
+        signal = plate_signal(signal, car, path, measured, asked, settings.inverted, plates)
         if contained and any("half-cosine ramp" in text for text in signal.notices):
             settled = SETTLED
     if fitted:
@@ -334,13 +255,13 @@ def _histories(
     ]
     clock = [] if contained else clock_advice(parts, step, begin, drift)
     advice = [*clock, *sign_and_unit(parts)]
-    return target, car, _notices(path, measured, [*more, *advice])
+    return target, _notices(path, measured, [*more, *advice])
 
 
-def _asked(choice: Choice | None, channels: Mapping[str, str] | None, delays: Mapping[str, float] | None) -> Choice:
+def _asked(settings: ReadingSettings) -> Choice:
     """Return the choice with further channels and delays."""
-    asked = choice or Choice()
-    return replace(asked, channels={**asked.channels, **(channels or {})}, delays={**asked.delays, **(delays or {})})
+    asked, delays = settings.choice or Choice(), split_delay(settings.delay)[1]
+    return replace(asked, channels={**asked.channels, **(settings.channels or {})}, delays={**asked.delays, **delays})
 
 
 def _read(

@@ -1,0 +1,63 @@
+"""Settings of a search, each declared once: for Python, its documentation and the options of `optimise`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from vehicle.settings import engine_setting, setting
+from vehicle.studies.sweeps.sweep_settings import PoolSettings, skip_setting
+
+if TYPE_CHECKING:
+    from vehicle.studies.optimisation.problem import Tolerances
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SearchSettings(PoolSettings):
+    """Settings of a search."""
+
+    maximise: Sequence[str] = setting("an objective to maximise", (), action="append", metavar="NUMBER[@INPUT]")
+    limits: Sequence[str] = setting(
+        "constraint, as 'travel<=0.06' or 'lowest_load>=0.1', in the unit of the number; applies to every input by "
+        "default; may be repeated",
+        (),
+        flag="--limit",
+        action="append",
+        metavar="NUMBER[@INPUT]<=VALUE",
+    )
+    cars: int = setting("cars to try; %(default)s by default", 2000, within="[8, inf)", type=int, metavar="N")
+    population: int = setting(
+        "cars of a generation, at least 8; %(default)s by default", 64, within="[8, inf)", type=int, metavar="N"
+    )
+    seed: int = setting(
+        "one seed is one search; %(default)s by default",
+        1,
+        flag="--search-seed",
+        dest="search_seed",
+        within="[0, inf)",
+        type=int,
+        metavar="N",
+    )
+    tolerances: Tolerances = setting(
+        "path to half of the band of a parameter, varied or not: in its unit, or as '15%%'",
+        (),
+        flag="--tolerance",
+        action="append",
+        metavar="PATH=SIZE",
+        help="half of the band of a parameter, varied or not: in its unit, or in percent: 15%%; may be repeated",
+    )
+    samples: int | None = setting(
+        "cars within the tolerances for each car tried; 8 by default, more where the quantile needs them",
+        type=int,
+        metavar="K",
+    )
+    quantile: float | None = setting(
+        "of their numbers that counts, 0.5 to below 1; 1 is the worst of the K cars; their mean by default. A quantile "
+        "Q needs 1/(1 - Q) cars; with it, 64 new cars around each named one show what share reaches its numbers",
+        type=float,
+        metavar="Q",
+    )
+    engine: str = engine_setting("reduced")
+    skip: float | None = skip_setting()
+    check: bool = setting("run the named cars with MuJoCo too and report the difference", False, action="store_true")
