@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 import tomllib
 
 import numpy as np
@@ -44,6 +45,16 @@ def test_the_lines_are_those_of_a_vehicle_file(tmp_path, capsys):
     for row in rows:
         assert float(row["fitted_stiffness [N/mm]"]) == pytest.approx(float(row["stiffness [N/mm]"]), rel=1e-4)
     assert len(rows) == 30 and (folder / "mount.png").stat().st_size > 20_000
+
+
+def test_json_has_law_parameters_and_lines(tmp_path, capsys):
+    words = [str(table(tmp_path / "points.csv", track=True)), "--output", str(tmp_path / "out"), "--json"]
+    assert main(words) == 0
+    found = json.loads(capsys.readouterr().out)
+    values = {each["path"]: each["value"] for each in found["parameters"]}
+    assert found["chosen"] == "hydromount" and values["MOUNT.track_mass"] == pytest.approx(60.0, rel=1e-4)
+    assert values["MOUNT.stiffness.z"] == pytest.approx(2e5, rel=1e-4)
+    assert "MOUNT.track_mass=60.0" in found["set"] and set(found["bic"]) >= {"hydromount", "rubber"}
 
 
 def test_a_law_can_be_asked_for(tmp_path, capsys):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -38,6 +39,7 @@ def parser() -> Parser:
         "addition, or the law with the least BIC (auto); %(default)s by default",
     )
     output_options(parser, None, default=f"{', '.join(FILES)} in runs/mount")
+    parser.add_argument("--json", action="store_true", help="print JSON: law, parameters, errors")
     message_options(parser, quiet=True)
     return parser
 
@@ -47,7 +49,14 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.runs.output.folder import whole_files, write_text, write_whole
     from vehicle.studies.mounts.measured_stiffness import read_stiffness
     from vehicle.studies.mounts.mount_fit import fit_mount
-    from vehicle.studies.mounts.mount_text import TITLES, caption_of, points_text, summary_lines, vehicle_lines
+    from vehicle.studies.mounts.mount_text import (
+        TITLES,
+        caption_of,
+        fit_json,
+        points_text,
+        summary_lines,
+        vehicle_lines,
+    )
 
     data = read_stiffness(options.file)
     lines, table, picture = output_files_of(options, Path("runs/mount"), FILES)
@@ -59,7 +68,9 @@ def _job(options: argparse.Namespace) -> None:
         write_text(new_lines, vehicle_lines(best, caption))
         write_text(new_table, points_text(best, data))
         write_whole(new_picture, lambda path: plot_mount(path, _curves(best, data), title, caption))
-    if not options.quiet:
+    if options.json:
+        print(json.dumps(fit_json(fits, caption), indent=2, allow_nan=False))
+    elif not options.quiet:
         print("\n".join(summary_lines(fits, caption)))
         print(f"files: {lines.parent}: {', '.join(path.name for path in paths)}")
 

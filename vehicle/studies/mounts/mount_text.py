@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -63,6 +65,35 @@ def vehicle_lines(fit: MountFit, caption: str) -> str:
         spread = f"standard error {number(error, 2)}" if determined else "not determined by these points"
         lines.append(f"{name} = {shown}  # [{unit}] fitted to {source}, {spread}")
     return "\n".join(lines) + "\n"
+
+
+def fit_json(fits: Sequence[MountFit], caption: str) -> dict[str, Any]:
+    """Return the first fit for `--json`: law, parameters, lines for `--set`, errors, and the criteria of all laws.
+
+    Args:
+        fits: fits sorted by BIC.
+        caption: description of the points.
+    """
+    best = fits[0]
+    lines = (line.partition("#")[0].strip() for line in vehicle_lines(best, caption).splitlines())
+    return {
+        "chosen": best.law.name,
+        "parameters": [
+            {
+                "path": f"MOUNT.{name}{'.z' if name in VECTORS else ''}",
+                "value": value,
+                "standard_error": error if math.isfinite(error) else None,
+                "unit": unit,
+            }
+            for (name, unit), value, error in zip(
+                best.law.parameters.items(), best.values.tolist(), best.errors.tolist(), strict=True
+            )
+        ],
+        "set": [f"MOUNT.{line.replace(' = ', '=', 1)}" for line in lines if line],
+        "stiffness_error": dict(zip(("rms", "largest"), best.stiffness_error.tolist(), strict=True)),
+        "loss_angle_error_rad": dict(zip(("rms", "largest"), best.angle_error.tolist(), strict=True)),
+        "bic": {fit.law.name: fit.criterion for fit in fits},
+    }
 
 
 def points_text(fit: MountFit, data: MeasuredStiffness) -> str:
