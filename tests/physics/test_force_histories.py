@@ -71,7 +71,7 @@ def integrated(car: Car, history: np.ndarray) -> np.ndarray:
 
 
 def rise(time: np.ndarray) -> np.ndarray:
-    return 0.5 * (1.0 - np.cos(np.pi * np.minimum(time, 1.0)))
+    return np.asarray(0.5 * (1.0 - np.cos(np.pi * np.minimum(time, 1.0))))
 
 
 def histories(run: Run) -> np.ndarray:

@@ -52,6 +52,12 @@ def parser() -> Parser:
     parser = command_parser("shaker", "Put shaker signals or a road under the wheels of the complete car.")
     file = signal_options(parser)
     record_options(record_group(parser), 'a plate, as fr="Shaker FR"', rate=False, unit=False)
+    parser.add_argument(
+        "--rpm",
+        metavar="N|A:B",
+        help="speed of the crankshaft [1/min], or a run-up from A to B over --duration; without --input and --road on "
+        "a level road; steady points are runs of `python -m vehicle orders --rpm A:B:STEP`",
+    )
     file.add_argument("--interpolate", action="store_true", help="fill missing displacements by interpolation")
     file.add_argument("--remove-mean", action="store_true", help="subtract the mean of the displacement")
     read = parser.scoped_group(
@@ -133,7 +139,8 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.signals.excitation.evaluation_start import evaluation_start
     from vehicle.signals.excitation.input_files import find_input
 
-    drive, overrides = None, list(options.overrides)
+    drive = None
+    overrides = options.overrides = [*options.overrides, *_crank_overrides(options)]
     if drives_on_road(options):
         from vehicle.commands.road import class_or_profile, road_drive
         from vehicle.model.parameters.vehicle import load_vehicle
@@ -280,6 +287,35 @@ def _check_signal(options: argparse.Namespace, signal: Signal) -> None:
             raise ConfigurationError(
                 f"--video-start {options.video_start:g}: the excerpt must lie in the record, so give 0 to {latest:g} s"
             )
+
+
+def _crank_overrides(options: argparse.Namespace) -> list[str]:
+    """Return the overrides of --rpm.
+
+    Raises:
+        ConfigurationError: another form, steady points, or a run-up without its length.
+    """
+    if options.rpm is None:
+        return []
+    try:
+        speeds = [float(part) for part in options.rpm.split(":")]
+    except ValueError:
+        speeds = []
+    if len(speeds) == 3:
+        raise ConfigurationError(
+            f"--rpm {options.rpm}: steady points are several runs: python -m vehicle orders --rpm {options.rpm}"
+        )
+    if len(speeds) not in (1, 2) or not all(map(math.isfinite, speeds)):
+        raise ConfigurationError(f"--rpm {options.rpm!r}: needed is a speed, as 750, or a run-up, as 700:3000 [1/min]")
+    if len(speeds) == 1:
+        return [f"crank.rpm={speeds[0]!r}"]
+    if options.duration is None:
+        raise ConfigurationError(f"--rpm {options.rpm}: a run-up needs its length; set --duration S, as 60")
+    return [
+        f"crank.rpm={speeds[0]!r}",
+        f"crank.end_rpm={speeds[1]!r}",
+        f"crank.run_up_time={options.duration!r}",
+    ]
 
 
 def _controller_overrides(options: argparse.Namespace) -> list[str]:

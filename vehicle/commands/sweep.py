@@ -6,6 +6,7 @@ import argparse
 import shlex
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -59,6 +60,12 @@ def parser() -> Parser:
         help="Sobol indices of comfort with N base points, a power of two; each parameter is uniform between the "
         "bounds of --vary PATH=LOW:HIGH; N times (parameters + 2) runs on each input",
     )
+    parser.add_argument(
+        "--measure",
+        metavar="order:N:CHANNEL[:ANGLE]",
+        help="amplitude of a channel at an order of crank or wheel, in place of comfort, as order:1:seat_rail_acc_z, "
+        "of a car with forces",
+    )
     vehicle_options(parser)
     engine_option(parser, "auto")
     skip_option(parser)
@@ -81,6 +88,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.studies.sweeps.case_table import RowChanges
     from vehicle.studies.sweeps.differences import DIFFERENCES
     from vehicle.studies.sweeps.executors import executor_factory
+    from vehicle.studies.sweeps.order_measure import order_measure
     from vehicle.studies.sweeps.plan import plan_sweep
     from vehicle.studies.sweeps.sobol_sweep import SOBOL, comfort_indices, index_lines, sobol_changes, write_indices
     from vehicle.studies.sweeps.store import ROWS
@@ -91,6 +99,10 @@ def _job(options: argparse.Namespace) -> None:
 
     if bool(options.vary) == bool(options.table):
         raise ConfigurationError("give either --vary PATH=A,B,C (once or more) or --table FILE.csv")
+    if options.measure is not None and (options.sobol is not None or options.report is not None):
+        raise ConfigurationError(
+            "--measure: the report and Sobol indices are of comfort; leave out --report and --sobol"
+        )
     if options.sobol is not None and (options.table or options.report is not None):
         raise ConfigurationError(
             "--sobol: needs --vary PATH=LOW:HIGH, and has no report; leave out --table and --report"
@@ -103,6 +115,8 @@ def _job(options: argparse.Namespace) -> None:
         changes = RowChanges(*read_variations(options.table)) if options.table else every_combination(options.vary)
     car = Car.load(options.vehicle, options.overrides)
     plan = plan_sweep(car, changes, chosen_inputs(options, car.vehicle), engine=options.engine, skip=options.skip)
+    if options.measure is not None:
+        plan = replace(plan, measure=order_measure(options.measure, plan.skip))
     make = executor_factory(options.executor, options.jobs)
     output = study_folder_of(options, options.output, rows=(ROWS,))
     report = None if options.report is None else report_path(options, output)
