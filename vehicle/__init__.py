@@ -59,6 +59,8 @@ if TYPE_CHECKING:
     from vehicle.model.parameters.shipped import shipped_cars as shipped_cars
     from vehicle.runs.car.car import Car as Car
     from vehicle.runs.car.car_data import CarData as CarData
+    from vehicle.runs.car.order_points import OrderPoints as OrderPoints
+    from vehicle.runs.car.order_points import order_points as order_points
     from vehicle.runs.car.road import Road as Road
     from vehicle.runs.car.road import road as road
     from vehicle.runs.car.run import Run as Run
@@ -113,6 +115,7 @@ _MODULES = {
     "FoundDrive": "vehicle.studies.replication.drive_search",
     "MissingPartError": "vehicle.errors",
     "MountFit": "vehicle.studies.mounts.mount_fit",
+    "OrderPoints": "vehicle.runs.car.order_points",
     "OutputError": "vehicle.errors",
     "RecordComfort": "vehicle.signals.records.record_comfort",
     "Road": "vehicle.runs.car.road",
@@ -132,6 +135,7 @@ _MODULES = {
     "measured_histories": "vehicle.studies.tuning.measured_targets",
     "measured_responses": "vehicle.studies.tuning.measured_targets",
     "optimise": "vehicle.studies.optimisation.car_search",
+    "order_points": "vehicle.runs.car.order_points",
     "parameter_effects": "vehicle.studies.sweeps.parameter_effects",
     "read": "vehicle.signals.formats.reader",
     "read_measured": "vehicle.signals.records.measured",

@@ -134,6 +134,8 @@ def commands(inputs: Path) -> list[Written]:
     new = ("new", "a", "--from", "sedan", "--wheelbase", "2.65", "--front-axle-load", "800", "--kerb-mass")
     road = ("road", "--speed", "80", "--duration", "2", "--output", "a.csv", "--class")
     kinematics = ("kinematics", "--vehicle", "sedan", "--output", "a", "--travel", "0:10:10", "--axle")
+    orders = ("orders", "--vehicle", "sedan", "--set", "front.imbalance.mass=0.01", "--set",
+              "front.imbalance.radius=0.2", "--duration", "4", "--output", "a", "--speed")  # fmt: skip
     channel = (
         "--channel",
         "knuckle_fl_acc_z=knuckle_fl_acc_z",
@@ -159,6 +161,7 @@ def commands(inputs: Path) -> list[Written]:
         signals("optimise", "optimise", *search, "--output", "a"),
         job("road", road, ["A"], ["B"]),
         job("kinematics", kinematics, ["front"], ["rear"]),
+        job("orders", orders, ["100:110:10"], ["110:120:10"]),
         job("loads", ["loads", "--output", "."], [str(runs[0])], [str(runs[1])]),
         job("spectra", ["spectra", "--output", "."], [str(runs[0])], [str(runs[1])]),
         job("report", ["report", "--output", "a.html"], [str(runs[0])], [str(runs[1])]),

@@ -12,6 +12,7 @@ COMMANDS = (
     "inspect",
     "loads",
     "spectra",
+    "orders",
     "body",
     "compare",
     "report",

@@ -73,8 +73,8 @@ def signal_options(parser: Parser, *, several: bool = False) -> argparse._Argume
     note = "" if several else "; with --input: in place of the times of the file"
 
     def on_road(options: argparse.Namespace) -> bool:
-        # A file of targets names its roads.
-        return bool(options.road) or getattr(options, "targets", None) is not None
+        # A file of targets names its roads; --rpm runs on a level one.
+        return bool(options.road or getattr(options, "rpm", None) or getattr(options, "targets", None))
 
     road = road_options(parser, on_road, is_class, several=several, rate_note=note)
     setting_options(road, RoadSettings, "tyre", note="; with --input tyres are standing unless --set driving.speed=M/S")
@@ -184,6 +184,12 @@ def drives_on_road(options: argparse.Namespace) -> bool:
     roads = " ".join(f"--road {road}" for road in _listed(options.road))
     if roads and options.input:
         raise ConfigurationError(f"{roads} and --input: set only one of them")
+    if not roads and not options.input and getattr(options, "rpm", None):
+        # The engine alone shakes the car, which stands or drives on a level road.
+        from vehicle.signals.excitation.road_drive import LEVEL
+
+        options.road, options.speed = LEVEL, options.speed or 0.0
+        return True
     if not roads and not options.input:
         raise ConfigurationError("set --input FILE, or a road: --road C --speed 80")
     return bool(roads)

@@ -6,6 +6,7 @@ import argparse
 import shlex
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -69,6 +70,12 @@ def parser() -> Parser:
         help="change each parameter alone by P percent, down and up, and rank them by their effect on comfort; --vary "
         "PATH, as front.damper or viscous, chooses them; by default all stiffnesses, dampings, friction forces, masses",
     )
+    parser.add_argument(
+        "--measure",
+        metavar="order:N:CHANNEL[:ANGLE]",
+        help="amplitude of a channel at an order of crank or wheel, in place of comfort, as order:1:seat_rail_acc_z, "
+        "of a car with forces",
+    )
     vehicle_options(parser)
     setting_options(parser, SweepSettings, "engine", "skip", "jobs", "executor", "time_limit")
     output_options(parser, Path("runs/sweep"))
@@ -89,6 +96,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.studies.sweeps.differences import DIFFERENCES
     from vehicle.studies.sweeps.effects import EFFECTS, TORNADO, effect_lines, write_effects
     from vehicle.studies.sweeps.executors import executor_factory
+    from vehicle.studies.sweeps.order_measure import order_measure
     from vehicle.studies.sweeps.parameter_effects import effects_of, single_changes, varied_parameters
     from vehicle.studies.sweeps.plan import plan_sweep
     from vehicle.studies.sweeps.sobol_sweep import SOBOL, comfort_indices, index_lines, sobol_changes, write_indices
@@ -108,6 +116,9 @@ def _job(options: argparse.Namespace) -> None:
         raise ConfigurationError("--each: takes --vary PATH, or no parameters; leave out --table and --sobol")
     if options.cases is None and options.each is None and bool(options.vary) == bool(options.table):
         raise ConfigurationError("give either --vary PATH=A,B,C (once or more) or --table FILE.csv")
+    of_comfort = (options.sobol, options.report, options.each, options.cases)
+    if options.measure is not None and any(option is not None for option in of_comfort):
+        raise ConfigurationError("--measure: these are of comfort: leave out --report, --sobol, --each and --cases")
     if options.sobol is not None and (options.table or options.report is not None):
         raise ConfigurationError(
             "--sobol: needs --vary PATH=LOW:HIGH, and has no report; leave out --table and --report"
@@ -130,9 +141,10 @@ def _job(options: argparse.Namespace) -> None:
     else:
         changes = RowChanges(*read_variations(options.table)) if options.table else every_combination(options.vary)
     settings = SweepSettings.of_options(options, executor=executor_factory(options.executor, options.jobs))
-    plan = plan_sweep(
-        car, changes, listed.inputs if listed is not None else chosen_inputs(options, car.vehicle), settings
-    )
+    inputs = listed.inputs if listed is not None else chosen_inputs(options, car.vehicle)
+    plan = plan_sweep(car, changes, inputs, settings)
+    if options.measure is not None:
+        plan = replace(plan, measure=order_measure(options.measure, plan.skip))
     output = study_folder_of(options, options.output, rows=(ROWS,))
     report = None if options.report is None else report_path(options, output)
     notes = (*plan.notes, *plan.engine_notes())

@@ -1,4 +1,4 @@
-"""What the speed of a run-up of the crankshaft does to the peaks of the modes that it passes, in words."""
+"""Notice on the mode whose peak is lowered most by the speed of a run-up of the crankshaft."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from vehicle.signals.analysis.order_cut import TURNS
 from vehicle.signals.analysis.run_up_peak import run_up_peak
 
 LOW = 0.03
-"""Loss of a peak that is told."""
+"""Loss of a peak [-] from which a notice mentions it."""
 
 MAIN = 0.1
 """Share of the largest amplitude of a force from which an order counts."""
@@ -20,7 +20,7 @@ HIGHEST = 60.0
 
 
 def run_up_notice(car: Any) -> tuple[str, ...]:
-    """Return a sentence on the mode whose peak suffers most from the speed of the run-up; none without a run-up.
+    """Return a sentence on the mode whose peak the speed of the run-up lowers most; none without a run-up.
 
     Args:
         car: the car.
@@ -47,14 +47,14 @@ def run_up_notice(car: Any) -> tuple[str, ...]:
     mode, order = max(passed, key=lambda each: each[1] * turn_rate / (each[0].frequency * each[0].damping_ratio) ** 2)
     rate = order * turn_rate
     window = TURNS * order / mode.frequency
-    alone, _ = run_up_peak(mode.frequency, mode.damping_ratio, rate)
+    amplitude, _ = run_up_peak(mode.frequency, mode.damping_ratio, rate)
     read, late = run_up_peak(mode.frequency, mode.damping_ratio, rate, window)
     if read > 1.0 - LOW:
         return ()
-    way = "late" if run_up.last > run_up.first else "early"
+    direction = "late" if run_up.last > run_up.first else "early"
     return (
         f"the run-up passes the mode at {number(mode.frequency)} Hz ({number(100.0 * mode.damping_ratio, 2)} %, "
         f"{mode.description}) in order {order:g} with {number(rate, 2)} Hz/s: its peak is "
-        f"{100.0 * (1.0 - alone):.0f} % low, in an order cut over {TURNS} turns {100.0 * (1.0 - read):.0f} %, "
-        f"and {number(late, 2)} Hz {way}; steady points have all of it: python -m vehicle orders --rpm A:B:STEP",
+        f"{100.0 * (1.0 - amplitude):.0f} % low, in an order cut over {TURNS} turns {100.0 * (1.0 - read):.0f} %, "
+        f"and {number(late, 2)} Hz {direction}; steady points have all of it: python -m vehicle orders --rpm A:B:STEP",
     )

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from vehicle.digits import number
-from vehicle.names import AXES, point_words
-from vehicle.signals.records.run_summary import OrderSummary, RunSummary
+from vehicle.names import AXES, channel_words, point_words
+from vehicle.signals.records.run_summary import OrderSummary, RunSummary, RunUpSummary
 
 POINTS = ("seat", "seat_rail")
 
@@ -14,7 +14,11 @@ def force_rows(summary: RunSummary) -> list[tuple[str, str]]:
     rows = []
     for name, force in summary.get("forces", {}).items():
         unit = force["unit"]
-        parts = [f"{number(line['amplitude'])} {unit} at {number(line['frequency_hz'])} Hz" for line in force["lines"]]
+        at = "at the highest speed," if force["angle"] == "crank" and "run_up" in summary else "at"
+        parts = [
+            f"{number(line['amplitude'])} {unit} {at} {number(line['frequency_hz'])} Hz" for line in force["lines"]
+        ]
+        parts += ["history of a file"] if not parts and not force["mean"] else []
         parts += [f"mean {number(force['mean'])} {unit}"] if force["mean"] else []
         rows.append((f"force {name} on {force['on']}", ", ".join(parts)))
     return rows
@@ -22,7 +26,7 @@ def force_rows(summary: RunSummary) -> list[tuple[str, str]]:
 
 def order_sentences(summary: RunSummary) -> list[str]:
     """Return a sentence on each frequency of the applied forces: amplitudes at seat or seat rail."""
-    sentences = []
+    sentences = [_run_up_sentence(line) for line in summary.get("run_up", [])]
     for line in summary.get("orders", []):
         point = next((name for name in POINTS if f"{name}_acc_z" in line["amplitude"]), None)
         if point is not None:
@@ -32,6 +36,17 @@ def order_sentences(summary: RunSummary) -> list[str]:
                 f"stick would give {stuck}, dampers without friction {free} along z.{_chance(line, point)}"
             )
     return sentences
+
+
+def _run_up_sentence(line: RunUpSummary) -> str:
+    """Return a sentence on the peak of an order in a run-up, at seat or seat rail along z if it is recorded."""
+    names = [name for point in POINTS if (name := f"{point}_acc_z") in line["peak"]] or [*line["peak"]]
+    rpm = line["rpm"][names[0]]
+    frequency = number(line["order"] * rpm / 60.0)
+    return (
+        f"Order {line['order']:g} of the crankshaft is largest at {number(rpm)}/min ({frequency} Hz): "
+        f"{channel_words(names[0])} {number(line['peak'][names[0]])} m/s² (amplitude, over 8 turns)."
+    )
 
 
 def _limits(line: OrderSummary, point: str) -> tuple[str, str]:

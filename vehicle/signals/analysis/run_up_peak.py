@@ -6,7 +6,7 @@ of the mode over its steady peak obeys, with the time u = 2 pi f z t from the in
     da/du = -(1 - i b u) a + 1,    b = r/(2 pi f^2 z^2),
 
 whose solution from rest is a(u) = integral over s > 0 of exp(-s + i b (u s - s^2/2)) ds. An order cut reads it through
-a window. The acceleration is (2 pi f)^2 a but for the force itself, 2 z of the peak.
+a window. The acceleration is (2 pi f)^2 a plus a share 2 z of the force.
 Source: Lewis, Vibration during acceleration through a critical speed, Trans. ASME 54 (1932) 253-261.
 """
 

@@ -60,7 +60,7 @@ class SweptLine(NamedTuple):
 
 
 History = float | SweptLine | ForceRecord
-"""What has histories: an angular frequency [rad/s], an order in a run-up, or a file."""
+"""Key of a history: an angular frequency [rad/s], an order in a run-up, or a file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +92,7 @@ class ForceLines:
         return 2 * (len(self.frequencies) + len(self.swept)) + len(self.records)
 
     def coefficients(self, force: Mapping[History, complex]) -> Vector:
-        """Return the coefficients of the histories of one force; (2 j + 2 s + r,).
+        """Return the coefficients of the histories of a force; (2 j + 2 s + r,).
 
         Args:
             force: complex amplitude Z_j of each frequency W_j and each order of a run-up, and factor of a record.
@@ -137,10 +137,10 @@ class ForceLines:
         return np.asarray(np.einsum("g,mgk->mk", WEIGHTS, self.values(start[:, None] + step * NODES)))
 
     def require_length(self, duration: float) -> None:
-        """Check that all records last for a run [s].
+        """Check that every record is at least as long as a run [s].
 
         Raises:
-            DataError: one is shorter.
+            DataError: a record is shorter.
         """
         for record in self.records:
             record.require_length(duration)

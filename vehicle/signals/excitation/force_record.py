@@ -69,8 +69,8 @@ class ForceRecord:
 
         Raises:
             ConfigurationError: the file does not exist.
-            DataError: no such channel, another quantity, times that are not uniform, a gap, or a last value that is
-                not zero although the force shall end with zero.
+            DataError: the channel is missing or has another quantity, the times are not uniform, the record has a gap,
+                or its last value is not zero although the force ends with zero.
         """
         file = Path(self.file)
         changed = file.stat().st_mtime_ns if file.is_file() else 0
@@ -83,7 +83,7 @@ class ForceRecord:
             duration: length of the run [s].
 
         Raises:
-            DataError: it is shorter.
+            DataError: the record is shorter.
         """
         history = self.read()
         if history.duration < duration - 1e-6 and not self.ends_at_zero:
@@ -172,8 +172,8 @@ def _channel(record: ForceRecord, measurement: Measurement) -> int:
     unit = find_unit(record.unit or channel.unit)
     where = f"{record.file}: channel {index + 1} {channel.name!r}"
     if unit is None:
-        found = f"the unknown unit {record.unit or channel.unit!r}" if record.unit or channel.unit else "no unit"
-        raise DataError(f"{where} has {found}; set {record.path}.unit to {UNITS[record.needed]}")
+        text = f"the unknown unit {record.unit or channel.unit!r}" if record.unit or channel.unit else "no unit"
+        raise DataError(f"{where} has {text}; set {record.path}.unit to {UNITS[record.needed]}")
     if unit.quantity != quantity.quantity:
         raise DataError(
             f"{where} is a {unit.quantity} in [{record.unit or channel.unit}]; {record.path} needs "

@@ -1,0 +1,174 @@
+"""`python -m vehicle orders`: orders of crankshaft or wheels at steady speeds, with their limits and modes."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import shlex
+from typing import TYPE_CHECKING
+
+from vehicle.commands.command_line import parse_and_run
+from vehicle.commands.destination import output_folder_of
+from vehicle.commands.options import (
+    command_parser,
+    extra_output_options,
+    message_options,
+    setting_options,
+    vehicle_options,
+)
+from vehicle.commands.parser import Parser
+from vehicle.errors import ConfigurationError
+from vehicle.studies.sweeps.sweep_settings import SweepSettings
+
+if TYPE_CHECKING:
+    from vehicle.runs.car.order_points import OrderPoints
+
+MOST_ORDERS = 12
+"""Maximum number of orders."""
+
+
+def parser() -> Parser:
+    """Return the parser of the options."""
+    parser = command_parser(
+        "orders", "Amplitudes at orders of crankshaft or wheels over steady speeds, with limits and Campbell map."
+    )
+    vehicle_options(parser)
+    parser.add_argument(
+        "--rpm", metavar="A:B:STEP", help="speeds of the crankshaft [1/min], as 700:3000:50: a run at each"
+    )
+    parser.add_argument(
+        "--speed", metavar="A:B:STEP", help="or speeds of the car [km/h], as 60:160:5; with --rpm one speed of the car"
+    )
+    parser.add_argument(
+        "--orders", default="1,2", metavar="N,...", help="orders of the angle, as 2,4; %(default)s by default"
+    )
+    parser.add_argument(
+        "--channel", default="seat rail z", metavar="WORDS", help="acceleration channel; %(default)s by default"
+    )
+    parser.add_argument(
+        "--angle", metavar="NAME", help="crank, or a wheel, as wheel_fr; that of the first force by default"
+    )
+    parser.add_argument(
+        "--road", default="level", metavar="C", help="class of ISO 8608 under the wheels; %(default)s by default"
+    )
+    parser.add_argument(
+        "--duration", type=float, default=10.0, metavar="S", help="length of each run [s]; %(default)s by default"
+    )
+    setting_options(parser, SweepSettings, "engine", default="reduced")
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    extra_output_options(parser, "orders.csv, orders.png, campbell.png and report.html")
+    message_options(parser)
+    return parser
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command and return its exit code."""
+    return parse_and_run(parser(), job, arguments)
+
+
+def job(options: argparse.Namespace) -> None:
+    """Run the car at each speed, and write and print its orders."""
+    rpm = points_of("--rpm", options.rpm)
+    speeds = points_of("--speed", options.speed)
+    if not rpm and not speeds:
+        raise ConfigurationError("orders: set --rpm A:B:STEP, as 700:3000:50, or --speed A:B:STEP, as 60:160:5")
+    if rpm and len(speeds) > 1:
+        raise ConfigurationError("--rpm and --speed: vary one of them; with --rpm give one --speed, as --speed 80")
+    orders = _orders(options.orders)
+    from vehicle.runs.car import Car
+    from vehicle.runs.car.order_points import order_points
+    from vehicle.runs.report.order_page import HEADS, order_points_sentences, order_rows
+
+    folder = None if options.output is None else output_folder_of(options, options.output)
+    driving = [f"driving.speed={speeds[0] / 3.6!r}"] if rpm and speeds else []
+    car = Car.load(options.vehicle, [*options.overrides, *driving])
+    results = order_points(
+        car,
+        options.channel,
+        rpm=rpm,
+        speed=() if rpm else speeds,
+        orders=orders,
+        angle=options.angle,
+        surface=options.road,
+        duration=options.duration,
+        engine=options.engine,
+    )
+    caption = f"{len(results.points)} runs of {options.duration:g} s, road {options.road}, engine {options.engine}"
+    if folder is not None:
+        _write(options, results, car.vehicle.name, caption)
+    if options.json:
+        print(json.dumps({"channel": results.channel, "angle": results.angle, "unit": results.unit,
+                          "rows": results.rows()}, indent=2, allow_nan=False))  # fmt: skip
+        return
+    rows = order_rows(results)
+    widths = [max(len(cell) for cell in column) for column in zip(HEADS, *rows, strict=True)]
+    print(f"{car.vehicle.name}, {results.channel}, {caption}; amplitudes")
+    for row in (HEADS, *rows):
+        print("  ".join(f"{cell:>{width}}" for cell, width in zip(row, widths, strict=True)))
+    print("\n".join(order_points_sentences(results)))
+
+
+def points_of(option: str, text: str | None) -> list[float]:
+    """Return the speeds of a text A:B:STEP, or of a single number; none without a text.
+
+    Args:
+        option: name of the option, for messages.
+        text: its value.
+
+    Raises:
+        ConfigurationError: another form, a value that is not positive, or more points than a study runs.
+    """
+    if text is None:
+        return []
+    from vehicle.runs.car.order_points import MOST
+
+    try:
+        values = [float(part) for part in text.split(":")]
+    except ValueError:
+        values = []
+    if len(values) == 1 and math.isfinite(values[0]) and values[0] > 0.0:
+        return values
+    if len(values) == 2:
+        raise ConfigurationError(
+            f"{option} {text}: steady points need a step, as {text}:{max((values[1] - values[0]) / 20, 1):.0f}; "
+            "a run-up is one run: python -m vehicle shaker --rpm A:B --duration S"
+        )
+    if len(values) != 3 or not all(map(math.isfinite, values)) or not 0.0 < values[0] < values[1] or values[2] <= 0.0:
+        raise ConfigurationError(f"{option} {text!r}: needed is A:B:STEP with 0 < A < B, as 700:3000:50")
+    first, last, step = values
+    count = math.floor((last - first) / step + 1e-9) + 1
+    if count > MOST:
+        raise ConfigurationError(f"{option} {text}: {count} points; at most {MOST}; take a larger step")
+    return [round(first + index * step, 9) for index in range(count)]
+
+
+def _orders(text: str) -> list[float]:
+    """Return the orders of the text N,...; half orders too."""
+    try:
+        orders = [float(part) for part in text.split(",")]
+    except ValueError:
+        orders = []
+    wrong = not orders or any(not 0.0 < order <= 100.0 or (2.0 * order) % 1.0 for order in orders)
+    if wrong or len(set(orders)) < len(orders) or len(orders) > MOST_ORDERS:
+        raise ConfigurationError(
+            f"--orders {text!r}: needed are up to {MOST_ORDERS} whole or half orders, each once, as 2,4"
+        )
+    return orders
+
+
+def _write(options: argparse.Namespace, results: OrderPoints, name: str, caption: str) -> None:
+    from vehicle.runs.output.folder import output_folder, write_whole
+    from vehicle.runs.report.order_page import draw_cuts, draw_map, order_page
+    from vehicle.signals.formats.text_format import write_table
+
+    heads, columns = results.columns()
+    command = shlex.join(["python", "-m", "vehicle", "orders", *options.words])
+    with output_folder(options.output, force=options.force) as folder:
+        comments = [f"{name}: {results.channel} at orders of {results.angle}; {caption}"]
+        write_whole(folder / "orders.csv", lambda file: write_table(file, heads, columns, comments))
+        if len(results.points) > 1:
+            write_whole(folder / "orders.png", lambda file: draw_cuts(file, results, name, caption))
+            write_whole(folder / "campbell.png", lambda file: draw_map(file, results, name, caption))
+            page = order_page(results, name, caption, command=command)
+            write_whole(folder / "report.html", lambda file: file.write_text(page, encoding="utf-8"))

@@ -1,0 +1,303 @@
+"""Orders at steady points: a car run at each of several speeds of its crankshaft or of its drive.
+
+Each point is one run at constant speed. Its amplitudes at the orders come from `vehicle.signals.analysis.order_lines`.
+The amplitudes of the linear car with locked dampers and with dampers without friction are its limits
+(`vehicle.engines.linear.forced_response`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.engines.linear.car_modes import Mode
+from vehicle.engines.linear.forced_response import forced_response
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.applied_force import CRANK
+from vehicle.model.parameters.channel_words import channels_named
+from vehicle.runs.car.road import Road
+from vehicle.signals.analysis.order_lines import order_lines
+
+if TYPE_CHECKING:
+    from vehicle.runs.car.car import Car
+    from vehicle.runs.car.run import Run
+
+Vector = npt.NDArray[np.float64]
+
+MOST = 400
+"""Maximum number of points."""
+
+SEGMENT = 2.0
+"""Length of the Hann windows of the map [s]: lines 1 Hz wide."""
+
+NAMED = 8
+"""Maximum number of modes that are named."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class NamedMode:
+    """Mode that the forces of the car excite at a channel.
+
+    Attributes:
+        frequency: natural frequency with locked dampers [Hz].
+        damping_ratio: damping ratio [-].
+        name: its main motion.
+    """
+
+    frequency: float
+    damping_ratio: float
+    name: str
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class OrderPoints:
+    """Amplitudes of a channel at orders of a turning part over steady points.
+
+    Attributes:
+        angle: what turns: "crank", or a wheel, as "wheel_fr".
+        points: speeds [1/min] of the crankshaft, or [km/h] of the car; (k,).
+        turns: turns of the angle per second [Hz]; (k,).
+        orders: the orders; (o,).
+        channel, unit: name and unit of the channel.
+        amplitude: complex amplitudes X of Re(X exp(i order angle)); (o, k).
+        error: their standard errors; (o, k).
+        stuck, free: amplitudes of the linear car with locked dampers, and with dampers without friction; NaN in an
+            order without a force; (o, k).
+        slip: largest share of the time in slip of a damper; (k,).
+        frequency: frequencies of the map [Hz]; (f,).
+        spectrum: amplitude spectrum at each point, for the map; (k, f).
+        modes: modes that the forces excite at this channel, in the range of the orders, by frequency.
+    """
+
+    angle: str
+    points: Vector
+    turns: Vector
+    orders: Vector
+    channel: str
+    unit: str
+    amplitude: npt.NDArray[np.complex128]
+    error: Vector
+    stuck: Vector
+    free: Vector
+    slip: Vector
+    frequency: Vector
+    spectrum: Vector
+    modes: tuple[NamedMode, ...]
+
+    def __repr__(self) -> str:
+        """Return the peak of each order."""
+        texts = []
+        for row, order in enumerate(self.orders):
+            top = int(np.argmax(np.abs(self.amplitude[row])))
+            texts.append(f"{np.abs(self.amplitude[row, top]):.3g} in order {order:g} at {self.points[top]:g}")
+        return (
+            f"Orders of {self.angle} over {len(self.points)} points, {self.channel} [{self.unit}]: {', '.join(texts)}"
+        )
+
+    @property
+    def point_unit(self) -> str:
+        """Unit of the points: 1/min or km/h."""
+        return "1/min" if self.angle == CRANK else "km/h"
+
+    def nearest_mode(self, frequency: float) -> NamedMode | None:
+        """Return the named mode nearest to a frequency [Hz], within a tenth of it."""
+        near = min(self.modes, key=lambda mode: abs(mode.frequency - frequency), default=None)
+        return near if near is not None and abs(near.frequency - frequency) < 0.1 * frequency else None
+
+    def columns(self) -> tuple[list[str], list[Vector]]:
+        """Return the columns of a table with a row for each order and point, and their heads with units."""
+        count, size = len(self.points), len(self.orders)
+        columns = {
+            "order [-]": np.repeat(self.orders, count),
+            "rpm [1/min]" if self.angle == CRANK else "speed [km/h]": np.tile(self.points, size),
+            "frequency [Hz]": np.outer(self.orders, self.turns).ravel(),
+            f"amplitude [{self.unit}]": np.abs(self.amplitude).ravel(),
+            "phase [deg]": np.degrees(np.angle(self.amplitude)).ravel(),
+            f"standard_error [{self.unit}]": self.error.ravel(),
+            f"stuck [{self.unit}]": self.stuck.ravel(),
+            f"without_friction [{self.unit}]": self.free.ravel(),
+            "slip_share [-]": np.tile(self.slip, size),
+        }
+        return list(columns), list(columns.values())
+
+    def rows(self) -> list[dict[str, float | None]]:
+        """Return the rows of the table with names without units; None for a value that is not known."""
+        heads, columns = self.columns()
+        names = [head.partition(" ")[0] for head in heads]
+        return [
+            {name: float(value) if np.isfinite(value) else None for name, value in zip(names, row, strict=True)}
+            for row in zip(*columns, strict=True)
+        ]
+
+    def to_dataframe(self) -> Any:
+        """Return a pandas table: a row for each order and point, with amplitude, phase [deg] and both limits."""
+        from pandas import DataFrame
+
+        return DataFrame(self.rows())
+
+
+def order_points(
+    car: Car,
+    channel: str = "seat rail z",
+    *,
+    rpm: Sequence[float] = (),
+    speed: Sequence[float] = (),
+    orders: Sequence[float] = (1.0, 2.0),
+    angle: str | None = None,
+    surface: str = "level",
+    duration: float = 10.0,
+    engine: str = "reduced",
+) -> OrderPoints:
+    """Run a car at each of several speeds, and return the amplitudes of a channel at orders.
+
+    Args:
+        car: a car with forces.
+        channel: name or words of an acceleration channel, as "seat rail z".
+        rpm: speeds of the crankshaft [1/min]; the car keeps its speed.
+        speed: speeds of the car [km/h], in place of `rpm`.
+        orders: multiples of the angle.
+        angle: "crank", or a wheel, as "wheel_fr"; by default the crankshaft over `rpm` and the angle of the first force
+            over `speed`.
+        surface: road: "level", or a class of ISO 8608.
+        duration: length of each run [s], of which the first two are not evaluated.
+        engine: engine of the runs, see `Car.run`.
+
+    Returns:
+        Amplitudes at each point with their limits, the spectra, and the modes of the car.
+
+    Raises:
+        ConfigurationError: no points or both kinds, a value out of range, no force, or nothing of this name turns.
+        DataError: a run is too short for its orders.
+    """
+    if bool(len(rpm)) == bool(len(speed)):
+        raise ConfigurationError(
+            "orders: needed are speeds of the crankshaft [1/min] or of the car [km/h], one of both"
+        )
+    points = np.array(rpm if len(rpm) else speed, dtype=float)
+    if len(points) > MOST:
+        raise ConfigurationError(f"orders: {len(points)} points; at most {MOST}: take a larger step")
+    (name,) = channels_named(channel, car.vehicle.acceleration_channels)
+    chosen = angle or (CRANK if len(rpm) else None)
+    if len(rpm) and chosen != CRANK:
+        raise ConfigurationError(f"orders: {chosen} does not turn with the crankshaft; set speeds of the car")
+    drive, results = 3.6 * car.vehicle.driving.speed, list[_Point]()
+    for value in points:
+        if len(rpm):
+            run = _run(car.with_({"crank.rpm": float(value)}), surface, drive, duration, engine, name)
+        else:
+            run = _run(car, surface, float(value), duration, engine, name)
+        results.append(_point(run, name, chosen, orders))
+    first = results[0]
+    if not any(first.angle in (force.law.angle, force.name) for force in run.car.vehicle.composition.forces):
+        raise ConfigurationError(
+            f"orders: no force of {car.vehicle.name} turns with {first.angle}; add a table [engine.orders], "
+            "[front.imbalance] or [force.NAME]"
+        )
+    highest = 1.1 * float(np.max([point.turns for point in results])) * max(orders)
+    shown = first.frequency <= highest
+    lowest = 0.9 * float(np.min([point.turns for point in results])) * min(orders)
+    modes = _excited_modes(run, name, lowest, highest)
+    return OrderPoints(
+        angle=first.angle,
+        points=points,
+        turns=np.array([point.turns for point in results]),
+        orders=np.array(orders, dtype=float),
+        channel=name,
+        unit="m/s2",
+        amplitude=np.array([point.amplitude for point in results]).T,
+        error=np.array([point.error for point in results]).T,
+        stuck=np.array([point.stuck for point in results]).T,
+        free=np.array([point.free for point in results]).T,
+        slip=np.array([point.slip for point in results]),
+        frequency=first.frequency[shown],
+        spectrum=np.array([point.spectrum[shown] for point in results]),
+        modes=modes,
+    )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class _Point:
+    """Values of one run; see `OrderPoints`."""
+
+    angle: str
+    turns: float
+    amplitude: npt.NDArray[np.complex128]
+    error: Vector
+    stuck: Vector
+    free: Vector
+    slip: float
+    frequency: Vector
+    spectrum: Vector
+
+
+def _run(car: Car, surface: str, speed: float, duration: float, engine: str, channel: str) -> Run:
+    channels = [channel, *(f"damper_{wheel}_velocity" for wheel in car.vehicle.damped_wheels)]
+    return car.run(Road(surface, speed, duration=duration), engine=engine, channels=channels)
+
+
+def _point(run: Run, channel: str, angle: str | None, orders: Sequence[float]) -> _Point:
+    """Return the values of one run."""
+    vehicle = run.car.vehicle
+    angle_name, speed = vehicle.composition.turning(angle)
+    turns = speed / (2.0 * np.pi)
+    lines = order_lines(run.time, run[channel][None], turns, orders, begin=run.skip)
+    dampers = [damper.law for damper in vehicle.composition.dampers]
+    forced = np.array(run.car.matrices.lines.frequencies)
+    limits = []
+    for stuck in (True, False):
+        of_forces = forced_response(run.car.matrices, [channel], dampers, stuck=stuck)
+        amplitudes = np.abs(of_forces.sum(axis=0)[0])
+        columns = [np.flatnonzero(np.abs(forced - order * speed) < 1e-9 * forced) for order in orders]
+        limits.append(np.array([amplitudes[each[0]] if each.size else np.nan for each in columns]))
+    frequency, spectrum = _amplitudes(run[channel][run.evaluated], run.recording.timestep)
+    return _Point(
+        angle=angle_name,
+        turns=turns,
+        amplitude=lines.amplitude[0],
+        error=lines.error[0],
+        stuck=limits[0],
+        free=limits[1],
+        slip=max((run.slip_share(wheel) for wheel in vehicle.damped_wheels), default=0.0),
+        frequency=frequency,
+        spectrum=spectrum,
+    )
+
+
+def _amplitudes(record: Vector, interval: float) -> tuple[Vector, Vector]:
+    """Return frequencies and the amplitude spectrum over Hann windows that overlap by half, averaged in power."""
+    length = min(round(SEGMENT / interval), record.size)
+    window = np.hanning(length + 2)[1:-1]
+    starts = range(0, record.size - length + 1, max(length // 2, 1))
+    parts = np.array([record[start : start + length] for start in starts])
+    spectra = np.abs(np.fft.rfft(window * (parts - parts.mean(axis=1, keepdims=True)), axis=1)) * 2.0 / window.sum()
+    return np.asarray(np.fft.rfftfreq(length, interval), dtype=np.float64), np.asarray(
+        np.sqrt(np.mean(spectra**2, axis=0))
+    )
+
+
+def _excited_modes(run: Run, channel: str, lowest: float, highest: float) -> tuple[NamedMode, ...]:
+    """Return the modes between two frequencies [Hz] with the largest peaks at a channel by a unit of a force."""
+    matrices = run.car.matrices
+    row = matrices.system.output(channel)[0]
+    modes = [mode for mode in run.car.modes(highest=highest) if mode.frequency > lowest and not mode.grows]
+    sizes = [(_peak(mode, matrices.force_rows, row), mode) for mode in modes]
+    largest = sorted(sizes, key=lambda entry: -entry[0])[:NAMED]
+    return tuple(
+        NamedMode(
+            frequency=mode.frequency,
+            damping_ratio=mode.damping_ratio,
+            name=mode.description.split(" with ")[0].rpartition(" (")[0] or mode.description,
+        )
+        for _, mode in sorted(largest, key=lambda entry: entry[1].frequency)
+    )
+
+
+def _peak(mode: Mode, force_rows: Vector, row: Vector) -> float:
+    """Return the acceleration of a mode at its frequency by a unit of the force that excites it most."""
+    driven = float(np.max(np.abs(force_rows @ mode.shape), initial=0.0))
+    circular = 2.0 * np.pi * mode.frequency
+    return float(abs(row @ mode.shape)) * driven * circular / (abs(mode.modal_a) * mode.damping_ratio)
