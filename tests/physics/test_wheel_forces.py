@@ -244,3 +244,62 @@ def test_the_range_over_the_phases_contains_every_car_and_reaches_its_ends():
     one = Car.load("focus_road", {f"front.right.{key[6:]}": value for key, value in rows.items()})
     (line,) = force_values(one.run(smooth, engine="reduced"))["orders"]
     assert "stuck_range" not in line
+
+
+IMBALANCE = "front.right.imbalance"
+SHAKEN: dict[str, tuple[str, float, dict[str, object]]] = {
+    "sedan, imbalance of 160 g, 100 km/h": ("sedan", 100, {f"{IMBALANCE}.mass": 0.16, f"{IMBALANCE}.radius": 0.2}),
+    "focus_road_seated, imbalance of 40 g, 160 km/h": (
+        "focus_road_seated", 160, {f"{IMBALANCE}.mass": 0.04, f"{IMBALANCE}.radius": 0.2},
+    ),
+    "focus_road with skyhook dampers, imbalance of 40 g, 140 km/h": (
+        "focus_road", 140,
+        {f"{IMBALANCE}.mass": 0.04, f"{IMBALANCE}.radius": 0.2, "front.damper.control.law": "skyhook"},
+    ),
+    "focus_road_seated, brake variation of 20 N m, 100 km/h": (
+        "focus_road_seated", 100, {"front.right.brake_variation.torque": [[1, 20, 0]]},
+    ),
+    "sedan, radial force variation of 80 N, 140 km/h": (
+        "sedan", 140, {"front.right.nonuniformity.rfv": [[1, 80, 0]]},
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", SHAKEN)
+def test_both_engines_agree_on_wheels_with_friction(case):
+    """Amplitude within 0.5 % and phase within 0.3 degrees of order 1."""
+    name, speed, changes = SHAKEN[case]
+    car = Car.load(name, changes)
+    channels = ["seat rail z", "seat rail x", "knuckle_fr_acc_z", "knuckle_fr_acc_x"]
+    runs = [car.run(road("level", speed, duration=8), engine=engine) for engine in ("mujoco", "reduced")]
+    precise, reduced = (run.orders(channels, angle="wheel_fr", orders=[1]).amplitude for run in runs)
+    validated(
+        "Applied forces",
+        f"{case}: order 1 of seat rail and knuckle in both engines",
+        reduced,
+        precise,
+        source="second derivation: MuJoCo",
+        rel=5e-3,
+    )
+    assert energies_of(runs[0]).residual < 5e-3
+
+
+def test_another_rolling_radius_turns_the_forces_of_the_wheel_at_another_speed():
+    tyre = "front.bushings.tyre"
+    rows = {"front.nonuniformity.rfv": [[1, 40, 0]], "driving.speed": 30.0, f"{tyre}.rolling_radius": 0.31}
+    changes = {f"{tyre}.rolling_radius": 0.33, f"{tyre}.stiffness.z": 1.8e5}
+    variant = Car.load("sedan", rows).with_(changes)
+    loaded = Car.load("sedan", {**rows, **changes})
+    assert variant.matrices.lines.frequencies == pytest.approx([30.0 / 0.33])
+    assert variant.matrices.run_out == loaded.matrices.run_out
+    assert max(loaded.matrices.run_out[0][2]) == pytest.approx(40.0 / 1.8e5)
+
+
+def test_the_range_beside_a_run_up_of_the_engine_is_that_of_the_wheels():
+    """Orders of a run-up have no constant frequency, and none among those of the wheels."""
+    rows: dict[str, object] = {"front.nonuniformity.rfv": [[1, 40, 90]], "crank.rpm": 600, "crank.end_rpm": 900}
+    rows |= {"force.a.on": "engine", "force.a.force": [0, 0, 1], "force.a.angle": "crank", "crank.run_up_time": 5}
+    car = Car.load("focus_road", {**rows, "force.a.harmonics": [[1, 20, 0]]})
+    (line,) = force_values(car.run(road("level", 120, duration=6), engine="reduced"))["orders"]
+    low, high = line["stuck_range"]["seat_rail_acc_z"]
+    assert high > 0.0 and low <= line["stuck"]["seat_rail_acc_z"] <= high * (1.0 + 1e-9)

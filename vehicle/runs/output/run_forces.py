@@ -129,7 +129,9 @@ def _orders(run: Run) -> list[OrderSummary]:
             "stuck": dict(zip(channels, sums["stuck"], strict=True)),
             "without_friction": dict(zip(channels, sums["without_friction"], strict=True)),
         }
-        ranges = {name: phase_ranges(acting, by_force, order) for name, by_force in limits.items()}
+        ranges = {
+            name: phase_ranges(acting, by_force, matrices.lines.frequencies, order) for name, by_force in limits.items()
+        }
         if of == WHEELS and ranges["stuck"]:
             summary["stuck_range"] = dict(zip(channels, ranges["stuck"], strict=True))
             summary["without_friction_range"] = dict(zip(channels, ranges["without_friction"], strict=True))
@@ -138,7 +140,10 @@ def _orders(run: Run) -> list[OrderSummary]:
 
 
 def phase_ranges(
-    forces: Sequence[PlacedForce], amplitudes: npt.NDArray[np.complex128], order: float
+    forces: Sequence[PlacedForce],
+    amplitudes: npt.NDArray[np.complex128],
+    frequencies: Sequence[float],
+    order: float,
 ) -> list[tuple[float, float]]:
     """Return the least and the largest amplitude of each channel over the phases of the wheels among each other.
 
@@ -148,12 +153,12 @@ def phase_ranges(
     Args:
         forces: applied forces.
         amplitudes: amplitudes by each force, see `forced_response`; (forces, channels, frequencies).
+        frequencies: the frequencies [rad/s].
         order: order of the wheels.
 
     Returns:
         Pairs for the channels; empty if fewer than two wheels have this order.
     """
-    frequencies = sorted({frequency for force in forces for frequency in force.harmonics})
     by_wheel: dict[str, npt.NDArray[np.complex128]] = {}
     for force, of_force in zip(forces, amplitudes, strict=True):
         angle, frequency = force.law.angle, float(round(order)) * force.speed
