@@ -71,6 +71,10 @@ def test_a_number_is_held_to_its_interval(within, inside, outside, words):
 def test_settings_are_checked_when_they_are_made():
     with pytest.raises(ConfigurationError, match=r"^--jobs 0: must be at least 1$"):
         SweepSettings(jobs=0)
+    with pytest.raises(ConfigurationError, match=r"^--search-seed -1234567: must be at least 0$"):
+        SearchSettings(seed=-1234567)
+    with pytest.raises(ConfigurationError, match=r"^--target-error 100 %: must be above 0 and below 100$"):
+        DriveSettings(target_error=1.0)
     with pytest.raises(TypeError, match="jbos"):
         vehicle.sweep(vehicle.Car.load(), {}, "low.csv", jbos=2)  # type: ignore[call-arg]
     assert issubclass(vehicle.Road, Settings)

@@ -89,7 +89,8 @@ class Settings:
         for name, declared in self.declared().items():
             value = getattr(self, name)
             if declared["within"] and value is not None:
-                require_within(declared["flag"], value / declared["factor"], declared["within"], declared["factor"])
+                number = value if declared["factor"] == 1.0 else value / declared["factor"]
+                require_within(declared["flag"], number, declared["within"], declared["factor"])
 
     def given(self, *, without: tuple[str, ...] = ()) -> dict[str, Any]:
         """Return the settings that are not left at their default, by name.
@@ -127,7 +128,8 @@ def require_within(flag: str, number: float, within: str, factor: float = 1.0) -
         allowed = f"above {low}" if opened else f"at least {low}"
         if high != "inf":
             allowed += f"{'' if opened else ','} and {'up to' if closed else 'below'} {high}"
-    raise ConfigurationError(f"{flag} {number:g}{'' if factor == 1.0 else ' %'}: must be {allowed}")
+    text = str(number) if isinstance(number, int) else f"{number:g}"
+    raise ConfigurationError(f"{flag} {text}{'' if factor == 1.0 else ' %'}: must be {allowed}")
 
 
 def pair(flag: str, needed: str, *, above: float | None = None) -> Callable[[str], tuple[float, float]]:

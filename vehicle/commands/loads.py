@@ -13,6 +13,7 @@ from vehicle.commands.destination import output_files_of
 from vehicle.commands.options import command_parser, message_options, output_options
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
+from vehicle.settings import require_within
 
 if TYPE_CHECKING:
     from vehicle.model.parameters.vehicle import Vehicle
@@ -66,10 +67,8 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.signals.records.run_summary import available_summary
 
     source = time_file(options.runs[0])
-    if not 1 <= options.classes <= 10000:
-        raise ConfigurationError(f"--classes {options.classes}: must be 1 to 10000")
-    if not 1.0 <= options.slope < 1000.0:
-        raise ConfigurationError(f"--slope {options.slope:g}: must be at least 1, and below 1000")
+    require_within("--classes", options.classes, "[1, 10000]")
+    require_within("--slope", options.slope, "[1, 1000)")
     if len(options.runs) > 1 or options.reference or options.repeats:
         _schedule(options)
         return
