@@ -124,13 +124,14 @@ class AxleRide:
         return self.tyre.times(0.5 * self.track**2)
 
 
-def axle_ride(car: CarModel, axle: str, dampers: DamperState = "sliding") -> AxleRide:
+def axle_ride(car: CarModel, axle: str, dampers: DamperState = "sliding", *, roll: bool = True) -> AxleRide:
     """Compute the ride parameters of an axle.
 
     Args:
         car: car in static equilibrium, with standing tyres.
         axle: table of the axle in the vehicle file, with two wheels.
         dampers: "stuck" or "sliding".
+        roll: False leaves out roll stiffness and roll damping, which take most of the time; they are nan.
 
     Raises:
         SimulationError: the axle has no equilibrium near its design position.
@@ -138,15 +139,19 @@ def axle_ride(car: CarModel, axle: str, dampers: DamperState = "sliding") -> Axl
     wheels = [wheel for wheel in car.vehicle.composition.wheels if wheel.axle == axle]
     # Also with stuck dampers the mass that rises with the wheels is that of the axle that moves on its springs.
     free = AxleStatics(car.model, car.static.preload, wheels=wheels)
-    equal, opposite = (position_rate(free, [0.0] * len(wheels), opposite=way) for way in (False, True))
+    equal = position_rate(free, [0.0] * len(wheels), opposite=False)
+    opposite = position_rate(free, [0.0] * len(wheels), opposite=True) if roll else None
     stuck = dampers == "stuck"
     held = AxleStatics(car.model, car.static.preload, wheels=wheels, locked=True) if stuck else free
-    springs, bars = opposite_rates(held)
+    springs, bars = opposite_rates(held) if roll else (math.nan, math.nan)
     load, gravity = _mean([car.static.tyre_load[wheel.name] for wheel in wheels]), car.vehicle.gravity
     unsprung = float(equal.mass_moment) / len(wheels)
     tracks = [float(np.ptp([getattr(wheel, point)[1] for wheel in wheels])) for point in ("center", "patch")]
     arm = 0.5 * tracks[0] * tracks[1]
-    damping, roll_damping = (0.0 if stuck else _wheel_damping(car, axle, free, motion) for motion in (equal, opposite))
+    damping, roll_damping = (
+        math.nan if motion is None else 0.0 if stuck else _wheel_damping(car, axle, free, motion)
+        for motion in (equal, opposite)
+    )
     return AxleRide(
         wheel=Support(stiffness=float(design_slopes(held)["wheel_rate_n_per_m"] or math.nan), damping=damping),
         tyre=_tyre(car, wheels),
@@ -160,10 +165,10 @@ def axle_ride(car: CarModel, axle: str, dampers: DamperState = "sliding") -> Axl
     )
 
 
-def axle_rides(car: CarModel, dampers: DamperState = "sliding") -> dict[str, AxleRide]:
+def axle_rides(car: CarModel, dampers: DamperState = "sliding", *, roll: bool = True) -> dict[str, AxleRide]:
     """Compute the ride parameters of all axles with wheels, by the tables of the vehicle file; see `axle_ride`."""
     names = dict.fromkeys(wheel.axle for wheel in car.vehicle.composition.wheels)
-    return {name: axle_ride(car, name, dampers) for name in names}
+    return {name: axle_ride(car, name, dampers, roll=roll) for name in names}
 
 
 def _wheel_damping(car: CarModel, axle: str, statics: AxleStatics, motion: AxlePosition) -> float:

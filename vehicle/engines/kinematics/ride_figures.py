@@ -65,7 +65,7 @@ class Station:
         load: static load on its springs [N].
         vertical: rate and damping, vertical.
         roll: roll stiffness and roll damping.
-        roll_centre: height of the roll centre in the frame of the hardpoints [m].
+        roll_centre: height of the roll centre in the frame of the hardpoints [m]; nan if roll is left out.
     """
 
     x: float
@@ -75,12 +75,13 @@ class Station:
     roll_centre: float
 
 
-def ride_figures(car: CarModel, axles: Mapping[str, AxleRide]) -> dict[str, RideFigure]:
+def ride_figures(car: CarModel, axles: Mapping[str, AxleRide], *, roll: bool = True) -> dict[str, RideFigure]:
     """Compute the headline figures of a car at rest.
 
     Args:
         car: car in static equilibrium, with standing tyres.
         axles: its axles, with their dampers stuck or sliding; see `axle_rides`.
+        roll: False leaves out roll, which needs the roll centres of the axles; its figure is nan.
 
     Returns:
         Figures by motion: "heave", "pitch", "roll", then "front wheel hop" and so on by axle.
@@ -89,14 +90,14 @@ def ride_figures(car: CarModel, axles: Mapping[str, AxleRide]) -> dict[str, Ride
         SimulationError: an axle has no equilibrium near its design position.
     """
     sprung = _sprung(car, axles)
-    stations = [*(_axle_station(car, axle, ride) for axle, ride in axles.items()), *_blocks(car, sprung.cog[1])]
+    stations = [*(_axle_station(car, axle, ride, roll) for axle, ride in axles.items()), *_blocks(car, sprung.cog[1])]
     tilt = math.fsum(station.load * (sprung.cog[2] - station.roll_centre) for station in stations)
-    roll = _sum([*(station.roll for station in stations), Support(stiffness=-tilt, damping=0.0)])
+    rolling = _sum([*(station.roll for station in stations), Support(stiffness=-tilt, damping=0.0)])
     pitch = _sum([station.vertical.times((station.x - sprung.cog[0]) ** 2) for station in stations])
     figures = {
         "heave": _figure(_sum([station.vertical for station in stations]), sprung.mass),
         "pitch": _figure(pitch, float(sprung.inertia[1, 1])),
-        "roll": _figure(roll, float(sprung.inertia[0, 0])),
+        "roll": _figure(rolling, float(sprung.inertia[0, 0])),
     }
     return figures | {
         f"{axle} wheel hop": _figure(_sum([ride.wheel, ride.tyre]), ride.unsprung_mass) for axle, ride in axles.items()
@@ -124,17 +125,20 @@ def _sprung(car: CarModel, axles: Mapping[str, AxleRide]) -> MassProperties:
     return whole.without(unsprung)
 
 
-def _axle_station(car: CarModel, axle: str, ride: AxleRide) -> Station:
-    """Return an axle as a station."""
+def _axle_station(car: CarModel, axle: str, ride: AxleRide, roll: bool) -> Station:
+    """Return an axle as a station, with its roll centre or without."""
     wheels = [wheel for wheel in car.vehicle.composition.wheels if wheel.axle == axle]
-    # Both directions towards the middle of the car have the same roll centre.
-    _, geometry = design_axle(car.model, car.static.preload, wheels, towards=1.0)
+    height = math.nan
+    if roll:
+        # Both directions towards the middle of the car have the same roll centre.
+        _, geometry = design_axle(car.model, car.static.preload, wheels, towards=1.0)
+        height = geometry.roll_centre_height_m
     return Station(
         x=wheels[0].center[0],
         load=len(wheels) * ride.spring_load,
         vertical=ride.ride.times(len(wheels)),
         roll=ride.roll.in_series(ride.tyre_roll),
-        roll_centre=wheels[0].patch[2] + geometry.roll_centre_height_m,
+        roll_centre=wheels[0].patch[2] + height,
     )
 
 
