@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 from vehicle.commands.command_line import ProgressLine, command
 from vehicle.commands.compare import measured_beside, measured_options
-from vehicle.commands.destination import is_named, output_folder_of, path_beside, report_path
+from vehicle.commands.crank_speed import crank_overrides, steady_points
+from vehicle.commands.destination import output_folder_of, path_beside, report_path
 from vehicle.commands.input_options import (
     drives_on_road,
     record_choice,
@@ -140,10 +141,10 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.signals.excitation.input_files import find_input
 
     if options.rpm is not None and options.rpm.count(":") == 2:
-        _steady_points(options)
+        steady_points(options)
         return
     drive = None
-    overrides = options.overrides = [*options.overrides, *_crank_overrides(options)]
+    overrides = options.overrides = [*options.overrides, *crank_overrides(options)]
     if drives_on_road(options):
         from vehicle.commands.road import class_or_profile, road_drive
         from vehicle.model.parameters.vehicle import load_vehicle
@@ -290,49 +291,6 @@ def _check_signal(options: argparse.Namespace, signal: Signal) -> None:
             raise ConfigurationError(
                 f"--video-start {options.video_start:g}: the excerpt must lie in the record, so give 0 to {latest:g} s"
             )
-
-
-def _steady_points(options: argparse.Namespace) -> None:
-    """Run the command `orders` with the options of this one."""
-    from vehicle.commands import orders
-
-    if options.input:
-        raise ConfigurationError("--rpm A:B:STEP: steady points are runs on a road; leave out --input")
-    words = ["--rpm", options.rpm, "--road", options.road or "level"]
-    for name in ("vehicle", "speed", "duration"):
-        words += [] if getattr(options, name) is None else [f"--{name}", str(getattr(options, name))]
-    for text in options.overrides:
-        words += ["--set", text]
-    if "--engine" in options.words:
-        words += ["--engine", options.engine]
-    if is_named(options):
-        words += ["--output", str(options.output), *(["--force"] if options.force else [])]
-    orders.job(orders.parser().parse_args(words, argparse.Namespace(words=words, held=options.held)))
-
-
-def _crank_overrides(options: argparse.Namespace) -> list[str]:
-    """Return the overrides of --rpm.
-
-    Raises:
-        ConfigurationError: another form, steady points, or a run-up without its length.
-    """
-    if options.rpm is None:
-        return []
-    try:
-        speeds = [float(part) for part in options.rpm.split(":")]
-    except ValueError:
-        speeds = []
-    if len(speeds) not in (1, 2) or not all(map(math.isfinite, speeds)):
-        raise ConfigurationError(f"--rpm {options.rpm!r}: needed is a speed, as 750, or a run-up, as 700:3000 [1/min]")
-    if len(speeds) == 1:
-        return [f"crank.rpm={speeds[0]!r}"]
-    if options.duration is None:
-        raise ConfigurationError(f"--rpm {options.rpm}: a run-up needs its length; set --duration S, as 60")
-    return [
-        f"crank.rpm={speeds[0]!r}",
-        f"crank.end_rpm={speeds[1]!r}",
-        f"crank.run_up_time={options.duration!r}",
-    ]
 
 
 def _controller_overrides(options: argparse.Namespace) -> list[str]:
