@@ -265,9 +265,9 @@ def same_geometry(vehicle: Vehicle, other: Vehicle) -> bool:
         elements, others = getattr(car, name), getattr(reference, name)
         if len(elements) != len(others):
             return False
-        for element, one in zip(elements, others, strict=True):
-            varied = {field: getattr(one, field) for field in free.get(name, ("law",))}
-            if element is not one and replace(element, **varied) != one:
+        for element, other in zip(elements, others, strict=True):
+            varied = {field: getattr(other, field) for field in free.get(name, ("law",))}
+            if element is not other and replace(element, **varied) != other:
                 return False
     return [force.mean for force in car.forces] == [force.mean for force in reference.forces]
 

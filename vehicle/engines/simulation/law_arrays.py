@@ -91,9 +91,9 @@ def with_numbers(layout: Layout, names: LawNames, numbers: Numbers, timestep: fl
         ConfigurationError: a law by address is not registered in this process.
     """
 
-    def fields(kind: str, elements: Sequence[str], width: int) -> Vector:
-        """Return the fields of a kind of those of the elements that have one; (n, width)."""
-        present = [numbers[f"{kind}/{name}"] for name in elements if f"{kind}/{name}" in numbers]
+    def fields(group: str, elements: Sequence[str], width: int) -> Vector:
+        """Return the fields of a group of those of the elements that have one; (n, width)."""
+        present = [numbers[f"{group}/{name}"] for name in elements if f"{group}/{name}" in numbers]
         return np.concatenate([np.zeros(0), *present]).reshape(-1, width)
 
     laws = laws_of(names, numbers)

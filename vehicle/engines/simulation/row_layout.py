@@ -183,8 +183,8 @@ def _triples(first: Index) -> Indices:
 def _modal_joints(model: mujoco.MjModel) -> list[int]:
     """Return the ids of the joints of the modal coordinates."""
     names = (f"mode_{number}" for number in itertools.count(1))
-    found = (mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name) for name in names)
-    return list(itertools.takewhile(lambda index: index >= 0, found))
+    ids = (mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name) for name in names)
+    return list(itertools.takewhile(lambda index: index >= 0, ids))
 
 
 def _shapes(model: mujoco.MjModel, names: Sequence[str], modes: int) -> Table:

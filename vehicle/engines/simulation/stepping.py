@@ -148,7 +148,7 @@ def simulate(
         check()
         wall = clock.perf_counter() - started
     counts = [int(warning.number) for warning in data.warning]
-    warnings = [f"{mujoco.mjtWarning(kind).name} ({count} times)" for kind, count in enumerate(counts) if count]
+    warnings = [f"{mujoco.mjtWarning(number).name} ({count} times)" for number, count in enumerate(counts) if count]
     if warnings:
         raise SimulationError(
             f"MuJoCo warned during the run: {'; '.join(warnings)}; its results are discarded: check the input and the "

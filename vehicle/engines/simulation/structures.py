@@ -169,7 +169,7 @@ def offsets() -> Offsets:
     data.time = 0.734
     try:
         sizes, scalars = layout("mjModel", "nuserdata"), layout("mjData")
-        whole = [name for name, kind in sizes._fields_ if kind is ctypes.c_int64 and hasattr(model, name)]  # type: ignore[misc]
+        whole = [name for name, form in sizes._fields_ if form is ctypes.c_int64 and hasattr(model, name)]  # type: ignore[misc]
         for checked, structure, names in ((model, sizes, whole), (data, scalars, ("time", "nefc", "nJ"))):
             seen = structure.from_address(checked._address)
             for name in names:
