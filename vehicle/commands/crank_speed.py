@@ -15,16 +15,16 @@ def steady_points(options: argparse.Namespace) -> None:
 
     if options.input:
         raise ConfigurationError("--rpm A:B:STEP: steady points are runs on a road; leave out --input")
-    words = ["--rpm", options.rpm, "--road", options.road or "level"]
+    arguments = ["--rpm", options.rpm, "--road", options.road or "level"]
     for name in ("vehicle", "speed", "duration"):
-        words += [] if getattr(options, name) is None else [f"--{name}", str(getattr(options, name))]
+        arguments += [] if getattr(options, name) is None else [f"--{name}", str(getattr(options, name))]
     for text in options.overrides:
-        words += ["--set", text]
+        arguments += ["--set", text]
     if "--engine" in options.words:
-        words += ["--engine", options.engine]
+        arguments += ["--engine", options.engine]
     if is_named(options):
-        words += ["--output", str(options.output), *(["--force"] if options.force else [])]
-    orders.job(orders.parser().parse_args(words, argparse.Namespace(words=words, held=options.held)))
+        arguments += ["--output", str(options.output), *(["--force"] if options.force else [])]
+    orders.job(orders.parser().parse_args(arguments, argparse.Namespace(words=arguments, held=options.held)))
 
 
 def crank_overrides(options: argparse.Namespace) -> list[str]:

@@ -84,8 +84,8 @@ def _job(options: argparse.Namespace) -> None:
         if len(fits) > 1:
             write_text(new[CONTROL], control_lines(fits))
     if options.json:
-        found = [fit_json(fitted) for fitted in fits]
-        print(json.dumps(found[0] if len(found) == 1 else {"dampers": found}, indent=2, allow_nan=False))
+        texts = [fit_json(fitted) for fitted in fits]
+        print(json.dumps(texts[0] if len(texts) == 1 else {"dampers": texts}, indent=2, allow_nan=False))
     elif not options.quiet:
         for fitted in fits:
             print("\n".join(summary_lines(fitted)))

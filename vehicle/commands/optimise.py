@@ -128,7 +128,7 @@ def _meet_targets(options: argparse.Namespace) -> None:
     costs = dict(_cost(text) for text in options.cost)
     output = study_folder_of(options, options.output, rows=())
     with study_folder(output, force=options.force, resume=False, rows=()) as folder:
-        found = meet_targets(
+        result = meet_targets(
             car,
             figures,
             [parsed_variation("--vary", text).range() for text in options.vary],
@@ -137,13 +137,13 @@ def _meet_targets(options: argparse.Namespace) -> None:
             jobs=options.jobs,
             progress=ProgressLine("optimise  ", enabled=not options.quiet),
         )
-        write_text(folder / "vehicle.toml", parameters_text(found.car, found.sentence))
-        write_own_files(folder, found.car)
+        write_text(folder / "vehicle.toml", parameters_text(result.car, result.sentence))
+        write_own_files(folder, result.car)
         command = f"python -m vehicle optimise {shlex.join(options.words)}"
-        write_json(folder / "summary.json", {**found.summary(), "command": command})
+        write_json(folder / "summary.json", {**result.summary(), "command": command})
     if not options.quiet:
-        print(f"{output}: {found.change.runs} cars on {', '.join(found.inputs)}; vehicle.toml, summary.json")
-        print(found)
+        print(f"{output}: {result.change.runs} cars on {', '.join(result.inputs)}; vehicle.toml, summary.json")
+        print(result)
 
 
 def _cost(text: str) -> tuple[str, float]:

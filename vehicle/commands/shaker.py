@@ -234,8 +234,8 @@ def _job(options: argparse.Namespace) -> None:
             from vehicle.runs.report.general_notices import without_general
 
             if not options.quiet:
-                own = without_general(summary["notices"], car.vehicle)
-                print(summary_text({**summary, "notices": own}), flush=True)
+                run_notices = without_general(summary["notices"], car.vehicle)
+                print(summary_text({**summary, "notices": run_notices}), flush=True)
 
         summary = write_run(
             folder,

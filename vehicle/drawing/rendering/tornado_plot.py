@@ -44,16 +44,16 @@ def draw_tornado(axis: Any, labels: Sequence[str], changes: Vector, half_widths:
         half_widths: half widths of the intervals [%], (parameters,); NaN draws none.
         ends: names of the low and the high value.
     """
-    places = np.arange(len(labels), dtype=float)
-    known = np.isfinite(half_widths)
+    rows = np.arange(len(labels), dtype=float)
+    with_interval = np.isfinite(half_widths)
     for column, (name, colour) in enumerate(zip(ends, (COLOURS[0], COLOURS[1]), strict=True)):
-        height = places + (0.19 if column else -0.19)
+        height = rows + (0.19 if column else -0.19)
         values = changes[:, column]
         axis.barh(height, np.nan_to_num(values), 0.34, color=colour, label=name)
-        shown = known & np.isfinite(values)
+        shown = with_interval & np.isfinite(values)
         axis.errorbar(values[shown], height[shown], xerr=half_widths[shown], fmt="none", ecolor=INK, elinewidth=0.9)
     axis.axvline(0.0, color=INK, linewidth=0.8)
-    axis.set_yticks(places, labels, fontsize=8)
+    axis.set_yticks(rows, labels, fontsize=8)
     axis.invert_yaxis()
     axis.set_xlabel("change of the weighted acceleration [%]")
     axis.grid(axis="x", alpha=0.3)

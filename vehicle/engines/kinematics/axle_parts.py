@@ -207,8 +207,8 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
     for index in np.flatnonzero(model.actuator_biastype == mujoco.mjtBias.mjBIAS_USER).tolist():
         joint, damper = int(model.actuator_trnid[index, 0]), str(model.actuator(index).name)
         if int(model.jnt_bodyid[joint]) in bodies:
-            force = float(unpack(fields[f"actuator/{damper}"])["rest_force"][0])
-            struts.append(Strut(joint=joint, rest=force, stop=_curve(fields, damper)))
+            rest = float(unpack(fields[f"actuator/{damper}"])["rest_force"][0])
+            struts.append(Strut(joint=joint, rest=rest, stop=_curve(fields, damper)))
     return AxleParts(
         wheels=tuple(numbers),
         bodies=frozenset(bodies),

@@ -215,8 +215,8 @@ class AxleStatics:
         both = np.empty((len(bodies), 2, 3, self.model.nv))
         for (moved, turned), body, point in zip(both, bodies.tolist(), points, strict=True):
             mujoco.mj_jac(self.model, self.data, moved, turned, point, body)
-        own = both[..., self.columns]
-        return own[:, 0], own[:, 1]
+        of_axle = both[..., self.columns]
+        return of_axle[:, 0], of_axle[:, 1]
 
     def _gaps(self, ties: Ties) -> tuple[Vector, Vector, Vector]:
         """Return displacements r [m], (k, 3), axes of the laws and of the carriers as columns, (k, 3, 3) each."""

@@ -125,14 +125,14 @@ class CarMatrices:
     @property
     def run_out(self) -> RunOut:
         """Run-outs of the tyres, see `with_run_out`."""
-        found = []
+        run_outs = []
         constant = self.coefficients[:, : 2 * len(self.lines.frequencies)]
         for wheel, of in zip(self.system.inputs, self.force_heights.T @ constant, strict=False):
             lines = zip(self.lines.frequencies, of.reshape(-1, 2).tolist(), strict=True)
             acting = {frequency: pair for frequency, pair in lines if any(pair)}
             if acting:
-                found.append((wheel, tuple(acting), tuple(value for pair in acting.values() for value in pair)))
-        return tuple(found)
+                run_outs.append((wheel, tuple(acting), tuple(value for pair in acting.values() for value in pair)))
+        return tuple(run_outs)
 
     def __repr__(self) -> str:
         """One line."""
@@ -171,7 +171,7 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim, forces: Sequence[Pla
             masses[name][3:, 3:] = frame @ np.diag(model.body_inertia[body]) @ frame.T
     system_of_laws, car_of_laws = law_matrices(rows, jacobian, joint_dampers(model), static.preload)
     lines, coefficients = force_lines(forces)
-    slips, heights = tyre_inputs(forces, e, wheels_of(model))
+    slips, plate_heights = tyre_inputs(forces, e, wheels_of(model))
     rolling_bodies = set(model.dof_bodyid[e.rolling.spins].tolist())
     return CarMatrices(
         system=LinearSystem(
@@ -212,7 +212,7 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim, forces: Sequence[Pla
         },
         force_rows=np.vstack([force_rows(model, data, e), np.zeros((len(forces) - len(e.applied.means), model.nv))]),
         force_slips=slips,
-        force_heights=heights,
+        force_heights=plate_heights,
         lines=lines,
         coefficients=coefficients,
     )

@@ -65,13 +65,13 @@ def tyre_inputs(forces: Sequence[PlacedForce], layout: Layout, wheels: Sequence[
     present = layout.bushings.branch_stiffness > 0.0
     branches = np.cumsum(present).reshape(present.shape) - 1
     slips = np.zeros((len(forces), int(np.count_nonzero(present))))
-    heights = np.zeros((len(forces), len(wheels)))
+    plate_heights = np.zeros((len(forces), len(wheels)))
     for index, force in enumerate(forces):
         if force.unit == "m":
-            heights[index, wheels.index(force.tyre)] = 1.0
+            plate_heights[index, wheels.index(force.tyre)] = 1.0
         elif force.unit == "m/s":
             slips[index, branches[layout.tyres[wheels.index(force.tyre)], 0]] = 1.0
-    return slips, heights
+    return slips, plate_heights
 
 
 def force_lines(forces: Sequence[PlacedForce]) -> tuple[ForceLines, Vector]:

@@ -100,7 +100,7 @@ def with_numbers(layout: Layout, names: LawNames, numbers: Numbers, timestep: fl
     stiffness, rubber, branched = laws[:, 0:3].copy(), _rubber(names, numbers), laws[:, 6:9] > 0.0
     np.add.at(stiffness, (rubber.elements, rubber.axes), rubber.stiffness)
     rolling = fields("rolling", names.bushings, 5)
-    own = [(index, law_by_address(law)) for index, law in _words(names, numbers, "function")]
+    user_laws = [(index, law_by_address(law)) for index, law in _words(names, numbers, "function")]
     presliding = fields("presliding", tuple(dict.fromkeys(names.presliding)), 2)
     return layout._replace(
         bushings=layout.bushings._replace(
@@ -129,8 +129,8 @@ def with_numbers(layout: Layout, names: LawNames, numbers: Numbers, timestep: fl
             laws=in_steps(fields("control", names.dampers, NUMBERS), timestep),
         ),
         own=OwnDampers(
-            dampers=whole_numbers([index for index, _ in own]),
-            laws=np.array([law.record(timestep) for _, law in own], dtype=RECORD),
+            dampers=whole_numbers([index for index, _ in user_laws]),
+            laws=np.array([law.record(timestep) for _, law in user_laws], dtype=RECORD),
         ),
         tables=_tables(names, numbers),
         rolling=layout.rolling._replace(

@@ -29,14 +29,14 @@ velocity 1 % wrong."""
 
 def run_out(forces: Sequence[PlacedForce]) -> RunOut:
     """Return the run-outs of the tyres among some forces; empty at standstill."""
-    found = []
+    run_outs = []
     for force in forces:
         if force.unit == "m" and force.harmonics:
             lines = ForceLines(tuple(sorted(force.harmonics)))
-            found.append(
+            run_outs.append(
                 (force.tyre, lines.frequencies, tuple(lines.coefficients(dict(force.harmonics.items())).tolist()))
             )
-    return tuple(found)
+    return tuple(run_outs)
 
 
 def with_plates(signal: Signal, wheels: Iterable[str]) -> Signal:
@@ -49,22 +49,22 @@ def with_plates(signal: Signal, wheels: Iterable[str]) -> Signal:
 
 
 @lru_cache(maxsize=4)
-def with_run_out(signal: Signal, heights: RunOut) -> Signal:
+def with_run_out(signal: Signal, run_outs: RunOut) -> Signal:
     """Return the motion of the road as the tyres take it: with their run-out, and with the slope of the road alone.
 
     Args:
         signal: motion of the plates.
-        heights: run-outs, see `run_out`.
+        run_outs: run-outs, see `run_out`.
 
     Raises:
         ConfigurationError: the samples of the signal are too far apart for the run-out.
     """
-    if not heights:
+    if not run_outs:
         return signal
-    signal = with_plates(signal, [wheel for wheel, _, _ in heights])
+    signal = with_plates(signal, [wheel for wheel, _, _ in run_outs])
     displacement = dict(signal.displacement)
     slopes = signal.slope_velocity or signal.plate_motion(signal.time).velocity
-    for wheel, frequencies, coefficients in heights:
+    for wheel, frequencies, coefficients in run_outs:
         rate, highest = 1.0 / signal.timestep, max(frequencies) / (2.0 * np.pi)
         if rate < LOWEST_SAMPLING * highest:
             raise ConfigurationError(

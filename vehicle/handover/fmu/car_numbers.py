@@ -101,8 +101,8 @@ def numbers_with(car: Car, step: float, read: tuple[Sequence[Output], OutputRows
             "a car with dampers at its wheels"
         )
     for damper in composition:
-        own = {"function": "viscous law, as points of a table", "friction_function": "friction law"}
-        for name, other in own.items():
+        user_laws = {"function": "viscous law, as points of a table", "friction_function": "friction law"}
+        for name, other in user_laws.items():
             if (found := getattr(damper.law, name)) is not None:
                 raise ConfigurationError(
                     f"{damper.name}.{name}: found {found!r}, a function of this process, which neither an FMU nor a "

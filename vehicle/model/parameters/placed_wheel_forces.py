@@ -43,9 +43,9 @@ def wheel_forces(
     forces: list[PlacedForce] = []
     for wheel in wheels:
         instance, side = car[wheel.axle], next(name for name, sign in SIDE_SIGN.items() if sign == wheel.side)
-        for table, kind in WHEEL_FORCES.items():
+        for table, table_class in WHEEL_FORCES.items():
             if instance.table_paths(side, table):
-                values: Any = instance.get(kind, side, table)
+                values: Any = instance.get(table_class, side, table)
                 forces += _forces(wheel, table, values, targets, tyres.get(wheel.plate), spins.get(wheel.part, ""))
     return forces
 
@@ -62,8 +62,8 @@ def _forces(
     angle = f"wheel_{wheel.name}"
     speed = targets.speeds[angle]
 
-    def force(name: str, harmonics: Harmonics, direction: Point, at: Point, **place: str) -> PlacedForce:
-        on, against, joint, changed = (place.get(key, "") for key in ("on", "against", "joint", "tyre"))
+    def force(name: str, harmonics: Harmonics, direction: Point, at: Point, **ends: str) -> PlacedForce:
+        on, against, joint, changed = (ends.get(key, "") for key in ("on", "against", "joint", "tyre"))
         law = AppliedForce(harmonics=harmonics, angle=angle)
         path = f"{wheel.axle}.{table}"
         unit = ("m" if direction[2] else "m/s") if changed else "N" if any(direction) else "N m"

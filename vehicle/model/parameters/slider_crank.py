@@ -140,14 +140,14 @@ def block_forces(engine: EngineOrders, speed: float, highest: int) -> BlockForce
     force = _harmonics(-mass * speed**2 * second, highest)
     torque = _harmonics(-gas_torque(engine) + mass * speed**2 * rate * second, highest)
     # Angle by which each cylinder is behind cylinder 1, and its place along the crankshaft from the middle.
-    delays = {int(cylinder): 4.0 * np.pi * place / count for place, cylinder in enumerate(engine.firing)}
-    places = {cylinder: engine.spacing * (0.5 * (count - 1) - (cylinder - 1)) for cylinder in delays}
+    delays = {int(cylinder): 4.0 * np.pi * turn / count for turn, cylinder in enumerate(engine.firing)}
+    offsets = {cylinder: engine.spacing * (0.5 * (count - 1) - (cylinder - 1)) for cylinder in delays}
     forces, moments, torques = dict[float, complex](), dict[float, complex](), dict[float, complex]()
     for order in force:
         turns = {cylinder: np.exp(-1j * order * delay) for cylinder, delay in delays.items()}
         forces[order] = complex(force[order] * sum(turns.values()))
         # a e x F c = a F (e x c), about the axis across.
-        moments[order] = complex(force[order] * sum(places[cylinder] * turn for cylinder, turn in turns.items()))
+        moments[order] = complex(force[order] * sum(offsets[cylinder] * turn for cylinder, turn in turns.items()))
         torques[order] = complex(torque[order] * sum(turns.values()))
     forces[2.0] *= 1.0 - engine.balance_share
     return BlockForces(force=forces, moment=moments, torque=torques)

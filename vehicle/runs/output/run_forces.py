@@ -168,5 +168,5 @@ def phase_ranges(
         return []
     sizes = np.abs(list(by_wheel.values()))
     largest = np.sum(sizes, axis=0)
-    least = np.maximum(0.0, 2.0 * np.max(sizes, axis=0) - largest)
-    return list(zip(least.tolist(), largest.tolist(), strict=True))
+    smallest = np.maximum(0.0, 2.0 * np.max(sizes, axis=0) - largest)
+    return list(zip(smallest.tolist(), largest.tolist(), strict=True))

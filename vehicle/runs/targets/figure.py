@@ -121,10 +121,10 @@ class Figure:
                 f"Figure.quantity: found {self.quantity!r}, must be one of {', '.join(QUANTITIES)}"
             )
         for key in ("channels", "over", "band", "weighting", "wheels"):
-            given = getattr(self, key) not in ((), "", None)
-            if key in definition.needs and not given:
+            is_set = getattr(self, key) not in ((), "", None)
+            if key in definition.needs and not is_set:
                 raise ConfigurationError(f"Figure.{key}: missing; {self.quantity} needs it")
-            if given and key not in (*definition.needs, *definition.takes):
+            if is_set and key not in (*definition.needs, *definition.takes):
                 raise ConfigurationError(f"Figure.{key}: {self.quantity} does not have it; omit it")
         if (self.at_most is None) == (self.at_least is None):
             raise ConfigurationError("Figure.at_most: set either at_most or at_least")

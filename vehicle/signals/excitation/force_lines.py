@@ -99,8 +99,8 @@ class ForceLines:
         """
         keys: list[History] = [*self.frequencies, *self.swept]
         amplitudes = np.array([force.get(key, 0.0j) for key in keys], dtype=complex)
-        turning = np.column_stack([amplitudes.real, -amplitudes.imag]).ravel()
-        return np.concatenate([turning, [complex(force.get(record, 0.0)).real for record in self.records]])
+        waves = np.column_stack([amplitudes.real, -amplitudes.imag]).ravel()
+        return np.concatenate([waves, [complex(force.get(record, 0.0)).real for record in self.records]])
 
     def values(self, time: Vector) -> Vector:
         """Return the histories at some times [s], (m,): w cos(W_1 t), w sin(W_1 t), w cos(W_2 t) ...; (m, 2 j + ...).

@@ -184,8 +184,8 @@ def _headless(measurement: Measurement, choice: Choice, notices: list[str]) -> C
                     "--unit displacement=m or --unit displacement=mm"
                 )
         units = assumed | units
-        taken = ", ".join(f"{role} [{units[role]}]" for role in channels)
-        notices.append(f"no header: columns taken as {taken}; --channel and --unit change it")
+        columns_text = ", ".join(f"{role} [{units[role]}]" for role in channels)
+        notices.append(f"no header: columns taken as {columns_text}; --channel and --unit change it")
     return dataclasses.replace(choice, channels=channels, units=units)
 
 

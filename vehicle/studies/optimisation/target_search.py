@@ -297,15 +297,15 @@ def _measures(
             raise ConfigurationError(f"{name}: speed [km/h] is missing; a search needs it")
         groups.setdefault((figure.road or figure.obstacle or figure.signal, figure.speed), []).append((name, figure))
     measures = []
-    for (place, speed), group in groups.items():
-        source: str | Road = (
-            place if speed is None else Road(place, speed, duration=duration if len(place) == 1 else None)
-        )
+    for (source_name, speed), group in groups.items():
+        source: str | Road = source_name
+        if speed is not None:
+            source = Road(source_name, speed, duration=duration if len(source_name) == 1 else None)
         try:
             run = car.run(source, engine="reduced")
             chosen = tuple((name, _checked(name, figure, run)) for name, figure in group)
         except DataError as error:
-            raise ConfigurationError(f"{place}: {error}") from None
+            raise ConfigurationError(f"{source_name}: {error}") from None
         times = (run.road or {}).get("obstacle_s")
         measures.append(
             (

@@ -64,8 +64,8 @@ class CaseFile:
         """Return every road at every speed, then the signals."""
         return [
             *(
-                Road(place, speed, duration=self.duration if len(place) == 1 else None)
-                for place, speed in itertools.product(self.roads, self.speeds)
+                Road(name, speed, duration=self.duration if len(name) == 1 else None)
+                for name, speed in itertools.product(self.roads, self.speeds)
             ),
             *self.signals,
         ]
