@@ -95,7 +95,8 @@ def _job(options: argparse.Namespace) -> None:
     else:
         changes = RowChanges(*read_variations(options.table)) if options.table else every_combination(options.vary)
     car = Car.load(options.vehicle, options.overrides)
-    settings = SweepSettings.of_options(options, executor=executor_factory(options.executor, options.jobs))
+    make = None if options.executor is None else executor_factory(options.executor)
+    settings = SweepSettings.of_options(options, executor=make)
     plan = plan_sweep(car, changes, chosen_inputs(options, car.vehicle), settings)
     output = study_folder_of(options, options.output, rows=(ROWS,))
     report = None if options.report is None else report_path(options, output)
