@@ -123,7 +123,7 @@ def _job(options: argparse.Namespace) -> None:
         runs, duration, lead = 24 if options.method == "sobol" else 22, 2.0, 1.0
     if runs < len(RANGES) + 2:
         raise ConfigurationError(f"--runs {runs}: needed are at least {len(RANGES) + 2} for {len(RANGES)} parameters")
-    make = executor_factory(options.executor, options.jobs)
+    make = None if options.executor is None else executor_factory(options.executor)
     points = points_of(options.method, runs, options.seed)
     wheel = load_vehicle(options.vehicle).shaker_wheel
     road = RoadInput(
@@ -159,6 +159,7 @@ def _job(options: argparse.Namespace) -> None:
             cases,
             RoadMeasure(lead=lead, wheel=wheel),
             executor=make,
+            jobs=options.jobs,
             folder=folder,
             retry_failed=options.retry_failed,
             progress=ProgressLine("sensitivity", runs=len(cases)),

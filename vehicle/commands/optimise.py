@@ -92,7 +92,7 @@ def _job(options: argparse.Namespace) -> None:
         return
     settings = SearchSettings.of_options(
         options,
-        executor=executor_factory(options.executor, options.jobs) if options.executor else None,
+        executor=None if options.executor is None else executor_factory(options.executor),
         tolerances=[parsed_tolerance(text) for text in options.tolerances or ()],
     )
     car = Car.load(options.vehicle, options.overrides)

@@ -140,7 +140,8 @@ def _job(options: argparse.Namespace) -> None:
         changes = sobol_changes(ranges, options.sobol)
     else:
         changes = RowChanges(*read_variations(options.table)) if options.table else every_combination(options.vary)
-    settings = SweepSettings.of_options(options, executor=executor_factory(options.executor, options.jobs))
+    make = None if options.executor is None else executor_factory(options.executor)
+    settings = SweepSettings.of_options(options, executor=make)
     inputs = listed.inputs if listed is not None else chosen_inputs(options, car.vehicle)
     plan = plan_sweep(car, changes, inputs, settings)
     if options.measure is not None:

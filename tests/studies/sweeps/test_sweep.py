@@ -246,7 +246,7 @@ def test_a_killed_sweep_keeps_its_rows_leaves_no_worker_and_goes_on(tmp_path):
 
 
 def test_a_user_defined_executor():
-    make = executor_factory("tests.studies.sweeps.sweep_samples:threads", 1)
+    make = executor_factory("tests.studies.sweeps.sweep_samples:threads")
     table = sweep(two_by_two(), Peak(), executor=make)
     expected = sweep(two_by_two(), Peak(), executor=in_threads)
     assert [r.values for r in table.results] == [r.values for r in expected.results]
@@ -264,17 +264,12 @@ def test_a_user_defined_executor():
 )
 def test_bad_executors(text, message):
     with pytest.raises(ConfigurationError, match=message):
-        executor_factory(text, 1)
+        executor_factory(text)
 
 
 def test_a_factory_must_return_an_executor():
     with pytest.raises(ConfigurationError, match=r"returned str, must be a concurrent\.futures\.Executor"):
-        sweep(two_by_two(), Peak(), executor=executor_factory("tests.studies.sweeps.sweep_samples:no_executor", 1))
-
-
-def test_jobs_below_one_are_rejected():
-    with pytest.raises(ConfigurationError, match="--jobs 0: must be at least 1"):
-        executor_factory(None, 0)
+        sweep(two_by_two(), Peak(), executor=executor_factory("tests.studies.sweeps.sweep_samples:no_executor"))
 
 
 def test_without_dask_the_extra_is_named(monkeypatch):
@@ -283,7 +278,7 @@ def test_without_dask_the_extra_is_named(monkeypatch):
 
     monkeypatch.setattr("importlib.import_module", without)
     with pytest.raises(MissingPartError, match=r"needs Dask of the extra 'cluster' \(pip install distributed\)"):
-        executor_factory("dask://host:8786", 1)
+        executor_factory("dask://host:8786")
 
 
 def test_a_dask_cluster_makes_the_same_table():
@@ -298,7 +293,7 @@ def test_a_dask_cluster_makes_the_same_table():
         silence_logs=50,
     ) as cluster:
         address = cluster.scheduler_address.removeprefix("tcp://")
-        table = sweep(two_by_two(), Peak(), executor=executor_factory(f"dask://{address}", 1))
+        table = sweep(two_by_two(), Peak(), executor=executor_factory(f"dask://{address}"))
     expected = sweep(two_by_two(), Peak(), executor=partial(executors.process_pool, 1))
     assert table.text() == expected.text()
     assert not table.failed
@@ -318,7 +313,7 @@ def test_a_worker_that_joins_a_running_sweep_is_used():
 
     options: dict[str, Any] = {"dashboard_address": None, "worker_dashboard_address": None, "silence_logs": 50}
     with distributed.LocalCluster(n_workers=1, threads_per_worker=1, processes=True, **options) as cluster:
-        make = executor_factory(cluster.scheduler_address.replace("tcp", "dask"), 1)
+        make = executor_factory(cluster.scheduler_address.replace("tcp", "dask"))
         roads = [ShortRoad(seed=seed, wait=0.3) for seed in range(40)]
         cases = grid({"damper.viscous": [2000.0]}, roads, engine="reduced")
         table = sweep(cases, Worker(), executor=make, progress=join)
@@ -349,7 +344,7 @@ def test_a_cluster_without_response_is_named(monkeypatch):
 
     monkeypatch.setattr(distributed, "Client", nobody)
     with pytest.raises(ConfigurationError, match="dask://nowhere:1: no response from a scheduler"):
-        executor_factory("dask://nowhere:1", 1)()
+        executor_factory("dask://nowhere:1")()
 
 
 def test_rows_of_a_sweep_may_have_different_parameters():

@@ -9,7 +9,6 @@ import signal
 import threading
 from collections.abc import Callable
 from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor
-from functools import partial
 from multiprocessing import connection, get_context, parent_process
 from typing import Any
 
@@ -21,22 +20,17 @@ DASK = "dask://"
 WATCH = "parent watch"
 
 
-def executor_factory(text: str | None, jobs: int) -> Callable[[], Executor]:
+def executor_factory(text: str) -> Callable[[], Executor]:
     """Return a function that creates the executor of a sweep; called again after the death of a worker.
 
     Args:
-        text: None for processes on this machine; "dask://host:port" for an existing Dask cluster;
-            "module:factory" for a function without arguments that returns an executor.
-        jobs: number of processes on this machine.
+        text: "dask://host:port" for an existing Dask cluster; "module:factory" for a function without arguments that
+            returns an executor.
 
     Raises:
-        ConfigurationError: the text has another form, or `jobs` is below 1.
+        ConfigurationError: the text has another form.
         MissingPartError: Dask is required and not installed.
     """
-    if jobs < 1:
-        raise ConfigurationError(f"--jobs {jobs}: must be at least 1")
-    if text is None:
-        return partial(process_pool, jobs)
     if text.startswith(DASK):
         return _dask(text.removeprefix(DASK))
     if text.count(":") == 1 and all(text.split(":")):
