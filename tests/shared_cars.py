@@ -16,7 +16,11 @@ from vehicle.model.parameters.paths import assignments
 from vehicle.model.parameters.shipped import VEHICLES, vehicle_file
 from vehicle.runs.car import Car
 
-SHARED = ("tests/commands/", "tests/documentation/test_pages", "tests/signals/")
+SHARED = (
+    *("tests/commands/", "tests/documentation/test_pages", "tests/runs/car/", "tests/runs/comparison/"),
+    *("tests/signals/", *(f"tests/system/test_{name}" for name in ("bad_inputs", "lost_files", "no_traceback"))),
+    "tests/system/test_road_run",
+)
 """Folders and modules of tests that share cars."""
 
 MOST = 24
