@@ -18,8 +18,9 @@ from vehicle.runs.output.written_files import MARKER
 ALLOWED = {
     "frf.csv": 1e-6,
     "time.npz": 1e-7,
+    "drive.csv": 1e-7,
     "summary.json": 1e-7,
-    "table.csv": 1e-6,
+    "table.csv": 1e-5,
     "rows.jsonl": 1e-5,
     "differences.csv": 1e-5,
     "": 1e-8,
@@ -28,7 +29,7 @@ ALLOWED = {
 
 Phases of motions that almost vanish, and coherences and random errors, which are differences of nearly equal numbers,
 differ by more than the time histories; of these, small forces beside large ones in one matrix differ most. A table of
-rolling cars differs by 6e-7, and its rows by 1.4e-6, between two kernels of OpenBLAS on one Linux (OPENBLAS_CORETYPE);
+rolling cars differs by 4.6e-6 (lateral RMS; 4.8e-6 under wine) between two kernels of OpenBLAS on one Linux;
 differences of cars have six printed digits."""
 
 ZERO = 1e-6
