@@ -47,7 +47,7 @@ def side_of(wheel: str, wheels: Iterable[str]) -> str:
 
 
 def wheel_words(wheel: str, wheels: Iterable[str]) -> str:
-    """Return a wheel for a sentence: "right front wheel" for a car with one axle, else "rear right wheel"."""
+    """Return the name of a wheel: "right front wheel" for a car with one axle, else "rear right wheel"."""
     side = side_of(wheel, wheels)
     return f"{side} front wheel" if side in SIDE_SIGN and wheel.startswith("f") else f"{side} wheel"
 

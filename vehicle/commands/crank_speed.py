@@ -10,7 +10,7 @@ from vehicle.errors import ConfigurationError
 
 
 def steady_points(options: argparse.Namespace) -> None:
-    """Run the command `orders` with the options of this one."""
+    """Run the command `orders` with the same options."""
     from vehicle.commands import orders
 
     if options.input:

@@ -109,7 +109,7 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def _meet_targets(options: argparse.Namespace) -> None:
-    """Search for the smallest change that meets the targets of a file, and write its result."""
+    """Search for the smallest change that meets the targets in a file, and write its result."""
     from vehicle.errors import ConfigurationError
     from vehicle.model.parameters.ranges import parsed_variation
     from vehicle.runs.car import Car

@@ -1,1 +1,1 @@
-"""A car that leaves the house: as an FMU, as a web page that runs it, on a bench with sliders."""
+"""A car for other programs: as an FMU, as a web page that runs it, on a bench with sliders."""

@@ -55,7 +55,7 @@ def plot_responses(
 
 
 def shared_channels(runs: Sequence[RecordedRun], wanted: Mapping[str, str]) -> dict[str, str]:
-    """Return the requested channels that are in all runs.
+    """Return the requested channels common to all runs.
 
     Args:
         runs: the runs.

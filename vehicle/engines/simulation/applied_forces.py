@@ -149,7 +149,7 @@ def force_notices(forces: Sequence[PlacedForce]) -> tuple[str, ...]:
 
 
 def require_resolved(forces: Sequence[PlacedForce], record_rate: float) -> None:
-    """Check that every angle turns and that the record resolves all forces.
+    """Check the speed of each angle, and the sampling rate of each force.
 
     Args:
         forces: applied forces of a car.

@@ -25,7 +25,7 @@ def wheel_forces(
     connections: Iterable[PlacedConnection],
     targets: ForceTargets,
 ) -> list[PlacedForce]:
-    """Return the forces of all wheels, those that change a tyre in place of a part among them.
+    """Return the forces of all wheels, with the forces that act on a tyre in place of a part.
 
     An imbalance exerts m r (V/R)^2 from the axle to the mass, along x and along z. A non-uniform tyre and a varying
     brake need a wheel that turns: at rest they are left out.

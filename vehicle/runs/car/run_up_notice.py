@@ -20,7 +20,7 @@ HIGHEST = 60.0
 
 
 def run_up_notice(car: Any) -> tuple[str, ...]:
-    """Return a sentence on the mode whose peak the speed of the run-up lowers most; none without a run-up.
+    """Return text on the mode whose peak the speed of the run-up lowers most; none without a run-up.
 
     Args:
         car: the car.

@@ -11,7 +11,7 @@ from vehicle.runs.report.finished_run import FinishedRun
 PLACE, WORDS = "seat_rail_acc_z", "seat rail"
 MOST_PEAKS, MOST_PARTS = 3, 3
 LEAST = 0.1
-"""Minimum share of a contribution in a sentence."""
+"""Minimum share of a contribution that the text names."""
 
 
 def body_modes(run: FinishedRun, state: str) -> list[str]:

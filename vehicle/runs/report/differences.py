@@ -111,7 +111,7 @@ def key_figures(run: FinishedRun) -> dict[tuple[str, str], float | None]:
 
 
 GENERAL = ("parts", "bushings", "points")
-"""Tables whose names say nothing in a sentence."""
+"""Tables whose names have no meaning for a reader."""
 
 
 def parameter_words(path: str) -> str:

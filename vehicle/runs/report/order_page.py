@@ -42,7 +42,7 @@ def order_rows(orders: OrderPoints) -> list[tuple[str, ...]]:
 
 
 def order_points_sentences(orders: OrderPoints) -> list[str]:
-    """Return a sentence on the peak of each order with a force, the largest first."""
+    """Return text on the peak of each order with a force, the largest first."""
     where, sentences = channel_words(orders.channel), []
     tops = np.argmax(np.abs(orders.amplitude), axis=1)
     peaks = np.abs(orders.amplitude[np.arange(len(tops)), tops])

@@ -25,7 +25,7 @@ def force_rows(summary: RunSummary) -> list[tuple[str, str]]:
 
 
 def order_sentences(summary: RunSummary) -> list[str]:
-    """Return a sentence on each frequency of the applied forces: amplitudes at seat or seat rail."""
+    """Return text on each frequency of the applied forces: amplitudes at seat or seat rail."""
     sentences = [_run_up_sentence(line) for line in summary.get("run_up", [])]
     for line in summary.get("orders", []):
         point = next((name for name in POINTS if f"{name}_acc_z" in line["amplitude"]), None)
@@ -39,7 +39,7 @@ def order_sentences(summary: RunSummary) -> list[str]:
 
 
 def _run_up_sentence(line: RunUpSummary) -> str:
-    """Return a sentence on the peak of an order in a run-up, at seat or seat rail along z if it is recorded."""
+    """Return text on the peak of an order in a run-up, at seat or seat rail along z if it is recorded."""
     names = [name for point in POINTS if (name := f"{point}_acc_z") in line["peak"]] or [*line["peak"]]
     rpm = line["rpm"][names[0]]
     frequency = number(line["order"] * rpm / 60.0)
@@ -56,7 +56,7 @@ def _limits(line: OrderSummary, point: str) -> tuple[str, str]:
 
 
 def _chance(line: OrderSummary, point: str) -> str:
-    """Return a sentence with the ranges along z over the phases of the wheels; empty for a single wheel."""
+    """Return text with the ranges along z over the phases of the wheels; empty for a single wheel."""
     if "stuck_range" not in line or "without_friction_range" not in line:
         return ""
     name = f"{point}_acc_z"

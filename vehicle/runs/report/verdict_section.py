@@ -16,7 +16,7 @@ fill = templates(__file__)
 
 
 def verdict_section(figures: Mapping[str, Figure], runs: Sequence[FinishedRun]) -> Markup:
-    """Return the verdict on each car in a sentence, and the table of limits and values.
+    """Return the verdict on each car in words, and the table of limits and values.
 
     Args:
         figures: figures with their limits, see `vehicle.runs.targets.verdict.read_targets`.

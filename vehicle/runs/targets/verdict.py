@@ -163,7 +163,7 @@ def verdict(figures: Mapping[str, Figure], runs: Sequence[RatedRun]) -> dict[str
 
 
 def sentence(figures: Mapping[str, Figure], car: str, rated: Mapping[str, Rated]) -> str:
-    """Return a sentence with the met and missed targets of a car.
+    """Return text with the met and missed targets of a car.
 
     Args:
         figures: see `read_targets`.

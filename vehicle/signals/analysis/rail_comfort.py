@@ -28,7 +28,7 @@ SCALE = ((1.5, "very comfortable"), (2.5, "comfortable"), (3.5, "medium"), (4.5,
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class RailComfort:
-    """Comfort of a record on the floor of a rail vehicle.
+    """Comfort of a record on the floor of a train.
 
     Attributes:
         continuous: C of each interval along x, y and z [m/s2], (3, intervals).

@@ -1,4 +1,4 @@
-"""Local maxima with their prominence, as of `scipy.signal.find_peaks`, whose import takes half a second."""
+"""Local maxima with their prominence (as `scipy.signal.find_peaks`; its import takes half a second)."""
 
 from __future__ import annotations
 

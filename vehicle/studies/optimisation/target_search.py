@@ -118,12 +118,12 @@ class TargetSearch:
     inputs: tuple[str, ...]
 
     def __str__(self) -> str:
-        """Return the printed tables and sentence."""
+        """Return the printed tables and the result in words."""
         return "\n".join(self.lines())
 
     @property
     def sentence(self) -> str:
-        """Return the result in a sentence."""
+        """Return the result in words."""
         named = [figure.words or name.replace("_", " ") for name, figure in self.figures.items()]
         bound = [self.ranges[index].path for index in self.change.at_bounds]
         if self.change.feasible and self.change.cost == 0.0:
@@ -161,7 +161,7 @@ class TargetSearch:
         ]
 
     def lines(self) -> list[str]:
-        """Return the printed tables of parameters and figures, and the sentence."""
+        """Return the printed tables of parameters and figures, and the result in words."""
         parameters = [("parameter", "before", "after", "change", "within")]
         parameters += [
             (

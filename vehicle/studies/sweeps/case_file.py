@@ -142,7 +142,7 @@ class CaseResults:
         return rows
 
     def lines(self) -> list[str]:
-        """Return the printed table and the sentence on the best car."""
+        """Return the printed table, and the best car in words."""
         rows = self.rows()
         widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
         table = [
@@ -156,7 +156,7 @@ class CaseResults:
 
     @property
     def sentence(self) -> str:
-        """Return a sentence on the car with the lowest mean change."""
+        """Return text on the car with the lowest mean change."""
         means = np.mean(self.changes, axis=0)
         if not np.isfinite(means).any():
             return "No car ran on all inputs."

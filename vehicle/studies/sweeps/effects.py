@@ -1,4 +1,4 @@
-"""Effects of single parameters on comfort, ranked: table, sentence, chart and file."""
+"""Effects of single parameters on comfort, ranked: table, text, chart and file."""
 
 from __future__ import annotations
 
@@ -71,12 +71,12 @@ class Effects:
     without: tuple[str, ...]
 
     def __str__(self) -> str:
-        """Return the printed table and sentence."""
+        """Return the printed table and the result in words."""
         return "\n".join(effect_lines(self))
 
     def __repr__(self) -> str:
         """Return the parameters with the largest effects in a line."""
-        first = ", ".join(f"{each.path} {each.largest:.2g} %" for each in self.effects[:3])
+        first = ", ".join(f"{each.path} {number(each.largest, 2)} %" for each in self.effects[:3])
         return f"Effects({len(self.effects)} parameters, {self.name} {self.base:.4g} m/s2: {first})"
 
     def plot(self, ax: Any = None) -> Any:
@@ -117,7 +117,7 @@ class Effects:
 
 
 def effect_lines(effects: Effects) -> list[str]:
-    """Return the lines of the table of the largest effects, and the sentence."""
+    """Return the lines of the table of the largest effects, and the result in words."""
     percent = number(100.0 * effects.share)
     heads = ["parameter", "value", f"-{percent} %", f"+{percent} %", "+-"]
     rows = [
@@ -153,7 +153,7 @@ def effect_lines(effects: Effects) -> list[str]:
 
 
 def effect_sentence(effects: Effects) -> str:
-    """Return a sentence with the parameters of largest effect."""
+    """Return text with the parameters of largest effect."""
     if not effects.effects:
         return "No varied parameter changes the comfort here."
     first, *others = effects.effects
@@ -161,7 +161,7 @@ def effect_sentence(effects: Effects) -> str:
     if math.isfinite(first.half_width) and first.largest <= first.half_width:
         return "No effect is larger than its error: take a longer road, or a larger change."
     turns = [
-        f"{sign}{percent} % makes the ride {abs(change):.2g} % {'rougher' if change > 0.0 else 'smoother'}"
+        f"{sign}{percent} % makes the ride {number(abs(change), 2)} % {'rougher' if change > 0.0 else 'smoother'}"
         for sign, change in (("-", first.change_low), ("+", first.change_high))
         if math.isfinite(change)
     ]

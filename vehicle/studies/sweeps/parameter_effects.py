@@ -111,7 +111,7 @@ def parameter_effects(car: Car, inputs: Source | Sequence[Source], settings: Eff
         inputs: files or names of shipped ones, roads, signals; one or several.
 
     Returns:
-        Effects, largest first; printed as a table and a sentence.
+        Effects, largest first; printed as a table and as text.
 
     Raises:
         ConfigurationError: a group without parameters, a share out of range, and as in `sweep`.

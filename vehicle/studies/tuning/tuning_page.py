@@ -31,7 +31,7 @@ CORRELATION = "correlation"
 """Name of the picture of the correlations."""
 
 MOST_NAMED = 3
-"""Maximum number of fitted values in the sentence of the result."""
+"""Maximum number of fitted values in the printed result."""
 
 
 def tuning_page(
