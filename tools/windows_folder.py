@@ -49,7 +49,7 @@ COMMANDS = {
     "bench.cmd": (
         "@echo off\r\n"
         "rem Opens the bench with the Focus in the browser; arguments are those of `vehicle bench`.\r\n"
-        'if "%~1"=="" ("%~dp0python\\python.exe" -m vehicle bench focus) '
+        'if "%~1"=="" ("%~dp0python\\python.exe" -m vehicle bench focus --input low.csv) '
         'else ("%~dp0python\\python.exe" -m vehicle bench %*)\r\n'
     ),
     "READ-ME.txt": (

@@ -126,20 +126,20 @@ def unpacked(windows: Windows, this: Path, other: Path) -> str:
     done = ended(windows.start_script("vehicle.cmd", [*RUN, "runs/first", "--report"], other))
     if done.code or not (other / "runs" / "first" / "report.html").is_file():
         return f"exit {done.code}: {done.text}"
-    bench = windows.start_script("bench.cmd", ["focus", "--port", "8791"], other)
+    bench = windows.start_script("bench.cmd", ["focus", "--input", "low.csv", "--port", "8791"], other)
+    text = ""
     try:
-        end = time.monotonic() + LONGEST
-        while bench.poll() is None and time.monotonic() < end:
-            try:
-                with urllib.request.urlopen("http://127.0.0.1:8791/", timeout=30) as answer:
+        assert bench.stdout is not None
+        while line := bench.stdout.readline():
+            text += line
+            if line.startswith("ready: "):
+                with urllib.request.urlopen(line.split()[1], timeout=300) as answer:
                     page = answer.read().decode()
                 return "= report.html, page of the bench" if "<html" in page.lower() else page[:200]
-            except OSError:
-                time.sleep(1.0)
-        return "no page"
     finally:
         windows.end()
         bench.communicate()
+    return f"no page: {text}"
 
 
 HARDSHIPS: tuple[Callable[[Windows, Path, Path], str], ...] = (
