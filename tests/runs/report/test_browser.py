@@ -71,6 +71,7 @@ def test_another_mode_another_state_and_another_view_are_shown(browser):
     from selenium.webdriver.support.ui import Select
 
     words, before = browser.find_element("id", "mode-words").text, picture(browser)
+    browser.find_element(By.CSS_SELECTOR, "details:has(#mode-gallery) summary").click()
     buttons = browser.find_elements(By.CSS_SELECTOR, "#mode-gallery button")
     pick = Select(browser.find_element("id", "mode-pick"))
     assert len(buttons) == len(pick.options) > 20
@@ -88,6 +89,7 @@ def test_another_mode_another_state_and_another_view_are_shown(browser):
     assert not np.array_equal(turned, picture(browser))
     Select(browser.find_element("id", "mode-state")).select_by_value("sliding")
     assert browser.find_element("id", "mode-words").text != chosen
+    browser.find_element(By.CSS_SELECTOR, "details:has(#mode-gallery) summary").click()
 
 
 def _origin(canvas):
@@ -100,7 +102,9 @@ def _origin(canvas):
 def printed(browser) -> Iterator[Any]:
     """The page with the style of paper, as wide as the text of A4."""
     browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+    browser.execute_script("window.dispatchEvent(new Event('beforeprint'));")
     yield browser
+    browser.execute_script("window.dispatchEvent(new Event('afterprint'));")
     browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
 
 
@@ -113,7 +117,7 @@ def test_paper_has_no_form_controls_and_nothing_folded(printed):
     )
     assert set(shown) == {"CANVASBUTTON"} and len(shown) > 20
     headings = [one.text for one in printed.find_elements("css selector", "h2") if one.is_displayed()]
-    assert "Modes" in headings and "All values" not in headings
+    assert {"Spectra", "The car", "Modes"} <= {*headings} and "All values" not in headings
     printed.execute_script("document.querySelector('#tables details').open = true;")
     assert printed.find_element("css selector", "#tables table").is_displayed(), "what is unfolded is printed"
     printed.execute_script("document.querySelector('#tables details').open = false;")
@@ -139,3 +143,18 @@ def fill_of_pages(pdf: Path) -> list[float]:
     subprocess.run(["pdftoppm", "-r", "20", "-gray", str(pdf), str(pdf.with_suffix(""))], check=True, timeout=HANG)
     pages = [np.asarray(Image.open(path)) for path in sorted(pdf.parent.glob(f"{pdf.stem}-*.pgm"))]
     return [float(np.flatnonzero((page < 200).any(axis=1)).max() / len(page)) for page in pages]
+
+
+def test_after_printing_the_page_is_folded_as_before(browser):
+    opened = "return document.querySelectorAll('details[open]').length;"
+    folded = browser.execute_script("return document.querySelectorAll('details.printed').length;")
+    before = browser.execute_script(opened)
+    browser.execute_script("window.dispatchEvent(new Event('beforeprint'));")
+    assert browser.execute_script(opened) == before + folded > 3
+    browser.execute_script("window.dispatchEvent(new Event('afterprint'));")
+    assert browser.execute_script(opened) == before
+
+
+def test_the_page_is_short(browser):
+    """Nine screens of 900 pixels; a car with a changed parameter has a second statement and picture."""
+    assert browser.execute_script("return document.documentElement.scrollHeight;") < 9 * 900

@@ -72,19 +72,19 @@ def test_the_page_is_whole_and_asks_nobody(reported, outline):
     wanted = [
         "Result",
         "This run",
+        "Frequency responses",
         "Try it",
         "Findings",
         "Car, signal, engine",
-        "The car",
-        "Frequency responses",
         "Time histories",
         "Dampers",
         "Comfort",
         "Spectra",
+        "The car",
         "Modes",
     ]
     assert outline.titles == [*wanted, "All values", "How to repeat the run"]
-    assert reported.text.count("<svg ") == 6  # change, bands of the comfort, car, FRFs, time histories, spectra
+    assert reported.text.count("<svg ") == 6  # change, FRFs, time histories, bands of the comfort, spectra, car
 
 
 def test_the_page_says_the_numbers_of_the_summary(reported, outline):

@@ -1,4 +1,4 @@
-"""First screen of a report: comfort of a run, or effect of a change, as two statements and a picture."""
+"""First screen of a report: comfort of a run as a statement, or effect of a change with a picture."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ DIRECTIONS = {"x": "fore-aft", "y": "lateral", "z": "vertical"}
 
 
 def answer(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> Markup:
-    """Return two statements and a picture of a single run, or of each further run against the first.
+    """Return the statement on a single run, or statements and a picture of each further run against the first.
 
     Args:
         runs: finished runs.
@@ -84,21 +84,34 @@ def _of_one(run: FinishedRun, modes: Modes) -> Markup:
         f"{number(total)} m/s²: {' to '.join(reactions(total))} (ISO 2631-1; lower is better)."
     ]
     band = main_band(spectra)
-    marked: dict[str, float] = {}
     if band is not None:
         mode = strongest(run, band, modes.get(damper_state(run), ()))
         parts = [f"{100.0 * band.share:.0f} % of it (mean square) {_is_within(band)}"]
         if mode is not None:
             parts += [f"mainly by the mode of {mode_words(mode)}", *_path_words(run, band, mode)]
         texts.append(f"{', '.join(parts)}{_damper_words(run)}.")
-        marked = {} if mode is None else {f"{mode.frequency:.1f} Hz\n{_motion(mode)}": mode.frequency}
+    return fill("answer", texts=[" ".join(texts)], figure="")
+
+
+def comfort_bands(run: FinishedRun, modes: Modes) -> Markup:
+    """Return the figure of the shares of one-third octaves in the weighted acceleration; empty without comfort.
+
+    Args:
+        run: finished run.
+        modes: modes of its car for dampers "stuck" and "sliding"; the strongest one in the main band is marked.
+    """
+    spectra = weighted_bands(run)
+    if not spectra:
+        return Markup()
+    band = main_band(spectra)
+    mode = band and strongest(run, band, modes.get(damper_state(run), ()))
+    marked = {f"{mode.frequency:.1f} Hz\n{_motion(mode)}": mode.frequency} if mode else {}
     bands = next(iter(spectra.values())).third_octaves
     powers = {axis: np.nan_to_num(spectrum.third_octaves.rms) ** 2 for axis, spectrum in spectra.items()}
-    figure = drawing(
+    return drawing(
         partial(plot_bands, edges=bands.edges, powers=powers, modes=marked, caption=run.caption),
         f"Frequencies of the weighted acceleration of {run.name}",
     )
-    return fill("answer", texts=[" ".join(texts)], figure=figure)
 
 
 def _input_words(run: FinishedRun) -> str:

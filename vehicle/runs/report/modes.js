@@ -170,6 +170,7 @@
   play.addEventListener("click", () => setPlaying(!playing));
   window.addEventListener("resize", () => { thumbnails(); show(); });
   window.addEventListener("beforeprint", () => { phase = 0; show(); thumbnails(); });
+  gallery.closest("details").addEventListener("toggle", thumbnails);
   new IntersectionObserver((entries) => { seen = entries[0].isIntersecting; }).observe(canvas);
   byId("scale").style.background = `linear-gradient(90deg, ${data.shades.join(", ")})`;
   fill(pickCar, data.cars.map((one, i) => [i, one.name]));

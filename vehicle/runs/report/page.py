@@ -14,7 +14,7 @@ from markupsafe import Markup
 
 from vehicle.errors import ConfigurationError
 from vehicle.runs.report import sections
-from vehicle.runs.report.answer import answer, explained
+from vehicle.runs.report.answer import answer, comfort_bands, explained
 from vehicle.runs.report.base_run import base_run
 from vehicle.runs.report.car_section import car_section
 from vehicle.runs.report.comfort_section import comfort
@@ -117,22 +117,24 @@ def _told_apart(runs: Sequence[FinishedRun]) -> list[FinishedRun]:
 def _of_one(run: FinishedRun, modes: Modes, trial_part: Markup) -> list[Part]:
     """Return the sections of the report of a single run, with the given section for trials."""
     base = base_run(run)
-    single = answer([run], [modes]) + sections.tiles(run)
+    single, bands = answer([run], [modes]) + sections.tiles(run), comfort_bands(run, modes)
+    if not run.responses:
+        single, bands = single + bands, Markup()
     changed = None if base is None else answer([base, run], [modes_of(base), modes])
     parts = [
         ("Result", "result", (single if changed is None else changed) + explained()),
         ("This run", "alone", None if changed is None else single),
+        ("Frequency responses", "responses", responses(run, modes) if run.responses else None),
         ("Film", "film", film(run)),
         ("Try it", "trial", trial_part),
         ("Findings", "findings", sections.what_was_found(run, modes)),
         ("Car, signal, engine", "run", sections.what_was_run(run)),
-        ("The car", "car", car_section(run.car)),
-        ("Frequency responses", "responses", responses(run, modes) if run.responses else None),
         ("Time histories", "time", sections.time_figure(run)),
         ("Dampers", "dampers", sections.dampers(run)),
-        ("Comfort", "comfort", comfort(run)),
+        ("Comfort", "comfort", bands + comfort(run)),
         ("Spectra", "spectra", spectra([run])),
         ("Measured", "measured", measured(run)),
+        ("The car", "car", car_section(run.car)),
         ("Modes", "modes", moving_modes([run], [modes])),
         ("All values", "tables", sections.tables(run)),
         ("How to repeat the run", "repeat", sections.repeating(run)),
@@ -183,7 +185,7 @@ def document(
         modes: moving modes as JSON; empty for a page without them.
         trial: section for trials, whose scripts the page gets; None for a page without it.
     """
-    run_scripts = [_file("wireframe.js"), _file("modes.js")] if modes else []
+    run_scripts = [_file("print.js"), _file("wireframe.js"), _file("modes.js")] if modes else []
     allowed, tried = "", trial if trial and trial.numbers else Trial(content=Markup())
     if tried.numbers:
         run_scripts.append(tried.script)

@@ -17,7 +17,7 @@ from vehicle.runs.report.svg_figure import drawing
 
 fill = templates(__file__)
 
-SIZE = (PAGE_WIDTH, 5.8)
+SIZE = (PAGE_WIDTH, 5.2)
 """Width and height of the figure [inch]."""
 
 STRONGEST = 6
