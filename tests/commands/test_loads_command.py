@@ -112,7 +112,7 @@ def test_damage_of_a_schedule(tmp_path, capsys, monkeypatch):
     pytest.importorskip("rainflow")
     monkeypatch.chdir(tmp_path)
     small, large = sine(tmp_path / "small", 300.0, 100.0), sine(tmp_path / "large", 600.0, 50.0)
-    assert main([small, large, "--repeats", "32,2", "--slope", "5", "--reference", small]) == 0
+    assert main([small, large, "--repeats", "32,2", "--slope", "5", "--reference-run", small]) == 0
     (row,) = rows_of(tmp_path / "schedule.csv")
     # 3200 cycles of the smaller and 100 of the larger do the same damage; the ends of a record count by halves.
     assert float(row["share of small [-]"]) == pytest.approx(0.5, abs=0.01)

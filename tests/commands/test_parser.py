@@ -117,6 +117,8 @@ SAME_IDEA = {
     "--wheel": "a wheel of the car",
     "--speed": "speed of the car; on a road also a channel of its record",
     "--video": "a film",
+    "--road": "a road; over several speeds it is a class or level",
+    "--rpm": "speeds of the crankshaft: one, a run-up, or steady points",
     "--from": "where something begins: at a time of a file, or with a template car",
 }
 """Options whose values are written in several ways, and the one meaning that they have."""

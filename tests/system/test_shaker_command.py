@@ -15,6 +15,7 @@ import pytest
 from scenarios.signals.random_road import random_road
 from tests.benchmarks.frf_accuracy import banded_input
 from tests.patience import HANG
+from vehicle.digits import number
 from vehicle.errors import DataError
 from vehicle.model.parameters.shipped import FOCUS_FILE
 from vehicle.model.parameters.template import SHIPPED
@@ -50,7 +51,7 @@ def test_a_run_has_all_files_and_keys(shaker, short_signal, tmp_path):
         first = arrays["time"][np.abs(arrays["damper_fl_velocity"]) > summary["slip_share"]["slip_velocity"]][0]
     assert summary["first_slip_s"]["fl"] == pytest.approx(first, abs=1e-9)
     assert summary["first_friction_saturated_s"]["fl"] < summary["first_slip_s"]["fl"]
-    assert f"{100 * summary['slip_share']['fl']:.2f} % (left) of the time" in outcome.out
+    assert f"{number(100 * summary['slip_share']['fl'])} % (left) of the time, first at {first:.3g} s" in outcome.out
     assert set(summary["comfort"]["seat_rail"]["rms_2_50_hz"]) == {"x", "y", "z", "overall"}
     assert set(summary["static"]) == {"tyre_load_n", "rear_support_load_n", "residual_m"}
     assert summary["static"]["residual_m"] < 1e-6

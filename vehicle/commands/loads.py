@@ -38,7 +38,10 @@ def parser() -> Parser:
     )
     parser.add_argument("--repeats", metavar="N,...", help="repeats of each run of the schedule; 1 by default")
     parser.add_argument(
-        "--reference", type=Path, metavar="RUN", help="run, as of a reference road, whose damage is 1 in schedule.csv"
+        "--reference-run",
+        type=Path,
+        metavar="RUN",
+        help="run, as of a reference road, whose damage is 1 in schedule.csv",
     )
     parser.add_argument(
         "--channels", metavar="NAME,...", help="channels to count; all forces, torques and travels by default"
@@ -69,7 +72,7 @@ def _job(options: argparse.Namespace) -> None:
     source = time_file(options.runs[0])
     require_within("--classes", options.classes, "[1, 10000]")
     require_within("--slope", options.slope, "[1, 1000)")
-    if len(options.runs) > 1 or options.reference or options.repeats:
+    if len(options.runs) > 1 or options.reference_run or options.repeats:
         _schedule(options)
         return
     record = read_columns(source)
@@ -111,7 +114,7 @@ def _schedule(options: argparse.Namespace) -> None:
     except ValueError:
         raise ConfigurationError(f"--repeats {options.repeats}: must be numbers, as --repeats 100,20") from None
     runs = [_counted(run, options) for run in options.runs]
-    reference = None if options.reference is None else _counted(options.reference, options)
+    reference = None if options.reference_run is None else _counted(options.reference_run, options)
     rows = scheduled_loads(runs, repeats, options.slope, reference)
     (path,) = output_files_of(options, Path(), (SCHEDULE,))
     parts = ", ".join(f"{count:g} x {run.name}" for count, run in zip(repeats, runs, strict=True))

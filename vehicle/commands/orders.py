@@ -158,7 +158,7 @@ def _orders(text: str) -> list[float]:
 
 
 def _write(options: argparse.Namespace, results: OrderPoints, name: str, caption: str) -> None:
-    from vehicle.runs.output.folder import output_folder, write_whole
+    from vehicle.runs.output.folder import output_folder, write_text, write_whole
     from vehicle.runs.report.order_page import draw_cuts, draw_map, order_page
     from vehicle.signals.formats.text_format import write_table
 
@@ -171,4 +171,4 @@ def _write(options: argparse.Namespace, results: OrderPoints, name: str, caption
             write_whole(folder / "orders.png", lambda file: draw_cuts(file, results, name, caption))
             write_whole(folder / "campbell.png", lambda file: draw_map(file, results, name, caption))
             page = order_page(results, name, caption, command=command)
-            write_whole(folder / "report.html", lambda file: file.write_text(page, encoding="utf-8"))
+            write_text(folder / "report.html", page)

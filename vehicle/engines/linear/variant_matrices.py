@@ -161,12 +161,18 @@ class VariantTerms:
             outputs={name: to_new(row) for name, row in reference.outputs.items()},
             **system_of_laws,
         )
+        slips, branches = self.matrices.force_slips, len(system.branch_stiffness)
+        if slips.shape[1] != branches:
+            if slips.any():  # the treads may have other branches
+                return None
+            slips = np.zeros((len(slips), branches))
         lines, coefficients = force_lines(vehicle.composition.forces)
         matrices = replace(
             self.matrices,
             system=system,
             sensors=to_new(self.matrices.sensors),
             force_rows=to_new(self.matrices.force_rows),
+            force_slips=slips,
             lines=lines,
             coefficients=coefficients,
             body_centres={**self.matrices.body_centres, "body": np.array(vehicle.body.cog)},
