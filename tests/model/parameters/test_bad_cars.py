@@ -231,7 +231,7 @@ def test_a_point_that_nothing_uses(tmp_path, capsys):
 
 HEAD = "velocity [m/s],force [N]\n"
 CURVES = {
-    "missing": (None, "no such file; give the path of a CSV file"),
+    "missing": (None, "no such file; give the name of a file beside the vehicle file"),
     "empty": ("", "test.csv: the file is empty"),
     "binary": ("\0\0\0", "test.csv:1:1: NUL byte"),
     "head": ("speed [m/s],force [N]\n-1,-1\n1,1\n", "test.csv:1: no column 'velocity [m/s]'; found 'speed [m/s]'"),

@@ -160,13 +160,14 @@ TABLES = {
     "stop": ("damper", FRONT_TABLES["damper"].split("[front.damper.stop]")[0] + 'stop = { curve = "front.bum" }',
              r"front\.damper\.stop\.bump\.curve"),
     "missing": ("main_spring", '[front.main_spring]\ncurve = "none.spr"', "front.main_spring.curve: .*none.spr"),
-    "csv": ("bushings.arm_front", '[front.bushings.arm_front]\ncurve = "none.csv"', "is no property file"),
+    "csv": ("bushings.arm_front", '[front.bushings.arm_front]\ncurve = "axis.csv"', "is no property file"),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("case", TABLES)
 def test_a_wrong_table_is_refused_by_its_path(case, tmp_path):
     name, table, message = TABLES[case]
+    (tmp_path / "axis.csv").write_text("displacement [m],force [N]\n-1,-1\n1,1\n")
     with pytest.raises(ConfigurationError, match=message):
         load_vehicle(write_car(tmp_path, {**FRONT_TABLES, name: table}))
 
@@ -175,3 +176,23 @@ def test_an_xml_property_file_is_refused_with_the_mend(tmp_path):
     files = {**FILES, "front.dpr": "<?xml version='1.0'?>\n<!-- [MDI_HEADER] -->"}
     with pytest.raises(ConfigurationError, match="XML property file; save it in TeimOrbit format"):
         load_vehicle(write_car(tmp_path, files=files))
+
+
+def test_a_file_that_is_not_beside_the_car_is_in_the_working_folder(tmp_path, monkeypatch):
+    """As an option `--set ...curve=FILE` is typed; a file of this name beside the vehicle file comes first."""
+    beside = numbers(write_car(tmp_path), "front.damper")
+    car, work = tmp_path / "car", tmp_path / "work"
+    car.mkdir()
+    work.mkdir()
+    for path in tmp_path.iterdir():
+        if path.is_file():
+            path.rename((car if path.suffix == ".toml" else work) / path.name)
+    file = next(car.glob("*.toml"))
+    with pytest.raises(ConfigurationError, match="no such file"):
+        load_vehicle(file)
+    monkeypatch.chdir(work)
+    assert numbers(file, "front.damper") == beside
+    damper = next(work.glob("*.dpr"))
+    (car / damper.name).write_text("no property file")
+    with pytest.raises(ConfigurationError, match=damper.name):
+        load_vehicle(file)

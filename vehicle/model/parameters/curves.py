@@ -60,7 +60,7 @@ def with_curve_files(table: Mapping[str, Any], folder: Path) -> dict[str, Any]:
 
     Args:
         table: vehicle file.
-        folder: folder that the file names are relative to.
+        folder: folder that the file names are relative to; files that are not there are in the working folder.
 
     Raises:
         ConfigurationError: a file or a part of it is missing or wrong, or numbers are given twice; with the path.
@@ -73,7 +73,7 @@ def curve_sources(table: Mapping[str, Any], folder: Path) -> dict[str, str]:
 
     Args:
         table: vehicle file.
-        folder: folder that the file names are relative to.
+        folder: folder that the file names are relative to; files that are not there are in the working folder.
 
     Raises:
         ConfigurationError: see `with_curve_files`.
@@ -93,7 +93,7 @@ def _filled(table: Mapping[str, Any], folder: Path, prefix: str, sources: dict[s
         elif isinstance(value, Mapping):
             filled[key] = _filled(value, folder, path, sources)
         elif isinstance(value, str) and (key == "fmu" or (key == "file" and prefix.startswith("force."))):
-            filled[key] = (folder / value).resolve().as_posix()
+            filled[key] = _beside(folder, value).resolve().as_posix()
         elif key != "curve":
             filled[key] = value
         else:
@@ -102,10 +102,26 @@ def _filled(table: Mapping[str, Any], folder: Path, prefix: str, sources: dict[s
                     f"{path}: found {value!r}; must be the name of a file, without "
                     f"{' and '.join(twice) if isinstance(value, str) else 'force'} in the same table"
                 )
-            numbers, source = _numbers(table, folder / value, path)
+            numbers, source = _numbers(table, _file(folder, value, path), path)
             filled |= {name: number for name, number in numbers.items() if name not in table}
             sources |= {f"{prefix}.{name}": source for name in numbers if name not in table}
     return filled
+
+
+def _file(folder: Path, name: str, path: str) -> Path:
+    """Return a file that is there; else raise an error with the path of its key in the vehicle file."""
+    file = _beside(folder, name)
+    if not file.exists():
+        raise ConfigurationError(
+            f"{path}: {file}: no such file; give the name of a file beside the vehicle file or in the working folder"
+        )
+    return file
+
+
+def _beside(folder: Path, name: str) -> Path:
+    """Return a file beside the vehicle file; if none is there, that in the working folder, as `--set` is typed."""
+    beside, typed = folder / name, Path(name)
+    return typed if typed.is_file() and not beside.exists() else beside
 
 
 def _numbers(table: Mapping[str, Any], file: Path, path: str) -> tuple[dict[str, Any], str]:
@@ -166,7 +182,8 @@ def _stop(stop: Mapping[str, Any], folder: Path, path: str, sources: dict[str, s
                 f"{path}.{end}: found {entry!r}; a stop from files has bump and rebound alone, each with curve (a "
                 "file) and clearance [m]"
             )
-        file, where = folder / entry["curve"], f"{path}.{end}.curve"
+        where = f"{path}.{end}.curve"
+        file = _file(folder, entry["curve"], where)
         if is_property_file(file):
             properties = _within(where, lambda file=file: read_property_file(file))  # type: ignore[misc]
             ends[end] = _within(where, lambda properties=properties, end=end: stop_points(properties, end))  # type: ignore[misc]
