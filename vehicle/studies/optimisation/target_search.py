@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -22,6 +23,7 @@ from vehicle.runs.targets.values import Histories, value_of
 from vehicle.runs.targets.verdict import state_of
 from vehicle.studies.optimisation.problem import Vector
 from vehicle.studies.optimisation.smallest_change import SmallestChange, smallest_change
+from vehicle.studies.sweeps.executors import process_pool
 from vehicle.studies.sweeps.measure import STEP, of_one
 from vehicle.studies.sweeps.plan import plan_sweep
 from vehicle.studies.sweeps.run_batch import Runs
@@ -230,25 +232,27 @@ def meet_targets(
     scale = np.array([figure.weight / (abs(figure.limit) or 1.0) for figure in figures.values()])
     limits, senses = (np.array([getattr(each, key) for each in figures.values()]) for key in ("limit", "sense"))
 
-    def values(positions: Vector) -> Vector:
+    def values(positions: Vector, executor: Executor) -> Vector:
         changes = [_texts(started, position) for position in positions]
         columns: dict[str, Vector] = {}
         for source, measure in measures.items():
-            settings = SweepSettings(engine="reduced", measure=measure, skip=measure.skip, jobs=jobs)
+            settings = SweepSettings(engine="reduced", measure=measure, skip=measure.skip, executor=executor)
             table = plan_sweep(car, changes, source, settings).run()
             # With one change the sweep runs the unchanged car first.
             columns |= {name: table.column(name)[-len(changes) :] for name in measure.units}
         return np.stack([columns[name] for name in names], axis=1)
 
     low, high = (np.log([getattr(each, key) / each.start for each in started]) for key in ("low", "high"))
-    change = smallest_change(
-        lambda positions: scale * senses * (values(positions) - limits),
-        low,
-        high,
-        np.array([(costs or {}).get(each.path, 1.0) for each in started]),
-        progress=progress,
-    )
-    before, after = values(np.stack([np.zeros(len(started)), change.position]))
+    # The processes of all batches of cars: each imports the program and builds the reference car once.
+    with process_pool(jobs) as executor:
+        change = smallest_change(
+            lambda positions: scale * senses * (values(positions, executor) - limits),
+            low,
+            high,
+            np.array([(costs or {}).get(each.path, 1.0) for each in started]),
+            progress=progress,
+        )
+        before, after = values(np.stack([np.zeros(len(started)), change.position]), executor)
     changed = {each.path: each.start * math.exp(u) for each, u in zip(started, change.position, strict=True)}
     return TargetSearch(
         car=car.with_(changed),
