@@ -174,6 +174,8 @@ def test_sentence():
     assert sentence(figures, "sedan", rated) == (
         "sedan meets 1 of 3 targets and misses two and three; there is no run for four."
     )
+    untried = sentence(figures, "sedan", dict.fromkeys(figures, Rated(state=NOT_RUN)))
+    assert untried == "No target was tried for sedan: none of its runs is on an input of the file."
 
 
 FAULTS = {

@@ -41,7 +41,7 @@ def spectra(runs: Sequence[FinishedRun]) -> Markup:
         for name, run in of_runs.items()
         for wheel, level in run.road_levels.items()
     ]
-    return fill("spectra", error=None, figures=figures, roads=roads)
+    return fill("spectra", error=None, single=len(runs) == 1, figures=figures, roads=roads)
 
 
 def _spectra(run: FinishedRun) -> RecordSpectra:

@@ -175,6 +175,8 @@ def sentence(figures: Mapping[str, Figure], car: str, rated: Mapping[str, Rated]
         return [figures[name].words or name.replace("_", " ") for name, each in rated.items() if each.state == state]
 
     met, missed, undecided, absent = (named(state) for state in (MET, MISSED, UNDECIDED, NOT_RUN))
+    if len(absent) == len(rated):
+        return f"No target was tried for {car}: none of its runs is on an input of the file."
     text = f"{car} meets {len(met)} of {len(rated) - len(absent)} targets"
     if missed:
         text += f" and misses {_enumeration(missed)}"
