@@ -161,11 +161,12 @@ class VariantTerms:
             outputs={name: to_new(row) for name, row in reference.outputs.items()},
             **system_of_laws,
         )
-        slips, branches = self.matrices.force_slips, len(system.branch_stiffness)
-        if slips.shape[1] != branches:
-            if slips.any():  # the treads may have other branches
+        slips = self.matrices.force_slips
+        present, before = (each.layout.bushings.branch_stiffness > 0.0 for each in (rows, self.rows))
+        if not np.array_equal(present, before):
+            if slips.any():  # the treads have other branches
                 return None
-            slips = np.zeros((len(slips), branches))
+            slips = np.zeros((len(slips), len(system.branch_stiffness)))
         lines, coefficients = force_lines(vehicle.composition.forces)
         matrices = replace(
             self.matrices,
