@@ -17,13 +17,16 @@ from typing import Any
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.quantity import PATH_PATTERN, field_quantity
 from vehicle.model.parameters.toml_file import as_table, copy_table
-from vehicle.names import AXES
+from vehicle.names import AXES, SIDE_SIGN
 
 Optional = Callable[[], Iterable[str]]
 """Function that returns the optional paths of a table, see `optional_paths`."""
 
 DECIMAL = re.compile(r"[+-]?(0|[1-9][0-9]*)(\.[0-9]+([eE][+-]?[0-9]+)?|[eE][+-]?[0-9]+)")
 """TOML number with a decimal point or an exponent."""
+
+SIDES = frozenset(SIDE_SIGN)
+"""Names of the tables of one side."""
 
 SHOWN = 4
 """Maximum number of paths that a message lists."""
@@ -50,9 +53,9 @@ def _existing(table: Mapping[str, Any], path: str) -> list[str]:
         return [path]
     if isinstance(other := table.get("alias", {}).get(path), str):
         return [full_path({**table, "alias": {}}, other)]
-    every_path = paths(table)
+    end, every_path = f".{path}", paths(table)
     groups = [candidate.rpartition(".")[0] for candidate in every_path]
-    return [candidate for candidate in dict.fromkeys([*every_path, *groups]) if candidate.endswith(f".{path}")]
+    return list(dict.fromkeys(candidate for candidate in (*every_path, *groups) if candidate.endswith(end)))
 
 
 def _only(matches: Sequence[str], path: str) -> str:
@@ -100,16 +103,24 @@ def meant(table: Mapping[str, Any], path: str, optional: Optional = list) -> lis
     every = path.startswith("*.")
     if not every and (matches := _existing(table, path)):
         return [_only(matches, path)]
+    end, existing, further = path.removeprefix("*."), paths(table), list(optional())
     # A path without a side means both sides.
-    sided = bool({"right", "left"} & set(path.split(".")))
-    existing = paths(table)
-    further = [candidate for candidate in optional() if sided or not {"right", "left"} & set(candidate.split("."))]
-    matches = [
-        candidate for candidate in (*existing, *further) if f".{candidate}".endswith(f".{path.removeprefix('*.')}")
-    ]
+    sided = _of_one_side(path)
+    matches = [each for each in existing if _ends(each, end)]
+    matches += [each for each in further if _ends(each, end) and (sided or not _of_one_side(each))]
     if not matches:
-        raise ConfigurationError(f"no parameter {path}; the nearest is {nearest(path, [*existing, *further])}")
+        known = [*existing, *(each for each in further if sided or not _of_one_side(each))]
+        raise ConfigurationError(f"no parameter {path}; the nearest is {nearest(path, known)}")
     return matches if every else [path if path in matches else _only(matches, path)]
+
+
+def _ends(path: str, end: str) -> bool:
+    """True if a path ends with these names."""
+    return path.endswith(end) and (len(path) == len(end) or path[-len(end) - 1] == ".")
+
+
+def _of_one_side(path: str) -> bool:
+    return not SIDES.isdisjoint(path.split("."))
 
 
 def assignments(overrides: Iterable[str] | Mapping[str, Any]) -> list[str]:
