@@ -29,6 +29,41 @@ LOCK = (
     "with folder_lock(Path(sys.argv[1]).resolve()): print('held', flush=True); sys.stdin.read()"
 )
 
+INTERRUPT = """
+import ctypes, subprocess, sys, time
+from pathlib import Path
+command, rows = [sys.executable, "-m", "vehicle", *sys.argv[2:]], Path(sys.argv[1])
+process = subprocess.Popen(
+    command, creationflags=subprocess.CREATE_NEW_CONSOLE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+)
+while not (rows.is_file() and rows.stat().st_size) and process.poll() is None:
+    time.sleep(0.1)
+console = ctypes.windll.kernel32
+console.FreeConsole(), console.AttachConsole(process.pid), console.SetConsoleCtrlHandler(None, True)
+console.GenerateConsoleCtrlEvent(0, 0)
+print(process.communicate()[0].decode().strip())
+sys.exit(process.returncode)
+"""
+"""Program that starts a command in a console of its own and presses Ctrl-C there once a file has content."""
+
+
+def interrupted(windows: Windows, this: Path, other: Path) -> str:
+    """Press Ctrl-C in the console of a sweep with two jobs, and resume it."""
+    folder = other / "runs" / ".interrupted.partial"
+    command = [*SWEEP[:-1], "runs/interrupted", "--jobs", "2"]
+    done = windows.run(["-c", INTERRUPT, str(folder / "rows.jsonl"), *command], other)
+    kept, text = _rows(folder), done.text.strip()
+    if done.code != 130 or "--resume goes on" not in text or not text.endswith("half-written") or not 0 < kept < 200:
+        return f"exit {done.code}, {kept} rows: {text}"
+    last = windows.run(["-m", "vehicle", *command, "--resume"], other)
+    table = other / "runs" / "interrupted" / "table.csv"
+    count = len(table.read_text(encoding="utf-8").splitlines()) - 1 if table.is_file() else 0
+    return (
+        f"= exit 130, {kept} rows kept"
+        if not last.code and count == 200
+        else f"exit {last.code}, {count} rows: {last.text}"
+    )
+
 
 def sweep_killed_twice(windows: Windows, this: Path, other: Path) -> str:
     """Kill the sweep after 50 and after 110 rows, resume it, and compare the table with that of this system."""
@@ -143,7 +178,8 @@ def unpacked(windows: Windows, this: Path, other: Path) -> str:
 
 
 HARDSHIPS: tuple[Callable[[Windows, Path, Path], str], ...] = (
-    lock_held, open_file, full_disk, read_only, film, long_path, own_encoding, sweep_killed_twice, unpacked,
+    lock_held, open_file, full_disk, read_only, film, long_path, own_encoding, interrupted, sweep_killed_twice,
+    unpacked,
 )  # fmt: skip
 """Each returns a text that begins with "=" where all is as it must be, else what was seen."""
 

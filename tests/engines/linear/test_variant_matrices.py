@@ -124,6 +124,17 @@ def test_many_numbers_at_once(file, fixed):
     require_same(reference, file, fixed, changes)
 
 
+def test_a_maxwell_branch_that_moves_to_the_other_side_moves_the_forces_on_treads():
+    # As many branches as before, in another order; a change of the rolling radius acts on those of the treads.
+    fixed = ("driving.speed=22.0", "front.nonuniformity.rolling_runout=[[1, 3e-4, 30]]")
+    mount = "bushings.suspension_mount.damping"
+    changes = [f"front.right.{mount}=[0.0, 8000.0, 0.0]", f"front.left.{mount}=[4000.0, 8000.0, 4000.0]"]
+    reference = Car.load("focus_road", fixed)
+    built = Car.load("focus_road", (*fixed, *changes))
+    assert not np.array_equal(built.matrices.force_slips, reference.matrices.force_slips)
+    same(reference.with_(changes).matrices, built.matrices, "matrices")
+
+
 def test_a_spring_on_a_corner_of_its_table_has_its_car_built():
     def table(corner, above):
         points = [(-0.4, -0.4 * RATE), (corner, corner * RATE), (0.2, corner * RATE + (0.2 - corner) * above)]
