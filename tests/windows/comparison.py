@@ -28,9 +28,10 @@ ALLOWED = {
 """Allowed difference of a number, as a part of the largest number of its column or array, by the name of the file.
 
 Phases of motions that almost vanish, and coherences and random errors, which are differences of nearly equal numbers,
-differ by more than the time histories; of these, small forces beside large ones in one matrix differ most. A table of
-rolling cars differs by 4.6e-6 (lateral RMS; 4.8e-6 under wine) between two kernels of OpenBLAS on one Linux;
-differences of cars have six printed digits."""
+differ by more than the time histories; of these, small forces beside large ones in one matrix differ most. Cars of a
+table march together in single precision: another kernel of OpenBLAS on one Linux moves the lateral RMS of rolling cars
+by 4.6e-6, and a mass larger by 1e-13 by 4e-7 (in a run of its own, in double precision, by 1e-11). Differences of cars
+have six printed digits."""
 
 ZERO = 1e-6
 """Columns whose largest number is below are zero but for the end of an iteration, as the lateral roll centre [m]."""
