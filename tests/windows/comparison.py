@@ -42,6 +42,8 @@ TIMES = re.compile(
 )
 """Texts that differ by nature: times, sizes of files, digests, names of systems, and numbers of pure round-off."""
 
+NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.])")
+
 PROGRESS = re.compile(r"\w+: +\d+ %.*|Matplotlib is building.*")
 SKIPPED = {".png", ".html", ".mp4", ".fmu", ".h5", ".svg", MARKER, "timing.csv"}
 """Endings and names of files of which only the existence is compared."""
@@ -147,7 +149,10 @@ def _pairs(first: Path, second: Path) -> Iterator[tuple[str, Any, Any]]:
     if first.suffix == ".csv":
         yield from _table_pairs(*texts)
         return
-    yield ("text", *_both(TIMES.sub("...", text) for text in texts))
+    plain = [TIMES.sub("...", text).replace("\\", "/") for text in texts]
+    yield ("text", *_both(NUMBER.sub("0", text) for text in plain))
+    for number, (one, two) in enumerate(zip(*map(NUMBER.findall, plain), strict=False)):
+        yield f"number {number}", np.array([float(one)]), np.array([float(two)])
 
 
 def _table_pairs(first: str, second: str) -> Iterator[tuple[str, Any, Any]]:
