@@ -43,6 +43,16 @@ TEMPLATES = {
     "a word for a switch": ("mirrored = true", 'mirrored = "yes"', "mirrored: found 'yes', must be true or false"),
     "a number as meaning": ('tie_inner = "steering rod on the body"', "tie_inner = 3", "hardpoints.tie_inner: found 3"),
     "a number for two points": ("above = [", "above = [3,", "above: found 3, must be a list"),
+    "a default of no port": (
+        'rack = "body"',
+        'rak = "body"',
+        "port_defaults.rak: found 'rak', unknown name; the nearest",
+    ),
+    "a port as no part": (
+        'rack = "body"',
+        'rack = "bodi"',
+        "port_defaults.rack: found 'bodi', unknown name; the nearest",
+    ),
     "one point above": ("above = [", 'above = [["strut_top"],', "above: found ['strut_top']; must be two points"),
     "not TOML": ("mirrored = true", "mirrored = tru", "not a TOML file: Invalid value (at line"),
     "no axis": (f", {LINE}", "", "joint.damper.along: a slide needs two points in along, or its axis, one of them"),

@@ -23,6 +23,7 @@ FOCUS_ROAD = {
 BRAKING = "anti-dive (front) or anti-lift (rear), braking [%]"
 UNUSUAL = {
     "sedan": set(),
+    "sedan_steering": set(),
     "focus_road": FOCUS_ROAD,
     "focus_road_seated": FOCUS_ROAD,
     # On rubber blocks behind: its body moves on them, not on a rear axle.

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from vehicle.errors import ConfigurationError, VehicleError
+from vehicle.model.parameters.engine_orders import ORDERS
 
 if TYPE_CHECKING:
     from vehicle.signals.formats.table import Header
@@ -56,7 +57,7 @@ def require_curve(where: str, key: str, positions: Sequence[float], forces: Sequ
 
 def with_curve_files(table: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     """Return a vehicle file with every `curve = FILE` replaced by the numbers of the file, and whole paths of FMUs
-    and of the files of forces.
+    and of the files of forces and of pressures.
 
     Args:
         table: vehicle file.
@@ -92,7 +93,11 @@ def _filled(table: Mapping[str, Any], folder: Path, prefix: str, sources: dict[s
             filled[key] = _stop(value, folder, path, sources)
         elif isinstance(value, Mapping):
             filled[key] = _filled(value, folder, path, sources)
-        elif isinstance(value, str) and (key == "fmu" or (key == "file" and prefix.startswith("force."))):
+        elif isinstance(value, str) and (
+            key == "fmu"
+            or (key == "file" and prefix.startswith("force."))
+            or (key == "pressure" and prefix.endswith(f".{ORDERS}"))
+        ):
             filled[key] = _beside(folder, value).resolve().as_posix()
         elif key != "curve":
             filled[key] = value

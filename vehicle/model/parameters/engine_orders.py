@@ -38,6 +38,13 @@ class EngineOrders:
     torque: float = quantity(
         "N m", "mean torque of the gas of all cylinders", at_least=0.0, at_most=2000.0, default=0.0
     )
+    pressure: str | None = quantity(
+        "-",
+        "file with the absolute pressure in a cylinder over the crank angle, 0 at the top dead centre of combustion; "
+        "in place of torque and compression of the modelled gas",
+        is_file=True,
+        default=None,
+    )
     compression: float = quantity("-", "ratio of compression", at_least=5.0, at_most=25.0, default=10.5)
     balance_share: float = quantity(
         "-", "share of the force of order 2 that balance shafts cancel", at_least=0.0, at_most=1.0, default=0.0
@@ -49,7 +56,13 @@ class EngineOrders:
         at_most=1.0,
         default=0.0,
     )
-
+    backward_balance_share: float = quantity(
+        "-",
+        "share of the part of order 1 that turns against the crankshaft and that a balance shaft cancels",
+        at_least=0.0,
+        at_most=1.0,
+        default=0.0,
+    )
     highest_order: float = quantity("-", "highest order that is applied", at_least=1.0, at_most=16.0, default=6.0)
     at: Point | None = quantity(
         "m",
@@ -65,6 +78,11 @@ class EngineOrders:
             raise ConfigurationError(
                 f"EngineOrders.firing: found {list(self.firing)}, must name each of the {self.cylinders:g} cylinders "
                 "once, as [1, 3, 4, 2]"
+            )
+        if self.pressure is not None and self.torque:
+            raise ConfigurationError(
+                f"EngineOrders.torque: found {self.torque:g} N m beside a file of the pressure, which gives it; set "
+                "torque or pressure"
             )
         if self.rod <= 0.5 * self.stroke:
             raise ConfigurationError(f"EngineOrders.rod: found {self.rod:g} m, must be above half the stroke")

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from vehicle.errors import ConfigurationError
+from vehicle.errors import ConfigurationError, VehicleError
 from vehicle.model.parameters.additions import named_part, named_point, new_loads
 from vehicle.model.parameters.applied_force import CRANK, AppliedForce, require_harmonics
 from vehicle.model.parameters.composition import PlacedConnection, PlacedPart, PlacedWheel
@@ -181,8 +181,9 @@ def _direction(path: str, value: Any) -> Point:
 def engine_forces(car: Mapping[str, Instance], targets: ForceTargets) -> list[PlacedForce]:
     """Return the forces of the orders of all engines on their blocks; none at standstill of the crankshaft.
 
-    Counterweights at the share k of the pistons take k off the order 1 along the cylinders, and add k of it a quarter
-    turn later across them; likewise the moments.
+    The order 1 of the pistons is half a vector that turns with the crankshaft and half a vector that turns backward.
+    Counterweights at the share k of the pistons leave 1/2 - k of the first, a balance shaft at the share s leaves
+    (1 - s)/2 of the second: 1 - k - s/2 along the cylinders, and k - s/2 a quarter turn later across them.
 
     Args:
         car: instances by name.
@@ -202,8 +203,10 @@ def engine_forces(car: Mapping[str, Instance], targets: ForceTargets) -> list[Pl
         part, speed = instance.part(ENGINE, None), targets.speeds[CRANK]
         try:
             block = block_forces(engine, speed, round(engine.highest_order))
-        except ConfigurationError as error:
-            raise ConfigurationError(str(error).replace("EngineOrders", path, 1)) from None
+        except VehicleError as error:
+            text = str(error)
+            named = text.replace("EngineOrders", path, 1) if "EngineOrders" in text else f"{path}.pressure: {text}"
+            raise ConfigurationError(named) from None
         rising: float | None = None
         gas = dict[float, complex]()
         if targets.run_up is not None and speed > 0.0:
@@ -213,11 +216,11 @@ def engine_forces(car: Mapping[str, Instance], targets: ForceTargets) -> list[Pl
             for order, amplitude in gas.items():
                 block.torque[order] -= amplitude
         shaft, cylinders, across = engine.axes
-        share, first = engine.counterweight_share, 1.0
-        turned_force = {first: 1j * share * block.force[first]}
-        turned_moment = {first: -1j * share * block.moment[first]}
+        forward, backward, first = engine.counterweight_share, 0.5 * engine.backward_balance_share, 1.0
+        turned_force = {first: 1j * (forward - backward) * block.force[first]}
+        turned_moment = {first: -1j * (forward - backward) * block.moment[first]}
         for histories in (block.force, block.moment):
-            histories[first] *= 1.0 - share
+            histories[first] *= 1.0 - forward - backward
         for name, harmonics, force, moment in (
             ("force", block.force, cylinders, NONE),
             ("force_across", turned_force, across, NONE),

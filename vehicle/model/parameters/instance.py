@@ -176,7 +176,8 @@ class Instance:
         name, _, ref_side = ref.partition(":")
         if name in self.template.parts or name == "plate":
             return self.label(name, ref_side or side)
-        bound = convert(str, self.numbers.get("ports", {}).get(name, name), f"{self.name}.ports.{name}")
+        default = self.template.port_defaults.get(name, name)
+        bound = convert(str, self.numbers.get("ports", {}).get(name, default), f"{self.name}.ports.{name}")
         if bound == name and name in self.template.ports:
             self.missing(f"ports.{name}", self.template.ports[name])
         other, dot, inner = bound.rpartition(".")

@@ -9,8 +9,9 @@ F = -m w^2 x'' along the cylinder and the crankshaft by T = -m w^2 x' x''; the g
 T = (p - p0) A (-x'). The block gets minus both torques, by the side thrust of the pistons, and the moments of the
 forces of the cylinders about the axis across. Cylinder k is behind cylinder 1 by its angle of firing.
 
-Gas: compression and expansion with the exponent `GAMMA`, combustion by Wiebe's law, exhaust at ambient pressure. Charge
-and heat are proportional to the pressure at the inlet, which is set so that the mean torque is the given one.
+Gas: a measured pressure (`pressure_trace`), or a model: compression and expansion with the exponent `GAMMA`, combustion
+by Wiebe's law, exhaust at ambient pressure. Charge and heat are proportional to the pressure at the inlet, which is set
+so that the mean torque is the given one.
 Sources: Taylor, The Internal-Combustion Engine in Theory and Practice, vol. 2, 1985, chapter 8; Heywood, Internal
 Combustion Engine Fundamentals, 1988, chapter 9.
 """
@@ -24,6 +25,7 @@ import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.engine_orders import EngineOrders
+from vehicle.model.parameters.pressure_trace import pressure_at
 
 Vector = npt.NDArray[np.float64]
 
@@ -108,10 +110,13 @@ def gas_torque(engine: EngineOrders) -> Vector:
     """Return the torque of the gas of one cylinder on the crankshaft over a cycle [N m]; (n,).
 
     Raises:
-        ConfigurationError: the mean torque is more than the engine gives.
+        ConfigurationError: the mean torque is more than the engine gives, or there is no file of the pressure.
+        DataError: see `pressure_at`.
     """
     _, rate, _ = piston(engine, crank_angles())
     lever = -0.25 * np.pi * engine.bore**2 * rate
+    if engine.pressure is not None:
+        return np.asarray((pressure_at(engine.pressure, crank_angles()) - AMBIENT) * lever)
     # The pressure over p0 is a sum of a part for the inlet pressure and a part for p0.
     unit = gas_pressure(engine, 1.0e5) - AMBIENT
     double = gas_pressure(engine, 2.0e5) - AMBIENT

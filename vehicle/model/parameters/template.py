@@ -89,7 +89,7 @@ def _read_once(
             file=f"{name}.toml",
             parts=parts,
             above=tuple(map(tuple, raw["above"])),
-            **{key: raw[key] for key in ("mirrored", "hardpoints", "ports")},
+            **{key: raw[key] for key in ("mirrored", "hardpoints", "ports", "port_defaults")},
             **lists,
             **single,
         )
@@ -131,12 +131,12 @@ def _merged(name: str, options: frozenset[str], searched: tuple[Path, ...], abov
                 merged[key] = merged[key] or table[key]
     except ConfigurationError as error:
         raise ConfigurationError(f"{path.name}: {error}") from None
-    return {**merged, "ports": template["ports"]}
+    return {**merged, "ports": template["ports"], "port_defaults": template["port_defaults"]}
 
 
 def _renamed(table: dict[str, Any], use: Mapping[str, Any]) -> dict[str, Any]:
     """Return an included template with a prefix before its names and with its ports bound."""
-    prefix, bound = use.get("prefix", ""), use.get("with", {})
+    prefix, bound = use.get("prefix", ""), {**table["port_defaults"], **use.get("with", {})}
     for port in bound:
         if port not in table["ports"] and port not in FREE_PORTS:
             raise ConfigurationError(
@@ -188,6 +188,12 @@ def _check(template: Template, raw: Mapping[str, Any]) -> None:
                     f"{' or a '.join(kinds)}"
                 )
 
+    for port, part in template.port_defaults.items():
+        for word, known in ((port, {*template.ports}), (part, parts - {port})):
+            if word not in known:
+                raise ConfigurationError(
+                    f"port_defaults.{port}: found {word!r}, unknown name; the nearest is {nearest(word, known)}"
+                )
     used: set[str] = set()
 
     def look(where: str, table: Mapping[str, Any]) -> None:

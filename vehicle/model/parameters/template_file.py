@@ -18,6 +18,7 @@ TEMPLATE_KEYS: dict[str, Any] = {
     "use": tuple[dict, ...],  # type: ignore[type-arg]
     "hardpoints": Mapping[str, str],
     "ports": Mapping[str, str],
+    "port_defaults": Mapping[str, str],
     "parts": Mapping[str, dict],  # type: ignore[type-arg]
     "wheel": dict,
     "steering_axis": dict,
@@ -61,7 +62,7 @@ def read_template_file(path: Path) -> dict[str, Any]:
         "steering_axis": table.get("steering_axis"),
         "use": table.get("use", []),
         "above": list(table.get("above", [])),
-        **{key: dict(table.get(key, {})) for key in ("hardpoints", "ports", "parts")},
+        **{key: dict(table.get(key, {})) for key in ("hardpoints", "ports", "port_defaults", "parts")},
         **{key: [_listed(entry) for entry in table.get(key, [])] for key in LISTS},
     }
 

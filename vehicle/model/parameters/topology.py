@@ -156,6 +156,8 @@ class Template:
     mirrored: bool
     hardpoints: Mapping[str, str] = field(default_factory=dict)
     ports: Mapping[str, str] = field(default_factory=dict)
+    port_defaults: Mapping[str, str] = field(default_factory=dict)
+    """parts that ports stand for if the vehicle file does not bind them"""
     parts: Mapping[str, RolePart] = field(default_factory=dict)
     wheel: Wheel | None = None
     steering_axis: SteeringAxis | None = None
