@@ -34,7 +34,7 @@ def plate_frf(
     car.vehicle.require_channels(channels, car.vehicle.acceleration_channels)
     form = first_order(car.matrices.system, stuck=stuck)
     driven = [float(name == wheel) for name in car.vehicle.wheels]
-    return frequency_response(form, frequency, channels, "acceleration", driven=driven)
+    return np.asarray(frequency_response(form, frequency, channels, "acceleration", driven=driven))
 
 
 def force_frf(
@@ -47,4 +47,4 @@ def force_frf(
         raise ConfigurationError("frequency: must be finite numbers of at least 0.0 Hz")
     index = np.array([force_named(force, car.vehicle.composition.forces)])
     speeds = (2.0 * np.pi * lines).tolist()
-    return unit_response(car.matrices, channels, speeds, index, stuck=stuck)[0]
+    return np.asarray(unit_response(car.matrices, channels, speeds, index, stuck=stuck)[0])
