@@ -30,6 +30,10 @@ _UNITS = {
     r"\w+_torque": "N m",
     r"\w+_coefficient": "N s/m",
     r"coordinate_\d+": "-",
+    r"force_[\w.-]+": "N",
+    r"torque_[\w.-]+": "N m",
+    "angle_crank": "rad",
+    "speed_crank": "1/min",
 }
 
 

@@ -303,3 +303,33 @@ def test_the_range_beside_a_run_up_of_the_engine_is_that_of_the_wheels():
     (line,) = force_values(car.run(road("level", 120, duration=6), engine="reduced"))["orders"]
     low, high = line["stuck_range"]["seat_rail_acc_z"]
     assert high > 0.0 and low <= line["stuck"]["seat_rail_acc_z"] <= high * (1.0 + 1e-9)
+
+
+def test_order_2_of_a_brake_has_a_part_from_order_1_squared():
+    """Without friction: half the torque of order 1 makes a quarter of order 2; without that part both engines agree."""
+    channels = ["seat rail z", "seat rail x", "knuckle_fr_acc_z", "knuckle_fr_acc_x"]
+
+    def orders(engine: str, *torque: list[float]) -> np.ndarray:
+        car = Car.load("sedan", {"front.right.brake_variation.torque": [*torque], **FREE})
+        run = car.run(road("level", 100, duration=5), engine=engine)
+        return np.asarray(run.orders(channels, angle="wheel_fr", orders=[2]).amplitude[:, 0])
+
+    whole, half = orders("mujoco", [1, 20, 30]), orders("mujoco", [1, 10, 30])
+    validated(
+        "Applied forces",
+        "sedan, brake variation of 20 over 10 N m in order 1, 100 km/h: order 2 of seat rail and knuckle in MuJoCo",
+        np.abs(whole / half),
+        4.0,
+        source="closed form: second order of the motion",
+        rel=1e-2,
+    )
+    both, linear = (orders(engine, [1, 20, 30], [2, 10, -60]) for engine in ("mujoco", "reduced"))
+    assert np.max(np.abs(both - linear) / np.abs(both)) > 0.1  # what it explains
+    validated(
+        "Applied forces",
+        "sedan, brake variation in orders 1 and 2: order 2 in MuJoCo less that by order 1 alone",
+        np.abs(both - whole - linear) / np.abs(both),
+        0.0,
+        source="second derivation: reduced engine",
+        abs=5e-3,
+    )

@@ -84,8 +84,11 @@ def _job(options: argparse.Namespace) -> None:
         f"step {1e3 * fmu.step:g} ms; inputs belong to the end of a communication step; displacement and velocity of "
         "each plate are needed"
     )
-    if forces := [force.name for force in car.vehicle.composition.forces if force.law.harmonics]:
-        print(f"note: the harmonics of {', '.join(forces)} are not in the FMU; means are")
+    forces = [force for force in car.vehicle.composition.forces if force.harmonics or force.recorded]
+    if pushed := [force.channel for force in forces if force.path.startswith("force.")]:
+        print(f"note: {', '.join(pushed)}: inputs; the FMU has the means of these forces, not their harmonics or files")
+    if others := [force.name for force in forces if not force.path.startswith("force.")]:
+        print(f"note: {', '.join(others)}: not in the FMU; give it a table [force.NAME], which is an input")
 
 
 main = command(parser, _job)

@@ -59,6 +59,9 @@ def parser() -> Parser:
         help="speed of the crankshaft [1/min], or a run-up from A to B over --duration, or steady points, the runs of "
         "`python -m vehicle orders`; without --input and --road on a level road",
     )
+    parser.add_argument(
+        "--no-forces", action="store_true", help="leave out all applied forces of the car: --set apply_forces=false"
+    )
     file.add_argument("--interpolate", action="store_true", help="fill missing displacements by interpolation")
     file.add_argument("--remove-mean", action="store_true", help="subtract the mean of the displacement")
     read = parser.scoped_group(
@@ -98,7 +101,8 @@ def parser() -> Parser:
         dest="recorded",
         metavar="loads|all|NAME,...",
         help="record more than the default channels: loads, the forces of all elements [N] and the suspension travel "
-        "[m], or some of these by name; all is everything, with the coefficients of semi-active dampers [N s/m]; "
+        "[m], or some of these by name; all is everything, with the coefficients of semi-active dampers [N s/m] and "
+        "applied forces (force_NAME, torque_NAME, angle_crank, speed_crank); "
         "python -m vehicle loads counts their cycles",
     )
     parser.add_argument(
@@ -140,6 +144,12 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.signals.excitation.evaluation_start import evaluation_start
     from vehicle.signals.excitation.input_files import find_input
 
+    if options.no_forces:
+        if options.rpm is not None:
+            raise ConfigurationError(
+                "--rpm: turns the crankshaft of forces that --no-forces leaves out; give one of both"
+            )
+        options.overrides = [*options.overrides, "apply_forces=false"]
     if options.rpm is not None and options.rpm.count(":") == 2:
         steady_points(options)
         return

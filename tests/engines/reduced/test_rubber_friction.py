@@ -68,6 +68,7 @@ def mount_rows(car):
         friction=np.zeros((2, 2)),
         law=np.array([[0.0, 0.0], [1.0, 0.0]]),
         slope=np.zeros((2, 0)),
+        applied=np.zeros((2, 0)),
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 import tempfile
 import weakref
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -121,7 +121,13 @@ def plates_of(signal: Signal, duration: float, step: float = STEP) -> Vector:
 
 
 def drive(
-    instance: Instance, signal: Signal, plates: Vector, outputs: Sequence[str], every: int, length: float = STEP
+    instance: Instance,
+    signal: Signal,
+    plates: Vector,
+    outputs: Sequence[str],
+    every: int,
+    length: float = STEP,
+    forces: Mapping[str, Callable[[float], float]] | None = None,
 ) -> Vector:
     """Drive a fresh instance over the plates.
 
@@ -132,19 +138,23 @@ def drive(
         outputs: names of the outputs.
         every: communication steps from one sample of the outputs to the next.
         length: communication step [s].
+        forces: applied forces over time [s] by the name of their variables.
 
     Returns:
         Outputs at the samples; (outputs, samples).
     """
     names = [f"plate_{wheel}_{quantity}" for wheel in signal.wheels for quantity in ("displacement", "velocity")]
     rolling = [f"plate_{wheel}_slope_excess" for wheel in signal.wheels if signal.slope_velocity]
+    pushed = forces or {}
     instance.begin()
     instance.set(dict(zip(names, plates[0, :, :2].ravel(), strict=True)))
+    instance.set({name: force(0.0) for name, force in pushed.items()})
     instance.end_initialization()
     rows = [instance.get(outputs)]
     for k, (before, plate) in enumerate(pairwise(plates), start=1):
         instance.set(dict(zip(names, plate[:, :2].ravel(), strict=True)))
         instance.set(dict(zip(rolling, before[:, 2], strict=False)))
+        instance.set({name: force(k * length) for name, force in pushed.items()})
         instance.step(length)
         if k % every == 0:
             rows.append(instance.get(outputs))

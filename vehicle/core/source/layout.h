@@ -103,12 +103,14 @@
  * friction, likewise; law_corners: their breakpoints and slope changes. rows: of outputs, then of watched quantities,
  * over states and z; by_force, by_slope, by_law: over damper forces, forces on slopes and forces of laws at the same
  * instant; fixed: static values; kinds: kind and damper of each output; limits: lowest and highest value of each
- * watched quantity; notices: what a value beyond means; names: of plates, then of dampers. */
+ * watched quantity; notices: what a value beyond means; names: of plates, then of dampers; forces: names of the applied
+ * forces, which are plates of the march after those of the wheels: z' is the force. */
 #define EMBEDDED_FIELDS(F) \
   F(March, march) F(double, step) F(Records, dampers) F(Indices, inner) F(Table, parameters) F(Lanes, start) \
   F(Table, sensor_start) \
   F(Table, law_start) F(Tables3, law_corners) F(Lanes, rows) F(Table, by_force) F(Table, by_slope) F(Table, by_law) \
-  F(Vector, fixed) F(Indices, kinds) F(Table, limits) F(Texts, names) F(Texts, notices)
+  F(Vector, fixed) F(Indices, kinds) F(Table, limits) F(Texts, names) F(Texts, notices) \
+  F(Texts, forces)
 
 /* ---- rows of MuJoCo: `element_records`, `step_records` and `sampling` of vehicle/engines/simulation ---- */
 
@@ -173,8 +175,8 @@
   F(Index, tyres) F(Index, hubs) F(Vector, radii) F(Indices, dofs)
 
 #define APPLIED_FIELDS(F) \
-  F(Index, sites) F(Table, directions) F(Index, forces) F(Indices, dofs) F(Index, nodes) F(Table, shapes) \
-  F(Indices, torques) F(Vector, means)
+  F(Index, sites) F(Table, directions) F(Index, frames) F(Index, forces) F(Indices, dofs) F(Index, nodes) \
+  F(Table, shapes) F(Indices, torques) F(Vector, means)
 
 #define FLUIDS_FIELDS(F) \
   F(Index, elements) F(Index, dofs) F(Index, places) F(Vector, factors)

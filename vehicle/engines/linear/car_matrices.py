@@ -107,6 +107,14 @@ class CarMatrices:
         none = {name: getattr(self, name)[:0] for name in ("force_rows", "force_slips", "force_heights")}
         return replace(self, **none, lines=ForceLines(), coefficients=np.zeros((0, 0)))
 
+    def with_unit_forces(self, forces: Sequence[int]) -> CarMatrices:
+        """Return the matrices whose histories are some of the forces themselves, without those of the car.
+
+        Args:
+            forces: indices of the forces on parts and joints.
+        """
+        return replace(self, lines=ForceLines(), coefficients=np.eye(len(self.force_rows))[:, list(forces)])
+
     @property
     def applied(self) -> Vector:
         """Generalised forces per unit of each history of the applied forces; (n, lines)."""

@@ -41,22 +41,48 @@ def forced_response(
     if not stuck:
         slopes = np.array([float(damper_curve(law).slope(0.0)) for law in dampers]) - matrices.viscous
         damping = system.damping + system.slide_rows.T @ (slopes[:, None] * system.slide_rows)
-        system = replace(system, damping=damping)
+        matrices = replace(matrices, system=replace(system, damping=damping))
+    frequencies = matrices.lines.frequencies
+    constant = matrices.coefficients[:, : 2 * len(frequencies)]
+    amplitudes = constant[:, ::2] - 1j * constant[:, 1::2]
+    unit = unit_response(matrices, channels, frequencies, np.arange(len(amplitudes)), stuck=stuck)
+    return np.asarray(unit * amplitudes[:, None, :])
+
+
+def unit_response(
+    matrices: CarMatrices,
+    channels: Sequence[str],
+    frequencies: Sequence[float],
+    forces: npt.NDArray[np.intp],
+    *,
+    stuck: bool,
+) -> npt.NDArray[np.complex128]:
+    """Return the complex amplitudes of acceleration channels per unit of applied forces.
+
+    Args:
+        matrices: matrices of the car; dampers that move have the viscous part that its C contains.
+        channels: names of acceleration channels.
+        frequencies: angular frequencies W [rad/s].
+        forces: indices of the forces in the order of `matrices.force_rows`.
+        stuck: lock the dampers.
+
+    Returns:
+        Amplitudes of Re(Z exp(jWt)) [m/s2 per N, N m, m or m/s]; (forces, channels, frequencies).
+    """
+    system = matrices.system
     basis = free_basis(system, stuck=stuck)
     mass, damping, stiffness = (basis.T @ part @ basis for part in (system.mass, system.damping, system.stiffness))
     strains, effects = system.branch_rows @ basis, system.effects @ basis
     drifts = np.zeros_like(strains) if system.branch_drifts is None else system.branch_drifts @ basis
     rows = np.array([system.output(name)[0] for name in channels]).reshape(-1, system.size) @ basis
-    constant = matrices.coefficients[:, : 2 * len(matrices.lines.frequencies)]
-    amplitudes = constant[:, ::2] - 1j * constant[:, 1::2]
-    result = np.zeros((len(amplitudes), len(rows), len(matrices.lines.frequencies)), dtype=complex)
-    for column, frequency in enumerate(matrices.lines.frequencies):
+    rows_of, slips, plate_heights = (part[forces].T for part in (
+        matrices.force_rows, matrices.force_slips, matrices.force_heights))  # fmt: skip
+    result = np.zeros((len(forces), len(rows), len(frequencies)), dtype=complex)
+    for column, frequency in enumerate(frequencies):
         s = 1j * frequency
         transfer = (system.branch_stiffness / (s + 1.0 / system.branch_time))[:, None]
         whole = s * s * mass + s * damping + stiffness + effects.T @ (transfer * (s * strains + drifts))
         tyres = system.input_stiffness + s * matrices.level_damping
-        pushed = basis.T @ (matrices.force_rows.T + tyres @ matrices.force_heights.T)
-        pushed = pushed - effects.T @ (transfer * matrices.force_slips.T)
-        motion = np.linalg.solve(whole, pushed * amplitudes[:, column])
-        result[:, :, column] = (s * s * (rows @ motion)).T
+        pushed = basis.T @ (rows_of + tyres @ plate_heights) - effects.T @ (transfer * slips)
+        result[:, :, column] = (s * s * (rows @ np.linalg.solve(whole, pushed))).T
     return result

@@ -3,12 +3,13 @@
 The law of an element in the axes of its carrier is f = p - K r - g - B r' - f2, with r = J u - z and the preload p. The
 force of an ideal joint follows from the equation of motion,
 
-    Jc' f = M u'' + C u' + K u + H' f_b - Bk z - Bc z' - S' phi + D' g - B e,
+    Jc' f = M u'' + C u' + K u + H' f_b - Bk z - Bc z' - S' phi + D' g - B e - L h,
 
-with the nonlinear damper forces phi, the forces g of the laws over displacement that K lacks, and the forces of rolling
-tyres on the slope of the road that Bc z' lacks. K contains the rotation of the preloads, so this f is in world axes. In
-the axes of a carrier that rotates by theta it is f - theta x p. If joints constrain a motion twice, f is the least-norm
-solution. A rolling tyre on the slope of the road has the force F_0/V (z' + e) along x beside that of its slip.
+with the nonlinear damper forces phi, the forces g of the laws over displacement that K lacks, the forces of rolling
+tyres on the slope of the road that Bc z' lacks, and the histories h of applied forces. K contains the rotation of the
+preloads, so this f is in world axes. In the axes of a carrier that rotates by theta it is f - theta x p. If joints
+constrain a motion twice, f is the least-norm solution. A rolling tyre on the slope of the road has the force F_0/V (z'
++ e) along x beside that of its slip.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ Vector = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class LoadRows:
-    """Loads w = static + rows times u, u', u'', f_b, z, z', the damper forces phi and the slope velocities e.
+    """Loads w = static + rows times u, u', u'', f_b, z, z', damper forces phi, slope velocities e, applied forces h.
 
     Attributes:
         names: names of the l load channels.
@@ -46,6 +47,7 @@ class LoadRows:
         friction: rows over phi, with the sign of the equation of motion; (l, d).
         law: rows over the forces g of the laws over displacement (`displacement_laws`); (l, laws).
         slope: rows over e = F_z/F_0 V tan(beta) - z' of the plates, likewise; (l, w), (l, 0) for standing tyres.
+        applied: rows over the histories h of the applied forces; (l, lines).
     """
 
     names: tuple[str, ...]
@@ -59,6 +61,7 @@ class LoadRows:
     friction: Vector
     law: Vector
     slope: Vector
+    applied: Vector
 
     def __repr__(self) -> str:
         """One line."""
@@ -221,6 +224,7 @@ def _widths(matrices: CarMatrices) -> dict[str, int]:
         "friction": len(matrices.dampers),
         "law": len(matrices.laws),
         "slope": matrices.slope.shape[1],
+        "applied": matrices.coefficients.shape[1],
     }
 
 
@@ -238,4 +242,5 @@ def _joint_forces(matrices: CarMatrices) -> dict[str, Vector]:
         "friction": -split @ system.slide_rows.T,
         "law": split @ law_rows(matrices.laws, system.size).T,
         "slope": -split @ matrices.slope,
+        "applied": -split @ matrices.applied,
     }

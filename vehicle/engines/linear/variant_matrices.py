@@ -267,7 +267,7 @@ def same_geometry(vehicle: Vehicle, other: Vehicle) -> bool:
             if part.parent == "body" and (part.numbers != other_part.numbers or (scaled and part.seat is None)):
                 return False
     # The fields in which elements may differ.
-    free = {"parts": ("numbers",), "connections": ("law", "rolling"), "forces": ("law", "speed")}
+    free = {"parts": ("numbers",), "connections": ("law", "rolling"), "forces": ("law", "speed", "given")}
     for name in ("parts", "connections", "springs", "joint_springs", "dampers", "forces"):
         elements, others = getattr(car, name), getattr(reference, name)
         if len(elements) != len(others):

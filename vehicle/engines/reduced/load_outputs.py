@@ -2,8 +2,8 @@
 
 u = Re(modal xi), u' = Re(modal s xi), u'' = Re(modal s xi') with xi' of the poles.
 
-xi' = s xi + b_z z + b_c z' + e f: plates, forces f and forces on slopes act directly on xi' and hence on u'', and
-on no other part of a load.
+xi' = s xi + b_z z + b_c z' + e f + b_F F: plates, forces f, forces on slopes and applied forces F act directly on xi'
+and hence on u'', and on no other part of a load.
 """
 
 from __future__ import annotations
@@ -47,6 +47,11 @@ def direct_laws(model: PoleModel, loads: LoadRows) -> Vector:
     """Return the rows of loads over the forces g of the laws over displacement at the same instant; (loads, laws)."""
     rate = model.modal * model.poles
     return np.asarray(loads.law - (loads.acceleration @ (rate @ model.scalar_force[:, model.groups :])).real)
+
+
+def direct_applied(model: PoleModel, loads: LoadRows) -> Vector:
+    """Return the rows of loads over the histories of applied forces at the same instant; (loads, lines)."""
+    return np.asarray(loads.applied + (loads.acceleration @ (model.modal * model.poles @ model.applied)).real)
 
 
 def direct_slopes(model: PoleModel, loads: LoadRows) -> Vector:

@@ -41,7 +41,10 @@ class LongPlateSamples:
         at = np.clip(self.step * index[inside], 0.0, signal.duration)
         after = np.asarray(self.step * (index[~inside] - self.steps), dtype=np.float64)
         begin, end = float(at[0]) if at.size else last, last if after.size else float(at[-1])
-        columns, middle = [], np.clip(self.step * (index + 0.5), 0.0, last)
+        columns = []
+        # Middles of the steps, with those before and after.
+        around = np.append(index, index[-1] + 1 + np.arange(2)) - 0.5
+        middle = np.clip(self.step * around, 0.0, last)
         for wheel in signal.wheels:
             spline = signal.spline(wheel, begin, end)
             z, velocity, acceleration = (float(spline(last, order)) for order in range(3))
@@ -51,11 +54,8 @@ class LongPlateSamples:
             excess = np.zeros(len(index))
             if signal.slope_velocity and len(index):
                 slope = signal.slope_spline(wheel, float(middle[0]), float(middle[-1]))
-                values = [
-                    slope(instants) - spline(instants, 1)
-                    for instants in (np.clip(middle + shift * self.step, 0.0, last) for shift in (-1.0, 0.0, 1.0))
-                ]
-                excess = values[1] - (values[0] - 2.0 * values[1] + values[2]) / 24.0
+                values = slope(middle) - spline(middle, 1)
+                excess = values[1:-1] - np.diff(values, 2) / 24.0
             columns.append(excess)
         return np.stack(columns, axis=1)
 
@@ -77,8 +77,8 @@ class InputSamples:
         plates = self.plates[part]
         time = self.step * (part.start + np.arange(len(plates)))
         columns = np.zeros((len(time), len(self.lines), 3))
-        columns[1:, :, 0] = self.step * np.cumsum(self.lines.means(time[:-1], self.step), axis=0)
-        columns[:, :, 1] = self.lines.values(time)
+        columns[:, :, 1], means = self.lines.sampled(time, self.step)
+        columns[1:, :, 0] = self.step * np.cumsum(means, axis=0)
         return np.hstack([plates, columns.reshape(len(time), 3 * len(self.lines))])
 
 

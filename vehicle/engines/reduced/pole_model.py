@@ -141,7 +141,7 @@ def pole_model(matrices: CarMatrices) -> PoleModel:
     scalars = np.concatenate(
         [matrices.sliders.rows.reshape(-1, matrices.system.size), law_rows(matrices.laws, matrices.system.size)]
     )
-    lines = len(matrices.lines)
+    lines = matrices.coefficients.shape[1]
     further = np.zeros((len(form.state), matrices.slope.shape[1] + len(scalars) + lines))
     if further.size:
         mass = form.basis.T @ form.system.mass @ form.basis

@@ -10,7 +10,7 @@ import numpy as np
 
 from vehicle.engines.linear.load_rows import LoadRows, stop_rows
 from vehicle.engines.reduced.group_run import GroupRun, time_steps
-from vehicle.engines.reduced.load_outputs import direct_forces, direct_laws, slope_loads
+from vehicle.engines.reduced.load_outputs import direct_applied, direct_forces, direct_laws, slope_loads
 from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.engines.reduced.quadratic_forms import QuadraticForms
 from vehicle.engines.reduced.second_order import error_sentence, misses_main, rms_errors_of
@@ -95,6 +95,10 @@ def simulate_reduced(
     for load, row in zip(loads.names, direct, strict=True) if loads else ():
         for force, history in zip(row, table[len(names) :][: len(forces), 0], strict=True):
             table[names.index(load), 0] += force * history
+    if loads and len(model.matrices.lines):
+        of_forces = direct_applied(model, loads) @ model.matrices.lines.values(time).T
+        for load, history in zip(loads.names, of_forces, strict=True):
+            table[names.index(load), 0] += history
     if loads and tyres:
         tyre_forces = dict(zip(tyres.values(), table[len(names) + len(forces) :][: len(tyres), 0], strict=True))
         on_slopes = slope_loads(model, loads, signal, time, tyre_forces, tyre_load)

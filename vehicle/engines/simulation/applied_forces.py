@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import mujoco
 import numpy as np
@@ -13,6 +13,8 @@ from vehicle.engines.simulation.step_weights import FOURTH_ORDER
 from vehicle.errors import ConfigurationError
 from vehicle.model.assembly.element_numbers import FORCE, TORQUE
 from vehicle.model.parameters.applied_force import CRANK
+from vehicle.model.parameters.composition import Composition
+from vehicle.model.parameters.driving import RunUp
 from vehicle.model.parameters.placed_force import PlacedForce, on_parts
 from vehicle.signals.excitation.force_lines import ForceLines, History, SweptLine
 from vehicle.signals.excitation.force_record import ForceRecord
@@ -49,7 +51,8 @@ def force_rows(model: mujoco.MjModel, data: mujoco.MjData, layout: Layout) -> Ve
         if element in shapes:
             jacobian[:3, modes.velocities] += turn @ shapes[element][:3]
             jacobian[3:, modes.velocities] += turn @ shapes[element][3:]
-        rows[force] += way @ jacobian
+        frame = int(a.frames[element])
+        rows[force] += (way if frame < 0 else (way.reshape(2, 3) @ data.xmat[frame].reshape(3, 3).T).ravel()) @ jacobian
     rows[a.torques[:, 1], a.torques[:, 0]] = 1.0
     return rows
 
@@ -84,9 +87,9 @@ def force_lines(forces: Sequence[PlacedForce]) -> tuple[ForceLines, Vector]:
 def _histories(force: PlacedForce) -> dict[History, complex]:
     """Return the amplitude of each history of a force."""
     law, amplitudes = force.law, force.harmonics
-    if law.file and law.enabled:
-        record = ForceRecord(force.path, law.file, law.channel or "", law.unit or "", force.unit, law.ends_at_zero)
-        return {record: law.factor}
+    if force.recorded:
+        file, channel, unit = law.file or "", law.channel or "", law.unit or ""
+        return {ForceRecord(force.path, file, channel, unit, force.unit, law.ends_at_zero, force.given): law.factor}
     if force.run_up is None:
         return dict(amplitudes.items())
     power = 0.0 if law.reference_frequency is None else 2.0
@@ -109,6 +112,28 @@ def averaged_forces(forces: Sequence[PlacedForce], step: float, rows: slice) -> 
     values = lines.values(step * np.arange(rows.start - 1, rows.stop + 1))
     values = values[1:-1] + FOURTH_ORDER * np.diff(values, 2, axis=0)
     return np.asarray(values @ coefficients.T + [force.mean for force in forces])
+
+
+def force_histories(car: Composition, names: Iterable[str], time: Vector) -> dict[str, Vector]:
+    """Return the histories of applied forces and of the crankshaft at some times [s], by channel.
+
+    Args:
+        car: elements of the car.
+        names: channels among `Vehicle.force_channels`.
+        time: times [s]; (n,).
+    """
+    histories, turned = dict[str, Vector](), (np.zeros_like(time), np.zeros_like(time))
+    by_channel = {force.channel: force for force in on_parts(car.forces)}
+    if speed := car.speeds.get(CRANK, 0.0):
+        run_up = RunUp(speed, speed, 1.0) if car.crank_run_up is None else car.crank_run_up
+        turned = SweptLine(*run_up).angle(time)
+    for name in names:
+        if name in by_channel:
+            lines, (coefficients,) = force_lines([by_channel[name]])
+            histories[name] = lines.values(time) @ coefficients + by_channel[name].mean
+        else:
+            histories[name] = turned[0] if name.startswith("angle") else turned[1] * 30.0 / np.pi
+    return histories
 
 
 def highest_frequency(forces: Sequence[PlacedForce]) -> float:
@@ -144,8 +169,14 @@ def require_step_of_forces(forces: Sequence[PlacedForce], step: float) -> None:
 
 
 def force_notices(forces: Sequence[PlacedForce]) -> tuple[str, ...]:
-    """Return the messages on the files of some forces."""
-    return tuple(notice for record in force_lines(forces)[0].records for notice in record.read().notices)
+    """Return the messages on the records of some forces."""
+    from_python = [force.path for force in forces if force.given is not None]
+    messages = (
+        [f"{', '.join(from_python)}: history from Python, which the vehicle file of this run has not"]
+        if from_python
+        else []
+    )
+    return (*(notice for record in force_lines(forces)[0].records for notice in record.read().notices), *messages)
 
 
 def require_resolved(forces: Sequence[PlacedForce], record_rate: float) -> None:
@@ -189,9 +220,9 @@ def applied_record(model: mujoco.MjModel, above: Sequence[Sequence[int]], modes:
     names = [str(model.numeric(index).name) for index in range(model.nnumeric)]
     names = [name for name in names if name.startswith((FORCE, TORQUE))]
     sites, forces, nodes, torques = list[int](), list[int](), list[int](), list[tuple[int, int]]()
-    directions, shapes, means = list[Vector](), list[Vector](), list[float]()
+    directions, shapes, means, frames = list[Vector](), list[Vector](), list[float](), list[int]()
     for index, name in enumerate(names):
-        *way, mean = _field(model, name).tolist()
+        *way, follows, mean = _field(model, name).tolist()
         means.append(mean)
         if name.startswith(TORQUE):
             torques.append((int(model.joint(name.rpartition("/")[2]).dofadr[0]), index))
@@ -205,12 +236,15 @@ def applied_record(model: mujoco.MjModel, above: Sequence[Sequence[int]], modes:
                 nodes.append(len(sites))
                 shapes.append(np.concatenate([shape, rotation if rotation.size else np.zeros(3 * modes)]))
             sites.append(site)
+            # Force and reaction have the axes of the part that the force acts on.
+            frames.append(int(model.site_bodyid[model.site(f"{name}/on").id]) if follows else -1)
             directions.append(sign * np.array(way))
             forces.append(index)
     bodies = [int(model.site_bodyid[site]) for site in sites]
     dofs = [(n, dof, int(model.body_rootid[body])) for n, body in enumerate(bodies) for dof in above[body]]
     return Applied(
         sites=_whole(sites),
+        frames=_whole(frames),
         directions=np.reshape(directions, (len(sites), 6)).astype(float),
         forces=_whole(forces),
         dofs=np.ascontiguousarray(np.reshape(_whole(dofs), (-1, 3))),

@@ -322,7 +322,8 @@ class Applied(NamedTuple):
 
     Attributes:
         sites: site of the point; (e,).
-        directions: direction of the force, then of the moment, in world axes; signed; (e, 6).
+        directions: direction of the force, then of the moment, in world axes or those of a body; signed; (e, 6).
+        frames: body with these axes; -1 for the world; (e,).
         forces: index of the force; (e,).
         dofs: rows of element, velocity coordinate that moves its part, and its tree.
         nodes: elements at nodes of the flexible body; (k,).
@@ -333,6 +334,7 @@ class Applied(NamedTuple):
 
     sites: Index
     directions: Table
+    frames: Index
     forces: Index
     dofs: Indices
     nodes: Index

@@ -7,7 +7,7 @@ a fixed time step; rows over the states at rest and over laws let the runtime st
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -18,10 +18,18 @@ from vehicle.core.records import dtype, stored
 from vehicle.engines.reduced.car_table import CarTable, damper_nodes
 from vehicle.engines.reduced.feedback import sensor_outputs
 from vehicle.engines.reduced.group_run import march_fields, packed_cars
+from vehicle.engines.reduced.pole_model import PoleModel, pole_model
 from vehicle.engines.reduced.step_factors import CarFactors, car_factors
 from vehicle.engines.reduced.table_layout import DOUBLE, TILE, OutputTiles, aligned_table
 from vehicle.errors import ConfigurationError
-from vehicle.handover.fmu.output_rows import Output, OutputRows, Watched, car_outputs, joined_rows, watched_outputs
+from vehicle.handover.fmu.output_rows import (
+    Output,
+    OutputRows,
+    Watched,
+    car_outputs,
+    joined_rows,
+    watched_outputs,
+)
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.model.parameters.semi_active_damper import FMU
 
@@ -30,7 +38,7 @@ if TYPE_CHECKING:
 
 Vector = npt.NDArray[np.float64]
 
-MAGIC, TOKEN, NAME, NOTICE = b"VEHFMU04", 40, 64, 160
+MAGIC, TOKEN, NAME, NOTICE = b"VEHFMU05", 40, 64, 160
 """First bytes of the file; sizes of texts. The first two as in runtime/car.h and car_data.c."""
 
 HEADER = len(MAGIC) + TOKEN + 16
@@ -60,6 +68,7 @@ class CarNumbers:
     rolling: bool  # True for rolling tyres
     plates: tuple[str, ...]  # plates, dampers: names of the wheels with plates and of the dampers
     dampers: tuple[str, ...]
+    forces: tuple[tuple[str, str], ...]  # name and unit of the applied forces, which are inputs
     outputs: tuple[Output, ...]  # the outputs
     parameters: Vector  # first values of the parameters; (dampers, `PARAMETERS`)
     extents: dict[str, tuple[int, int]]  # offset in the file and size of each array by its path in the record [byte]
@@ -67,7 +76,7 @@ class CarNumbers:
 
 
 def car_numbers(car: Car, channels: Sequence[str], step: float) -> CarNumbers:
-    """Return the numbers of a car with all its outputs of channels, sensors and notices.
+    """Return the numbers of a car with all its outputs of channels, sensors and notices, and with its forces as inputs.
 
     Args:
         car: the car.
@@ -78,10 +87,24 @@ def car_numbers(car: Car, channels: Sequence[str], step: float) -> CarNumbers:
     Raises:
         ConfigurationError: see `numbers_with`.
     """
-    return numbers_with(car, step, car_outputs(car, channels), watched_outputs(car))
+    forces = input_forces(car)
+    model = pole_model(car.matrices.with_unit_forces([*forces.values()])) if forces else car.poles.without_forces()
+    return numbers_with(car, step, car_outputs(car, channels, model), watched_outputs(car, model), (model, forces))
 
 
-def numbers_with(car: Car, step: float, read: tuple[Sequence[Output], OutputRows], watched: Watched) -> CarNumbers:
+def input_forces(car: Car) -> dict[str, int]:
+    """Return the forces of tables [force.NAME] that are enabled: indices among the forces of the car by channel."""
+    forces = enumerate(car.vehicle.composition.forces)
+    return {force.channel: index for index, force in forces if force.path.startswith("force.") and force.law.enabled}
+
+
+def numbers_with(
+    car: Car,
+    step: float,
+    read: tuple[Sequence[Output], OutputRows],
+    watched: Watched,
+    pushed: tuple[PoleModel, Mapping[str, int]] | None = None,
+) -> CarNumbers:
     """Return the numbers of a car with given outputs.
 
     Args:
@@ -89,6 +112,7 @@ def numbers_with(car: Car, step: float, read: tuple[Sequence[Output], OutputRows
         step: internal time step [s].
         read: the outputs and their rows.
         watched: quantities that must stay within limits.
+        pushed: pole model whose inputs are applied forces, and these forces, see `input_forces`; none by default.
 
     Raises:
         ConfigurationError: the car has no damper, a law of the user's own, or a controller in an FMU.
@@ -114,14 +138,16 @@ def numbers_with(car: Car, step: float, read: tuple[Sequence[Output], OutputRows
                 f"skyhook, and in the other simulator {damper.name}_control = 0 and {damper.name}_coefficient_command "
                 "from the controller"
             )
-    model, wheels = car.poles.without_forces(), car.poles.matrices.system.inputs
+    model, forces = pushed or (car.poles.without_forces(), {})
+    wheels = model.matrices.system.inputs
     columns, rolling = list(range(len(wheels))), model.slope.shape[1] > 0
-    loads, m = car.static.tyre_load if rolling else None, len(wheels)
+    loads, m = car.static.tyre_load if rolling else None, len(wheels) + len(forces)
     (factors,) = car_factors([model], step, columns, exact=True, present_load=rolling)
     cars, feedback = packed_cars([model], [factors], [laws], [loads], np.zeros((2, m)), step, DOUBLE, whole=True)
     sensors, outputs, parameters = sensor_outputs(model, laws, columns, loads), read[0], _parameters(laws)
     rows, tables = joined_rows([read[1], watched.rows]), [law for law in model.laws if not law.friction]
     groups, names = model.groups, [*wheels, *(damper.name for damper in composition)]
+    beside = ((0, 0), (0, len(forces)))  # a force has no direct part in velocities, nor one of slopes
     record = {
         "march": _march(cars, march_fields(cars, feedback, _no_outputs(len(model.laws)))),
         "step": step,
@@ -129,18 +155,19 @@ def numbers_with(car: Car, step: float, read: tuple[Sequence[Output], OutputRows
         "inner": np.array([_inner_nodes(law) for law in laws], dtype=np.int64),
         "parameters": parameters,
         "start": _joined([cars.at_rest(np.stack([np.zeros(m), rate])) for rate in np.eye(m)]),
-        "sensor_start": np.hstack([sensors.velocity, factors.weights_of(sensors)[:, -m:]]),
-        "law_start": np.hstack([model.law_outputs.velocity, factors.levels[groups:]])[: len(tables)],
+        "sensor_start": np.hstack([np.pad(sensors.velocity, beside), factors.weights_of(sensors)[:, -m:]]),
+        "law_start": np.hstack([np.pad(model.law_outputs.velocity, beside), factors.levels[groups:]])[: len(tables)],
         "law_corners": _padded([np.stack([law.breakpoints, law.changes], axis=1) for law in tables]),
         "rows": _rows(cars, factors, rows),
         "by_force": rows.force,
-        "by_slope": rows.slope,
+        "by_slope": np.pad(rows.slope, beside),
         "by_law": rows.law,
         "fixed": rows.fixed,
         "kinds": np.array([(output.kind, output.damper) for output in outputs], dtype=np.int64).reshape(-1, 2),
         "limits": watched.limits,
         "names": _texts(names, NAME),
         "notices": _texts(watched.notices, NOTICE),
+        "forces": _texts([*forces], NAME),
     }
     body, extents = stored("Embedded", record, HEADER)
     body += b"\0" * (-len(body) % 8)
@@ -154,6 +181,7 @@ def numbers_with(car: Car, step: float, read: tuple[Sequence[Output], OutputRows
         rolling=rolling,
         plates=tuple(wheels),
         dampers=tuple(damper.name for damper in composition),
+        forces=tuple((name, car.vehicle.composition.forces[index].unit) for name, index in forces.items()),
         outputs=tuple(outputs),
         parameters=parameters,
         extents=extents,
@@ -194,8 +222,11 @@ def _joined(tables: Sequence[npt.NDArray[Any]]) -> npt.NDArray[Any]:
 
 
 def _rows(cars: CarTable, factors: CarFactors, rows: OutputRows) -> npt.NDArray[Any]:
-    """Return the weights of outputs over states and plates, output by output."""
-    tiles = cars.tiles([factors.weights_of(rows.outputs)]).reshape(-1, cars.states, TILE, 4)
+    """Return the weights of outputs over states, plates and applied forces, output by output."""
+    weights, forces = factors.weights_of(rows.outputs), rows.applied.shape[1]
+    rates, _ = np.hsplit(weights[:, -2 * (len(factors.columns) + forces) :], 2)
+    rates[:, len(factors.columns) :] += rows.applied
+    tiles = cars.tiles([weights]).reshape(-1, cars.states, TILE, 4)
     return _joined([*tiles.transpose(0, 2, 1, 3).reshape(-1, cars.states, 4)[: len(rows.fixed)]])
 
 

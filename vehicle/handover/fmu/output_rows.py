@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.linear.load_rows import LoadRows, stop_rows
-from vehicle.engines.reduced.load_outputs import direct_forces, direct_laws, direct_slopes, load_outputs
+from vehicle.engines.linear.load_rows import LoadRows, load_rows, stop_rows
+from vehicle.engines.reduced.load_outputs import direct_applied, direct_forces, direct_laws, direct_slopes, load_outputs
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 from vehicle.engines.reduced.validity import LARGEST_ANGLE, rotating_bodies, rotation_outputs, tyre_outputs
 from vehicle.errors import ConfigurationError
@@ -54,11 +54,12 @@ class OutputRows:
 
     outputs: Outputs  # rows over the poles and the plates
     fixed: Vector  # static values; (k,)
-    # force, slope, law: rows over damper forces, slope forces and forces of laws at the same instant; (k, d), (k, m),
-    # (k, laws)
+    # force, slope, law, applied: rows over damper forces, slope forces, forces of laws and applied forces at the same
+    # instant; (k, d), (k, m), (k, laws), (k, applied forces)
     force: Vector
     slope: Vector
     law: Vector
+    applied: Vector
 
     def part(self, indices: Sequence[int]) -> OutputRows:
         """Return the rows with these indices, in their order."""
@@ -66,7 +67,12 @@ class OutputRows:
         poles, height, velocity = self.outputs.poles[at], self.outputs.height[at], self.outputs.velocity[at]
         outputs = Outputs(poles=poles, height=height, velocity=velocity)
         return OutputRows(
-            outputs=outputs, fixed=self.fixed[at], force=self.force[at], slope=self.slope[at], law=self.law[at]
+            outputs=outputs,
+            fixed=self.fixed[at],
+            force=self.force[at],
+            slope=self.slope[at],
+            law=self.law[at],
+            applied=self.applied[at],
         )
 
 
@@ -84,13 +90,18 @@ class Watched:
         return Watched(rows=self.rows.part(at), limits=self.limits[at], notices=[self.notices[k] for k in at])
 
 
-def car_outputs(car: Car, channels: Sequence[str]) -> tuple[list[Output], OutputRows]:
+def car_outputs(car: Car, channels: Sequence[str], model: PoleModel | None = None) -> tuple[list[Output], OutputRows]:
     """Return the outputs of a car: channels, displacements of the points, sensors of controlled dampers.
+
+    Args:
+        car: the car.
+        channels: names of channels; those that are inputs are left out.
+        model: pole model of the car whose inputs are applied forces; without forces by default.
 
     Raises:
         ConfigurationError: no output is left.
     """
-    model, vehicle = car.poles, car.vehicle
+    vehicle, model = car.vehicle, model or car.poles.without_forces()
     system, d = model.matrices.system, len(vehicle.composition.dampers)
     units, dampers = channel_units(channels), [damper.name for damper in vehicle.composition.dampers]
     outputs: list[Output] = []
@@ -133,7 +144,7 @@ def car_outputs(car: Car, channels: Sequence[str]) -> tuple[list[Output], Output
                 add(Output(name=name, unit=units[name], meaning=title, kind=reading, damper=index), rows)
     loads = [name for name in channels if name in vehicle.load_channels]
     if loads:
-        rows_of_loads = car.load_rows.only(loads)
+        rows_of_loads = load_rows(car.model, model.matrices).only(loads)
         for name, row in zip(rows_of_loads.names, _each(_loads(model, rows_of_loads)), strict=True):
             add(Output(name=name, unit=units[name], meaning=LOAD_MEANING[units[name]]), row)
     rates = model.matrices.sensors @ (model.modal * model.poles) if model.matrices.sensors.size else model.slip[:0]
@@ -164,6 +175,7 @@ def _loads(model: PoleModel, loads: LoadRows) -> OutputRows:
         force=direct_forces(model, loads),
         slope=_of_plates(model, direct_slopes(model, loads)),
         law=direct_laws(model, loads),
+        applied=direct_applied(model, loads),
     )
 
 
@@ -182,6 +194,7 @@ def _linear(model: PoleModel, outputs: Outputs, fixed: Vector | None = None) -> 
         force=np.zeros((count, model.force.shape[1])),
         slope=np.zeros((count, len(model.matrices.system.inputs))),
         law=np.zeros((count, len(model.laws))),
+        applied=np.zeros((count, model.applied.shape[1])),
     )
 
 
@@ -202,7 +215,8 @@ def _second_derivative(model: PoleModel, displacements: Outputs) -> OutputRows:
     slope = _of_plates(model, (rate @ model.slope).real)
     law = -(rate @ model.scalar_force[:, model.groups :]).real
     force = (rate @ model.force).real
-    return OutputRows(outputs=outputs, fixed=np.zeros(len(rate)), force=force, slope=slope, law=law)
+    applied = (rate @ model.applied).real
+    return OutputRows(outputs=outputs, fixed=np.zeros(len(rate)), force=force, slope=slope, law=law, applied=applied)
 
 
 def _each(rows: OutputRows) -> list[OutputRows]:
@@ -223,6 +237,7 @@ def joined_rows(parts: Sequence[OutputRows]) -> OutputRows:
         force=np.concatenate([part.force for part in parts]),
         slope=np.concatenate([part.slope for part in parts]),
         law=np.concatenate([part.law for part in parts]),
+        applied=np.concatenate([part.applied for part in parts]),
     )
 
 
@@ -233,17 +248,22 @@ def motion_rows(car: Car, rows: Vector) -> OutputRows:
         car: the car.
         rows: rows over the displacements u of the velocity coordinates; (k, n).
     """
-    model = car.poles
+    model = car.poles.without_forces()
     no_plates = np.zeros((len(rows), len(model.matrices.system.inputs)))
     return _linear(model, Outputs(poles=rows @ model.modal, height=no_plates, velocity=no_plates))
 
 
-def watched_outputs(car: Car) -> Watched:
+def watched_outputs(car: Car, model: PoleModel | None = None) -> Watched:
     """Return the watched motions of a car, their limits, and a notice for each: linear tyres, then rotations.
 
     The limits are those of `vehicle.engines.reduced.validity`, for each axis of a rotation.
+
+    Args:
+        car: the car.
+        model: see `car_outputs`.
     """
-    model, matrices = car.poles, car.poles.matrices
+    model = model or car.poles.without_forces()
+    matrices = model.matrices
     wheels, bodies = matrices.system.inputs, rotating_bodies(matrices)
     linear = [index for index, wheel in enumerate(wheels) if wheel not in matrices.one_sided]
     load = np.array([car.static.tyre_load[wheel] for wheel in wheels])

@@ -13,7 +13,8 @@ import numpy as np
 from vehicle.handover.fmu.car_numbers import COMMANDS, PARAMETERS, CarNumbers
 from vehicle.model.parameters.force_elements import Damper
 
-FIRST_PLATE, FIRST_SLOPE, FIRST_COMMAND, FIRST_PARAMETER, FIRST_OUTPUT = 100, 5000, 10000, 20000, 30000
+FIRST_PLATE, FIRST_SLOPE, FIRST_FORCE, FIRST_COMMAND, FIRST_PARAMETER = 100, 5000, 7000, 10000, 20000
+FIRST_OUTPUT = 30000
 """First value references."""
 
 STRIBECK_ONLY = ("static_friction", "stribeck_velocity", "stribeck_exponent")
@@ -44,6 +45,8 @@ _MEANING = {
     "tyre forces are wrong",
     "slope_excess": "V tan(beta) - z' of a road whose slope under the tyre is not the derivative of its height (a tyre "
     "that envelops an obstacle), mean over the communication step; 0 otherwise",
+    "applied": "force or moment [force.NAME] of the vehicle file beside its mean at the END of the communication step, "
+    "linear over the step",
     "force": "force added to that of the damper, constant over the communication step; positive pulls body and wheel "
     "together",
     "coefficient": "damping added to the curve of the damper, constant over the communication step",
@@ -98,6 +101,12 @@ def variables(numbers: CarNumbers, dampers: Sequence[Damper]) -> list[Variable]:
                 meaning=_MEANING["slope_excess"],
             )
         )
+    entries += [
+        Variable(
+            name=name, reference=FIRST_FORCE + k, causality="input", unit=unit, start=0.0, meaning=_MEANING["applied"]
+        )
+        for k, (name, unit) in enumerate(numbers.forces)
+    ]
     for i, name in enumerate(numbers.dampers):
         for part, (quantity, unit) in enumerate(COMMANDS.items()):
             entries.append(

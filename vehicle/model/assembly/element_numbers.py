@@ -230,7 +230,7 @@ def _table(name: str, table: ForceTable | None, local: float = np.inf) -> Number
 
 
 def force_fields(force: PlacedForce) -> Numbers:
-    """Return the custom field of a force in its model: directions of force and moment, and the mean."""
+    """Return the custom field of a force in its model: directions of force and moment, 1 in part axes, and the mean."""
     if force.joint:
-        return {f"{TORQUE}{force.name}/{force.joint}": np.array([force.mean])}
-    return {f"{FORCE}{force.name}": np.array([*force.force, *force.moment, force.mean])}
+        return {f"{TORQUE}{force.name}/{force.joint}": np.array([0.0, force.mean])}
+    return {f"{FORCE}{force.name}": np.array([*force.force, *force.moment, float(force.follows), force.mean])}

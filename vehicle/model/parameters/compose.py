@@ -39,6 +39,9 @@ from vehicle.model.parameters.toml_file import convert
 NAMED_TABLES = ("hardpoints", "connection", "outputs", "alias", "load", "force")
 """Tables of a vehicle file that are not instances and contain tables or points by name."""
 
+APPLY_FORCES = "apply_forces"
+"""Key of a vehicle file; false leaves out all applied forces."""
+
 
 def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
     """Compose a car: read the instances of its file, place their elements, add those of the file, check the whole.
@@ -92,7 +95,7 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
         outputs=tuple(placed_outputs(car, further)),
         wheels=tuple(wheels),
         # Those of tyres act on no part of the model: they come last.
-        forces=tuple(sorted(forces, key=lambda force: bool(force.tyre))),
+        forces=tuple(sorted(forces if table.get(APPLY_FORCES, True) else (), key=lambda force: bool(force.tyre))),
         speeds=targets.speeds,
         crank_run_up=targets.run_up,
         points=points,

@@ -30,6 +30,7 @@ from vehicle.model.parameters.force_elements import (
     Stabilizer,
     Tyre,
 )
+from vehicle.model.parameters.further_forces import AXES_OF
 from vehicle.model.parameters.hardpoints import LARGEST_M
 from vehicle.model.parameters.load_mass import Load
 from vehicle.model.parameters.optional_keys import WITH_FILES
@@ -189,7 +190,13 @@ def _force_places() -> Schema:
     """Return the schema of the keys that place a force of a vehicle file."""
     directions = {key: {**_vector(-1e6, 1e6), "description": f"direction of the {key}"} for key in ("force", "moment")}
     parts = {"on": PART, "against": {**TEXT, "description": "part with the reaction"}}
-    return {**parts, "at": PLACE, **directions, "joint": {**TEXT, "description": "joint with a torque, in place of on"}}
+    return {
+        **parts,
+        "at": PLACE,
+        **directions,
+        "axes": {"enum": list(AXES_OF)},
+        "joint": {**TEXT, "description": "joint with a torque, in place of on"},
+    }
 
 
 def _instance(file: Path, options: Iterable[str]) -> Schema:

@@ -13,7 +13,7 @@ from vehicle.errors import ConfigurationError, VehicleError
 from vehicle.model.parameters.additions import named_part, named_point, new_loads
 from vehicle.model.parameters.applied_force import CRANK, AppliedForce, require_harmonics
 from vehicle.model.parameters.composition import PlacedConnection, PlacedPart, PlacedWheel
-from vehicle.model.parameters.driving import Crank, RunUp
+from vehicle.model.parameters.driving import SPIN, Crank, RunUp
 from vehicle.model.parameters.engine_orders import ENGINE, ORDERS, EngineOrders
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.instance import Instance
@@ -21,8 +21,11 @@ from vehicle.model.parameters.placed_force import PlacedForce
 from vehicle.model.parameters.quantity import NAME_PATTERN
 from vehicle.model.parameters.toml_file import build, convert, nearest
 
-PLACE_KEYS = ("on", "at", "force", "moment", "against", "joint")
+PLACE_KEYS = ("on", "at", "force", "moment", "axes", "against", "joint")
 """Keys of a force other than those of its history."""
+
+AXES_OF = ("vehicle", "part")
+"""Axes of the direction of a force: those of the vehicle, or of the part that it acts on, which turn with it."""
 
 NONE = (0.0, 0.0, 0.0)
 
@@ -38,6 +41,7 @@ class ForceTargets:
         parts: parts of the car and the trimmed body, with their centres of gravity [m].
         points: hardpoints by name [m].
         joints: kind of each hinge and slide by its name.
+        spinning: parts that turn with a rolling wheel.
         speeds: angular speed [rad/s] of each angle: crank, and each wheel, as "wheel_fr"; 0 at rest.
         run_up: run-up of the crankshaft, whose highest speed is in `speeds`; None at constant speed.
     """
@@ -45,6 +49,7 @@ class ForceTargets:
     parts: Mapping[str, Point]
     points: Mapping[str, Point]
     joints: Mapping[str, str]
+    spinning: frozenset[str]
     speeds: Mapping[str, float]
     run_up: RunUp | None = None
 
@@ -77,6 +82,7 @@ def force_targets(
         parts={"body": body, **{part.name: part.cog for part in listed}},
         points=points,
         joints=joints,
+        spinning=frozenset(part.name for part in listed if any(joint.name.startswith(SPIN) for joint in part.joints)),
         speeds=speeds,
         run_up=None if crank is None else crank.run_up,
     )
@@ -118,7 +124,15 @@ def further_force(name: str, value: Any, targets: ForceTargets) -> PlacedForce:
         number = "both" if directions else "none"
         raise ConfigurationError(f"{path}: found {number} of force and moment; set the direction of one of them")
     direction = _direction(f"{path}.{directions[0]}", table[directions[0]])
+    axes = convert(str, table.get("axes", AXES_OF[0]), f"{path}.axes")
+    if axes not in AXES_OF:
+        raise ConfigurationError(f"{path}.axes: found {axes!r}, allowed are {', '.join(AXES_OF)}")
     on = named_part(path, table, "on", {*targets.parts})
+    if axes == "part" and on in targets.spinning:
+        raise ConfigurationError(
+            f"{path}.axes: found 'part' on {on}, which turns with a rolling wheel; set harmonics over the angle of the "
+            "wheel along two axes of the vehicle, as an imbalance has"
+        )
     against = named_part(path, table, "against", {*targets.parts}) if "against" in table else ""
     if against == on:
         raise ConfigurationError(f"{path}.against: found {against!r}, the part that the force acts on; name another")
@@ -135,13 +149,14 @@ def further_force(name: str, value: Any, targets: ForceTargets) -> PlacedForce:
         speed=speed,
         path=path,
         unit="N" if directions == ["force"] else "N m",
+        follows=axes == AXES_OF[1],
         run_up=targets.run_up if law.angle == CRANK else None,
     )
 
 
 def _torque(path: str, table: Mapping[str, Any], targets: ForceTargets, law: AppliedForce, speed: float) -> PlacedForce:
     """Return the torque of a table on a joint."""
-    for key in ("on", "at", "force", "moment", "against"):
+    for key in ("on", "at", "force", "moment", "axes", "against"):
         if key in table:
             raise ConfigurationError(f"{path}.{key}: belongs to a force on a part; a torque on a joint has no {key}")
     joint = convert(str, table["joint"], f"{path}.joint")

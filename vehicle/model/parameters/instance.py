@@ -33,6 +33,7 @@ VEHICLE_KEYS = (
     "gravity",
     "shaker_wheel",
     "shaker_wheel_in_source",
+    "apply_forces",
     "body",
     "solver",
     "driving",

@@ -43,6 +43,7 @@ def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
         [
             "shaker_wheel",
             "shaker_wheel_in_source",
+            "apply_forces",
             "solver.timestep",
             *("crank.rpm", "crank.end_rpm", "crank.run_up_time"),
             *(f"driving.{key}" for key in _keys(Driving, everything=False)),

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
+from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.applied_force import AppliedForce
 from vehicle.model.parameters.driving import RunUp
 from vehicle.model.parameters.hardpoints import Point
+from vehicle.model.parameters.toml_file import nearest
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -22,6 +25,7 @@ class PlacedForce:
         on: part that it acts on; empty for a torque on a joint.
         at: point at which it acts [m].
         force, moment: unit direction of the force and of the moment; one of both is zero.
+        follows: the directions turn with the part that it acts on.
         against: part with the reaction at the same point; empty for none.
         joint: joint with the torque, on its part and against the parent; empty for a force on a part.
         law: its history.
@@ -30,6 +34,7 @@ class PlacedForce:
         unit: "N", or "N m" of a moment and of a torque in a hinge; "m" and "m/s" of the motion below a tyre.
         run_up: run-up of its angle; None for a constant speed.
         tyre: wheel whose tyre it changes, as "fr"; empty for a force or a torque.
+        given: history from Python, a `RecordedForce`, in place of that of the law; None without one.
     """
 
     name: str
@@ -45,6 +50,8 @@ class PlacedForce:
     unit: str = "N"
     run_up: RunUp | None = None
     tyre: str = ""
+    given: Any = None
+    follows: bool = False
 
     @property
     def ends(self) -> tuple[tuple[str, float], ...]:
@@ -57,9 +64,19 @@ class PlacedForce:
         return self.law.amplitudes(self.speed)
 
     @property
+    def channel(self) -> str:
+        """Channel of its history, recorded on request; empty for one that changes a tyre."""
+        return "" if self.tyre else f"{'torque' if self.unit == 'N m' else 'force'}_{self.name}"
+
+    @property
     def acts(self) -> bool:
-        """True if it has harmonics at the speed of its angle, a file or a mean."""
-        return bool(self.harmonics or self.mean or (self.law.enabled and self.law.file))
+        """True if it has harmonics at the speed of its angle, a record or a mean."""
+        return bool(self.harmonics or self.mean or self.recorded)
+
+    @property
+    def recorded(self) -> bool:
+        """True if its history is that of a file or from Python."""
+        return self.law.enabled and bool(self.law.file or self.given)
 
     @property
     def mean(self) -> float:
@@ -70,3 +87,24 @@ class PlacedForce:
 def on_parts(forces: Iterable[PlacedForce]) -> list[PlacedForce]:
     """Return the forces on parts and joints: all but those that change a tyre, which come last."""
     return [force for force in forces if not force.tyre]
+
+
+def force_named(name: str, forces: Sequence[PlacedForce], *, own: bool = False) -> int:
+    """Return the index of a force.
+
+    Args:
+        name: its name.
+        forces: forces of a car.
+        own: only those of a table [force.NAME].
+
+    Raises:
+        ConfigurationError: there is none of this name.
+    """
+    known = {force.name: index for index, force in enumerate(forces) if not own or force.path.startswith("force.")}
+    if name not in known:
+        table = "no table [force.NAME]" if own else "no force"
+        raise ConfigurationError(
+            f"force: found {name!r}, {table} of this car; "
+            + (f"the nearest is {nearest(name, known)}" if known else "add a table [force.NAME] to the vehicle file")
+        )
+    return known[name]

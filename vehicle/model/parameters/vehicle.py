@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.applied_force import CRANK
 from vehicle.model.parameters.base_car import vehicle_table
 from vehicle.model.parameters.body import TrimmedBody, require_inertia_table
-from vehicle.model.parameters.compose import compose
+from vehicle.model.parameters.compose import APPLY_FORCES, compose
 from vehicle.model.parameters.composition import Composition
 from vehicle.model.parameters.curves import with_curve_files
 from vehicle.model.parameters.driving import Driving, driving_of
@@ -63,6 +64,8 @@ class Head(Validated):
         choices=("right", "left", "unsaid"),
         default="unsaid",
     )
+    apply_forces: bool = True
+    """false leaves out all applied forces: tables [force.NAME], of wheels and of engines"""
 
 
 HEAD = tuple(Head.__dataclass_fields__)
@@ -204,9 +207,22 @@ class Vehicle:
         )
 
     @property
+    def force_channels(self) -> dict[str, str]:
+        """Units of the histories of applied forces and of the crankshaft by channel, recorded on request.
+
+        `force_<name>` [N] or `torque_<name>` [N m] of a force that acts, with its mean; of a crankshaft that turns
+        `angle_crank` [rad] from its position at t = 0, and `speed_crank` [1/min].
+        """
+        forces = self.composition.forces
+        units = {force.channel: force.unit for force in forces if force.channel and force.acts}
+        crank = {"angle_crank": "rad", "speed_crank": "1/min"} if self.composition.speeds.get(CRANK) else {}
+        others = {*self.channels, *self.load_channels}
+        return {name: unit for name, unit in (units | crank).items() if name not in others}
+
+    @property
     def requested_channels(self) -> tuple[str, ...]:
         """Names of all channels that are recorded on request alone, in the order of the files."""
-        return (*self.load_channels, *self.setting_channels)
+        return (*self.load_channels, *self.setting_channels, *self.force_channels)
 
     @property
     def damper(self) -> Damper:
@@ -262,7 +278,7 @@ def vehicle_of(table: Mapping[str, Any], folder: Path | None = None) -> Vehicle:
     folders = () if folder is None else (folder, folder / "templates")
     vehicle = Vehicle(
         table=table,
-        **{name: getattr(head, name) for name in HEAD},
+        **{name: getattr(head, name) for name in HEAD if name != APPLY_FORCES},
         body=body,
         solver=solver,
         driving=driving_of(table),

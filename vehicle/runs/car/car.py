@@ -14,15 +14,11 @@ import numpy.typing as npt
 from vehicle.drawing.notebook.cards import car_card
 from vehicle.engines.linear.car_matrices import CarMatrices, car_matrices
 from vehicle.engines.linear.car_modes import Mode, car_modes, require_stable
-from vehicle.engines.linear.first_order import first_order
 from vehicle.engines.linear.load_rows import LoadRows, load_rows
 from vehicle.engines.linear.natural_modes import grows
-from vehicle.engines.linear.response import frequency_response as exact_response
-from vehicle.engines.linear.step_error import accurate_step, require_accurate_step
 from vehicle.engines.linear.variant_matrices import CarVariant, VariantTerms
 from vehicle.engines.reduced.pole_model import PoleModel, pole_model
 from vehicle.engines.reduced.quadratic_forms import QuadraticForms, quadratic_forms
-from vehicle.engines.simulation.applied_forces import require_step_of_forces, step_for
 from vehicle.engines.simulation.car_model import CarModel, build_model
 from vehicle.engines.simulation.static_trim import StaticTrim
 from vehicle.engines.simulation.stepping import Progress
@@ -35,13 +31,16 @@ from vehicle.model.parameters.further_forces import new_tables
 from vehicle.model.parameters.optional_keys import optional_paths
 from vehicle.model.parameters.parameter_list import parameter_at
 from vehicle.model.parameters.paths import assignments
-from vehicle.model.parameters.shipped import sets_step, vehicle_file
+from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.model.parameters.vehicle import Vehicle, load_file, load_vehicle, varied_file, vehicle_of
 from vehicle.model.parameters.vehicle_variants import VehicleVariants
 from vehicle.model.parameters.whole_body import restated
+from vehicle.runs.car.given_forces import GivenForce, with_histories
+from vehicle.runs.car.linear_response import force_frf, is_stuck, plate_frf
 from vehicle.runs.car.road import Road
 from vehicle.runs.car.run import Run
 from vehicle.runs.car.simulated_run import simulated_run
+from vehicle.runs.car.stepped_car import stepped_car
 from vehicle.signals.excitation.evaluation_start import evaluation_start
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal import Signal
@@ -304,30 +303,17 @@ class Car:
         Raises:
             ConfigurationError: the given step is too large, or no step is small enough.
         """
-        forces = self.vehicle.composition.forces
-        if self.vehicle.solver.timestep is not None and sets_step(self.origin["file"], self.overrides):
-            if "mujoco" not in self._checked:
-                require_accurate_step(self.model, self.matrices)
-                require_step_of_forces(forces, self.vehicle.solver.step)
-                self._checked.add("mujoco")
-            return self
-        if self._stepped is None:
-            step = step_for(forces, accurate_step(self.model, self.matrices))
-            if step == self.vehicle.solver.timestep:
-                self._checked.add("mujoco")
-                return self
-            solver = {**self.vehicle.table["solver"], "timestep": step}
-            car = Car(vehicle_of({**self.vehicle.table, "solver": solver}, self.folder), folder=self.folder)
-            car.origin, car.overrides = self.origin, self.overrides
-            car._checked = {*self._checked, "mujoco"}
-            self._stepped = car
-        return self._stepped
+        if self._stepped is None and "mujoco" not in self._checked:
+            stepped = stepped_car(self)
+            self._stepped = None if stepped is self else stepped  # a car holds no reference to itself
+            self._checked.add("mujoco")
+        return self._stepped or self
 
     @one_blas_thread()
     def modes(self, damper: str = "stuck", highest: float = 60.0) -> list[Mode]:
         """Return the modes of the assembled car up to a frequency [Hz], with the dampers "stuck" or "sliding"."""
         names = self.geometry.model.superelement.mode_names
-        return car_modes(self.matrices, stuck=_is_stuck(damper), highest=highest, names=names)
+        return car_modes(self.matrices, stuck=is_stuck(damper), highest=highest, names=names)
 
     @one_blas_thread()
     def matrix_frf(
@@ -341,12 +327,26 @@ class Car:
             damper: state of all dampers, "stuck" or "sliding".
             wheel: wheel whose plate moves; the shaker wheel by default.
         """
-        wheel = wheel or self.vehicle.shaker_wheel
-        self.vehicle.require_wheels((wheel,))
-        self.vehicle.require_channels(channels, self.vehicle.acceleration_channels)
-        form = first_order(self.matrices.system, stuck=_is_stuck(damper))
-        driven = [float(name == wheel) for name in self.vehicle.wheels]
-        return exact_response(form, frequency, channels, "acceleration", driven=driven)
+        return plate_frf(self, channels, frequency, is_stuck(damper), wheel or self.vehicle.shaker_wheel)
+
+    @one_blas_thread()
+    def force_frf(
+        self, channels: Sequence[str], frequency: npt.ArrayLike, *, force: str, damper: str = "stuck"
+    ) -> npt.NDArray[np.complex128]:
+        """Return linear FRFs to an applied force [m/s2 per N or N m], shape (channels, frequencies).
+
+        H(jw) of (s^2 M + s C + K) u = l, s = jw, with the row l of the force; its history plays no part.
+
+        Args:
+            channels: names of acceleration channels.
+            frequency: frequencies [Hz].
+            force: name of a force, as "crank_torque" of [force.crank_torque].
+            damper: state of all dampers, "stuck" or "sliding".
+
+        Raises:
+            ConfigurationError: the car has no such force or channel.
+        """
+        return force_frf(self, channels, frequency, is_stuck(damper), force)
 
     @one_blas_thread()
     def run(
@@ -357,6 +357,7 @@ class Car:
         engine: str = "mujoco",
         channels: Sequence[str] | None = None,
         skip: float | None = None,
+        forces: Mapping[str, GivenForce] | None = None,
     ) -> Run:
         """Simulate the car on a signal or a road.
 
@@ -370,12 +371,14 @@ class Car:
                 them; by default all but those.
             skip: time at the beginning that comfort and slip shares leave out [s]; by default 0, on a road until the
                 last wheel has risen with it, at least 2.
+            forces: histories of forces by name, as {"crank_torque": values}, in place of those of the vehicle file:
+                values at the times of the signal, or a function of the times [s] that returns them [N or N m].
 
         Returns:
             The run; `run.recording.statistics.engine` is the engine, `run.engine_reason` the reason for its choice.
 
         Raises:
-            ConfigurationError: the engine or a channel does not exist, a value of the road or `skip` is out of range,
+            ConfigurationError: the engine, a channel or a force does not exist, a value is out of range,
                 the car is unstable, or the time step of MuJoCo is too large.
             DataError: a file cannot be read or holds bad data.
             MissingPartError: there is no compiled core for this platform.
@@ -385,16 +388,11 @@ class Car:
             signal = (drive := source.under(self.vehicle, self.overrides)).signal()
             start = evaluation_start({drive.name: signal.duration}, skip, drive.skip)
             car, named = self.with_(drive.overrides) if drive.overrides else self, replace(signal, source=drive.name)
-            run = car.run(named, progress, engine=engine, channels=channels)
+            run = car.run(named, progress, engine=engine, channels=channels, forces=forces)
             return replace(run, skip=start, road=drive.summary(signal))
         wheel = self.vehicle.shaker_wheel
         signal = source if isinstance(source, Signal) else read_signal(find_input(source), wheel=wheel)
         start = evaluation_start({signal.source: signal.duration}, skip, 0.0)
-        car, recording, reason = simulated_run(self, signal, progress, engine, channels)
+        driven = with_histories(self, forces, signal.time) if forces else self
+        car, recording, reason = simulated_run(driven, signal, progress, engine, channels)
         return Run(car=car, signal=signal, recording=recording, engine_reason=reason, skip=start)
-
-
-def _is_stuck(damper: str) -> bool:
-    if damper not in ("stuck", "sliding"):
-        raise ConfigurationError(f"damper: found {damper!r}, allowed are stuck, sliding")
-    return damper == "stuck"

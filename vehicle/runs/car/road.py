@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.compose import APPLY_FORCES
 from vehicle.model.parameters.force_elements import Tyre
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.model.parameters.wheel_forces import WHEEL_FORCES
@@ -64,11 +65,12 @@ class Road(RoadSettings):
         """
         # A single letter is a class, even if a file of this name exists.
         # Tyres and brakes of a car that stands shake nothing, and are no forces.
-        kinds = {*vehicle.composition.kinds.values()}
-        if self.road == LEVEL and not vehicle.composition.forces and not kinds & {*WHEEL_FORCES.values()}:
+        kinds, acts = {*vehicle.composition.kinds.values()}, vehicle.table.get(APPLY_FORCES, True)
+        if self.road == LEVEL and not vehicle.composition.forces and not (acts and kinds & {*WHEEL_FORCES.values()}):
             raise ConfigurationError(
                 f"--road {LEVEL}: moves no plate, and {vehicle.name} has no force that shakes it; add one, as --set "
                 "front.imbalance.mass=0.02 --set front.imbalance.radius=0.2, or a table [force.NAME]"
+                + ("" if acts else "; its own are left out by --no-forces or apply_forces = false")
             )
         road = self.file or (str(self.road).upper() if len(str(self.road)) == 1 else str(self.road))
         driving = self._driving(vehicle, overrides)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 from vehicle.engines.reduced.reduced_run import simulate_reduced
-from vehicle.engines.simulation.applied_forces import force_notices, require_resolved
+from vehicle.engines.simulation.applied_forces import force_histories, force_notices, require_resolved
 from vehicle.engines.simulation.judgement import require_finite, require_samples
 from vehicle.engines.simulation.recording import Recording
 from vehicle.engines.simulation.stepping import Progress, simulate
@@ -53,7 +53,11 @@ def simulated_run(
     forces = car.vehicle.composition.forces
     require_resolved(forces, car.vehicle.solver.record_rate)
     names = defaults if channels is None else channels
-    more = [name for name in names if name not in defaults]
+    # Histories of forces are known: no engine records them.
+    units = {} if channels is None else car.vehicle.force_channels
+    shown = {name: units[name] for name in names if name in units}
+    computed = None if channels is None else [name for name in names if name not in shown]
+    more = [name for name in names if name not in defaults and name not in shown]
     loads = [name for name in more if name in car.vehicle.load_channels]
     require_samples(signal.duration * car.vehicle.solver.record_rate, len(names))
     reason = "asked for"
@@ -65,12 +69,12 @@ def simulated_run(
             dampers=[damper.law for damper in car.vehicle.composition.dampers],
             record_rate=car.vehicle.solver.record_rate,
             tyre_load=car.static.tyre_load,
-            channels=channels,
+            channels=computed,
             loads=car.load_rows if loads else None,
             forms=car.quadratic_forms if stated else None,
         )
         require_finite(recording)
-        recording = _with_notices(recording, [*force_notices(forces), *run_up_notice(car)])
+        recording = _with_forces(recording, car, names, shown)
         if engine == "reduced" or recording.statistics.within_validity:
             if engine == "auto":
                 reason = "the motion stayed within the validity of the reduced engine"
@@ -80,13 +84,34 @@ def simulated_run(
     wanted_step, used_step = car.vehicle.solver.timestep, stepped.vehicle.solver.step
     recording = simulate(stepped.model, signal, progress=progress, requested=more)
     require_finite(recording)
-    recording = _with_notices(recording, [*force_notices(forces), *run_up_notice(car)])
+    recording = _with_forces(recording, car, names, shown)
     if wanted_step is not None and used_step < wanted_step:
         said = f"time step {used_step:g} s: that of the vehicle file, {wanted_step:g} s, is too long for this car"
         recording = _with_notices(recording, [said])
     if channels is not None:
         recording = recording.only(channels)
     return stepped, recording, reason
+
+
+def _with_forces(recording: Recording, car: Any, names: Sequence[str], shown: Mapping[str, str]) -> Recording:
+    """Return a recording with the notices on the forces of its car and their histories, in the order of `names`.
+
+    Args:
+        recording: channels of an engine.
+        car: the car.
+        names: names of all channels.
+        shown: units of the forces among them.
+    """
+    composition = car.vehicle.composition
+    recording = _with_notices(recording, [*force_notices(composition.forces), *run_up_notice(car)])
+    if not shown:
+        return recording
+    channels = {**recording.channels, **force_histories(composition, shown, recording.time)}
+    units = {**recording.units, **shown}
+    order = [*names, *(name for name in channels if name not in names)]
+    return replace(
+        recording, channels={name: channels[name] for name in order}, units={name: units[name] for name in order}
+    )
 
 
 def _with_notices(recording: Recording, notices: Sequence[str]) -> Recording:

@@ -47,6 +47,7 @@ def force_values(run: Run) -> ForceValues:
             "moment": list(force.moment),
             "angle": force.law.angle,
             "mean": force.mean,
+            "recorded": force.recorded,
             "lines": [
                 {
                     "order": frequency / force.speed,

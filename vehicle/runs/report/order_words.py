@@ -18,7 +18,7 @@ def force_rows(summary: RunSummary) -> list[tuple[str, str]]:
         parts = [
             f"{number(line['amplitude'])} {unit} {at} {number(line['frequency_hz'])} Hz" for line in force["lines"]
         ]
-        parts += ["history of a file"] if not parts and not force["mean"] else []
+        parts += ["recorded history"] if force.get("recorded", not parts and not force["mean"]) else []
         parts += [f"mean {number(force['mean'])} {unit}"] if force["mean"] else []
         rows.append((f"force {name} on {force['on']}", ", ".join(parts)))
     return rows

@@ -136,6 +136,25 @@ class ForceLines:
         """
         return np.asarray(np.einsum("g,mgk->mk", WEIGHTS, self.values(start[:, None] + step * NODES)))
 
+    def sampled(self, time: Vector, step: float) -> tuple[Vector, Vector]:
+        """Return the histories at uniform times, and their means from each to the next.
+
+        Risen waves have the means (sin(W t1) - sin(W t0))/(W h) and (cos(W t0) - cos(W t1))/(W h).
+
+        Args:
+            time: times [s]; (m,).
+            step: time between two of them [s].
+
+        Returns:
+            Values; (m, lines). Means; (m - 1, lines).
+        """
+        values = self.values(time)
+        if self.swept or self.records or time[0] < RISE_S:
+            return values, self.means(time[:-1], step)
+        changes = np.diff(values, axis=0).reshape(len(time) - 1, len(self.frequencies), 2)
+        changes = changes[:, :, ::-1] * [1.0, -1.0] / (step * np.array(self.frequencies))[:, None]
+        return values, changes.reshape(len(time) - 1, len(self))
+
     def require_length(self, duration: float) -> None:
         """Check that every record is at least as long as a run [s].
 

@@ -1,7 +1,8 @@
-"""History of a force from a measurement file: a cubic spline through its samples, as that of a plate."""
+"""History of a force from a measurement file or from Python: a cubic spline through its samples, as of a plate."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -34,7 +35,7 @@ FEWEST = 32
 
 @dataclass(frozen=True, slots=True)
 class ForceRecord:
-    """Force or moment of a file.
+    """Force or moment of a file, or given in Python.
 
     Attributes:
         path: path of the force in the vehicle file, for messages.
@@ -43,6 +44,7 @@ class ForceRecord:
         unit: unit of the channel in place of that of the file; empty for that of the file.
         needed: "N" or "N m".
         ends_at_zero: the force is zero after the end of the file.
+        given: history from Python, in place of a file.
     """
 
     path: str
@@ -51,6 +53,7 @@ class ForceRecord:
     unit: str
     needed: str
     ends_at_zero: bool
+    given: RecordedForce | None = None
 
     def values(self, time: Vector) -> Vector:
         """Return the force at some times [s], (...): 0 before t = 0; after the end 0 or the last value.
@@ -72,6 +75,8 @@ class ForceRecord:
             DataError: the channel is missing or has another quantity, the times are not uniform, the record has a gap,
                 or its last value is not zero although the force ends with zero.
         """
+        if self.given is not None:
+            return self.given
         file = Path(self.file)
         changed = file.stat().st_mtime_ns if file.is_file() else 0
         return _history(self, changed)
@@ -130,23 +135,37 @@ def _history(record: ForceRecord, changed: int) -> RecordedForce:
     size = float(np.sqrt(np.mean(values**2)))
     if size == 0.0:
         raise DataError(f"{record.file}: the force of {where} is zero at all times; choose another channel")
-    rests = abs(values[0]) <= AT_REST * size
     notices = [notice for notice in chosen.notices if not notice.startswith(f"{where}: channel")]
     if chosen.time[0] != 0.0:
         notices.append(f"time of {record.file} begins at {chosen.time[0]:.6g} s and was shifted to 0")
-    if not rests:
-        notices.append(f"{where} begins with {values[0]:.4g} {record.needed} and rises from rest within {RISE_S:g} s")
     if record.ends_at_zero and abs(values[-1]) > AT_REST * size:
         raise DataError(
             f"{where}.ends_at_zero: the last value of {record.file} is {values[-1]:.4g} {record.needed}, not 0; let "
             "the record end at zero, or leave the key out"
         )
+    return recorded_force(where, record.needed, time, values, notices)
+
+
+def recorded_force(path: str, unit: str, time: Vector, values: Vector, notices: Iterable[str] = ()) -> RecordedForce:
+    """Return the history of a force through samples; it rises within the first second if it does not begin at rest.
+
+    Args:
+        path: path of the force in the vehicle file, for messages.
+        unit: "N" or "N m".
+        time: uniform times from 0 on [s]; (n,).
+        values: force at these times; (n,).
+        notices: messages on its source.
+    """
+    messages = list(notices)
+    rests = bool(abs(values[0]) <= AT_REST * np.sqrt(np.mean(values**2)))
+    if not rests:
+        messages.append(f"{path} begins with {values[0]:.4g} {unit} and rises from rest within {RISE_S:g} s")
     return RecordedForce(
         spline=CubicSpline(time, values),
         duration=float(time[-1]),
         rests=rests,
-        highest=_highest(values, float(np.mean(steps))),
-        notices=tuple(notices),
+        highest=_highest(values, float(time[1] - time[0])),
+        notices=tuple(messages),
     )
 
 

@@ -115,6 +115,7 @@ class ForceSummary(TypedDict):
     moment: list[float]
     angle: str | None
     mean: float
+    recorded: bool
     lines: list[LineSummary]
 
 

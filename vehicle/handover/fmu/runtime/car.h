@@ -47,10 +47,10 @@ typedef struct {
   double *block;
   double *time, *start_time, *steps; /* begin of the next step [s]; of the run [s]; steps done */
   double *parameter;               /* (dampers, PARAMETERS) */
-  double *plate;                   /* inputs: z, z' of each plate */
+  double *plate;                   /* inputs: z, z' of each plate, then 0, F of each applied force */
   double *slope_excess;            /* inputs: V tan(beta) - z' of the road [m/s]; (tyres) */
   double *command;                 /* inputs: force [N], coefficient [N s/m] of each damper */
-  double *before;                  /* z, z' at the end of the last step */
+  double *before;                  /* `plate` at the end of the last step */
   double *applied;                 /* (dampers, APPLIED) */
   double *end_force;               /* nonlinear force of each damper at the end of the last step [N] */
   double *frozen;                  /* communication steps in which a plate moved without velocity; (plates) */
@@ -82,7 +82,9 @@ int set_value(Motion *s, uint32_t reference, double value, char *message);
 int communication_step(Motion *s, double point, double length, char *message);
 
 static inline int64_t damper_count(const Car *car) { return car->data.march.dampers; }
-static inline int64_t plate_count(const Car *car) { return car->data.march.plates; }
+static inline int64_t force_count(const Car *car) { return car->data.forces.n[0]; }
+/* Without the forces, which are plates of the march too. */
+static inline int64_t plate_count(const Car *car) { return car->data.march.plates - force_count(car); }
 static inline int64_t watched_count(const Car *car) { return car->data.limits.n[0]; }
 static inline int64_t output_count(const Car *car) { return car->data.kinds.n[0]; }
 static inline const char *notice_of(const Car *car, int64_t k) { return car->data.notices.at + k * car->data.notices.n[1]; }

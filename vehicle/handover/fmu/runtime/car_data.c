@@ -6,7 +6,7 @@
 
 #include "car.h"
 
-static const char MAGIC[8] = {'V', 'E', 'H', 'F', 'M', 'U', '0', '4'};
+static const char MAGIC[8] = {'V', 'E', 'H', 'F', 'M', 'U', '0', '5'};
 typedef struct { char magic[8], token[TOKEN]; uint64_t length, sum; } Header;
 
 /* Turn the offsets of the arrays into addresses. */

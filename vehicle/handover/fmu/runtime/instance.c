@@ -2,7 +2,7 @@
  * outside. Messages say what is wrong and how to mend it.
  *
  * Value references, as in variables.py: 0 time; 100 + 2 k and 101 + 2 k displacement and velocity of plate k;
- * 5000 + k its slope velocity beyond the velocity, for rolling tyres; 10000 + 2 i and 10001 + 2 i force and coefficient
+ * 5000 + k its slope velocity beyond the velocity, for rolling tyres; 7000 + k applied force k; 10000 + 2 i and 10001 + 2 i force and coefficient
  * command of damper i; 20000 + PARAMETERS i + k parameters of damper i; 30000 + o outputs. */
 #include <math.h>
 #include <stdarg.h>
@@ -12,13 +12,14 @@
 #include "car.h"
 #include "laws.h"
 
-enum { FIRST_PLATE = 100, FIRST_SLOPE = 5000, FIRST_COMMAND = 10000, FIRST_PARAMETER = 20000, FIRST_OUTPUT = 30000 };
+enum { FIRST_PLATE = 100, FIRST_SLOPE = 5000, FIRST_FORCE = 7000, FIRST_COMMAND = 10000 };
+enum { FIRST_PARAMETER = 20000, FIRST_OUTPUT = 30000 };
 enum { MOST_STEPS = 100000, FROZEN_STEPS = 50 };
 
 static const double TIME_TOLERANCE = 1e-3;             /* round-off of a communication point, share of the internal step */
 
 static const double HIGHEST[2] = {1000.0, 100.0};      /* of plates [m, m/s] */
-static const double STRONGEST[2] = {1e6, 1e6};         /* of commands [N, N s/m] */
+static const double STRONGEST[2] = {1e6, 1e6};         /* of commands [N, N s/m], and of applied forces [N or N m] */
 
 /* Names, units and limits of the parameters of a damper. */
 static const struct { const char *name, *unit; double low, high; } PARAMETER[PARAMETERS] = {
@@ -42,14 +43,15 @@ static const char *plate_name(const Car *car, int64_t k) { return car->data.name
 static const char *damper_name(const Car *car, int64_t i) { return plate_name(car, plate_count(car) + i); }
 
 /* Kinds of variables; the index within the kind is written to `index`. */
-enum { UNKNOWN, TIME, PLATE, SLOPE, COMMAND, DAMPER_PARAMETER, OUTPUT };
+enum { UNKNOWN, TIME, PLATE, SLOPE, PUSH, COMMAND, DAMPER_PARAMETER, OUTPUT };
 
 static int kind_of(const Car *car, uint32_t reference, int64_t *index) {
-  static const uint32_t first[] = {FIRST_OUTPUT, FIRST_PARAMETER, FIRST_COMMAND, FIRST_SLOPE, FIRST_PLATE, 0};
-  static const int kinds[] = {OUTPUT, DAMPER_PARAMETER, COMMAND, SLOPE, PLATE, TIME};
-  int64_t counts[] = {output_count(car), damper_count(car) * PARAMETERS, 2 * damper_count(car), car->data.march.tyres,
-                      2 * plate_count(car), 1};
-  for (int k = 0; k < 6; k++) {
+  static const uint32_t first[] = {FIRST_OUTPUT, FIRST_PARAMETER, FIRST_COMMAND, FIRST_FORCE, FIRST_SLOPE, FIRST_PLATE,
+                                   0};
+  static const int kinds[] = {OUTPUT, DAMPER_PARAMETER, COMMAND, PUSH, SLOPE, PLATE, TIME};
+  int64_t counts[] = {output_count(car), damper_count(car) * PARAMETERS, 2 * damper_count(car), force_count(car),
+                      car->data.march.tyres, 2 * plate_count(car), 1};
+  for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
     if (reference < first[k]) continue;
     *index = (int64_t)(reference - first[k]);
     return *index < counts[k] ? kinds[k] : UNKNOWN;
@@ -63,6 +65,7 @@ int get_value(const Motion *s, uint32_t reference, double *value, char *message)
     case TIME: *value = s->time[0]; return 1;
     case PLATE: *value = s->plate[index]; return 1;
     case SLOPE: *value = s->slope_excess[index]; return 1;
+    case PUSH: *value = s->plate[2 * (plate_count(s->car) + index) + 1]; return 1;
     case COMMAND: *value = s->command[index]; return 1;
     case DAMPER_PARAMETER: *value = s->parameter[index]; return 1;
     case OUTPUT: *value = output_value(s, index); return 1;
@@ -111,6 +114,12 @@ int set_value(Motion *s, uint32_t reference, double value, char *message) {
         return refuse(message, "plate_%s_slope_excess: found %g, must be %g to %g m/s", plate_name(car, index), value,
                       -HIGHEST[1], HIGHEST[1]);
       s->slope_excess[index] = value;
+      return 1;
+    case PUSH:
+      if (!is_within(value, -STRONGEST[0], STRONGEST[0]))
+        return refuse(message, "%s: found %g, must be %g to %g N or N m",
+                      car->data.forces.at + index * car->data.forces.n[1], value, -STRONGEST[0], STRONGEST[0]);
+      s->plate[2 * (plate_count(car) + index) + 1] = value;
       return 1;
     case COMMAND:
       if (!is_within(value, -STRONGEST[part], STRONGEST[part]))

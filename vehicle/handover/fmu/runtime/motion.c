@@ -237,17 +237,24 @@ static void plate_at(const double *begin, const double *end, double t, double du
   if (t == 1.0) now[0] = end[0], now[1] = end[1];
 }
 
-/* Advance by steps, until the plates have the inputs. */
+/* Integral of an applied force and the force after a part t of a communication step: linear between both ends. */
+static void force_at(const double *begin, const double *end, double t, double duration, double *now) {
+  double rise = end[1] - begin[1];
+  now[0] = duration * t * (begin[1] + 0.5 * t * rise);
+  now[1] = begin[1] + t * rise;
+}
+
+/* Advance by steps, until plates and forces have the inputs. */
 void advance(Motion *s, int64_t steps) {
   March *job = &s->march;
-  int64_t m = job->plates, first = (int64_t)s->steps[0];
+  int64_t m = job->plates, driven = plate_count(s->car), first = (int64_t)s->steps[0];
   double step = s->car->data.step, now[2];
   for (int64_t done = 0; done < steps; done += job->every) {
     job->every = steps - done < STEPS_AT_ONCE ? steps - done : STEPS_AT_ONCE, job->step = first + done;
     for (int64_t i = 0; i < m; i++)
       for (int64_t k = 0; k <= job->every; k++) {
         double *rate = job->rates.at + 4 * m * k + i, t = (double)(done + k) / (double)steps;
-        plate_at(s->before + 2 * i, s->plate + 2 * i, t, (double)steps * step, now);
+        (i < driven ? plate_at : force_at)(s->before + 2 * i, s->plate + 2 * i, t, (double)steps * step, now);
         rate[0] = now[1], rate[2 * m] = now[0], rate[3 * m] = i < job->tyres ? s->slope_excess[i] : 0.0;
         if (k) rate[-3 * m] = (now[0] - rate[-2 * m]) / step;
       }
