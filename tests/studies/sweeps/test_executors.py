@@ -20,7 +20,7 @@ from vehicle.studies.sweeps import dispatcher, executors, worker
 from vehicle.studies.sweeps.case_keys import case_keys
 from vehicle.studies.sweeps.case_result import Block, Result
 from vehicle.studies.sweeps.dispatcher import FILL, PER_WORKER, Dispatcher
-from vehicle.studies.sweeps.executors import process_pool, workers_of
+from vehicle.studies.sweeps.executors import StandingExecutor, process_pool, workers_of
 from vehicle.studies.sweeps.program import program_digest
 from vehicle.studies.sweeps.store import StoredRows
 from vehicle.studies.sweeps.sweep import sweep
@@ -253,6 +253,20 @@ def test_processes_that_do_not_start_are_an_error(monkeypatch):
     monkeypatch.setattr(executors, "ProcessPoolExecutor", NoProcesses)
     with pytest.raises(ConfigurationError, match='if __name__ == "__main__"'):
         process_pool(2)
+
+
+def test_a_standing_executor_serves_several_sweeps_and_survives_the_death_of_a_worker():
+    """The first executor dies with its first task; its successor does all sweeps, and is closed at the end only."""
+    made = [Fails(BrokenProcessPool("terminated abruptly")), ThreadPoolExecutor(1), ThreadPoolExecutor(1)]
+    waiting = iter(made)
+    with StandingExecutor(lambda: next(waiting)) as standing:
+        for count in (2, 3):
+            table = sweep(many(count), Peak(), executor=standing)
+            assert not table.failed and len(table.results) == count
+            assert standing() is made[1]
+    with pytest.raises(RuntimeError, match="after shutdown"):
+        made[1].submit(print)
+    assert next(waiting) is made[2]
 
 
 @dataclass(frozen=True)

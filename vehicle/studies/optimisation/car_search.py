@@ -34,7 +34,7 @@ from vehicle.studies.optimisation.stored_search import stored_search
 from vehicle.studies.optimisation.trials import NO_TOLERANCES, Spread, Trials, bands, on_executor, samples_for
 from vehicle.studies.optimisation.variables import problem_of, require_bounds, toleranced
 from vehicle.studies.sweeps.case_evaluation import evaluate
-from vehicle.studies.sweeps.executors import process_pool
+from vehicle.studies.sweeps.executors import StandingExecutor, process_pool
 from vehicle.studies.sweeps.sweep_inputs import Source, common_start, file_of, inputs_of
 
 
@@ -69,7 +69,7 @@ class SearchPlan:
         with ExitStack() as held:
             if settings.executor is not None or settings.jobs > 1:
                 make = settings.executor or partial(process_pool, settings.jobs)
-                executor = make if isinstance(make, Executor) else held.enter_context(make())
+                executor = make if isinstance(make, Executor) else held.enter_context(StandingExecutor(make))
                 trials = replace(trials, evaluate=on_executor(executor, trials.measure))
             base, generations = stored_search(trials, folder, settings)
             outcome_of_search = outcome(trials.problem, base, generations)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import Executor
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -23,7 +23,7 @@ from vehicle.runs.targets.values import Histories, value_of
 from vehicle.runs.targets.verdict import state_of
 from vehicle.studies.optimisation.problem import Vector
 from vehicle.studies.optimisation.smallest_change import SmallestChange, smallest_change
-from vehicle.studies.sweeps.executors import process_pool
+from vehicle.studies.sweeps.executors import StandingExecutor, process_pool
 from vehicle.studies.sweeps.measure import STEP, of_one
 from vehicle.studies.sweeps.plan import plan_sweep
 from vehicle.studies.sweeps.run_batch import Runs
@@ -232,7 +232,7 @@ def meet_targets(
     scale = np.array([figure.weight / (abs(figure.limit) or 1.0) for figure in figures.values()])
     limits, senses = (np.array([getattr(each, key) for each in figures.values()]) for key in ("limit", "sense"))
 
-    def values(positions: Vector, executor: Executor) -> Vector:
+    def values(positions: Vector, executor: StandingExecutor) -> Vector:
         changes = [_texts(started, position) for position in positions]
         columns: dict[str, Vector] = {}
         for source, measure in measures.items():
@@ -244,7 +244,7 @@ def meet_targets(
 
     low, high = (np.log([getattr(each, key) / each.start for each in started]) for key in ("low", "high"))
     # The processes of all batches of cars: each imports the program and builds the reference car once.
-    with process_pool(jobs) as executor:
+    with StandingExecutor(partial(process_pool, jobs)) as executor:
         change = smallest_change(
             lambda positions: scale * senses * (values(positions, executor) - limits),
             low,

@@ -18,17 +18,18 @@ from vehicle.studies.sweeps.case import Case, Input
 from vehicle.studies.sweeps.case_result import Result
 from vehicle.studies.sweeps.case_table import table_cases
 from vehicle.studies.sweeps.dispatcher import Dispatcher
+from vehicle.studies.sweeps.executors import StandingExecutor
 from vehicle.studies.sweeps.measure import Measure
 
 Evaluate = Callable[[Sequence[Case], Measure], Sequence[Result]]
 """Function that evaluates cases, see `vehicle.studies.sweeps.case_evaluation.evaluate`."""
 
 
-def on_executor(executor: Executor, measure: Measure) -> Evaluate:
+def on_executor(executor: Executor | StandingExecutor, measure: Measure) -> Evaluate:
     """Return an evaluation function that uses the workers of an executor, which stays open between generations.
 
     Args:
-        executor: executor, see `vehicle.studies.sweeps.executors`.
+        executor: executor; a `StandingExecutor` is replaced after the death of a worker.
         measure: measure of all cases.
     """
     dispatcher = Dispatcher(executor, measure)

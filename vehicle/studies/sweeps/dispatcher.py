@@ -16,7 +16,7 @@ import numpy as np
 from vehicle.errors import ConfigurationError, SimulationError, VehicleError
 from vehicle.studies.sweeps.case import Case
 from vehicle.studies.sweeps.case_result import Block, Result
-from vehicle.studies.sweeps.executors import worker_remedy, workers_of
+from vehicle.studies.sweeps.executors import StandingExecutor, close, worker_remedy, workers_of
 from vehicle.studies.sweeps.measure import Measure
 from vehicle.studies.sweeps.program import program_digest
 from vehicle.studies.sweeps.store import Indices
@@ -171,8 +171,8 @@ class Dispatcher:
                 "--resume"
             ) from None
         finally:
-            if self.make is not None:
-                _close(self.executor)
+            if self.make is not None and not isinstance(self.make, StandingExecutor):
+                close(self.executor)
 
     def _run_waiting(self, waiting: Waiting, cases: Sequence[Case], keep: Keep, size: int = 0) -> list[Indices]:
         """Run waiting cases until all are finished or a worker dies.
@@ -232,8 +232,11 @@ class Dispatcher:
                     "a worker of the executor died; finished rows are stored. Pass a function that returns an executor "
                     "instead: the sweep then continues with a new executor"
                 )
-            _close(self.executor)
-            self.executor = self.make()
+            if isinstance(self.make, StandingExecutor):
+                self.executor = self.make.renew()
+            else:
+                close(self.executor)
+                self.executor = self.make()
         return lost
 
     def _count_workers(self) -> int | None:
@@ -330,13 +333,3 @@ def _drained(finished: SimpleQueue[Future[Block]]) -> list[Future[Block]]:
         while True:
             futures.append(finished.get_nowait())
     return futures
-
-
-def _close(executor: Executor) -> None:
-    """Shut down an executor and cancel its pending tasks; close the client of a Dask executor."""
-    client = getattr(executor, "_client", None)
-    if client is None:
-        executor.shutdown(wait=True, cancel_futures=True)
-    else:
-        executor.shutdown(wait=False)
-        client.close()

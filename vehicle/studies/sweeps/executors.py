@@ -10,7 +10,7 @@ import threading
 from collections.abc import Callable
 from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor
 from multiprocessing import connection, get_context, parent_process
-from typing import Any
+from typing import Any, Self
 
 from vehicle.errors import ConfigurationError, MissingPartError, SimulationError
 from vehicle.threads import one_thread_each
@@ -53,6 +53,45 @@ def process_pool(jobs: int) -> ProcessPoolExecutor:
                 'if __name__ == "__main__": around its statements, because each process imports the script'
             ) from None
     return pool
+
+
+class StandingExecutor:
+    """Executor of several sweeps in turn: it stays open between them, and is replaced after the death of a worker.
+
+    Args:
+        make: function that returns an executor.
+    """
+
+    def __init__(self, make: Callable[[], Executor]) -> None:
+        self._make, self._executor = make, make()
+
+    def __call__(self) -> Executor:
+        """Return the present executor."""
+        return self._executor
+
+    def renew(self) -> Executor:
+        """Close the executor and return a new one."""
+        close(self._executor)
+        self._executor = self._make()
+        return self._executor
+
+    def __enter__(self) -> Self:
+        """Return the object; the executor is closed at the end of the block."""
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        """Close the executor."""
+        close(self._executor)
+
+
+def close(executor: Executor) -> None:
+    """Shut down an executor and cancel its pending tasks; close the client of a Dask executor."""
+    client = getattr(executor, "_client", None)
+    if client is None:
+        executor.shutdown(wait=True, cancel_futures=True)
+    else:
+        executor.shutdown(wait=False)
+        client.close()
 
 
 def workers_of(executor: Executor) -> int | None:
