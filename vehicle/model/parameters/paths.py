@@ -40,7 +40,7 @@ def full_path(table: Mapping[str, Any], path: str) -> str:
         ConfigurationError: the path does not exist (with the nearest path), or is ambiguous.
     """
     if not (matches := _existing(table, path)):
-        raise ConfigurationError(f"no parameter {path}; the nearest is {nearest(path, paths(table))}")
+        raise _missing(table, path, paths(table))
     return _only(matches, path)
 
 
@@ -86,6 +86,17 @@ def nearest(path: str, known: Iterable[str]) -> str:
     return ends[difflib.get_close_matches(path, list(ends)[::-1], n=1, cutoff=0.0)[0]]
 
 
+def _missing(table: Mapping[str, Any], path: str, known: Iterable[str]) -> ConfigurationError:
+    """Return the error of a path that does not exist: with the law that has no such parameter, or the nearest path."""
+    law = next(iter(_existing(table, f"{path}_law")), "")
+    if not law.endswith("viscous_law"):
+        return ConfigurationError(f"no parameter {path}; the nearest is {nearest(path, known)}")
+    return ConfigurationError(
+        f"no parameter {path}: {law} is {value_at(table, law)}, which has none; --set {law}=linear --set {path}=VALUE "
+        "gives the car one"
+    )
+
+
 def meant(table: Mapping[str, Any], path: str, optional: Optional = list) -> list[str]:
     """Return the whole paths of the parameters that an override sets: one, or with a leading "*." all with this end.
 
@@ -108,7 +119,7 @@ def meant(table: Mapping[str, Any], path: str, optional: Optional = list) -> lis
         candidate for candidate in (*existing, *further) if f".{candidate}".endswith(f".{path.removeprefix('*.')}")
     ]
     if not matches:
-        raise ConfigurationError(f"no parameter {path}; the nearest is {nearest(path, [*existing, *further])}")
+        raise _missing(table, path, [*existing, *further])
     return matches if every else [path if path in matches else _only(matches, path)]
 
 
