@@ -76,3 +76,8 @@ def test_the_index_shows_every_picture_and_no_other_lies_there():
     files = {path.name for path in (ROOT / FOLDER / "pictures").iterdir()}
     assert files == {shown(page).file.name for page in pages}
     assert all(shown(page).file.stat().st_size <= HEAVIEST for page in pages)
+
+
+def test_a_number_of_a_caption_is_rounded_from_one_of_the_program():
+    assert rounded_from("0.862", ["7", "0.8621"]) and rounded_from("60", ["60.154"]) and rounded_from("2.4", ["-2.4"])
+    assert not rounded_from("0.863", ["7", "0.8621"]) and not rounded_from("61", ["60.154"])
