@@ -9,6 +9,7 @@ from importlib import import_module
 import pytest
 
 import vehicle
+from tests.documentation.gallery import FOLDER as GALLERY
 from tests.documentation.pages import BLOCK, ROOT, Site, blocks, pages, prose_commands
 from vehicle.commands import COMMANDS, module_of
 from vehicle.drawing.rendering.backend import film_available
@@ -39,7 +40,8 @@ NOT_RUN = {
 }
 """Beginning of a command of a `sh` block to the reason why no test of this file runs it."""
 
-EXECUTED = [page for page in pages() if blocks(page, "console", "python", "diff")]
+EXECUTED = [page for page in pages() if blocks(page, "console", "python", "diff") and not page.startswith(GALLERY)]
+"""Pages that this file runs; `test_gallery.py` runs the others."""
 
 
 @pytest.fixture(scope="session")

@@ -78,7 +78,7 @@ def _job(options: argparse.Namespace) -> None:
                            test.force, fitted.fit.force(test))
                 for test, error, outside in zip(fitted.tests, fitted.fit.fitted, fitted.fit.left_out, strict=True)
             ]  # fmt: skip
-            title = fitted.fit.law.title.capitalize()
+            title = fitted.fit.law.title[:1].upper() + fitted.fit.law.title[1:]
             write_whole(new[f"damper{fitted.name}.png"],
                         partial(plot_damper, loops=loops, title=title, caption=caption_of(fitted)))  # fmt: skip
         if len(fits) > 1:

@@ -68,7 +68,7 @@ def test_item_27_hardpoints_that_the_body_does_not_have_are_refused(other):
         assemble(vehicle, published)
     message = str(caught.value)
     assert "no node at strut_top_fr [0.889, 0.578" in message and "'strut_top_fr'" in message
-    assert "Move the hardpoint, use a body model with a node there, or compute the body from the" in message
+    assert "move the hardpoint, use a body model with a node there, or compute the body from the" in message
 
 
 def test_item_27_a_missing_interface_node_is_refused(other):

@@ -134,6 +134,14 @@ def test_what_a_path_begins_is_nearer_than_what_is_spelt_alike(car):
         full_path(car.vehicle.table, "front.damper.coulom")
 
 
+def test_a_damper_with_a_table_has_no_constant_and_the_message_says_how_to_get_one():
+    sedan = Car.load("sedan")
+    with pytest.raises(ConfigurationError, match=r"viscous_law is table, .* --set front\.damper\.viscous_law=linear"):
+        full_path(as_table(sedan.vehicle), "front.damper.viscous")
+    with pytest.raises(ConfigurationError, match=r"the nearest is front\.damper\.friction_law$"):
+        full_path(as_table(sedan.vehicle), "front.damper.friction")
+
+
 def test_overrides_as_a_mapping_and_a_single_text():
     given = {"a.b": 1.5, "c": True, "d": (1, 2.0, 3), "e": "stribeck", "f": np.float64(2.0), "g": {"x": [1, 2]}}
     assert assignments(given) == [

@@ -99,7 +99,8 @@ def of_wheel(all_responses: Sequence[MotionResponse], wheel: str | None, names: 
     chosen = next(number for number, group in enumerate(all_responses) if asked in group.motion)
     note = what_moves([group.motion for group in all_responses], chosen)
     response = all_responses[chosen].response
-    plate = " and ".join(f"plate_{moved}_displacement" for moved in all_responses[chosen].motion)
+    moved = tuple(all_responses[chosen].motion)
+    plate = f"plate_{moved[0]}_displacement" if len(moved) == 1 else f"the plates {', '.join(moved)} together"
     reasons = (*([note] if note else []), *response.reasons)
     return named(replace(response, reasons=reasons), names, plate)
 

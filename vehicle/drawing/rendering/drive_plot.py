@@ -17,6 +17,9 @@ from vehicle.signals.analysis.spectra import power_spectral_density
 DETAIL, WINDOW = 2.0, 4.0
 """Length of the magnified time window and of a window of the spectra [s]."""
 
+LEGEND_FACTOR = 200.0
+"""Range of the axis with the legend above its curves: two rows, which no curve crosses."""
+
 ERROR, OUTSIDE = "#555555", "#ececec"
 
 
@@ -73,10 +76,10 @@ def plot_replication(
         axes[-1, 1].set_xticks(ticks, [f"{tick:g}" for tick in ticks])
         for axis in axes[:, 1]:
             drawn = np.concatenate([line.get_ydata()[_between(line.get_xdata(), *band)] for line in axis.lines])
-            axis.set_ylim(0.5 * drawn[drawn > 0.0].min(), 2.0 * drawn.max())
+            axis.set_ylim(0.5 * drawn[drawn > 0.0].min(), (LEGEND_FACTOR if axis is axes[0, 1] else 2.0) * drawn.max())
             for ends in ((low, band[0]), (band[1], high)):
                 axis.axvspan(*ends, color=OUTSIDE, zorder=0, label="outside the band" if ends[0] == low else None)
-        axes[0, 1].legend(loc="lower right")
+        axes[0, 1].legend(loc="upper left", ncols=2)
         if len(drive) > 1:
             axes[-1, 0].legend(loc="upper right", ncols=2)
         figure.align_ylabels(axes[:, 0])

@@ -52,5 +52,6 @@ def plot_loads(path: Path, loads: Sequence[LoadSpectrum], caption: str) -> None:
                 )
             axis.set(xscale="log", xlabel="cycles", ylabel=label)
             axis.set_xlim(left=FEWEST)
+            axis.xaxis.set_major_formatter("{x:,g}")
             axis.set_ylim(bottom=0.0)
             axis.legend()

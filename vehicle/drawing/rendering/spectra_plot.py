@@ -104,7 +104,12 @@ def draw_densities(axis: Any, spectra: Sequence[ChannelSpectrum]) -> None:
     looks = cycle(zip(COLOURS, LINES, strict=True))
     for spectrum, (colour, line) in zip(spectra, islice(looks, len(axis.lines), None), strict=False):
         axis.plot(spectrum.frequency, spectrum.density, color=colour, linestyle=line, label=spectrum.label)
-    axis.set(xscale="log", yscale="log", xlabel="frequency [Hz]", ylabel=ROWS[0])
+    axis.set(xscale="log", yscale="log", xlabel="frequency [Hz]", ylabel=ROWS[0], xlim=_limits({"": spectra}))
+    axis.set_xticks(TICKS, [f"{tick:g}" for tick in TICKS])
+    axis.set_xticks([], minor=True)
+    drawn = np.concatenate([line.get_ydata() for line in axis.lines])
+    if drawn.size and drawn.max() > 0.0:
+        axis.set_ylim(drawn.max() / DECADES, 2.0 * drawn.max())
     axis.legend()
 
 

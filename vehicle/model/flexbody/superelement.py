@@ -253,8 +253,9 @@ def attached_nodes(body: Superelement, points: Mapping[str, Point]) -> dict[Poin
             raise DataError(
                 f"superelement {body.name!r}: no node at {name} {list(point)} m, an attachment of the car; the nearest "
                 f"is {body.nodes[best]!r} at {body.positions[best].tolist()} m, {distance * 1e3:.4g} mm away, must be "
-                f"at most {tolerance * 1e3:g} mm. Move the hardpoint, use a body model with a node there, or compute "
-                "the body from the hardpoints (body.superelement = body_design.toml)."
+                f"at most {tolerance * 1e3:g} mm. Name the car of this body (--vehicle), move the hardpoint, use a "
+                "body model with a node there, or compute the body from the hardpoints (body.superelement = "
+                "body_design.toml)."
             )
         nodes[point] = body.nodes[best]
     return nodes

@@ -43,7 +43,7 @@ def full_path(table: Mapping[str, Any], path: str) -> str:
         ConfigurationError: the path does not exist (with the nearest path), or is ambiguous.
     """
     if not (matches := _existing(table, path)):
-        raise ConfigurationError(f"no parameter {path}; the nearest is {nearest(path, paths(table))}")
+        raise _missing(table, path, paths(table))
     return _only(matches, path)
 
 
@@ -89,6 +89,17 @@ def nearest(path: str, known: Iterable[str]) -> str:
     return ends[difflib.get_close_matches(path, list(ends)[::-1], n=1, cutoff=0.0)[0]]
 
 
+def _missing(table: Mapping[str, Any], path: str, known: Iterable[str]) -> ConfigurationError:
+    """Return the error of a path that does not exist: with the law that has no such parameter, or the nearest path."""
+    law = next(iter(_existing(table, f"{path}_law")), "")
+    if not law.endswith("viscous_law"):
+        return ConfigurationError(f"no parameter {path}; the nearest is {nearest(path, known)}")
+    return ConfigurationError(
+        f"no parameter {path}: {law} is {value_at(table, law)}, which has none; --set {law}=linear --set {path}=VALUE "
+        "gives the car one"
+    )
+
+
 def meant(table: Mapping[str, Any], path: str, optional: Optional = list) -> list[str]:
     """Return the whole paths of the parameters that an override sets: one, or with a leading "*." all with this end.
 
@@ -110,7 +121,7 @@ def meant(table: Mapping[str, Any], path: str, optional: Optional = list) -> lis
     matches += [each for each in further if _ends(each, end) and (sided or not _of_one_side(each))]
     if not matches:
         known = [*existing, *(each for each in further if sided or not _of_one_side(each))]
-        raise ConfigurationError(f"no parameter {path}; the nearest is {nearest(path, known)}")
+        raise _missing(table, path, known)
     return matches if every else [path if path in matches else _only(matches, path)]
 
 
