@@ -23,7 +23,7 @@ COURSE = ROOT / "docs" / "course"
 BLOCK = re.compile(r"^```(\w*)[^\n]*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\((?!https?:|#)([^)\s]+)")
 HIDDEN = re.compile(r"^<!--.*?-->\n", re.MULTILINE | re.DOTALL)
-TREE = re.compile(r"^```\{toctree\}.*?^```$", re.MULTILINE | re.DOTALL)
+DIRECTIVE = re.compile(r"^```\{.*?^```$", re.MULTILINE | re.DOTALL)
 
 
 def lessons() -> list[Path]:
@@ -38,7 +38,7 @@ def notebook(page: Path, folder: Path) -> dict[str, Any]:
         page: page of a lesson.
         folder: folder of the notebook, from which its links start.
     """
-    text = HIDDEN.sub("", TREE.sub("", page.read_text(encoding="utf-8")))
+    text = HIDDEN.sub("", DIRECTIVE.sub("", page.read_text(encoding="utf-8")))
     cells: list[dict[str, Any]] = []
     end = 0
     for match in BLOCK.finditer(text):
