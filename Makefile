@@ -8,6 +8,7 @@
 # make laptop   a folder for Windows without installation -> build/vehicle-for-windows.zip
 # make test-windows   the commands with CPython for Windows under wine, compared with this system
 # make docs     build the documentation -> docs/_build/html/index.html
+# make course   the notebooks of the course (docs/course) -> build/course
 SHELL := /bin/bash
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 VENV := .venv
@@ -15,7 +16,7 @@ BIN := $(VENV)/bin
 INPUT ?= low.csv
 export OMP_NUM_THREADS ?= 1
 
-.PHONY: shaker test check core core-sanitize studies faults docs setup setup-tests mjcf benchmark lowest laptop test-windows clean
+.PHONY: shaker test check core core-sanitize studies faults docs course setup setup-tests mjcf benchmark lowest laptop test-windows clean
 
 shaker: setup
 	@if $(BIN)/python -m vehicle.drawing.rendering.backend; then \
@@ -41,6 +42,9 @@ core-sanitize: setup-tests
 
 docs: setup-tests
 	$(BIN)/python -m sphinx -q -W --keep-going -b html docs docs/_build/html
+
+course: setup
+	$(BIN)/python tools/course_notebooks.py build/course
 
 mjcf: setup
 	$(BIN)/python -m vehicle mjcf --force
