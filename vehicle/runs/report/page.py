@@ -182,10 +182,12 @@ def document(
         title: title of the page.
         subtitles: lines below the title.
         parts: title, anchor and content of each section.
-        modes: moving modes as JSON; empty for a page without them.
+        modes: points, lines and modes of the cars as JSON; empty for a page without moving pictures.
         trial: section for trials, whose scripts the page gets; None for a page without it.
     """
-    run_scripts = [_file("print.js"), _file("wireframe.js"), _file("modes.js")] if modes else []
+    run_scripts = [_file("print.js"), _file("wireframe.js")] if modes else []
+    if any(anchor == "modes" for _, anchor, _ in parts):
+        run_scripts.append(_file("modes.js"))
     allowed, tried = "", trial if trial and trial.numbers else Trial(content=Markup())
     if tried.numbers:
         run_scripts.append(tried.script)
