@@ -85,7 +85,7 @@ def _job(options: argparse.Namespace) -> None:
         "each plate are needed"
     )
     if forces := [force.name for force in car.vehicle.composition.forces if force.law.harmonics]:
-        print(f"note: the harmonics of {', '.join(forces)} are not in the FMU; means are")
+        print(f"note: the harmonics of {', '.join(forces)} are not in the FMU; their mean values are")
 
 
 main = command(parser, _job)
