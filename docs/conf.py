@@ -4,6 +4,8 @@ import re
 from importlib.metadata import version as version_of
 from typing import Any
 
+from docs.live_page import live_cars
+
 project = "vehicle-on-shaker"
 release = version_of("vehicle-on-shaker")
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
@@ -48,6 +50,7 @@ def anchors(app: Any, name: str, content: list[str]) -> None:
 
 
 def setup(app: Any) -> None:
-    """Register both hooks; the first before the sections of the docstrings are read."""
+    """Register the hooks; `readable` runs before the sections of the docstrings are read."""
     app.connect("autodoc-process-docstring", readable, priority=400)
     app.connect("source-read", anchors)
+    app.connect("build-finished", live_cars)

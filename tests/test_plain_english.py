@@ -16,6 +16,9 @@ LIMITS = {
 }
 """Highest rates of a folder, in the order of `rates` of `tools/plainness.py`; lower them after an improvement."""
 
+READER_LIMIT = 6.7
+"""Highest rate of phrases that newcomers do not understand in what a user reads, per 1 000 words."""
+
 
 @pytest.fixture
 def plainness():
@@ -51,3 +54,34 @@ def test_private_phrases_are_counted(plainness, tmp_path):
     assert all(value > 0.0 for name, value in rates.items() if "verb" not in name)
     file.write_text('def f(mass):\n    """Return the weight of a mass [N]."""\n    return 9.81 * mass\n')
     assert not any(rates_of(plainness, [file]).values())
+
+
+def test_what_a_user_reads_stays_as_plain_as_it_is(plainness):
+    files = [path for path in sorted((ROOT / "vehicle").rglob("*")) if path.suffix in (".py", ".html")]
+    rate, _, sentences = plainness.reader(files)
+    assert len(sentences) > 2000, "texts are not found"
+    assert rate <= READER_LIMIT, "run: python tools/plainness.py vehicle --reader --list 20"
+
+
+@pytest.mark.parametrize(
+    "kind, text",
+    {
+        "double negation": "the FRF does not exist without an input",
+        "two semicolons": "the file is short; found 2 lines; export it again",
+        "condition behind a semicolon": "give the folder of a run; or give an input",
+        "as of": "assumed to be in proportion as of the sedan",
+        "one as a noun": "give a speed for each one of the roads",
+        "range that may be one value": "no FRF at {frequency[0]:.2f} to {frequency[-1]:.2f} Hz here",
+        "five digits or more": "the time histories are late by {delay:.6g} seconds",
+        "private word": "both cars are marched in lanes together",
+        "elliptic": "harmonics are left out of it, means are",
+    }.items(),
+)
+def test_a_phrase_that_a_reader_does_not_understand_is_counted(plainness, tmp_path, kind, text):
+    (tmp_path / "a.py").write_text(f'print(f"{text}")\n')
+    (tmp_path / "a.html").write_text(
+        "<p>The page computes the first thirty seconds.</p>{% if a %}<p>No. Yes.</p>{% endif %}"
+    )
+    rate, hits, sentences = plainness.reader([tmp_path / "a.py", tmp_path / "a.html"])
+    assert [*hits] == [kind] and rate > 0.0
+    assert len(sentences) == 2

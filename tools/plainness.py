@@ -1,6 +1,8 @@
 """Count candidates of compressed or private English in the sources; `plainness.py DIR [--list N] [--json FILE] [--kind K]`.
 
 Every count is a candidate, not a verdict: a reader decides. The sum per 1 000 lines is the number to bring down.
+`plainness.py DIR --reader` counts instead what a user reads: texts of console, errors, help and reports (strings and HTML
+templates). `--draw 60 --seed 1` prints sentences of these texts, to be read by someone who does not know the code.
 """
 
 from __future__ import annotations
@@ -10,6 +12,7 @@ import ast
 import collections
 import io
 import json
+import random
 import re
 import tokenize
 from pathlib import Path
@@ -62,6 +65,21 @@ PHRASES = {
 }
 """Phrases in docstrings, comments and messages."""
 
+NEGATION = r"\b(?:not|no|never|none|nothing|nor|without|cannot|neither)\b"
+
+READER_PHRASES = {
+    "double negation": rf"(?!.*\b(?:[Nn]either|nor)\b){NEGATION}[^.;:,()]*{NEGATION}|\b(?:not|never) un\w+|\bnothing but\b|\bnone but\b",
+    "two semicolons": r";[^.]*;",
+    "condition behind a semicolon": r"; (?:if|unless|where|else|otherwise|but|and|or)\b",
+    "as of": r"\bas of (?:a|an|the|those|most|during|\{)\b|\bthat of (?:a|an|the|those|its)\b[^.;:,]*\bthat of\b",
+    "one as a noun": r"\b(?:[Ee]ach|[Ee]very|any|the|this|that|[Aa]nother|no|which|a \w+) one\b|\bones\b|\b[Oo]ne (?:that|which|with|of its|for|has|may|behind)\b|\bone by one\b",
+    "range that may be one value": r"\{[^{}]*(?:min\(|\[0\])[^{}]*\} to \{",
+    "five digits or more": r"\{[^{}]*:[+,]*\.?\d*\.[5-9][efg]?\}",
+    "private word": r"\b(?:marche[ds]|marched|lanes|house|poses|knots?|riddle|told apart)\b",
+    "elliptic": r"\b(?:does|do|may|has|is|are) ?(?:[.;]|$)|\bwhere none\b|\bif none\b|\bsuch (?:a|an) one\b|\bit is that\b|\bwhat it was\b",
+}
+"""Phrases in texts that a user reads, that newcomers did not understand; {name} is a value."""
+
 VERBS = re.compile(
     r"\b(?:is|are|was|were|be|been|has|have|had|do|does|did|can|may|must|will|would|should|could|"
     r"returns?|computes?|reads?|writes?|makes?|adds?|gives?|takes?|raises?|builds?|finds?|checks?|runs?|sets?|gets?|"
@@ -103,6 +121,60 @@ def strings(tree: ast.AST) -> list[tuple[int, str]]:
                 parts = [str(v.value) if isinstance(v, ast.Constant) else "{}" for v in value.values]
                 out.append((value.lineno, "".join(parts)))
     return out
+
+
+def shown_texts(path: Path) -> list[tuple[int, str]]:
+    """Texts of a file that a user may read: strings of at least four words of a module, or the prose of a template."""
+    source = path.read_text(encoding="utf-8")
+    if path.suffix == ".html":
+        source = re.sub(
+            r"\{\{-?\s*(.*?)\s*-?\}\}", r"{\1}", re.sub(r"\{[%#].*?[%#]\}", "", source, flags=re.S), flags=re.S
+        )
+        blocks = re.split(r"</?(?:p|li|td|th|div|caption|summary|label|span|h\d|option|button|dt|dd)\b[^>]*>", source)
+        return [(1, text) for text in (" ".join(re.sub(r"<[^>]+>", "", b).split()) for b in blocks) if prose(text)]
+    texts, nested = [], set[int]()
+    tree = ast.parse(source)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
+            nested.add(id(node.value))
+        if isinstance(node, ast.JoinedStr):
+            nested |= {id(part) for part in node.values}
+            for part in node.values:
+                if isinstance(part, ast.FormattedValue) and part.format_spec is not None:
+                    nested.add(id(part.format_spec))
+    for node in ast.walk(tree):
+        if id(node) in nested:
+            continue
+        if isinstance(node, ast.Constant) and isinstance(node.value, str):
+            texts.append((node.lineno, node.value))
+        elif isinstance(node, ast.JoinedStr):
+            parts = [
+                v.value if isinstance(v, ast.Constant) else ast.unparse(ast.JoinedStr([v]))[2:-1] for v in node.values
+            ]
+            texts.append((node.lineno, "".join(str(part) for part in parts)))
+    return [(line, text) for line, text in texts if prose(text)]
+
+
+def prose(text: str) -> bool:
+    """True if a text is a sentence or part of one, and no formula, pattern or list of names."""
+    return len(re.findall(r"(?<![\w{.])[A-Za-z][a-z'-]+(?![\w}(=])", text)) >= 4 and not re.search(
+        r"\\[dws]|\n {4}|:root", text
+    )
+
+
+def reader(files: list[Path]) -> tuple[float, dict[str, list[str]], list[str]]:
+    """Rate of candidates per 1 000 words in what a user reads, the candidates by kind, and all sentences."""
+    hits: dict[str, list[str]] = collections.defaultdict(list)
+    words, every = 0, []
+    for path in files:
+        for line, text in shown_texts(path):
+            words += len(text.split())
+            for sentence in re.split(r"(?<=[.?!])\s+(?=[A-Z{])", text):
+                every.append(f"{path}:{line} {sentence}")
+                for name, pattern in READER_PHRASES.items():
+                    if re.search(pattern, sentence):
+                        hits[name].append(every[-1])
+    return 1000 * sum(map(len, hits.values())) / max(words, 1), hits, every
 
 
 WORDS = collections.Counter[str]()
@@ -172,7 +244,24 @@ def main() -> None:
     parser.add_argument("--kind", default="", help="only kinds that begin so")
     parser.add_argument("--json", type=Path, help="write the counts, to compare with later")
     parser.add_argument("--worst", type=int, default=12, help="number of files to name")
+    parser.add_argument("--reader", action="store_true", help="count what a user reads, HTML templates included")
+    parser.add_argument("--draw", type=int, default=0, metavar="N", help="print N sentences that a user reads")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the draw (default 1)")
     options = parser.parse_args()
+    if options.reader or options.draw:
+        paths = [path for path in sorted(options.folder.rglob("*")) if path.suffix in (".py", ".html")]
+        rate, kinds, every = reader(paths or [options.folder])
+        if options.draw:
+            print("\n".join(" ".join(text.split()) for text in random.Random(options.seed).sample(every, options.draw)))
+            return
+        for kind, found in sorted(kinds.items(), key=lambda item: -len(item[1])):
+            print(f"{len(found):6} {kind}")
+            if options.list and kind.startswith(options.kind):
+                print(
+                    "\n".join(f"       {text}" for text in found[:: max(len(found) // options.list, 1)][: options.list])
+                )
+        print(f"{rate:.1f} per 1 000 words, {len(every)} sentences")
+        return
     total: collections.Counter[str] = collections.Counter()
     per_file: dict[str, tuple[int, int]] = {}
     examples: dict[str, list[str]] = collections.defaultdict(list)

@@ -146,4 +146,4 @@ def test_units_of_columns_and_metres_without_a_unit(tmp_path, capsys):
     values = {each["path"]: each["value"] for each in by_role["parameters"]}
     assert values["damper.damping_1"] == pytest.approx(1200.0, rel=0.05)
     assert main([*words, "--unit", "displacement=m", "--unit", "load=N"]) == 2
-    assert "'load' is no column of the test and no role" in capsys.readouterr().err
+    assert "'load' is neither a column of the test nor a role" in capsys.readouterr().err

@@ -51,3 +51,10 @@ def test_nothing_is_loaded_from_the_network(site):
         assert not re.search(r"""(?:@import|url\()\s*["']?(?:https?:)?//""", path.read_text(encoding="utf-8")), (
             path.name
         )
+
+
+def test_the_first_page_has_the_live_cars(site):
+    """Frame and links of index.html name files that the build has written."""
+    named = re.findall(r"""(?:src|href)="(live/[^"]+)\"""", (site / "index.html").read_text(encoding="utf-8"))
+    assert {*named} == {"live/shaker.html", "live/road.html"}
+    assert all((site / name).stat().st_size > 100_000 for name in named)

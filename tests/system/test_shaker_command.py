@@ -251,7 +251,7 @@ def test_two_plates_are_told_apart(shaker, tmp_path):
     folder = tmp_path / "runs" / "both"
     summary = json.loads((folder / "summary.json").read_text())
     assert set(summary["input"]["plate_rms_m"]) == {"fr", "fl"} and min(summary["input"]["plate_rms_m"].values()) > 9e-6
-    said = "both plates move independently of each other: the FRFs are separated, to fr, fl; the coherence is that with"
+    said = "both plates move independently of each other: the FRFs are separated, to fr, fl; the coherence counts"
     assert any(notice.startswith(said) for notice in summary["notices"])
     assert [one["plates"] for one in summary["frf"]["to"]] == [{"fr": 1.0}, {"fl": 1.0}]
     table = np.genfromtxt(folder / "frf.csv", delimiter=",", skip_header=3)

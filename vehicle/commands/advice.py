@@ -86,7 +86,11 @@ def command_for(measurement: Measurement, file: str, databases: Sequence[Path] =
         return "", reasons[0]
     if plates:
         names = ", ".join(channel.name for _, channel in plates[:4])
-        return "", f"{names}: a height above the sea, a distance, or the travel of a spring, no plate and no road"
+        return (
+            "",
+            f"{names}: this looks like a height above the sea, a distance, or the travel of a spring. "
+            "Needed is the height of a plate or road",
+        )
     if empty:
         note = f" ({empty[0].remark})" if empty[0].remark else ""
         return "", f"{', '.join(channel.name for channel in empty[:4])}: no values{note}"

@@ -34,7 +34,8 @@ def _roads(options: argparse.Namespace) -> list[Road]:
     speeds = options.speed or [None]
     if len(speeds) not in (1, len(options.road)):
         raise ConfigurationError(
-            f"--speed: given {len(speeds)} times for {len(options.road)} roads; give one for all, or one for each"
+            f"--speed: given {len(speeds)} times for {len(options.road)} roads; give one speed, or "
+            "a speed for each road"
         )
     each = speeds * len(options.road) if len(speeds) == 1 else speeds
     seeds = options.seed or [None]

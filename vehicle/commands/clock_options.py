@@ -7,7 +7,7 @@ import argparse
 DELAY = (
     "S: the measurement began this long after the run [s]; GROUP=TIME, as accelerations=12.3ms: channels that lag the "
     "others by this in the file, taken out; GROUP is plates, accelerations, velocities, displacements, forces, a "
-    "channel or a pattern with *; may be repeated"
+    "channel or a pattern with *. May be repeated"
 )
 
 

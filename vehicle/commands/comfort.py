@@ -43,7 +43,7 @@ def parser() -> Parser:
         action="append",
         default=[],
         metavar="PLACE|AXIS=NAME",
-        help="point of a run, as seat_rail in its time.csv or time.npz; columns x, y, z by default; or the channel of "
+        help="point of a run, as seat_rail in its time.csv or time.npz. By default columns x, y, z. Or the channel of "
         'axis in any measurement file, as x="Seat X" (number, exact name, or pattern with *), for x, y and z',
     )
     channels.add_argument(

@@ -58,7 +58,7 @@ def parser() -> Parser:
         type=float,
         metavar="S",
         help="length of the Hann windows that the measured responses were averaged over [s]; the simulated "
-        "responses are estimated in the same way; by default on the whole record",
+        "responses are estimated in the same way. By default the whole record",
     )
     responses.add_argument(
         "--bands",
@@ -112,8 +112,8 @@ def measured_options(parser: Parser, *, required: bool = False, several: bool = 
             if several
             else ""
             if required
-            else "; --unit CHANNEL=UNIT is of it where CHANNEL is one of the model; one that needs --rate, --from, "
-            "--delay: python -m vehicle compare, after the run"
+            else ". --unit CHANNEL=UNIT sets the unit of a channel of the model in it. If it needs --rate, --from or "
+            "--delay, run python -m vehicle compare after the run"
         ),
     )
     mapping_options(
@@ -132,8 +132,8 @@ def mapping_options(parser: argparse._ActionsContainer) -> None:
         default=[],
         metavar="CHANNEL=NAME",
         help='channel of the model and its measured channel, as knuckle_fr_acc_z="Dof 12 +Z": number, exact name, '
-        "pattern with *, or place and direction; a response may name its plate, as knuckle_fr_acc_z/plate_fl=3; for "
-        "mode shapes PLACE=NODE; by default equal names, and for modes nodes at the places of the car; may be repeated",
+        "pattern with *, or place and direction. A response may name its plate, as knuckle_fr_acc_z/plate_fl=3; for "
+        "mode shapes PLACE=NODE; by default equal names, and for modes nodes at the places of the car. May be repeated",
     )
     parser.add_argument(
         "--turn",
@@ -141,7 +141,7 @@ def mapping_options(parser: argparse._ActionsContainer) -> None:
         action="append",
         default=[],
         metavar="CHANNEL",
-        help="channel measured in the opposite direction; may be repeated",
+        help="channel measured in the opposite direction. May be repeated",
     )
 
 

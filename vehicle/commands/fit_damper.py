@@ -31,7 +31,7 @@ def parser() -> Parser:
     parser.add_argument(
         "--condition", action="append", default=[], metavar="NAME=VALUE",
         help="condition of the tests, as current=1, or current=channel:I for the mean of a channel of each file; tests "
-        "of equal conditions are fitted together; may be repeated",
+        "of equal conditions are fitted together. May be repeated",
     )  # fmt: skip
     parser.add_argument(
         "--pattern", default="", metavar="PATTERN",

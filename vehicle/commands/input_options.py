@@ -33,7 +33,7 @@ def signal_options(parser: Parser, *, several: bool = False) -> argparse._Argume
         The group of the options that act on a file of signals.
     """
     action = "append" if several else "store"
-    again = "; may be repeated" if several else ""
+    again = ". May be repeated" if several else ""
     parser.add_argument(
         "--input",
         action=action,
@@ -214,7 +214,7 @@ def record_options(
             default=[],
             metavar="ROLE=NAME",
             help=f"channel of the file, by number, exact name, or pattern with *, for {roles}; time=NAME names the "
-            "times; may be repeated; `python -m vehicle inspect FILE` lists them",
+            "times. May be repeated; `python -m vehicle inspect FILE` lists them",
         )
     if unit:
         unit_option(parser)
@@ -261,7 +261,7 @@ def database_option(parser: argparse._ActionsContainer) -> None:
         action="append",
         default=[],
         metavar="FILE",
-        help="database of CAN messages that decodes a bus log (MDF, .asc, .trc, candump); may be repeated",
+        help="database of CAN messages that decodes a bus log (MDF, .asc, .trc, candump). May be repeated",
     )
 
 

@@ -28,7 +28,7 @@ def parser() -> Parser:
         "files",
         nargs="+",
         metavar="FILE",
-        help="of any format, recognised by its content; a shipped input; or a folder; several give one table",
+        help="file of any format, recognised by its content, a shipped input, or a folder. Several give one table",
     )
     database_option(parser)
     parser.add_argument("--json", action="store_true", help="print JSON")

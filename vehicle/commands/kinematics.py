@@ -53,7 +53,7 @@ def parser() -> Parser:
             default=[],
             metavar="AXIS=VALUE",
             help=f"{quantity} on both wheels at their contact points, in the axes of the car (x to the rear, y to the "
-            "right, z up), as x=1000; with --opposite against each other; may be repeated",
+            "right, z up), as x=1000; with --opposite against each other. May be repeated",
         )
     parser.add_argument("--ideal", action="store_true", help="every bushing an ideal joint: kinematics alone")
     parser.add_argument(
@@ -173,7 +173,7 @@ def _report(
     rates: dict[str, float | None],
 ) -> str:
     """Return both tables as text."""
-    joints = "ideal joints" if options.ideal else "bushings as they are"
+    joints = "ideal joints" if options.ideal else "compliant bushings"
     lines = [
         f"{options.axle} axle, wheel on the right, against its design position; {joints}"
         + ("; left wheel opposite" if options.opposite else ""),
@@ -232,7 +232,7 @@ def _write(
         caption = "; ".join(
             [
                 "opposite travel" if options.opposite else "equal travel",
-                "ideal joints" if options.ideal else "bushings as they are",
+                "ideal joints" if options.ideal else "compliant bushings",
                 *(f"force {entry} N" for entry in options.contact_force),
                 *(f"moment {entry} N m" for entry in options.moment),
             ]

@@ -41,7 +41,7 @@ def parser() -> Parser:
         "--reference-run",
         type=Path,
         metavar="RUN",
-        help="run, as of a reference road, whose damage is 1 in schedule.csv",
+        help="run whose damage counts as 1 in schedule.csv, for example on a reference road",
     )
     parser.add_argument(
         "--channels", metavar="NAME,...", help="channels to count; all forces, torques and travels by default"

@@ -33,7 +33,7 @@ def parser() -> Parser:
         default=[],
         metavar="PATH=LOW:HIGH",
         help="a parameter and its bounds, in its unit, as front.damper.viscous=800:4000; *.damper.viscous sets all "
-        "that end so alike; may be repeated",
+        "that end so alike. May be repeated",
     )
     search.add_argument(
         "--minimise",
@@ -42,7 +42,7 @@ def parser() -> Parser:
         metavar="NUMBER[@INPUT]",
         help="an objective: unweighted, weighted, seat_unweighted, seat_weighted [m/s2], seat_value, tyre_load, "
         "lowest_load, slip_share [-], travel [m]; one axis or wheel is weighted_z, travel_fr; after the @ an input, "
-        "as road_A_120 or the stem of a file, or mean or worst of all; may be repeated",
+        "as road_A_120 or the stem of a file, or mean or worst of all. May be repeated",
     )
     search.add_argument(
         "--targets",
@@ -55,7 +55,7 @@ def parser() -> Parser:
         action="append",
         default=[],
         metavar="PATH=C",
-        help="with --targets: a change of this parameter counts C times; 1 by default; may be repeated",
+        help="with --targets: a change of this parameter counts C times. By default 1. May be repeated",
     )
     setting_options(search, SearchSettings, "maximise", "limits", "cars", "population", "seed")
     setting_options(parser, SearchSettings, "tolerances")

@@ -97,7 +97,7 @@ def set_option(parser: argparse._ActionsContainer) -> None:
         default=[],
         metavar="PATH=VALUE",
         help="override one parameter, as damper.coulomb_friction=93.75; a vector is [x, y, z], and the path "
-        "of one component ends with its axis: bushings.tyre.stiffness.z=2e5; may be repeated",
+        "of one component ends with its axis: bushings.tyre.stiffness.z=2e5. May be repeated",
     )
 
 
@@ -188,5 +188,5 @@ def resume_options(parser: Parser) -> None:
 def message_options(parser: argparse.ArgumentParser, *, quiet: bool = False) -> None:
     """Add --debug and, for a command whose results are files, --quiet."""
     if quiet:
-        parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+        parser.add_argument("--quiet", action="store_true", help="print errors only")
     parser.add_argument("--debug", action="store_true", help="show the traceback of an error")

@@ -85,7 +85,7 @@ def _job(options: argparse.Namespace) -> None:
     roughness = {}
     if options.iri:
         if not isinstance(drive, RoadDrive):
-            raise ConfigurationError("--iri: rates a road over its distance, not one that was recorded over time")
+            raise ConfigurationError("--iri: needs the heights over distance; this road was recorded over time")
         named_file(options.held, indices, ending=".csv", force=options.force, protect=inputs)
         roughness = drive.roughness()
     with whole_files([path, picture, indices]) as (new_path, new_picture, new_indices):

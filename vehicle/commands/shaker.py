@@ -112,7 +112,7 @@ def parser() -> Parser:
         default=[],
         choices=WRITTEN,
         help="write the run in this format too: time histories, and in mat, uff and h5 the FRFs with their coherence; "
-        "uff with the places of the car; may be repeated",
+        "uff with the places of the car. May be repeated",
     )
     figures_option(parser)
     parser.add_argument("--video", nargs="?", const="", metavar="FILE.mp4", help="render a film of the run")
@@ -359,7 +359,9 @@ def _engine(options: argparse.Namespace) -> tuple[str, str]:
     needs = "--video" if options.video is not None else "--timestep" if options.timestep is not None else None
     if needs is None or options.engine == "mujoco":
         return options.engine, ""
-    why = f"{needs}: the reduced engine " + ("keeps no poses to film" if needs == "--video" else "has its own step")
+    why = f"{needs}: the reduced engine " + (
+        "stores no positions for a film" if needs == "--video" else "has its own step"
+    )
     if options.engine == "reduced":
         raise ConfigurationError(f"{why}; leave --engine reduced out, or {needs}")
     return "mujoco", why

@@ -41,7 +41,7 @@ def parser() -> Parser:
         action="append",
         default=[],
         metavar="PATH=VALUES",
-        help="values of a parameter, as damper.coulomb_friction=62.5,125, or 62.5:125:6 for six equally spaced ones; "
+        help="values of a parameter, as damper.coulomb_friction=62.5,125, or 62.5:125:6 for six equally spaced values; "
         "of a component of a vector, as bushings.tyre.stiffness.z=2e5,2.5e5; a whole vector is [x,y,z]; repeated: "
         "every combination",
     )

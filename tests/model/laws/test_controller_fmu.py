@@ -177,7 +177,7 @@ def test_native_code_runs_only_with_its_digest(tmp_path):
     path = controller_fmu(tmp_path / "skyhook.fmu")
     with pytest.raises(ConfigurationError, match=f'native code.* fmu_sha256 = "{digest(path)}" .* --trust'):
         read_controller(path, None)
-    with pytest.raises(ConfigurationError, match=r"the file has changed; if you trust the new one, set its digest"):
+    with pytest.raises(ConfigurationError, match=r"the file has changed; if you trust the new file, set its digest"):
         read_controller(path, digest(path)[::-1])
 
 

@@ -73,15 +73,16 @@ def test_the_page_is_whole_and_asks_nobody(reported, outline):
         "Result",
         "This run",
         "Frequency responses",
+        "Car, signal, engine",
         "Try it",
         "Findings",
-        "Car, signal, engine",
-        "Time histories",
+        "Notices",
         "Dampers",
+        "Time histories",
         "Comfort",
+        "Modes",
         "Spectra",
         "The car",
-        "Modes",
     ]
     assert outline.titles == [*wanted, "All values", "How to repeat the run"]
     assert reported.text.count("<svg ") == 6  # change, FRFs, time histories, bands of the comfort, spectra, car
@@ -364,7 +365,7 @@ def test_what_makes_the_seat_rail_loud_is_said_with_the_shares_of_the_command(re
     peaks = json.loads((reported.folder / "summary.json").read_text())["peaks"]["seat_rail_acc_z"]
     highest = max(peaks, key=lambda peak: peak["magnitude"])["frequency_hz"]
     first = next(name for at, name in told if float(at) == pytest.approx(highest, abs=0.051))
-    (state,) = re.findall(r"Shares: linear car, dampers (\w+). More: `python -m vehicle body participation`", text)
+    (state,) = re.findall(r"Shares: linear car, dampers (\w+). More: python -m vehicle body participation", text)
     words = ["participation", "--at", str(highest), "--damper", state, "--json"]
     assert body_command([*words, "--vehicle", str(reported.folder / "vehicle.toml")]) == 0
     parts = {one["name"]: one["share"] for one in json.loads(capsys.readouterr().out)["contributions"]}

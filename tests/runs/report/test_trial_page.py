@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import dataclasses
 import io
+import json
+import re
 import time
 from collections.abc import Callable, Iterator
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 from PIL import Image
 
+from docs.live_page import live_cars
 from scenarios.signals.random_road import random_road
+from tests.documentation.pages import DOCS
 from tests.patience import HANG
 from tests.runs.report.test_trial import STRIBECK
 from vehicle.commands.shaker import main
@@ -23,6 +29,9 @@ from vehicle.signals.excitation.signal_file import read_signal, write_signal
 
 LARGEST = 600_000
 """Maximum number of bytes that the section adds to a report."""
+
+FOUR_DIGITS = 5e-4
+"""Maximum relative rounding of a number with four digits, as in the table of the section."""
 
 MOVE = """
 const slider = document.getElementById(`trial-${arguments[0]}`);
@@ -164,3 +173,54 @@ def test_a_longer_run_with_stribeck_friction_in_a_narrow_window(longer):
     )
     assert len(widths) == 5 and min(widths) > 400
     assert [entry for entry in longer.get_log("browser") if str(longer.current_url) in entry["message"]] == []
+
+
+@pytest.fixture
+def first_page(browser, tmp_path) -> Iterator[Any]:
+    """The frame of docs/index.md with the pages that the build of the site writes; afterwards the report again."""
+    app = SimpleNamespace(outdir=tmp_path, builder=SimpleNamespace(format="html"))
+    live_cars(app, None)
+    (frame,) = re.findall(r"^```\{raw\} html\n(.*?)^```", (DOCS / "index.md").read_text("utf-8"), re.MULTILINE | re.S)
+    (tmp_path / "index.html").write_text(f"<!DOCTYPE html><link rel='icon' href='data:,'>{frame}", encoding="utf-8")
+    report = browser.current_url
+    browser.get_log("browser"), browser.get_log("performance")
+    browser.get((tmp_path / "index.html").as_uri())
+    browser.switch_to.frame("live-car")
+    yield browser
+    browser.switch_to.default_content()
+    browser.get(report)
+    wait(lambda: browser.find_element("id", "trial-time-used").text != "")
+
+
+def computed(browser: Any) -> float:
+    """Return the weighted acceleration of the car with the settings of the sliders, from the table."""
+    wait(lambda: browser.find_element("id", "trial-time-used").text != "")
+    return float(browser.find_element("css selector", "#trial-table td:nth-child(3)").text)
+
+
+def test_the_first_page_of_the_docs_computes_what_the_command_does(first_page):
+    """Shaker with two values of the friction and road, to the digits of the page; no error, nothing loaded."""
+    signal = read_signal(find_input("low.csv"), wheel="fl")
+    count = round(LONGEST / signal.timestep) + 1
+    plates = {wheel: z[:count] - z[0] for wheel, z in signal.displacement.items()}
+    signal = dataclasses.replace(signal, time=signal.time[:count], displacement=plates)
+    car = Car.load("focus")
+    sticking = car.run(signal, engine="reduced").comfort().weighted.overall
+    free = car.with_({"damper.coulomb_friction": 0.0}).run(signal, engine="reduced").comfort().weighted.overall
+    assert computed(first_page) == pytest.approx(sticking, rel=FOUR_DIGITS)
+    first_page.execute_script(MOVE, "front-coulomb_friction", 0)
+    wait(lambda: "front Coulomb friction 125 N → 0 N" in words(first_page))
+    assert computed(first_page) == pytest.approx(free, rel=FOUR_DIGITS)
+    # What index.md says of it.
+    assert free < 0.5 * sticking
+    first_page.switch_to.default_content()
+    first_page.find_element("link text", "On a road").click()
+    first_page.switch_to.frame("live-car")
+    driven = Car.load("focus_road").run(Road("B", 80, duration=30.0), engine="reduced").comfort().weighted.overall
+    wait(lambda: len(first_page.find_elements("id", "trial-speed")) == 1)
+    assert computed(first_page) == pytest.approx(driven, rel=FOUR_DIGITS)
+    assert first_page.get_log("browser") == []
+    events = [json.loads(entry["message"])["message"] for entry in first_page.get_log("performance")]
+    loaded = [event["params"]["request"]["url"] for event in events if event["method"] == "Network.requestWillBeSent"]
+    assert [url for url in loaded if not url.startswith(("file:", "data:", "blob:"))] == []
+    assert sum(url.endswith("live/road.html") for url in loaded) == 1

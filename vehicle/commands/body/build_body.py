@@ -25,7 +25,8 @@ def add(tasks: Any) -> None:
         "--fit",
         action="store_true",
         help="fit the section factors of the design again, from its nominal sections, to what is published of the body "
-        "of Bommer 2006 (first mode 19 Hz, ninth 43 Hz, torsion 25.5 Hz; minutes); prints them in the form of a design",
+        "of Bommer 2006 (first mode 19 Hz, ninth 43 Hz, torsion 25.5 Hz; takes minutes). "
+        "Prints them in the form of a design",
     )
     output_options(built)
     vehicle_options(built)

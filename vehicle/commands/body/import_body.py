@@ -83,7 +83,7 @@ def add(tasks: Any) -> None:
 
 def _add_matrix_options(parser: Parser) -> None:
     """Add the options that act on stiffness and mass matrices."""
-    files = parser.scoped_group(FILES, needs="stiffness and mass in files that are named one by one", active=None)
+    files = parser.scoped_group(FILES, needs="files of stiffness and mass, each named by an option", active=None)
     files.add_argument("--mass", type=Path, metavar="FILE", help="mass matrix that belongs to a stiffness matrix")
     files.add_argument(
         "--dofs",
@@ -97,8 +97,8 @@ def _add_matrix_options(parser: Parser) -> None:
         "--method",
         choices=METHODS,
         default=METHODS[0],
-        help="reduction: free-free, modes of the free body and residual flexibility; rubin, in addition modes of its "
-        "points with the mass that moves with them; craig-bampton, modes of the body held at its points; free-free by "
+        help="reduction: free-free: modes of the free body and residual flexibility. rubin: in addition modes of its "
+        "points with the mass that moves with them. craig-bampton: modes of the body held at its points; free-free by "
         "default",
     )
     more = parser.scoped_group(

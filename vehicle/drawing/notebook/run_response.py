@@ -90,7 +90,9 @@ def require_moving(recording: Recording, wheel: str | None) -> None:
     """
     moving = recording.excited
     if moving and wheel is not None and wheel not in moving:
-        raise DataError(f"wheel {wheel}: its plate does not move, so there is no FRF to it; {', '.join(moving)} do")
+        raise DataError(
+            f"wheel {wheel}: its plate is at rest, so it has no FRF; the moving plates are {', '.join(moving)}"
+        )
 
 
 def of_wheel(all_responses: Sequence[MotionResponse], wheel: str | None, names: tuple[str, ...]) -> RunResponse:

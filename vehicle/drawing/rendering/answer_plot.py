@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from vehicle.drawing.rendering.figure import COLOURS, INK, PAGE_WIDTH, name_bars, saved_figure
+from vehicle.drawing.rendering.figure import COLOURS, INK, PAGE_WIDTH, name_bars, saved_figure, wrapped
 from vehicle.signals.analysis.samples import Vector
 
 BETTER, WORSE, NEUTRAL = COLOURS[2], COLOURS[1], "#9aa5b1"
@@ -69,7 +69,7 @@ def plot_changes(path: Path, changes: Mapping[str, Sequence[Change]], title: str
 
 
 def plot_bands(
-    path: Path, edges: Vector, powers: Mapping[str, Vector], modes: Mapping[str, float], caption: str
+    path: Path, edges: Vector, powers: Mapping[str, Vector], modes: Mapping[str, float], caption: str, width: float
 ) -> None:
     """Plot the share of each third octave in the weighted acceleration, stacked by axis.
 
@@ -78,10 +78,11 @@ def plot_bands(
         edges: edges of the bands [Hz]; (b + 1,).
         powers: axis to the mean square in each band [(m/s2)^2]; (b,).
         modes: short names of natural modes to their frequencies [Hz], marked above the bars.
+        width: width of the figure [inch].
     """
     total = sum(float(power.sum()) for power in powers.values()) or 1.0
-    title = "Share of the frequencies in the weighted acceleration of the seat rail"
-    with saved_figure(path, (9.5, 3.6), title, caption) as figure:
+    title = "Frequencies in the weighted acceleration of the seat rail"
+    with saved_figure(path, (width, 3.6), title, wrapped(caption, width)) as figure:
         axis: Any = figure.subplots()
         base = np.zeros(edges.size - 1)
         for (name, power), colour in zip(powers.items(), COLOURS, strict=False):

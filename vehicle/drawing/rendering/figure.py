@@ -28,7 +28,7 @@ LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
 FADING = ((-1.0, 0.5, 0.2), (0.5, 0.8, 0.5), (0.8, 2.0, 1.0))
 """Ranges of coherence and the opacity of a magnitude in each: motion that the plate does not cause is pale."""
 
-FADED = "pale: coherence below 0.8, paler and without its band: below 0.5"
+FADED = "pale: coherence below 0.8; very pale, without band: below 0.5"
 """Explanation of `FADING` and `SHOWN_BAND` in a caption."""
 
 SHOWN_BAND = 0.5

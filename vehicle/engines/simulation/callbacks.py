@@ -37,7 +37,8 @@ def installed(rows: Rows, compiled: CompiledRows | None = None) -> Iterator[None
     """
     if mujoco.get_mjcb_control() is not None:
         raise SimulationError(
-            "mjcb_control is taken by another simulation in this process; finish that one first, or use a process each"
+            "mjcb_control is taken by another simulation in this process; finish it first, or use "
+            "a process for each simulation"
         )
 
     def control(model: mujoco.MjModel, data: mujoco.MjData) -> None:

@@ -125,7 +125,7 @@
 
   // Rows: text, value of a run, digits, and true for a share, whose change is a difference in points.
   function table() {
-    const rows = [["a_v, weighted (ISO 2631-1) [m/s²]", (run) => run.record.comfort, 4]];
+    const rows = [["a_v (ISO 2631-1) [m/s²]", (run) => run.record.comfort, 4]];
     ["x", "y", "z"].forEach((axis, k) => rows.push([`a_w ${axis} [m/s²]`, (run) => run.record.axes[k], 4]));
     data.dampers.forEach(({ name }, k) => rows.push([`slip, ${name} [%]`, (run) => 100 * run.record.slips[k], 3, true]));
     data.dampers.forEach(({ name }, k) => rows.push([`highest force, ${name} [N]`, (run) => run.record.highest[k], 4]));

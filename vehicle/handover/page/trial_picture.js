@@ -51,7 +51,7 @@ const trialPicture = (() => {
     }
     pen.fillStyle = GROUND;
     pen.font = "12px system-ui, sans-serif";
-    pen.fillText(`Body and wheels, displacements ${FACTORS[Number(factor.value)]} times, at half speed: ${time.toFixed(1)} s after the begin of the evaluation`, 4, 13, width - 8);
+    pen.fillText(`Displacements ${FACTORS[Number(factor.value)]} times, half speed: ${time.toFixed(1)} s`, 4, 13, width - 8);
   }
 
   function step(now) {

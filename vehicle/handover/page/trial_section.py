@@ -27,10 +27,20 @@ def trial(run: FinishedRun) -> Trial:
     except VehicleError as error:
         reason = str(error)
     else:
-        duration = min(float(run.recording.time[-1]), LONGEST)
-        content = fill("trial", reason="", duration=duration, engine=run.summary["solver"]["engine"])
-        return Trial(content=content, numbers=numbers, script=scripts(PAGE), worker=scripts(WORKER))
+        return trial_of(numbers, min(float(run.recording.time[-1]), LONGEST), run.summary["solver"]["engine"])
     return Trial(content=fill("trial", reason=reason.rstrip(".")))
+
+
+def trial_of(numbers: str, duration: float, engine: str = "reduced") -> Trial:
+    """Return the section for given numbers.
+
+    Args:
+        numbers: numbers of its scripts (`trial_data`).
+        duration: length of the record in the page [s].
+        engine: engine of the run with which the page is compared.
+    """
+    content = fill("trial", reason="", duration=duration, engine=engine)
+    return Trial(content=content, numbers=numbers, script=scripts(PAGE), worker=scripts(WORKER))
 
 
 def _numbers(run: FinishedRun) -> str:

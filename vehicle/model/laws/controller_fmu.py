@@ -120,7 +120,7 @@ def read_controller(path: Path, digest: str | None) -> ControllerFile:
     if digest.lower() != actual_digest:
         raise ConfigurationError(
             f"controller {path}: its SHA-256 is {actual_digest}, in the vehicle file fmu_sha256 is {digest}: the file "
-            "has changed; if you trust the new one, set its digest"
+            "has changed; if you trust the new file, set its digest"
         )
     try:
         require_archive("its archive", io.BytesIO(content), limit=LARGEST)

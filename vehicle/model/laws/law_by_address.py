@@ -153,7 +153,7 @@ def taken(kind: str, name: str) -> ConfigurationError:
     """Return the error of a name that another function of a kind has in this process."""
     return ConfigurationError(
         f"{kind} {name!r}: the name belongs to another function in this process, and cars that have it would change; "
-        "register the new one with another name"
+        "register the new function under another name"
     )
 
 

@@ -115,7 +115,7 @@ class TrimmedBody:
         if self.flexible and self.superelement is None:
             raise ConfigurationError(
                 "TrimmedBody.superelement: missing; a flexible body needs a body design or a modal superelement, as "
-                "body_design.toml of the package; a rigid one (flexible = false) needs none"
+                "body_design.toml of the package; a rigid body (flexible = false) needs no model"
             )
 
         if self.modes_up_to is not None and not (self.flexible and self.attachment_flexibility):

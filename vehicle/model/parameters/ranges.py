@@ -155,7 +155,7 @@ def checked_ranges(ranges: Sequence[Range]) -> tuple[Range, ...]:
     """
     paths = [parameter.path for parameter in ranges]
     if not paths:
-        raise ConfigurationError("parameters: none to fit; set at least one with its bounds")
+        raise ConfigurationError("parameters: no parameter to fit; set at least one with its bounds")
     twice = next((path for path in paths if paths.count(path) > 1), None)
     if twice is not None:
         raise ConfigurationError(f"parameter {twice}: given {paths.count(twice)} times; set each once")

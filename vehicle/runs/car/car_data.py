@@ -234,4 +234,4 @@ def _notes(car: Any, axles: Sequence[AxleData]) -> Iterator[str]:
         if {"right", "left"} & set(car.vehicle.table[axle.name]):
             yield f"{axle.name}: the sides have different numbers; values of one wheel are those of the right wheel"
     if not car.vehicle.gravity:
-        yield "sprung masses of the axles and ride frequencies: not defined without gravity"
+        yield "sprung masses of the axles and ride frequencies: need gravity"

@@ -93,12 +93,13 @@ def _of_one(run: FinishedRun, modes: Modes) -> Markup:
     return fill("answer", texts=[" ".join(texts)], figure="")
 
 
-def comfort_bands(run: FinishedRun, modes: Modes) -> Markup:
+def comfort_bands(run: FinishedRun, modes: Modes, width: float) -> Markup:
     """Return the figure of the shares of one-third octaves in the weighted acceleration; empty without comfort.
 
     Args:
         run: finished run.
         modes: modes of its car for dampers "stuck" and "sliding"; the strongest one in the main band is marked.
+        width: width of the figure [inch].
     """
     spectra = weighted_bands(run)
     if not spectra:
@@ -109,7 +110,7 @@ def comfort_bands(run: FinishedRun, modes: Modes) -> Markup:
     bands = next(iter(spectra.values())).third_octaves
     powers = {axis: np.nan_to_num(spectrum.third_octaves.rms) ** 2 for axis, spectrum in spectra.items()}
     return drawing(
-        partial(plot_bands, edges=bands.edges, powers=powers, modes=marked, caption=run.caption),
+        partial(plot_bands, edges=bands.edges, powers=powers, modes=marked, caption=run.caption, width=width),
         f"Frequencies of the weighted acceleration of {run.name}",
     )
 

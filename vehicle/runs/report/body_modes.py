@@ -44,7 +44,7 @@ def body_modes(run: FinishedRun, state: str) -> list[str]:
             names = ", ".join(f"{point_words(result.attachments[i])} {_percent(drivers[i])}" for i in largest)
             text += f"; the largest excitation of mode {modes[0] + 1} is at {names}"
         sentences.append(f"{text}.")
-    return [*sentences, f"Shares: linear car, dampers {state}. More: `python -m vehicle body participation`."]
+    return [*sentences, f"Shares: linear car, dampers {state}. More: python -m vehicle body participation."]
 
 
 def _percent(share: float) -> str:

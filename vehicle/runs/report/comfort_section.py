@@ -13,9 +13,16 @@ from vehicle.signals.records.run_summary import unweighted_rms
 
 fill = templates(__file__)
 
+NO_FIGURE = Markup()
 
-def comfort(run: FinishedRun) -> Markup:
-    """Return tables of weighted and unweighted accelerations, and of reactions with the values of this run."""
+
+def comfort(run: FinishedRun, bands: Markup = NO_FIGURE) -> Markup:
+    """Return tables of weighted and unweighted accelerations, and of reactions with the values of this run.
+
+    Args:
+        run: finished run.
+        bands: figure of the frequencies, beside the reactions; empty for none.
+    """
     points, totals = [], {}
     for point, value in run.comfort.items():
         iso, (raw, (low, high)) = value["iso2631"], unweighted_rms(value)
@@ -40,7 +47,7 @@ def comfort(run: FinishedRun) -> Markup:
         (_range(low, high), word, [point for point, total in totals.items() if word in reactions(total)])
         for word, low, high in REACTIONS
     ]
-    return fill("comfort", points=points, reactions=matches, seat=run.summary.get("seat_value"))
+    return fill("comfort", bands=bands, points=points, reactions=matches, seat=run.summary.get("seat_value"))
 
 
 def _range(low: float, high: float) -> str:

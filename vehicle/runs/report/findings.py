@@ -11,10 +11,10 @@ from vehicle.digits import number
 from vehicle.engines.linear.car_modes import Mode
 from vehicle.names import point_words, side_of
 from vehicle.runs.report.body_modes import body_modes
-from vehicle.runs.report.comfort_class import CREST_FACTOR_LIMIT, reactions
+from vehicle.runs.report.comfort_class import CREST_FACTOR_LIMIT
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.order_words import order_sentences
-from vehicle.signals.records.run_summary import RunSummary, slip_shares, unweighted_rms
+from vehicle.signals.records.run_summary import RunSummary, slip_shares
 
 STICKS, WORKS = 0.01, 0.25
 """Maximum share of the time in slip of a sticking damper, and minimum share of a sliding damper."""
@@ -36,7 +36,7 @@ class Finding:
 
 
 def findings(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[Finding]:
-    """Return sentences on dampers, applied forces, resonances, body modes, comfort, linearity and computation.
+    """Return sentences on dampers, applied forces, resonances, body modes, crest factor, linearity and solver warnings.
 
     Args:
         run: the run.
@@ -49,24 +49,40 @@ def findings(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[Find
     sentences += [Finding("Body", text) for text in body_modes(run, damper_state(run))]
     sentences += [Finding("Comfort", text) for text in _comfort(run)]
     sentences += [Finding("Linearity", text) for text in _linearity(run)]
-    return [*sentences, *(Finding("Computation", text) for text in _computation(summary))]
+    return [*sentences, *(Finding("Computation", f"Warning: {text}") for text in summary["solver"]["warnings"])]
 
 
 def _dampers(summary: RunSummary) -> list[str]:
+    """Return a sentence for each state: the dampers in it, and their shares of the time in slip."""
     shares, limit = slip_shares(summary), 1e3 * summary["slip_share"].get("slip_velocity", 0.0)
-    sentences = []
+    by_state: dict[str, list[str]] = {}
     for wheel, share in shares.items():
-        side, first = side_of(wheel, shares), summary["first_slip_s"][wheel]
-        times = "never exceeds" if first is None else "exceeds"
-        share_text = "" if first is None else f" for {number(100 * share, 2)} % of the time, first at {first:.3f} s"
-        if share <= STICKS:
-            state = "sticks: it dissipates almost no energy, and the strut acts as a rigid link"
+        if summary["first_slip_s"][wheel] is None:
+            state = "all the time stuck: almost no energy is dissipated, and the strut acts as a rigid link"
+        elif share <= STICKS:
+            state = "almost always stuck: almost no energy is dissipated, and the strut acts as a rigid link"
         elif share >= WORKS:
-            state = "slides: friction and viscous damping act during much of the time"
+            state = "often in slip: friction and viscous damping act during much of the time"
         else:
-            state = "alternates between stick and slip: its effect depends on the level of the input"
-        sentences.append(f"The {side} damper {state}. Its velocity {times} {limit:g} mm/s{share_text}.")
+            state = "at times stuck, at times in slip: the effect depends on the level of the input"
+        by_state.setdefault(state, []).append(wheel)
+    sentences = []
+    for state, wheels in by_state.items():
+        text = f"{_names([side_of(wheel, shares) for wheel in wheels], len(shares))} {state}."
+        if any(summary["first_slip_s"][wheel] is not None for wheel in wheels):
+            each = [f"{number(100 * shares[wheel], 2)} % ({side_of(wheel, shares)})" for wheel in wheels]
+            text += f" Slip, faster than {limit:g} mm/s: {' and '.join(each)} of the time."
+        sentences.append(text)
     return sentences
+
+
+def _names(sides: Sequence[str], count: int) -> str:
+    """Return dampers with a verb, as "Both dampers are"."""
+    if len(sides) == 1:
+        return f"The {sides[0]} damper is"
+    if len(sides) == count:
+        return f"{'Both' if count == 2 else 'All'} dampers are"
+    return f"The dampers {' and '.join(sides)} are"
 
 
 def _resonances(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[str]:
@@ -127,22 +143,14 @@ def damper_state(run: FinishedRun) -> str:
 
 
 def _comfort(run: FinishedRun) -> list[str]:
+    """Return a sentence for each point whose crest factor asks for other measures than the RMS of the table."""
     sentences = []
     for point, value in run.comfort.items():
-        label = point_words(point)
-        iso, (rms, (low, high)) = value["iso2631"], unweighted_rms(value)
-        total = iso["vector_sum"]["weighted_rms"]
-        axis = max("xyz", key=lambda direction: iso[direction]["multiplying_factor"] * iso[direction]["weighted_rms"])
-        sentences.append(
-            f"At the {label} the weighted acceleration is {number(total)} m/s²: {' to '.join(reactions(total))} "
-            f"according to ISO 2631-1, annex C. The largest share is along {axis}. Unweighted, {low:g} to {high:g} "
-            f"Hz: {number(rms['overall'])} m/s². Lower is better."
-        )
-        factor = max((iso[direction]["crest_factor"] or 0.0) for direction in "xyz")
+        factor = max((value["iso2631"][direction]["crest_factor"] or 0.0) for direction in "xyz")
         if factor > CREST_FACTOR_LIMIT:
             sentences.append(
-                f"At the {label} the crest factor is {factor:.3g}, above {CREST_FACTOR_LIMIT:g}: the weighted RMS "
-                "underestimates the discomfort; consider MTVV and VDV in the tables (ISO 2631-1, 6.2.1)."
+                f"At the {point_words(point)} the crest factor is {factor:.3g}, above {CREST_FACTOR_LIMIT:g}: the "
+                "weighted RMS underestimates the discomfort; consider MTVV and VDV in the tables (ISO 2631-1, 6.2.1)."
             )
     return sentences
 
@@ -173,14 +181,3 @@ def _linearity(run: FinishedRun) -> list[str]:
                 )
             )
     return sentences
-
-
-def _computation(summary: RunSummary) -> list[str]:
-    solver = summary["solver"]
-    residual = solver["energy_residual"]
-    balance = "" if residual is None else f"; the error of the energy balance is {residual:.1e} of the input work"
-    sentences = [
-        f"The {solver['engine']} engine took {number(solver['wall_s'])} s, {number(solver['realtime_factor'])} times "
-        f"real time, with steps of {1e3 * solver['timestep_s']:g} ms{balance}."
-    ]
-    return [*sentences, *(f"Warning: {text}" for text in solver["warnings"])]

@@ -12,6 +12,7 @@ from importlib import resources
 
 from markupsafe import Markup
 
+from vehicle.drawing.rendering.figure import PAGE_WIDTH
 from vehicle.errors import ConfigurationError
 from vehicle.runs.report import sections
 from vehicle.runs.report.answer import answer, comfort_bands, explained
@@ -117,7 +118,9 @@ def _told_apart(runs: Sequence[FinishedRun]) -> list[FinishedRun]:
 def _of_one(run: FinishedRun, modes: Modes, trial_part: Markup) -> list[Part]:
     """Return the sections of the report of a single run, with the given section for trials."""
     base = base_run(run)
-    single, bands = answer([run], [modes]) + sections.tiles(run), comfort_bands(run, modes)
+    single = answer([run], [modes]) + sections.tiles(run)
+    # Beside the table of reactions; on the first screen of a run without FRFs.
+    bands = comfort_bands(run, modes, 6.2 if run.responses else PAGE_WIDTH)
     if not run.responses:
         single, bands = single + bands, Markup()
     changed = None if base is None else answer([base, run], [modes_of(base), modes])
@@ -126,16 +129,17 @@ def _of_one(run: FinishedRun, modes: Modes, trial_part: Markup) -> list[Part]:
         ("This run", "alone", None if changed is None else single),
         ("Frequency responses", "responses", responses(run, modes) if run.responses else None),
         ("Film", "film", film(run)),
+        ("Car, signal, engine", "run", sections.what_was_run(run)),
         ("Try it", "trial", trial_part),
         ("Findings", "findings", sections.what_was_found(run, modes)),
-        ("Car, signal, engine", "run", sections.what_was_run(run)),
-        ("Time histories", "time", sections.time_figure(run)),
+        ("Notices", "notices", sections.notices(run)),
         ("Dampers", "dampers", sections.dampers(run)),
-        ("Comfort", "comfort", bands + comfort(run)),
-        ("Spectra", "spectra", spectra([run])),
+        ("Time histories", "time", sections.time_figure(run)),
+        ("Comfort", "comfort", comfort(run, bands)),
         ("Measured", "measured", measured(run)),
-        ("The car", "car", car_section(run.car)),
         ("Modes", "modes", moving_modes([run], [modes])),
+        ("Spectra", "spectra", spectra([run])),
+        ("The car", "car", car_section(run.car)),
         ("All values", "tables", sections.tables(run)),
         ("How to repeat the run", "repeat", sections.repeating(run)),
     ]
@@ -159,6 +163,7 @@ def _of_several(runs: Sequence[FinishedRun], modes: Sequence[Modes], done: Calla
         of_run = (
             ("Film", film(run, 1.0 / len(runs))),
             ("Findings", sections.tiles(run) + sections.what_was_found(run, car_modes)),
+            ("Notices", sections.notices(run)),
             ("Car, signal, engine", sections.what_was_run(run)),
             ("The car", car_section(run.car) if new and index else None),
             ("Frequency responses", responses(run, car_modes) if run.responses else None),
@@ -182,10 +187,12 @@ def document(
         title: title of the page.
         subtitles: lines below the title.
         parts: title, anchor and content of each section.
-        modes: moving modes as JSON; empty for a page without them.
+        modes: points, lines and modes of the cars as JSON; empty for a page without moving pictures.
         trial: section for trials, whose scripts the page gets; None for a page without it.
     """
-    run_scripts = [_file("print.js"), _file("wireframe.js"), _file("modes.js")] if modes else []
+    run_scripts = [_file("print.js"), _file("wireframe.js")] if modes else []
+    if any(anchor == "modes" for _, anchor, _ in parts):
+        run_scripts.append(_file("modes.js"))
     allowed, tried = "", trial if trial and trial.numbers else Trial(content=Markup())
     if tried.numbers:
         run_scripts.append(tried.script)

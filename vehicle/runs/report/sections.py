@@ -61,11 +61,17 @@ def tiles(run: FinishedRun) -> Markup:
 
 
 def what_was_found(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> Markup:
-    """Return findings by topic, and the notices on this run."""
+    """Return findings by topic."""
     topics: dict[str, list[str]] = {}
     for finding in findings(run, modes):
         topics.setdefault(finding.topic, []).append(finding.text)
-    return fill("findings", topics=topics, noted=without_general(run.summary["notices"], run.car.vehicle))
+    return fill("findings", topics=topics)
+
+
+def notices(run: FinishedRun) -> Markup | None:
+    """Return the notices on this run; None if there are none."""
+    texts = without_general(run.summary["notices"], run.car.vehicle)
+    return fill("notices", texts=texts) if texts else None
 
 
 def what_was_run(run: FinishedRun) -> Markup:
@@ -88,14 +94,16 @@ def what_was_run(run: FinishedRun) -> Markup:
     engine = [
         ("engine", f"{solver['engine']} ({solver['engine_reason']})"),
         ("step", f"{1e3 * solver['timestep_s']:g} ms, {solver['steps']} steps"),
-        ("computing time", f"{solver['wall_s']:.3g} s"),
+        ("computing time", f"{solver['wall_s']:.3g} s, {number(solver['realtime_factor'])} times real time"),
     ]
+    if (residual := solver["energy_residual"]) is not None:
+        engine.append(("energy error", f"{residual:.1e} of the input work"))
     car = [
         ("name", vehicle.name),
         ("file", _origin(run)),
         ("wheels on plates", ", ".join(side_of(wheel, vehicle.wheels) for wheel in vehicle.wheels)),
         ("tyres", vehicle.driving.words),
-        ("mass of the trimmed body", f"{vehicle.body.mass:g} kg"),
+        ("trimmed body", f"{vehicle.body.mass:g} kg"),
     ]
     default = shipped_origin(vehicle)
     return fill(

@@ -165,11 +165,11 @@ def what_moves(motions: Sequence[Mapping[str, float]], chosen: int | None = None
         subject += " independently of each other" if len(motions) == len(wheels) else ""
         shared = [f"; {', '.join(motion)} move {motion_words(motion)}" for motion in motions if len(motion) > 1]
         message = f"{subject}{''.join(shared)}: the FRFs are separated, to {', '.join(next(iter(m)) for m in motions)}"
-        return f"{message}; the coherence is that with {every}"
+        return f"{message}; the coherence counts {every} plates together"
     motion = motions[chosen or 0]
     first = f"plate_{next(iter(motion))}_displacement"
     if len(motion) == 1:
-        return f"{subject}: the FRFs are those to {first} alone, the coherence is that with {every}"
+        return f"{subject}: the FRFs are those to {first} alone, the coherence counts {every} plates together"
     if len(motions) > 1:
         plates = ", ".join(f"plate_{wheel}_displacement" for wheel in motion)
         subject, every = f"{subject}, of them {plates}", "these"

@@ -181,7 +181,7 @@ def time_remarks(time: Vector) -> tuple[str, ...]:
         return rounded
     return (
         f"times are not uniform: steps of {steps.min():.6g} to {steps.max():.6g} s; set {remedy}, or --rate HZ if the "
-        "samples are uniform and only the time stamps are not",
+        "samples are uniform and the time stamps jitter",
     )
 
 

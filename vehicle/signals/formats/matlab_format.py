@@ -97,7 +97,7 @@ def channels_of(
     if not channels:
         names = ", ".join(name for name in list(variables)[:12] if not name.startswith("__")) or "nothing"
         raise DataError(
-            f"{path}: no structure with x_values and y_values and no numeric array; it contains {names}; save numbers"
+            f"{path}: contains {names}; needed is a structure with x_values and y_values, or a numeric array"
         )
     notices = [f"single numbers: {', '.join(scalars[:12])}"] if scalars else []
     if objects:

@@ -103,8 +103,8 @@ class Chosen:
             jitter = 100.0 * float(np.max(np.abs(steps / np.median(steps) - 1.0)))
             raise DataError(
                 f"{where}: times are not uniform, steps deviate by up to {jitter:.3g} % of the median; set "
-                f"{' '.join(clock_options(self.time))}, or --rate HZ if the samples are uniform and only the time "
-                "stamps are not"
+                f"{' '.join(clock_options(self.time))}, or --rate HZ if the samples are uniform and the time "
+                "stamps jitter"
             )
 
 

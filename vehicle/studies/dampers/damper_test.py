@@ -223,8 +223,8 @@ def _complete(measurement: Measurement, choice: Choice) -> Choice:
     unknown = next((name for name in units if name not in ("", "time", *ROLES)), None)
     if unknown is not None:
         raise ConfigurationError(
-            f"--unit {unknown}={units[unknown]}: {unknown!r} is no column of the test and no role; the roles are time, "
-            f"{', '.join(ROLES)}"
+            f"--unit {unknown}={units[unknown]}: {unknown!r} is neither a column of the test nor a role; the roles are "
+            f"time, {', '.join(ROLES)}"
         )
     return dataclasses.replace(choice, channels=channels, units=units)
 

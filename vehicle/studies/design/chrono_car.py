@@ -268,11 +268,11 @@ def _set_ground(axles: list[ImportedAxle], tyre: ChronoTyre, loads: list[float])
         }
         axle.sources["bushings.tyre"] = f"{where}, at {load:.0f} N"
         axle.sources["bushings.tyre.stiffness"] = (
-            f"{where}, dF/dz at {load:.0f} N; assumed: along and across in proportion as of the sedan"
+            f"{where}, dF/dz at {load:.0f} N; assumed: ratio of the stiffnesses along and across as in the sedan"
         )
         axle.sources["bushings.tyre.rotational_stiffness"] = "assumed: none"
         for name in ("carcass_longitudinal", "carcass_lateral"):
-            axle.sources[f"bushings.tyre.{name}"] = "assumed: in proportion to the vertical stiffness as of the sedan"
+            axle.sources[f"bushings.tyre.{name}"] = "assumed: same ratio to the vertical stiffness as in the sedan"
 
 
 def coordinates(point: Vector) -> list[float]:

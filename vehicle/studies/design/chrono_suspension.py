@@ -304,7 +304,7 @@ def _add_damper(axle: ImportedAxle, shock: ChronoFile) -> None:
     friction = {"friction_law": "coulomb", "coulomb_friction": 0.0, "smoothing": 1e5, "slip_velocity": 0.006}
     axle.tables["damper"] = law | friction
     axle.sources["damper"] = f"Chrono {shock.source(key)}"
-    axle.sources |= {f"damper.{name}": "assumed: as of the shipped cars" for name in ("smoothing", "slip_velocity")}
+    axle.sources |= {f"damper.{name}": "assumed: value of the shipped cars" for name in ("smoothing", "slip_velocity")}
     axle.sources |= {f"damper.{name}": "Chrono: no friction" for name in ("friction_law", "coulomb_friction")}
     if "Spring Coefficient" in shock or "Spring Curve Data" in shock:
         axle.left_out.append(f"{shock.source()}: a spring inside the damper")

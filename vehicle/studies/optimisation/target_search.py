@@ -295,7 +295,8 @@ def _measures(
     for name, figure in figures.items():
         if figure.run or not (figure.road or figure.obstacle or figure.signal):
             raise ConfigurationError(
-                f"{name}: a search needs its input: road or obstacle with speed, or signal; without run"
+                f"{name}: a search needs the input of the target; set road or obstacle with speed, or signal, "
+                "and remove run"
             )
         if not figure.signal and figure.speed is None:
             raise ConfigurationError(f"{name}: speed [km/h] is missing; a search needs it")

@@ -290,7 +290,7 @@ def verdict(first: tuple[str, Posterior], second: tuple[str, Posterior]) -> str:
     ratio = float(np.exp(min(abs(difference), 600.0)))
     statement = f"{better} {ratio:.3g} times as probable as {other}"
     if ratio < EVIDENCE_BOUND:
-        return f"undecided between {first[0]} and {second[0]}: {statement}, needed {EVIDENCE_BOUND:g} times"
+        return f"undecided between {first[0]} and {second[0]}: {statement}; a decision needs {EVIDENCE_BOUND:g} times"
     return statement
 
 

@@ -122,8 +122,8 @@ def dmig_pair(path: Path, data: BulkData, names: tuple[str, str]) -> tuple[Any, 
         candidates = [name.upper()] if name else [key for key in data.matrices if key.startswith(letter)]
         if len(candidates) != 1 or candidates[0] not in data.matrices:
             raise DataError(
-                f"{path}: found DMIG matrices {', '.join(data.matrices) or 'none'}, must be one whose name begins with "
-                f"K and one with M. Otherwise specify {path.name}:NAME and --mass {path.name}:NAME."
+                f"{path}: found DMIG matrices {', '.join(data.matrices) or 'none'}, must be two, with "
+                f"names that begin with K and M. Otherwise specify {path.name}:NAME and --mass {path.name}:NAME."
             )
         chosen.append(data.matrices[candidates[0]])
     rows = sorted({matrices for matrix in chosen for key in matrix for matrices in (key[:2], key[2:])})
