@@ -64,6 +64,23 @@ def test_plate_and_accelerations_of_one_file_give_the_comparison(tmp_path, capsy
     assert line.endswith(" --map 'plate_fl_displacement=Shaker FL' --map 'knuckle_fl_acc_z=Hub FL z'")
 
 
+@pytest.mark.parametrize(
+    ("names", "words"),
+    [
+        (("Radträger VL z", "Sitzschiene z", "Sitzschiene y"), "'y=Sitzschiene y' --channel 'z=Sitzschiene z'"),
+        (("Hub FL z", "Roof x", "Floor z", "Floor y"), "'y=Floor y' --channel 'z=Floor z'"),
+        (("Fahrersitz z", "Beifahrersitz z"), "--channel 'z=Fahrersitz z' --"),
+        (("Hub FL z", "Motor z"), "no command: accelerations of wheels or engine"),
+    ],
+)
+def test_comfort_is_that_of_one_point_on_which_someone_sits(names, words, tmp_path, capsys):
+    time = np.arange(4800) / 400.0
+    path = tmp_path / "log.csv"
+    written(path, time, [(name, "g", sine(time, 0.1, 2.0 + number)) for number, name in enumerate(names)])
+    assert inspect([str(path)]) == 0
+    assert words in capsys.readouterr().out
+
+
 def written(path, time, columns):
     heads = ",".join(["time [s]", *(f"{name} [{unit}]" for name, unit, _ in columns)])
     table = np.column_stack([time, *(values for *_, values in columns)])

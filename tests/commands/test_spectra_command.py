@@ -11,6 +11,7 @@ from vehicle.commands.spectra import main
 from vehicle.runs.car import Car, Road
 from vehicle.runs.output.saved_run import save_run
 from vehicle.signals.analysis.seat_value import weighted_rms_of
+from vehicle.signals.formats.units import STANDARD_GRAVITY as G
 
 
 def rows_of(path):
@@ -57,13 +58,40 @@ def test_run_on_a_road(tmp_path, capsys):
     assert float(last[-1]["cumulative RMS [m/s2]"]) == pytest.approx(weighted[2], rel=0.03)
 
 
+def test_a_logger_in_g_with_names_of_its_own(tmp_path, capsys):
+    """A record in g has the spectra of the same record in m/s2, under the names that it gets."""
+    time = np.arange(0.0, 20.0, 2e-3)
+    seat = np.sin(2 * np.pi * 8.0 * time) / G
+    rows = [f"{t:.3f};{z:.6f};{3 * z:.6f}".replace(".", ",") for t, z in zip(time, seat, strict=True)]
+    log = tmp_path / "log.txt"
+    log.write_text("\n".join(["Logger 3000", "Zeit;Sitz z;Nabe z", "s;g;g", *rows]), encoding="utf-8")
+    one = sine_file(tmp_path / "one.csv", 2.0)
+    named = ["--channel", "seat_rail_acc_z=Sitz z"]
+    assert main([str(one), str(log), *named, "--output", str(tmp_path / "two")]) == 0
+    said = capsys.readouterr()
+    assert "8 Hz, 0.707 m/s2" in said.out and "8 Hz, 1.41 m/s2" in said.out and "seat_rail_acc_z Wk" in said.out
+    assert "seat_rail_acc_z: channel 1 'Sitz z' [g]" in said.err
+    assert main([str(log), "--output", str(tmp_path / "all")]) == 0
+    said = capsys.readouterr().out
+    assert "Nabe z" in said and "8 Hz, 2.12 m/s2" in said
+
+
+def test_a_table_of_a_run_in_g(tmp_path, capsys):
+    time = np.arange(0.0, 20.0, 1e-3)
+    path = tmp_path / "g.csv"
+    np.savetxt(path, np.column_stack([time, np.sin(2 * np.pi * 8.0 * time) / G]), delimiter=",", comments="",
+               header="time [s],seat_rail_acc_z [g]")  # fmt: skip
+    assert main([str(path), "--output", str(tmp_path / "out")]) == 0
+    assert "8 Hz, 0.707 m/s2" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
         (["--range", "5"], "--range 5: must be HZ:HZ"),
         (["--range", "9:3"], "is no range"),
-        (["--channels", "seat_rail_acc_y"], "has no channel 'seat_rail_acc_y'"),
-        (["--channels", "tyre_fr_force_z"], "tyre_fr_force_z is in N; spectra are of accelerations"),
+        (["--channels", "seat_rail_acc_y"], "--channels 'seat_rail_acc_y' matches no channel"),
+        (["--channels", "tyre_fr_force_z"], "tyre_fr_force_z is a force; spectra are of accelerations"),
     ],
 )
 def test_refused(tmp_path, capsys, arguments, said):

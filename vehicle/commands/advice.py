@@ -15,9 +15,11 @@ from vehicle.signals.records.channel_words import (
     axis_of,
     map_options,
     may_be_plate,
+    of_wheel_or_engine,
+    on_seat,
+    point_of,
     suggested_channels,
     wheel_of,
-    words_of,
 )
 
 if TYPE_CHECKING:
@@ -256,15 +258,22 @@ def _accelerations(measurement: Measurement, files: list[str], those: list[Numbe
 
     from vehicle.signals.records.common_span import overlap
 
-    seats = [pair for pair in those if {"seat", "sitz"} & set(words_of(pair[1].name + " " + pair[1].place))]
+    seats = [pair for pair in those if on_seat(pair[1])]
+    points: dict[tuple[str, ...], list[Numbered]] = {}
+    for pair in seats or [pair for pair in those if not of_wheel_or_engine(pair[1])]:
+        points.setdefault(point_of(pair[1]), []).append(pair)
+    if not points:
+        return "", "accelerations of wheels or engine: comfort needs one of a seat or a floor"
+    # The point with the most axes; of equal ones the first.
+    of_point = max(points.values(), key=lambda pairs: len({axis_of(channel) for _, channel in pairs}))
     axes: dict[str, int] = {}
-    for number, channel in seats or those:
+    for number, channel in of_point:
         axis = axis_of(channel)
         assigned = [measurement.channels[other - 1] for other in axes.values()]
         if axis and axis not in axes and all(overlap(channel, other) for other in assigned):
             axes[axis] = number
     if not axes:
-        axes = {"z": (seats or those)[0][0]}
+        axes = {"z": of_point[0][0]}
     chosen = [measurement.channels[number - 1] for number in axes.values()]
     rate = chosen[0].rate or 0.0
     length = chosen[0].values.size / rate if rate else 0.0
@@ -282,8 +291,8 @@ def _accelerations(measurement: Measurement, files: list[str], those: list[Numbe
     arguments = ["comfort", "--input", *files, *picks, *_clock(*chosen)]
     removed = [*arguments, "--offset", "remove"]
     command, why = _first(measurement, [arguments, removed] if still else [removed])
-    which = "the seat" if seats else "the point"
-    more = "" if len(those) == len(axes) else f"; {len(those) - len(axes)} more accelerations"
+    which, others = "the seat" if seats else "the point", len(those) - len(axes)
+    more = f"; {others} other acceleration{'s are' if others > 1 else ' is'} not used" if others else ""
     if not command:
         return "", f"an acceleration, but: {why}"
     return command, f"gives the comfort of {which} in {', '.join(sorted(axes))}{more}"

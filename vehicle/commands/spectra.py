@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from vehicle.commands.command_line import command
 from vehicle.commands.destination import output_files_of
+from vehicle.commands.input_options import record_choice, record_options
 from vehicle.commands.options import command_parser, message_options, output_options
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
@@ -26,18 +28,24 @@ def parser() -> Parser:
         "spectra", "Densities, third octaves and cumulative RMS of accelerations of runs, weighted and not."
     )
     parser.add_argument(
-        "runs", nargs="+", type=Path, metavar="RUN", help="folder of a run, or a file of time histories; drawn together"
+        "runs", nargs="+", type=Path, metavar="RUN", help="folder of a run, or a measurement file; drawn together"
     )
     parser.add_argument(
         "--channels",
         metavar="NAME,...",
-        help="acceleration channels; by default seat rail, seat, and the vertical motion of the knuckles",
+        help="acceleration channels; by default seat rail, seat, and the vertical motion of the knuckles, of a "
+        "measurement file without these all accelerations",
     )
     parser.add_argument(
         "--range",
         default="0.5:80",
         metavar="HZ:HZ",
         help="lowest and highest frequency [Hz]; %(default)s by default, the range of ISO 2631-1 for comfort",
+    )
+    record_options(
+        parser.add_argument_group("measurement files"),
+        "the channel of a run that it is, as seat_rail_acc_z, which has its weighting",
+        highpass=False,
     )
     output_options(parser, None, default="in the folder of a single run, and in runs/spectra for several,")
     message_options(parser, quiet=True)
@@ -57,7 +65,8 @@ def _job(options: argparse.Namespace) -> None:
         frequency_range = float(low), float(high)
     except ValueError:
         raise ConfigurationError(f"--range {options.range}: must be HZ:HZ, as 0.5:80") from None
-    runs = [record_spectra(path, asked, frequency_range) for path in options.runs]
+    choice = record_choice(options, "")
+    runs = [record_spectra(path, asked, frequency_range, choice) for path in options.runs]
     names = _unique([run.name for run in runs])
     by_name = dict(zip(names, runs, strict=True))
     pictures = picture_columns(runs)
@@ -81,6 +90,9 @@ def _job(options: argparse.Namespace) -> None:
         if levels:
             title = "Roads against the classes of ISO 8608"
             write_whole(new["spectra_road.png"], lambda path: plot_road_levels(path, levels, title, caption))
+    for name, run in by_name.items():
+        for text in run.notices:
+            print(f"notice: {name}: {text}", file=sys.stderr, flush=True)
     if not options.quiet:
         print("\n".join(_report(by_name)))
         print(f"files: {paths['spectra.csv'].parent}: {', '.join(path.name for path in paths.values())}")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import shlex
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 
 from vehicle.signals.formats.channel import Channel
 
@@ -36,12 +36,13 @@ AXES = {
 }
 """Words for the axes."""
 
-SEAT = {"seat", "sitz", "sitzschiene"}
-RAIL = {"rail", "schiene", "sitzschiene"}
+SEAT = ("seat", "sitz")
+RAIL = ("rail", "schiene")
 KNUCKLE = {"knuckle", "upright", "hub", "wheel", "spindle", "radträger", "radtraeger", "rad", "nabe", "achsschenkel"}
 ENGINE = {"engine", "motor", "powertrain"}
 SPRING = {"feder", "federweg", "spring", "damper", "dämpfer", "daempfer", "suspension", "travel", "einfederung"}
-"""Words for the places of the model channels; displacements of springs and dampers are no plates."""
+"""Words for the places of the model channels, those of seats also within a word, as "Fahrersitz"; displacements of
+springs and dampers are no plates."""
 
 LATITUDE = {"lat", "latitude", "breite", "breitengrad"}
 LONGITUDE = {"lon", "long", "lng", "longitude", "länge", "laenge", "längengrad"}
@@ -79,6 +80,26 @@ def axis_of(channel: Channel) -> str:
         return channel.direction[-1].lower() if channel.direction[-1] in "XYZxyz" else ""
     parts = words_of(channel.name)
     return next((axis for axis, names in AXES.items() if any(word in names for word in parts)), "")
+
+
+def on_seat(channel: Channel) -> bool:
+    """Return True if the name of a channel is that of a seat or its rail."""
+    return _within(words_of(f"{channel.name} {channel.place}"), SEAT)
+
+
+def of_wheel_or_engine(channel: Channel) -> bool:
+    """Return True if the name of a channel is that of a knuckle or of an engine, on which nobody sits."""
+    return not {*KNUCKLE, *ENGINE}.isdisjoint(words_of(f"{channel.name} {channel.place}"))
+
+
+def point_of(channel: Channel) -> tuple[str, ...]:
+    """Return the words of the name and the place of a channel without those of its axis."""
+    along = {word for words in AXES.values() for word in words}
+    return tuple(word for word in words_of(f"{channel.name} {channel.place}") if word not in along)
+
+
+def _within(parts: Iterable[str], ends: Sequence[str]) -> bool:
+    return any(end in word for word in parts for end in ends)
 
 
 def of_receiver(channels: Sequence[Channel]) -> bool:
@@ -139,8 +160,8 @@ def _suggested(channel: Channel) -> str:
         return f"plate_{wheel}_displacement" if wheel and not parts & SPRING else ""
     if channel.quantity != "acceleration" or not axis:
         return ""
-    if parts & SEAT:
-        return f"seat_rail_acc_{axis}" if parts & RAIL else f"seat_acc_{axis}"
+    if on_seat(channel):
+        return f"seat_rail_acc_{axis}" if _within(parts, RAIL) else f"seat_acc_{axis}"
     if parts & ENGINE:
         return f"engine_acc_{axis}"
     return f"knuckle_{wheel}_acc_{axis}" if wheel and parts & KNUCKLE else ""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
 
@@ -14,7 +14,8 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.road_level import RoadLevel, road_level
 from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.vibration_spectra import RANGE, ChannelSpectrum, vibration_spectra
-from vehicle.signals.formats.reader import read_columns, time_file
+from vehicle.signals.formats.reader import read_columns, read_record, time_file
+from vehicle.signals.records.choice import Choice, choose, matching, pick
 from vehicle.signals.records.run_summary import RunSummary, available_summary
 
 SEAT = "seat_acc_[xyz]"
@@ -49,12 +50,14 @@ class RecordSpectra:
         caption: input, evaluated span and tyres.
         channels: spectra of the channels, unweighted and weighted.
         road_levels: wheel to the level of the road under it; empty for a run on plates.
+        notices: messages on the record of a measurement file.
     """
 
     name: str
     caption: str
     channels: tuple[ChannelSpectrum, ...]
     road_levels: Mapping[str, RoadLevel]
+    notices: tuple[str, ...] = ()
 
     def highest_band(self, spectrum: ChannelSpectrum) -> tuple[float, float]:
         """Return nominal midband frequency [Hz] and RMS of the highest third octave of a channel."""
@@ -70,22 +73,28 @@ class RecordSpectra:
 
 
 def record_spectra(
-    path: Path, channels: Sequence[str] | None = None, frequency_range: tuple[float, float] = RANGE
+    path: Path,
+    channels: Sequence[str] | None = None,
+    frequency_range: tuple[float, float] = RANGE,
+    choice: Choice | None = None,
 ) -> RecordSpectra:
-    """Read a run and return the spectra of its evaluated span.
+    """Read a run or a measurement file and return the spectra of its evaluated span, in SI units.
 
     Args:
-        path: folder of a run, or a file of time histories.
-        channels: names of acceleration channels; by default seat rail, seat and the vertical motion of the knuckles.
+        path: folder of a run, or a measurement file of any format.
+        channels: names of acceleration channels; by default seat rail, seat and the vertical motion of the knuckles,
+            of a file without these all accelerations.
         frequency_range: lowest and highest frequency [Hz].
+        choice: channels of a measurement file by the names that they get here, their units, and the excerpt.
 
     Raises:
         ConfigurationError: no such run or channel, or a channel that is no acceleration.
-        DataError: a damaged file, or a record too short for the range.
+        DataError: a damaged file, no such channel in it, or a record too short for the range.
     """
     source = time_file(path)
-    record = read_columns(source)
-    summary = available_summary(source.parent) if path.is_dir() else None
+    if not path.is_dir():
+        return _file_spectra(source, channels, frequency_range, choice or Choice())
+    record, summary = read_columns(source), available_summary(source.parent)
     if summary is None:
         return recorded_spectra(record, path.name, source.name, channels, frequency_range=frequency_range)
     tyres = f", tyres {summary['tyre']}" if "tyre" in summary else ""
@@ -99,6 +108,50 @@ def record_spectra(
         seated=summary.get("seat_value") is not None,
         road=summary["input"].get("road"),
         frequency_range=frequency_range,
+    )
+
+
+def _file_spectra(
+    path: Path, channels: Sequence[str] | None, frequency_range: tuple[float, float], choice: Choice
+) -> RecordSpectra:
+    """Return the spectra of a measurement file; arguments and errors as of `record_spectra`."""
+    measurement = read_record(path, choice.databases)
+    # A file that has the channel by its own name, as one of a run, needs no name of it.
+    own = {channel.name for channel in measurement.channels}
+    roles = {
+        role: role if role in own and not matching(measurement, name, lambda channel: True) else name
+        for role, name in choice.channels.items()
+        if role != "time"
+    }
+    if channels is None and not roles:
+        inside = [
+            channel.name
+            for channel in measurement.channels
+            if channel.quantity == "acceleration" and channel.function == "time history"
+        ]
+        usual = re.compile("|".join((SEAT, *BY_DEFAULT)))
+        channels = [name for name in inside if usual.fullmatch(name)] or inside
+    for name in channels or ():
+        if name not in roles:
+            roles[name] = measurement.channels[pick(measurement, name, option="--channels")].name
+    if not roles:
+        raise ConfigurationError(
+            f"{path}: no channel has a unit of acceleration; set --channel seat_rail_acc_z=NAME and --unit m/s2 or "
+            f"--unit g; the file has {measurement.listed()}"
+        )
+    chosen = choose(measurement, replace(choice, channels={**choice.channels, **roles}))
+    if other := next((role for role, quantity in chosen.quantities.items() if quantity != "acceleration"), None):
+        raise ConfigurationError(
+            f"{path.name}: {roles[other]} is a {chosen.quantities[other]}; spectra are of accelerations [m/s2]"
+        )
+    chosen.require_uniform(path)
+    step = float(chosen.time[1] - chosen.time[0])
+    return RecordSpectra(
+        name=path.name,
+        caption=f"{path.name}, {chosen.time[0]:g} to {chosen.time[-1]:g} s",
+        channels=vibration_spectra(step, chosen.values, dict.fromkeys(roles, "m/s2"), frequency_range),
+        road_levels={},
+        notices=chosen.notices,
     )
 
 
