@@ -24,6 +24,7 @@ from vehicle.signals.excitation.signal_file import read_signal
 from vehicle.signals.formats import uff_writer
 from vehicle.signals.formats.channel import Channel
 from vehicle.signals.formats.text_format import write_table
+from vehicle.signals.records.choice import Choice
 from vehicle.signals.records.measured import read_measured
 
 MOUNT, ENGINE = "bushings.suspension_mount.stiffness.z", "bushings.linear_mount.stiffness.z"
@@ -185,12 +186,31 @@ def test_a_record_that_began_later_names_its_delay(run, tmp_path):
     )
     measured = read_measured(path, tuple(truth.channels))
     notices = comparison_of(measured, of_folder(run)).notices
-    assert notices[0] == "no responses: the channels include no moving plate; set --map plate_fl_displacement=NAME"
+    assert (
+        notices[0]
+        == "no FRFs: no channel is that of a plate, and time histories need none; name one with --map plate_fl_displacement=NAME"
+    )
     assert notices[1].endswith(
         "0.05 s late, in all channels: if the records began at different times, set --delay 0.05"
     )
     again = comparison_of(measured, of_folder(run), delay=0.05)
     assert again.notices == notices[:1] and again.records[0].correlation == pytest.approx(1.0)
+
+
+def test_gravity_in_a_record_is_named_with_its_remedy(run, tmp_path):
+    """An offset of 1 g: the RMS ratio contains it, --detrend subtracts it."""
+    truth = of_folder(run).record
+    path = tmp_path / "offset.csv"
+    values = truth.channels["seat_rail_acc_z"]
+    write_table(path, ["time [s]", "seat_rail_acc_z [m/s2]"], [truth.time, values + 9.80665])
+    comparison = comparison_of(read_measured(path, tuple(truth.channels)), of_folder(run))
+    (said,) = [text for text in comparison.notices if "gravity" in text]
+    assert said.startswith("seat_rail_acc_z: the mean is 9.8") and "--detrend" in said
+    assert comparison.records[0].rms_ratio < 0.1
+    level = read_measured(path, tuple(truth.channels), choice=Choice(detrend=True))
+    again = comparison_of(level, of_folder(run))
+    assert again.records[0].rms_ratio == pytest.approx(1.0, abs=0.01)
+    assert not [text for text in again.notices if "gravity" in text]
 
 
 def test_a_unit_is_of_the_input_or_of_what_was_measured(tmp_path):

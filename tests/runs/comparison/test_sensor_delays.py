@@ -86,7 +86,13 @@ def test_one_sensor_alone_and_a_pattern(run, tmp_path):
     comparison = compare(run, file)
     group = found(comparison)["accelerations"]
     assert (group.agreeing, group.channels) == (3, 4) and abs(group.delay) < 2e-5
+    (said,) = [text for text in comparison.notices if text.startswith("seat_rail_acc_z ")]
+    assert "lags the other accelerations by 5 ms" in said and "in 3 of 4 channels" in comparison.text()
+    (option,) = OPTION.findall(said)
+    name, _, value = option.partition("=")
+    assert name == "seat_rail_acc_z" and float(value.removesuffix("ms")) == pytest.approx(5.0, abs=0.02)
     again = compare(run, file, delay={"seat_*": 5e-3})
+    assert not [text for text in again.notices if text.startswith("seat_rail_acc_z ")]
     lags = {record.channel: record.lag for record in again.records}
     assert max(map(abs, lags.values())) < 2e-5
 

@@ -18,7 +18,7 @@ from vehicle.runs.comparison.frf_comparison import (
     compare_responses,
     other_plates,
 )
-from vehicle.runs.comparison.record_comparison import RecordComparison, compare_records, unlike_copies
+from vehicle.runs.comparison.record_comparison import RecordComparison, compare_records, offsets, unlike_copies
 from vehicle.runs.comparison.simulated import Simulated, of_folder, of_run
 from vehicle.signals.analysis.phase_delay import phase_delay
 from vehicle.signals.formats.channel import Measurement
@@ -194,7 +194,7 @@ def comparison_of(
     if measured.record is not None:
         clock = [part for part in parts if not delays or group_of(part.channel) == delays[0].group]
         notices += clock_advice(clock, step, delay, drift, command)
-        notices += [*sign_and_unit(parts), *unlike_copies(records)]
+        notices += [*sign_and_unit(parts), *offsets(records), *unlike_copies(records)]
         judged = {part.channel for part in parts if part.reliable_shift}
     notices += [text for group in delays for text in group.advice(step, command)]
     for response in responses:

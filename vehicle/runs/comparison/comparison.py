@@ -251,6 +251,7 @@ class Comparison:
         delays = [
             f"{each.group} {1e3 * each.delay:.3f} +- {number(1e3 * each.error, 1)} ms after the {each.against}"
             + (f" ({1e3 * each.taken_out:.5g} ms taken out)" if each.taken_out else "")
+            + (f", in {each.agreeing} of {each.channels} channels" if each.agreeing < each.channels else "")
             for each in self.delays
             if math.isfinite(each.delay)
         ]

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.digits import number
 from vehicle.errors import DataError
 from vehicle.signals.analysis.record_rating import RecordRating, rate_record
 from vehicle.signals.analysis.time_shift import TimeShift
@@ -17,6 +18,9 @@ from vehicle.signals.records.counterpart import Counterpart, counterparts
 from vehicle.signals.records.resampled import at_times
 
 Vector = npt.NDArray[np.float64]
+
+LARGEST_OFFSET = 0.3
+"""Difference of the means over the standard deviation of the measurement: the RMS ratio is then off by 4 %."""
 
 LEAST_SAMPLES = 20
 """That both have in common: fewer are no time history. Assumed."""
@@ -105,6 +109,24 @@ def _compared(
     )
 
 
+def offsets(records: Sequence[RecordComparison]) -> list[str]:
+    """Return a notice for each acceleration whose mean differs so much that its RMS ratio says little.
+
+    Args:
+        records: see `compare_records`.
+    """
+    said = []
+    for record in records:
+        means = float(np.mean(record.measured)), float(np.mean(record.simulated))
+        if record.unit == "m/s2" and abs(means[0] - means[1]) > LARGEST_OFFSET * float(np.std(record.measured)):
+            said.append(
+                f"{record.channel}: the mean is {means[0]:.3g} m/s2 in the measurement and {number(means[1], 2)} m/s2 "
+                "in the run, and the RMS ratio contains it: gravity, or the offset of a sensor? Subtract it with "
+                "--detrend, or with --highpass 0.5"
+            )
+    return said
+
+
 def unlike_copies(records: Sequence[RecordComparison]) -> list[str]:
     """Return a notice for each pair of equal measured channels whose simulated channels differ.
 
@@ -112,8 +134,8 @@ def unlike_copies(records: Sequence[RecordComparison]) -> list[str]:
         records: see `compare_records`.
     """
     said = []
-    for number, record in enumerate(records):
-        for other in records[:number]:
+    for index, record in enumerate(records):
+        for other in records[:index]:
             if not np.ptp(record.measured) > 0.0 or record.unit != other.unit:
                 continue
             same = np.array_equal(record.measured, other.measured)

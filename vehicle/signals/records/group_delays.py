@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -49,6 +49,7 @@ class GroupDelay:
         taken_out: part of the delay that was taken out [s].
         agreeing: number of channels with this delay.
         channels: number of channels with a known lag.
+        unlike: channels with another delay that was not taken out, and their delays in the file [s].
     """
 
     group: str
@@ -58,6 +59,7 @@ class GroupDelay:
     taken_out: float
     agreeing: int
     channels: int
+    unlike: Mapping[str, float] = field(default_factory=dict)
 
     def summary(self) -> dict[str, Any]:
         """Return the entry of `compare.json`."""
@@ -73,20 +75,29 @@ class GroupDelay:
         }
 
     def advice(self, step: float, command: str = "") -> list[str]:
-        """Return a message with the option that takes the rest of the delay out; [] without a significant rest.
+        """Return messages with the options that take the rest of the delays out; [] without a significant rest.
 
         Args:
             step: sampling interval of the comparison [s].
             command: command with the option; empty for the running command.
         """
         remainder = self.delay - self.taken_out
+        after = f" of {command}" if command else ""
+        others = 0.0 if self.against == RUN else self.delay
+        alone = [
+            f"{channel} {'lags' if delay > others else 'leads'} the other {self.group} by "
+            f"{1e3 * abs(delay - others):.3g} ms: a delay of this sensor? Take it out with --delay "
+            f"{channel}={1e3 * delay:.5g}ms{after}"
+            for channel, delay in self.unlike.items()
+        ]
         if self.against == RUN or not abs(remainder) > max(SHARE_OF_STEP * step, SIGNIFICANT * self.error):
-            return []
+            return alone
         return [
+            *alone,
             f"the {self.group} {'lag' if self.delay > 0.0 else 'lead'} the {self.against} by "
             f"{1e3 * abs(self.delay):.3g} ms (+- {number(1e3 * self.error, 1)} ms, in {self.agreeing} of "
             f"{self.channels} channels): a sensor delay, or a car with other phases (tune fits both)? Take it out with "
-            f"--delay {self.group}={1e3 * self.delay:.5g}ms" + (f" of {command}" if command else "")
+            f"--delay {self.group}={1e3 * self.delay:.5g}ms{after}",
         ]
 
 
@@ -131,6 +142,8 @@ def group_delays(lags: Sequence[ChannelLag], step: float, reference: str = "") -
     for group in sorted(groups, key=lambda name: name != first):
         lag, error, out, agreeing = _mean(groups[group], step)
         is_first = group == first
+        zero = lag if is_first else base[0]
+        rests = {each: (each.lag - each.taken_out) - (lag - out) for each in groups[group]}
         delays.append(
             GroupDelay(
                 group=group,
@@ -140,6 +153,11 @@ def group_delays(lags: Sequence[ChannelLag], step: float, reference: str = "") -
                 taken_out=out if is_first else out - base[2],
                 agreeing=agreeing,
                 channels=len(groups[group]),
+                unlike={
+                    each.channel: each.lag - zero
+                    for each, rest in rests.items()
+                    if abs(rest) > max(step, SIGNIFICANT * each.error)
+                },
             )
         )
     return tuple(delays)

@@ -162,7 +162,8 @@ def read_measured(
                 notices.append(f"responses estimated from the time histories: {estimator}")
             elif "m/s2" in record.units.values():
                 notices.append(
-                    "no responses: the channels include no moving plate; set --map plate_fl_displacement=NAME"
+                    "no FRFs: no channel is that of a plate, and time histories need none; name one with --map "
+                    "plate_fl_displacement=NAME"
                 )
     return Measured(
         file=file,
