@@ -94,8 +94,8 @@ def light(path: Path) -> Image.Image:
     palette = Image.new("P", (1, 1))
     entries = [grey for level in np.linspace(0, 255, GREYS).astype(int).tolist() for grey in (level, level, level)]
     if coloured.size:
-        own = Image.fromarray(coloured.reshape(1, -1, 3)).quantize(COLOURS)
-        entries += list(own.getpalette() or [])[: 3 * COLOURS]
+        few = Image.fromarray(coloured.reshape(1, -1, 3)).quantize(COLOURS)
+        entries += list(few.getpalette() or [])[: 3 * COLOURS]
     palette.putpalette(entries)
     return flat.quantize(palette=palette, dither=Image.Dither.NONE)
 

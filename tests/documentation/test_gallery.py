@@ -5,19 +5,11 @@ from __future__ import annotations
 import re
 
 import pytest
+from PIL import Image
 
-from tests.documentation.gallery import (
-    CHROMIUM,
-    FOLDER,
-    Image,
-    difference,
-    gallery_pages,
-    light,
-    numbers_of,
-    rounded_from,
-    shown,
-)
+from tests.documentation.gallery import FOLDER, difference, gallery_pages, light, numbers_of, rounded_from, shown
 from tests.documentation.pages import NUMBER, ROOT, Site
+from tests.runs.report.conftest import CHROMIUM
 
 NEEDS = {"durability": "rainflow", "fmu-master": "fmpy", "pareto": "pymoo"}
 """Extra of the commands of a page."""

@@ -28,11 +28,19 @@ def value_lines(result: TuningResult, vehicle: Vehicle) -> list[str]:
         value, error = result.values[parameter.path], result.standard_errors[parameter.path]
         spread = f"+- {number(error, 2)}" if math.isfinite(error) else "without a standard error"
         share = f" ({number(100 * error / value, 2)} %)" if math.isfinite(error) else ""
+        shown = number(value, known_digits(value, error))
         lines.append(
-            f"{parameter.path:<{width}}  {value:.6g} {spread} {unit_of(vehicle, parameter.path)}{share}, start "
+            f"{parameter.path:<{width}}  {shown} {spread} {unit_of(vehicle, parameter.path)}{share}, start "
             f"{parameter.start:.6g}, bounds {parameter.low:g} to {parameter.high:g}"
         )
     return lines
+
+
+def known_digits(value: float, error: float) -> int:
+    """Return the significant digits of a value that its standard error leaves: as many decimals as the error has."""
+    if not (math.isfinite(error) and error > 0.0 and value != 0.0):
+        return 6
+    return min(max(math.floor(math.log10(abs(value))) - math.floor(math.log10(error)) + 2, 2), 8)
 
 
 def tuning_text(tuned: TunedCar) -> str:
@@ -60,7 +68,7 @@ def delay_lines(tuned: TunedCar) -> list[str]:
     for delay in result.delays:
         value, error = 1e3 * result.solution[delay.path], 1e3 * result.standard_errors[delay.path]
         target = tuned.measurements[delay.target].target
-        digits = max(1 - math.floor(math.log10(error)), 0) if 0.0 < error < math.inf else 3
+        digits = min(max(1 - math.floor(math.log10(error)), 0), 4) if 0.0 < error < math.inf else 3
         spread = f"{abs(value):.{digits}f}" + (f" +- {error:.{digits}f}" if math.isfinite(error) else "") + " ms"
         large = abs(value) > max(SIGNIFICANT * error, 500.0 * SHARE_OF_STEP * 2.0 * target.half_sample)
         lines.append(
