@@ -44,7 +44,7 @@ FORCES: dict[str, tuple[dict[str, object], str]] = {
         {**ON, "harmonics": [[2, 42500, 0]]},
         "force.a.harmonics: found 42500 N m, must be at most 5000",
     ),
-    "a mean torque in N mm": ({**ON, "mean": 6e3}, "force.a.mean: found 6000 N m, must be at most 5000 N m (an engine"),
+    "a mean torque in N mm": ({**ON, "mean": 6e3}, "force.a.mean: found 6000 N m, must be at most 5000 N m (a block"),
     "a factor": ({**ON, "factor": -200.0}, "force.a.harmonics: found 8000 N m, must be at most 5000 N m"),
     "too large": ({**ON, "mean": 1e6}, "force.a.mean: found 1000000.0 N, must be at most 100000.0"),
 }

@@ -155,7 +155,7 @@ def _require_torque(path: str, law: AppliedForce) -> None:
     if largest > LARGEST_TORQUE:
         key = "mean" if largest == abs(law.mean) else "harmonics"
         raise ConfigurationError(
-            f"{path}.{key}: found {largest:g} N m, must be at most {LARGEST_TORQUE:g} N m (a block gets 100 to 1000 N m "
+            f"{path}.{key}: found {largest:g} N m, must be at most {LARGEST_TORQUE:g} N m (a block gets up to 1000 N m "
             "from its pistons); set N m, not N mm"
         )
 
