@@ -8,6 +8,9 @@ import scipy
 
 from tests.validation import validated
 from vehicle import Car, order_points, road
+from vehicle.commands.summary_text import summary_text
+from vehicle.signals.analysis.weighting import weighting
+from vehicle.signals.records.run_summary import read_summary
 
 CHANNELS = ["steering_wheel_rim_acc_y", "steering_wheel_rim_acc_x", "knuckle_fr_acc_x", "seat_rail_acc_z"]
 GUIDES = ("rack_guide_right", "rack_guide_left")
@@ -101,3 +104,18 @@ def test_the_friction_of_the_rack_holds_nibble_of_a_small_imbalance():
     )
     assert per_gram[0] < 0.25 * free / 5.0
     assert per_gram[1] > 2.0 * per_gram[0]
+
+
+def test_comfort_at_the_rim_is_weighted_as_on_a_steering_wheel(tmp_path):
+    run = unbalanced(40.0, friction=False).run(road("level", 90, duration=6), engine="reduced")
+    value, factor = run.comfort("steering_wheel_rim"), weighting("Ws").spectrum_factor(run.orders().frequency)
+    (size,) = np.abs(run.orders("steering_wheel_rim_acc_y", orders=[1]).amplitude[0])
+    # A single line; the imbalance makes no other order of this size.
+    assert value.weighted.y == pytest.approx(factor[0] * size / np.sqrt(2.0), rel=0.02)
+    assert value.standard == "Giacomin et al. 2004"
+    run.save(tmp_path / "run")
+    whole = read_summary(tmp_path / "run")
+    summary = whole["steering_wheel_rim"]
+    assert summary["weighted_rms"]["y"] == value.weighted.y
+    assert (summary["weighting"], summary["rms"]["y"]) == ("Ws", value.unweighted.y)
+    assert f"steering wheel rim {value.weighted.overall:.4f} m/s2 weighted RMS (Ws, Giacomin" in summary_text(whole)

@@ -60,8 +60,8 @@ def parser() -> Parser:
         default="seat",
         metavar="NAME",
         help="point of contact, names weightings and factors: seat (default; z Wk, x and y Wd), backrest, feet, "
-        "seat_rotation, standing, seat_bs6841, backrest_bs6841, feet_bs6841, hand (ISO 5349-1: Wh), train_floor "
-        "(EN 12299: mean comfort of 5 minutes)",
+        "seat_rotation, standing, seat_bs6841, backrest_bs6841, feet_bs6841, hand (ISO 5349-1: Wh), "
+        "steering_wheel (Giacomin 2004: Ws), train_floor (EN 12299: mean comfort of 5 minutes)",
     )
     weighting.add_argument(
         "--offset",

@@ -97,6 +97,12 @@ def _comfort(summary: RunSummary) -> list[str]:
             f"comfort     seat rail {rms['overall']:.4f} m/s2 unweighted RMS, {low:g} to {high:g} Hz ({axes}); "
             f"{_weighted(points, 'seat_rail'):.4f} m/s2 weighted RMS (ISO 2631-1)"
         )
+    if (rim := summary.get("steering_wheel_rim")) is not None:
+        axes = ", ".join(f"{axis} {rim['weighted_rms'][axis]:.4f}" for axis in "xyz")
+        lines.append(
+            f"            steering wheel rim {rim['weighted_rms']['overall']:.4f} m/s2 weighted RMS "
+            f"({rim['weighting']}, {rim['standard']}; {axes})"
+        )
     if (ratio := summary["seat_value"]) is not None:
         lines.append(
             f"            seat {_weighted(points, 'seat'):.4f} m/s2 weighted RMS (ISO 2631-1; x, y by Wd, z by Wk); "

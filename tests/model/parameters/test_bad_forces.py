@@ -40,6 +40,12 @@ FORCES: dict[str, tuple[dict[str, object], str]] = {
         "a wheel has whole orders",
     ),
     "unknown key": ({**ON, "harmonic": 3}, "force.a.harmonic"),
+    "a torque in N mm": (
+        {**ON, "harmonics": [[2, 42500, 0]]},
+        "force.a.harmonics: found 42500 N m, must be at most 5000",
+    ),
+    "a mean torque in N mm": ({**ON, "mean": 6e3}, "force.a.mean: found 6000 N m, must be at most 5000 N m (a block"),
+    "a factor": ({**ON, "factor": -200.0}, "force.a.harmonics: found 8000 N m, must be at most 5000 N m"),
     "too large": ({**ON, "mean": 1e6}, "force.a.mean: found 1000000.0 N, must be at most 100000.0"),
 }
 
@@ -70,6 +76,11 @@ def test_a_wrong_force_is_refused(case):
         ({"front.brake_variation.torque": [[1, 20, 0], [1, 5, 0]]}, "a second harmonic of order 1"),
         ({"front.brake_variation.torque": [[1, 2e3, 0]]}, "2000 N m, must be at most 1000 N m"),
         ({"front.nonuniformity.tfv": [[1, 20, 0]]}, "no parameter front.nonuniformity.tfv; the nearest is"),
+        ({"crank.rpm": 12000}, "crank.rpm: found 12000.0 1/min, must be at most 10000.0 (engines idle at 600 to 1000)"),
+        (
+            {"crank.rpm": 750, "crank.end_rpm": 200, "crank.run_up_time": 9},
+            "crank.end_rpm: found 200.0 1/min, must be at",
+        ),
         ({"crank.rpm": 12.5}, "crank.rpm: found 12.5 1/min, must be at least 300.0"),
     ],
 )

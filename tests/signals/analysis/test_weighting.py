@@ -4,6 +4,7 @@ from scipy.signal import lsim
 
 from tests.validation import foreign, validated
 from vehicle.errors import ConfigurationError, DataError
+from vehicle.signals.analysis.evaluation import evaluate
 from vehicle.signals.analysis.weighting import WEIGHTINGS, weighted_record, weighting
 
 
@@ -66,6 +67,30 @@ def test_the_omitted_entries_lie_between_their_neighbours():
         rel=1e-3, source="standard: ISO 2631-1:1997, table 3, decibel column",
     )  # fmt: skip
     assert weighting("Wj").spectrum_factor(4.0) == pytest.approx(0.628, rel=1e-3)
+
+
+def test_the_weighting_of_a_steering_wheel_follows_its_straight_lines():
+    """Giacomin et al. 2004: slopes in decibel an octave between corners, 0 dB from 3 to 6.3 Hz."""
+    corners, slopes = [3.0, 6.3, 50.0, 160.0, 315.0], [0.0, -6.0, 0.0, -10.0]
+    levels = np.concatenate([[0.0], np.cumsum(slopes * np.diff(np.log2(corners)))])
+    frequency = np.geomspace(3.0, 315.0, 300)
+    validated(
+        "Comfort, ISO 2631", "level of Ws of a steering wheel from 3 to 315 Hz",
+        20.0 * np.log10(weighting("Ws").spectrum_factor(frequency)),
+        np.interp(np.log2(frequency), np.log2(corners), levels),
+        abs=0.53, unit="dB",  # the filter rounds the corners of the lines; ISO 8041 allows 1 dB
+        source="publication: Giacomin et al., Int. J. Industrial Ergonomics 33 (2004) 527-541",
+    )  # fmt: skip
+
+
+def test_a_vibration_of_a_steering_wheel_has_its_weighted_rms():
+    rate, levels = 1000.0, {6.3: 0.0, 12.6: -6.0, 25.2: -12.0}
+    for frequency, level in levels.items():
+        record = np.sin(2.0 * np.pi * frequency * np.arange(int(60 * rate)) / rate)
+        found = evaluate(1.0 / rate, np.array([record, record, 0.0 * record]), contact="steering_wheel", skip=5.0)
+        # Within 0.53 dB of the lines, and no dose values.
+        assert found["y"]["weighted_rms"] * np.sqrt(2.0) == pytest.approx(10.0 ** (level / 20.0), rel=0.065)
+        assert (found["y"]["weighting"], found["y"]["vdv"]) == ("Ws", None)
 
 
 def polynomials(name):
@@ -201,7 +226,7 @@ def test_slow_sampling_is_refused():
 def test_an_unknown_weighting_is_rejected_with_the_known_names():
     with pytest.raises(ConfigurationError) as refusal:
         weighting("Wx")
-    assert str(refusal.value) == "weighting: found 'Wx', must be one of Wk, Wd, Wf, Wc, We, Wj, Wb, Wb_en12299, Wh"
+    assert str(refusal.value) == "weighting: found 'Wx', must be one of Wk, Wd, Wf, Wc, We, Wj, Wb, Wb_en12299, Wh, Ws"
 
 
 def test_a_frequency_that_is_not_finite_is_rejected():
@@ -216,7 +241,7 @@ def test_a_filter_has_settled_when_its_step_response_stays_below_a_hundredth(nam
     last = np.flatnonzero(response[: 79 * rate] > 0.01 * response.max())[-1] / rate  # the end rings for Wj
     assert 0.5 * curve.settling_s < last < curve.settling_s
     # the range of the standard, and one over the width of its lowest third octave
-    lowest, shortest = {"Wf": (0.1, 43.2), "Wh": (7.887, 0.5475)}.get(name, (0.5, 8.64))
+    lowest, shortest = {"Wf": (0.1, 43.2), "Wh": (7.887, 0.5475), "Ws": (3.0, 1.439)}.get(name, (0.5, 8.64))
     assert curve.lowest_frequency == pytest.approx(lowest, rel=1e-3)
     assert curve.shortest_record_s == pytest.approx(shortest, rel=1e-3)
-    assert curve.highest_frequency == {"Wf": 0.5, "Wh": 1000.0}.get(name, 80.0)
+    assert curve.highest_frequency == {"Wf": 0.5, "Wh": 1000.0, "Ws": 320.0}.get(name, 80.0)

@@ -29,6 +29,9 @@ AXES_OF = ("vehicle", "part")
 
 NONE = (0.0, 0.0, 0.0)
 
+LARGEST_TORQUE = 5000.0
+"""Largest moment or torque of a force of the vehicle file [N m]."""
+
 NEGLIGIBLE, SMALLEST = 1e-6, 1e-6
 """Share of the largest harmonic of an engine below which a harmonic is rounding, and amplitude [N or N m] likewise."""
 
@@ -124,6 +127,8 @@ def further_force(name: str, value: Any, targets: ForceTargets) -> PlacedForce:
         number = "both" if directions else "none"
         raise ConfigurationError(f"{path}: found {number} of force and moment; set the direction of one of them")
     direction = _direction(f"{path}.{directions[0]}", table[directions[0]])
+    if directions == ["moment"]:
+        _require_torque(path, law)
     axes = convert(str, table.get("axes", AXES_OF[0]), f"{path}.axes")
     if axes not in AXES_OF:
         raise ConfigurationError(f"{path}.axes: found {axes!r}, allowed are {', '.join(AXES_OF)}")
@@ -154,6 +159,22 @@ def further_force(name: str, value: Any, targets: ForceTargets) -> PlacedForce:
     )
 
 
+def _require_torque(path: str, law: AppliedForce) -> None:
+    """Check that a moment or a torque is plausible for a car.
+
+    Raises:
+        ConfigurationError: its mean, or an amplitude of its harmonics, is above `LARGEST_TORQUE`.
+    """
+    amplitudes = [abs(law.factor) * amplitude for _, amplitude, _ in law.harmonics]
+    largest = max([abs(law.mean), *amplitudes])
+    if largest > LARGEST_TORQUE:
+        key = "mean" if largest == abs(law.mean) else "harmonics"
+        raise ConfigurationError(
+            f"{path}.{key}: found {largest:g} N m, must be at most {LARGEST_TORQUE:g} N m (a block gets up to 1000 N m "
+            "from its pistons); set N m, not N mm"
+        )
+
+
 def _torque(path: str, table: Mapping[str, Any], targets: ForceTargets, law: AppliedForce, speed: float) -> PlacedForce:
     """Return the torque of a table on a joint."""
     for key in ("on", "at", "force", "moment", "axes", "against"):
@@ -163,6 +184,8 @@ def _torque(path: str, table: Mapping[str, Any], targets: ForceTargets, law: App
     if joint not in targets.joints:
         near = nearest(joint, targets.joints)
         raise ConfigurationError(f"{path}.joint: found {joint!r}, no hinge or slide; the nearest is {near}")
+    if targets.joints[joint] == "hinge":
+        _require_torque(path, law)
     if law.mean and joint.startswith("spin_"):
         raise ConfigurationError(
             f"{path}.mean: found {law.mean:g} N m on a wheel that turns freely, which has no equilibrium; set 0"

@@ -27,7 +27,7 @@ from vehicle.signals.analysis.comfort import COMFORT_BAND
 from vehicle.signals.analysis.motion_response import MotionResponse
 from vehicle.signals.analysis.order_cut import order_cut
 from vehicle.signals.analysis.order_lines import order_lines
-from vehicle.signals.analysis.ride_comfort import RunComfort, run_comfort
+from vehicle.signals.analysis.ride_comfort import RIM, RunComfort, run_comfort
 from vehicle.signals.analysis.slip import first_slip, slip_share
 from vehicle.signals.excitation.force_lines import SweptLine
 from vehicle.signals.excitation.signal import Signal
@@ -185,10 +185,11 @@ class Run:
         """Return both comfort values over the evaluated span, by axis and overall [m/s2].
 
         `unweighted` is the RMS in 2 to 50 Hz (Bommer 2006); the band ends at the end of the band of the signal.
-        `weighted` is the RMS weighted as on a seat (ISO 2631-1: Wk, Wd). At the seat rail of a car with a seat,
-        `cushion` has both on the cushion and `seat_value` the SEAT value. Report, `summary.json`, sweeps and searches
-        have the same values, under the names of `values`: bitwise with the MuJoCo engine, within 1e-5 with the
-        reduced engine, which computes many cars in single precision.
+        `weighted` is the RMS weighted as on a seat (ISO 2631-1: Wk, Wd), at `steering_wheel_rim` as on a steering wheel
+        (Giacomin et al. 2004: Ws). At the seat rail of a car with a seat, `cushion` has both on the cushion and
+        `seat_value` the SEAT value. Report, `summary.json`, sweeps and searches have the same values, under the names
+        of `values`: bitwise with the MuJoCo engine, within 1e-5 with the reduced engine, which computes many cars in
+        single precision.
 
         Args:
             point: output point of the car, as "seat_rail".
@@ -206,6 +207,7 @@ class Run:
             skip=self.skip,
             band=self.signal.band(COMFORT_BAND),
             point=point.replace("_", " "),
+            contact="steering_wheel" if point == RIM else "seat",
         )
 
     def orders(

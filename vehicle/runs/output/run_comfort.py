@@ -1,17 +1,19 @@
-"""Comfort of a run at the seat rail and on the seat: values, SEAT value and notices."""
+"""Comfort of a run at the seat rail, on the seat and at the steering wheel: values, SEAT value and notices."""
 
 from __future__ import annotations
 
 from dataclasses import asdict
+from typing import TypedDict
 
 import numpy as np
 
 from vehicle.names import AXES
 from vehicle.runs.car import Run
 from vehicle.signals.analysis.comfort import COMFORT_BAND, settling
-from vehicle.signals.analysis.evaluation import evaluate
+from vehicle.signals.analysis.evaluation import application, evaluate
+from vehicle.signals.analysis.ride_comfort import RIM
 from vehicle.signals.analysis.seat_value import seat_value
-from vehicle.signals.records.run_summary import ComfortSummary, SeatSummary
+from vehicle.signals.records.run_summary import ComfortSummary, RimSummary, SeatSummary
 
 RAIL, SEAT = "seat_rail", "seat"
 
@@ -35,6 +37,28 @@ def seat_values(run: Run) -> SeatSummary | None:
         return None
     value = seat_value(run.recording.timestep, seat, rail, skip=run.skip)
     return {"rms": value.rms, "vdv": value.vdv, "weighting": value.weighting}
+
+
+class RimValues(TypedDict, total=False):
+    """Entry of the steering wheel in the summary of a run."""
+
+    steering_wheel_rim: RimSummary
+
+
+def rim_values(run: Run) -> RimValues:
+    """Return the comfort values at the rim of the steering wheel; empty without such an output."""
+    if not _recorded(run, RIM):
+        return {}
+    value = run.comfort(RIM)
+    return {
+        "steering_wheel_rim": {
+            "rms": asdict(value.unweighted),
+            "band_hz": list(value.band),
+            "weighted_rms": asdict(value.weighted),
+            "weighting": application("steering_wheel").weightings[1],
+            "standard": value.standard,
+        }
+    }
 
 
 def comfort_notices(run: Run) -> list[str]:

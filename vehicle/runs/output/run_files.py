@@ -21,7 +21,7 @@ from vehicle.names import wheel_words
 from vehicle.runs.car import FRF_BAND, SATURATED_VELOCITY, Run
 from vehicle.runs.output.folder import write_json, write_text, write_whole
 from vehicle.runs.output.own_files import parameters_text, write_own_files
-from vehicle.runs.output.run_comfort import comfort_notices, comfort_values, seat_values
+from vehicle.runs.output.run_comfort import comfort_notices, comfort_values, rim_values, seat_values
 from vehicle.runs.output.run_densities import write_densities
 from vehicle.runs.output.run_forces import force_values
 from vehicle.runs.output.run_obstacle import obstacle_values
@@ -268,6 +268,7 @@ def summarise(
         "peaks": _peaks(responses[0].response if responses else None, channels),
         "comfort": comfort_values(run),
         "seat_value": seat_values(run),
+        **rim_values(run),
         "obstacle": obstacle_values(run),
         **force_values(run),
         "static": {

@@ -1,4 +1,4 @@
-"""Vibration at a point of contact after ISO 2631-1, BS 6841, ISO 5349-1 or EN 12299; effect of an offset."""
+"""Vibration at a point of contact after ISO 2631-1, BS 6841, ISO 5349-1, EN 12299 or Giacomin; effect of an offset."""
 
 from __future__ import annotations
 
@@ -85,6 +85,7 @@ APPLICATIONS: MappingProxyType[str, Application] = MappingProxyType(
         "seat_bs6841": Application("BS 6841:1987", ("Wd", "Wd", "Wb"), _SEAT),
         "backrest_bs6841": Application("BS 6841:1987", ("Wc", "Wd", "Wd"), _BACKREST),
         "hand": Application("ISO 5349-1:2001", ("Wh", "Wh", "Wh"), _SEAT, doses=False),
+        "steering_wheel": Application("Giacomin et al. 2004", ("Ws", "Ws", "Ws"), _SEAT, doses=False),
         "train_floor": Application("EN 12299:2009", rail_comfort.WEIGHTINGS, _SEAT),
         "feet_bs6841": Application("BS 6841:1987", ("Wb", "Wb", "Wb"), _FEET),
     }

@@ -17,6 +17,7 @@ import numpy as np
 from vehicle.names import AXES
 from vehicle.signals.analysis.comfort import COMFORT_BAND, comfort_values
 from vehicle.signals.analysis.comfort_error import WAVES
+from vehicle.signals.analysis.evaluation import application
 from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.seat_value import seat_value, weighted_rms_of
 
@@ -25,6 +26,11 @@ UNWEIGHTED, WEIGHTED = "unweighted", "weighted"
 
 SEAT_PREFIX, SEAT_VALUE = "seat_", "seat_value"
 """Prefix of the values on the cushion, and the name of the SEAT value."""
+
+RIM = "steering_wheel_rim"
+"""Name of the output on the rim of a steering wheel, whose accelerations have the weighting of a steering wheel."""
+
+ISO_2631 = "ISO 2631-1"
 
 ERROR = "unweighted_error"
 """Name of the relative standard error of `unweighted`, see `vehicle.signals.analysis.comfort_error`."""
@@ -60,6 +66,7 @@ def comfort_columns(
     skip: float = 0.0,
     band: tuple[float, float] = COMFORT_BAND,
     names: Collection[str] = (UNWEIGHTED, WEIGHTED),
+    contact: str = "seat",
 ) -> dict[str, Vector]:
     """Return the comfort values of r runs; the values of a run are bitwise independent of the other runs.
 
@@ -70,6 +77,7 @@ def comfort_columns(
         skip: excluded time at the beginning [s]; the filters of the weightings process it.
         band: band of the unweighted value [Hz].
         names: `UNWEIGHTED`, `WEIGHTED` or both.
+        contact: point of contact at `rail`, see `vehicle.signals.analysis.evaluation`.
 
     Returns:
         Name to values, (r,) each: those of `comfort_units` with these names, with `UNWEIGHTED` the error and
@@ -78,7 +86,7 @@ def comfort_columns(
     Raises:
         DataError: a record that is too short or not finite.
     """
-    columns = _point(time_step, rail, skip, band, names)
+    columns = _point(time_step, rail, skip, band, names, contact)
     if cushion is not None:
         on_seat = {
             f"{SEAT_PREFIX}{name}": values for name, values in _point(time_step, cushion, skip, band, names).items()
@@ -94,7 +102,12 @@ def comfort_columns(
 
 
 def _point(
-    time_step: float, records: Vector, skip: float, band: tuple[float, float], names: Collection[str]
+    time_step: float,
+    records: Vector,
+    skip: float,
+    band: tuple[float, float],
+    names: Collection[str],
+    contact: str = "seat",
 ) -> dict[str, Vector]:
     """Return the values at one point."""
     columns: dict[str, Vector] = {}
@@ -104,7 +117,7 @@ def _point(
         columns |= {UNWEIGHTED: value.overall, ERROR: value.error}
         columns |= dict(zip(WAVE_NAMES, value.waves.view(np.float64).T, strict=True))
     if WEIGHTED in names:
-        weighted = np.array([weighted_rms_of(time_step, xyz, skip=skip) for xyz in records])
+        weighted = np.array([weighted_rms_of(time_step, xyz, contact=contact, skip=skip) for xyz in records])
         columns |= {f"{WEIGHTED}_{axis}": weighted[:, number] for number, axis in enumerate(AXES)}
         columns[WEIGHTED] = weighted[:, 3]
     return columns
@@ -128,7 +141,8 @@ class PointComfort:
     Attributes:
         point: words of the point, as "seat rail".
         unweighted: unweighted RMS in `band`.
-        weighted: weighted RMS as on a seat (ISO 2631-1: Wd for x and y, Wk for z).
+        weighted: weighted RMS as on a seat (ISO 2631-1: Wd for x and y, Wk for z); on a steering wheel by Ws.
+        standard: standard or publication of the weighting.
         band: band of the unweighted value [Hz].
     """
 
@@ -136,13 +150,14 @@ class PointComfort:
     unweighted: AxisRms
     weighted: AxisRms
     band: tuple[float, float]
+    standard: str = ISO_2631
 
     def __repr__(self) -> str:
         """Return a summary in one line."""
         low, high = self.band
         return (
             f"{self.point}: unweighted {self.unweighted.overall:.4g} m/s2 ({low:g} to {high:g} Hz), weighted "
-            f"{self.weighted.overall:.4g} m/s2 (ISO 2631-1)"
+            f"{self.weighted.overall:.4g} m/s2 ({self.standard})"
         )
 
 
@@ -193,6 +208,7 @@ def run_comfort(
     skip: float,
     band: tuple[float, float],
     point: str = "seat rail",
+    contact: str = "seat",
 ) -> RunComfort:
     """Return the comfort of one run; arguments as in `comfort_columns`, with accelerations of (3, n).
 
@@ -201,9 +217,10 @@ def run_comfort(
         rail: accelerations of the seat rail [m/s2], (3, n).
         cushion: accelerations of the cushion [m/s2], (3, n), or None.
         point: words of the point of `rail`.
+        contact: point of contact there, see `comfort_columns`.
     """
     above = None if cushion is None else cushion[None]
-    columns = comfort_columns(time_step, rail[None], above, skip=skip, band=band)
+    columns = comfort_columns(time_step, rail[None], above, skip=skip, band=band, contact=contact)
     values = {name: float(columns[name][0]) for name in comfort_units(seated=cushion is not None)}
     at_rail = point_comfort(point, values, band)
     seat = values.get(SEAT_VALUE, math.nan)
@@ -212,6 +229,7 @@ def run_comfort(
         unweighted=at_rail.unweighted,
         weighted=at_rail.weighted,
         band=band,
+        standard=ISO_2631 if contact == "seat" else application(contact).standard,
         cushion=None if cushion is None else point_comfort("cushion", values, band, SEAT_PREFIX),
         seat_value=None if math.isnan(seat) else seat,
         values=values,

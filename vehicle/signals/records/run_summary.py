@@ -72,6 +72,16 @@ class ComfortSummary(TypedDict):
     iso2631: dict[str, Any]
 
 
+class RimSummary(TypedDict):
+    """Comfort at the rim of the steering wheel, by axis and overall [m/s2]: RMS in a band [Hz], and weighted RMS."""
+
+    rms: dict[str, float]
+    band_hz: list[float]
+    weighted_rms: dict[str, float]
+    weighting: str
+    standard: str
+
+
 class SeatSummary(TypedDict):
     """SEAT value by RMS and by dose [-], with the name of the weighting."""
 
@@ -217,6 +227,7 @@ class RunSummary(TypedDict):
     peaks: Peaks
     comfort: dict[str, ComfortSummary]
     seat_value: NotRequired[SeatSummary | None]
+    steering_wheel_rim: NotRequired[RimSummary]
     obstacle: NotRequired[ObstacleSummary | None]
     forces: NotRequired[dict[str, ForceSummary]]
     orders: NotRequired[list[OrderSummary]]
