@@ -92,7 +92,7 @@ def _filled(table: Mapping[str, Any], folder: Path, prefix: str, sources: dict[s
             filled[key] = _stop(value, folder, path, sources)
         elif isinstance(value, Mapping):
             filled[key] = _filled(value, folder, path, sources)
-        elif isinstance(value, str) and (key == "fmu" or (key == "file" and prefix.startswith("force."))):
+        elif isinstance(value, str) and (key == "fmu" or (key == "file" and prefix.startswith(("force.", "crank")))):
             filled[key] = _beside(folder, value).resolve().as_posix()
         elif key != "curve":
             filled[key] = value
