@@ -98,6 +98,23 @@ def test_the_mean_of_a_follower_force_is_in_the_stiffness(against):
     )
 
 
+def test_the_mean_of_a_follower_force_on_the_flexible_body_acts_on_its_modes():
+    place = {"on": "body", "at": "seat_rail", "force": FORCE.tolist(), "mean": float(np.linalg.norm(FORCE))}
+    table = {f"force.a.{key}": value for key, value in place.items()}
+    follower, fixed = (Car.load("focus", {**table, "force.a.axes": axes}) for axes in ("part", "vehicle"))
+    model, shapes = fixed.model.model, fixed.model.superelement
+    data, point = mujoco.MjData(model), np.array(fixed.vehicle.composition.forces[0].at)
+    mujoco.mj_fwdPosition(model, data)
+    linear, angular = np.zeros((2, 3, model.nv))
+    mujoco.mj_jac(model, data, linear, angular, point, model.body("body").id)
+    node = shapes.nodes[int(np.argmin(np.linalg.norm(shapes.positions - point, axis=1)))]
+    linear[:, fixed.matrices.modal] += shapes.shape_at(node)
+    expected = linear.T @ skew(FORCE) @ angular
+    assert np.max(np.abs(expected[fixed.matrices.modal])) > 10.0
+    found = follower.matrices.system.stiffness - fixed.matrices.system.stiffness
+    assert found == pytest.approx(expected, abs=1e-4 * np.max(np.abs(expected)))
+
+
 def test_both_engines_agree_on_a_mean_follower_force_that_shakes():
     car = pushed("part", mean=0.2, **SHAKE)
     names = ["seat_rail_acc_z", "engine_acc_z", "engine_acc_x"]

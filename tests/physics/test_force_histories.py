@@ -9,11 +9,13 @@ import scipy
 from scipy.signal import lfilter
 
 from tests.validation import validated
-from vehicle import Car, Run, road
+from vehicle import Car, Run, load_run, road
+from vehicle.commands.shaker import main as shaker
 from vehicle.errors import VehicleError
 from vehicle.runs.output.run_forces import force_values
 from vehicle.signals.analysis.order_cut import order_cut
 from vehicle.signals.analysis.run_up_peak import run_up_peak
+from vehicle.signals.excitation.force_lines import SweptLine
 
 FREE = {"front.damper.coulomb_friction": 0.0}
 ON_RAIL = {"force.a.on": "body", "force.a.at": "seat_rail", "force.a.force": [0.3, 0, 1]}
@@ -276,3 +278,73 @@ def test_what_mujoco_differs_by_is_the_square_of_a_force():
         source="second derivation: reduced engine",
         abs=2e-4,
     )
+
+
+def test_a_measured_speed_of_the_crankshaft_turns_its_forces(tmp_path):
+    """Speed of a file that rises, waits and falls; its time begins at 5 s, and the last speed stays."""
+    times, rpm = np.array([0.0, 1.0, 2.5, 4.0, 5.0]), np.array([700.0, 900.0, 900.0, 1400.0, 1100.0])
+    table = np.column_stack([times + 5.0, np.zeros(5), rpm])
+    np.savetxt(tmp_path / "speed.csv", table, delimiter=",", header="time [s],torque [Nm],n [1/min]", comments="")
+    law: dict[str, object] = {"force.a.angle": "crank", "force.a.harmonics": [[1, 15, 20], [2, 30, -50]]}
+    car = Car.load("focus", {**FREE, **ON_RAIL, **law, "crank.file": str(tmp_path / "speed.csv")})
+    run = car.run(road("level", 0, duration=6), engine="reduced", channels=(*CHANNELS, "speed_crank"))
+    time = np.arange(0.0, 6.0 + 0.5 / FINE, 1.0 / FINE)
+    speed = np.interp(time, times, rpm / 60.0)
+    turns = np.append(0.0, np.cumsum(0.5 * (speed[1:] + speed[:-1]) / FINE))
+    force = 15.0 * np.cos(2.0 * np.pi * turns + np.radians(20.0))
+    force += 30.0 * np.cos(4.0 * np.pi * turns - np.radians(50.0))
+    validated(
+        "Applied forces",
+        "force over the angle of a measured speed of the crankshaft, 700 to 1400 rpm: seat rail, knuckle and engine",
+        histories(run),
+        integrated(car, force * rise(time)),
+        source="second derivation: exact integration of each eigenvector at 20 kHz",
+        peak=1e-4,
+    )
+    assert run["speed_crank"] == pytest.approx(60.0 * speed[::20], rel=1e-9)
+    # Points on a line are the run-up of two numbers.
+    points = np.column_stack([np.arange(9.0), 600.0 + 75.0 * np.arange(9.0)])
+    np.savetxt(tmp_path / "line.csv", points, delimiter=",", header="time [s],n [rpm]", comments="")
+    line = Car.load("focus", {"crank.file": str(tmp_path / "line.csv"), "crank.channel": "n"})
+    plain = Car.load("focus", {"crank.rpm": 600, "crank.end_rpm": 1200, "crank.run_up_time": 8})
+    run_ups = [each.vehicle.composition.crank_run_up for each in (line, plain)]
+    turned = [SweptLine(*each).angle(time * 2.0)[0] for each in run_ups if each is not None]
+    assert turned[0] == pytest.approx(turned[1], rel=1e-12)
+
+
+def test_a_wrong_speed_of_the_crankshaft_is_refused(tmp_path):
+    file = tmp_path / "speed.csv"
+    points = np.column_stack([np.arange(8.0), np.full(8, 900.0), 1e5 * (np.arange(8.0) == 3.0)])
+    np.savetxt(file, points, delimiter=",", header="time [s],n [rpm],m [rpm]", comments="")
+    for changes, message in (
+        ({"crank.file": str(file)}, "2 channels are in 1/min or rpm; set crank.channel to a number or name of: 1 'n'"),
+        ({"crank.file": str(file), "crank.channel": "x"}, "0 channels match 'x'; set crank.channel"),
+        ({"crank.file": str(file), "crank.channel": "m"}, "the speed 'm' is 0 to 100000, must be 0 to 10000 1/min"),
+        ({"crank.file": str(file), "crank.rpm": 700}, "crank.rpm: needed is either rpm or the file"),
+        ({"crank.rpm": 700, "crank.channel": "n"}, "crank.file: missing; channel belongs to a file"),
+        ({"crank.file": str(tmp_path / "no.csv")}, "no.csv: no such file"),
+    ):
+        with pytest.raises(VehicleError) as error:
+            Car.load("focus", changes)
+        assert message in str(error.value)
+
+
+def test_a_channel_of_the_input_is_the_speed_of_the_crankshaft(tmp_path, capsys):
+    time = np.arange(751) / 500.0
+    plate, rpm = 1e-3 * np.sin(20.0 * time) * np.minimum(time, 1.0), 700.0 + 100.0 * time
+    file, heads = tmp_path / "rig.csv", "time [s],Shaker [m],n [1/min]"
+    np.savetxt(file, np.column_stack([time, plate, rpm]), delimiter=",", header=heads, comments="", fmt="%.9g")
+    force = ["force.a.on=engine", "force.a.force=[0,0,1]", "force.a.angle=crank", "force.a.harmonics=[[2,40,0]]"]
+    words = ["--vehicle", "focus", "--input", str(file), "--engine", "reduced", "--no-figures", "--quiet"]
+    words += [word for text in force for word in ("--set", text)]
+    picks = ["--channel", "fl=Shaker", "--channel", "rpm=n"]
+    out = tmp_path / "run"
+    assert shaker([*words, *picks, "--channels", "speed_crank", "--output", str(out)]) == 0
+    assert load_run(out)["speed_crank"] == pytest.approx(rpm[0] + 100.0 * np.arange(1501) / 1e3, rel=1e-6)
+    for more, said in (
+        (["--rpm", "750"], "the crankshaft has one speed; leave --rpm and other channels out"),
+        (["--no-forces"], "turns the crankshaft of forces that --no-forces leaves out"),
+        (["--from", "0.1"], "names a channel of --input FILE, whose whole record is used"),
+    ):
+        assert shaker([*words, *picks, *more]) == 2
+        assert said in capsys.readouterr().err

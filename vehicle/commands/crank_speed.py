@@ -1,4 +1,4 @@
-"""Option --rpm of the shaker: a speed of the crankshaft, a run-up, or steady points."""
+"""Speed of the crankshaft of the shaker: --rpm with a speed, a run-up or steady points, or a channel of --input."""
 
 from __future__ import annotations
 
@@ -28,11 +28,14 @@ def steady_points(options: argparse.Namespace) -> None:
 
 
 def crank_overrides(options: argparse.Namespace) -> list[str]:
-    """Return the overrides of --rpm.
+    """Return the overrides of --rpm, or of --channel rpm=NAME, which is taken out of the channels of plates.
 
     Raises:
-        ConfigurationError: another form, steady points, or a run-up without its length.
+        ConfigurationError: another form, steady points, a run-up without its length, or both options.
     """
+    measured = [text.partition("=")[2] for text in options.picks if text.startswith("rpm=")]
+    if measured:
+        return _measured(options, measured)
     if options.rpm is None:
         return []
     try:
@@ -50,3 +53,19 @@ def crank_overrides(options: argparse.Namespace) -> list[str]:
         f"crank.end_rpm={speeds[1]!r}",
         f"crank.run_up_time={options.duration!r}",
     ]
+
+
+def _measured(options: argparse.Namespace, channels: list[str]) -> list[str]:
+    """Return the overrides of a speed in the file of the plates."""
+    from vehicle.signals.excitation.input_files import find_input
+
+    if options.rpm is not None or len(channels) > 1:
+        raise ConfigurationError("--channel rpm=NAME: the crankshaft has one speed; leave --rpm and other channels out")
+    if not options.input or options.first is not None:
+        raise ConfigurationError(
+            "--channel rpm=NAME: names a channel of --input FILE, whose whole record is used; set crank.file and "
+            "crank.channel for the speed of another file, and leave out --from"
+        )
+    options.picks = [text for text in options.picks if not text.startswith("rpm=")]
+    file = find_input(options.input).resolve().as_posix()
+    return [f"crank.file={file}", *([f"crank.channel={channels[0]}"] if channels[0] else [])]

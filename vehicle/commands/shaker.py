@@ -52,7 +52,7 @@ def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser("shaker", "Put shaker signals or a road under the wheels of the complete car.")
     file = signal_options(parser)
-    record_options(record_group(parser), 'a plate, as fr="Shaker FR"', rate=False, unit=False)
+    record_options(record_group(parser), 'a plate, as fr="Shaker FR", or rpm of the crankshaft', rate=False, unit=False)
     parser.add_argument(
         "--rpm",
         metavar="N|A:B|A:B:STEP",
@@ -145,7 +145,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.signals.excitation.input_files import find_input
 
     if options.no_forces:
-        if options.rpm is not None:
+        if options.rpm is not None or any(text.startswith("rpm=") for text in options.picks):
             raise ConfigurationError(
                 "--rpm: turns the crankshaft of forces that --no-forces leaves out; give one of both"
             )

@@ -12,6 +12,7 @@ from scenarios.signals.random_road import random_road
 from vehicle.engines.linear.first_order import first_order
 from vehicle.engines.linear.response import frequency_response
 from vehicle.engines.reduced.equivalent_damping import equivalent_damping, linearised_response
+from vehicle.errors import VehicleError
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.signal import Signal
 from vehicle.studies.replication.drive_settings import DriveSettings
@@ -75,3 +76,24 @@ def test_linearised_dampers_lie_between_the_stuck_and_the_sliding_car(car):
         ):
             response = linearised_response(car.poles, damping, CHANNELS, wheels, lines)[:, number]
             assert response == pytest.approx(expected, rel=tolerance)
+
+
+@pytest.mark.parametrize("history", ["harmonics", "file"])
+def test_a_car_that_a_force_shakes_gets_no_drive(tmp_path, history):
+    """Its plates would be made to repeat the motion by the force; a force without a history shakes nothing."""
+    place = {"force.a.on": "engine", "force.a.force": [0, 0, 1]}
+    time = np.arange(201) / 100.0
+    heads = "time [s],push [N]"
+    np.savetxt(tmp_path / "a.csv", np.column_stack([time, np.sin(time)]), delimiter=",", header=heads, comments="")
+    shaken: dict[str, object] = {"force.a.file": str(tmp_path / "a.csv")}
+    if history == "harmonics":
+        shaken = {"force.a.harmonics": [[1, 10, 0]], "force.a.frequency": 5.0}
+    still = np.zeros((1, 201))
+    lines = Lines(201, 0.01, BAND)
+    target = Target(
+        channels=(CHANNEL,), time=time, values=still, lines=lines, band=BAND, source=tmp_path, sha256="", notices=(),
+    )  # fmt: skip
+    DrivenCar(Car.load("focus", place), ("fr",), target, "reduced")
+    with pytest.raises(VehicleError, match=r"force\.a: shakes the car.*or all forces by --set apply_forces=false"):
+        DrivenCar(Car.load("focus", {**place, **shaken}), ("fr",), target, "reduced")
+    DrivenCar(Car.load("focus", {**place, **shaken, "apply_forces": False}), ("fr",), target, "reduced")

@@ -125,7 +125,7 @@ def force_histories(car: Composition, names: Iterable[str], time: Vector) -> dic
     histories, turned = dict[str, Vector](), (np.zeros_like(time), np.zeros_like(time))
     by_channel = {force.channel: force for force in on_parts(car.forces)}
     if speed := car.speeds.get(CRANK, 0.0):
-        run_up = RunUp(speed, speed, 1.0) if car.crank_run_up is None else car.crank_run_up
+        run_up = RunUp((0.0, 1.0), (speed, speed)) if car.crank_run_up is None else car.crank_run_up
         turned = SweptLine(*run_up).angle(time)
     for name in names:
         if name in by_channel:

@@ -95,7 +95,7 @@ def _filled(table: Mapping[str, Any], folder: Path, prefix: str, sources: dict[s
             filled[key] = _filled(value, folder, path, sources)
         elif isinstance(value, str) and (
             key == "fmu"
-            or (key == "file" and prefix.startswith("force."))
+            or (key == "file" and prefix.startswith(("force.", "crank")))
             or (key == "pressure" and prefix.endswith(f".{ORDERS}"))
         ):
             filled[key] = _beside(folder, value).resolve().as_posix()

@@ -60,43 +60,92 @@ class Driving(Validated):
 STANDING = Driving()
 
 
-class RunUp(NamedTuple):
-    """Speed of an angle that changes linearly from the first to the last [rad/s] within a duration [s]."""
+HIGHEST_RPM = 10000.0
+"""Highest speed of a crankshaft [1/min]."""
 
-    first: float
-    last: float
-    duration: float
+
+class RunUp(NamedTuple):
+    """Speed of an angle that changes linearly between points and is constant after the last one.
+
+    Attributes:
+        times: times of the points from 0 on [s].
+        speeds: speeds at these times [rad/s].
+    """
+
+    times: tuple[float, ...]
+    speeds: tuple[float, ...]
+
+    @property
+    def duration(self) -> float:
+        """Time of the last point [s]."""
+        return self.times[-1]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Crank(Validated):
-    """Speed of the crankshaft, for the forces over its angle: constant, or linear in time in a run-up or run-down."""
+    """Speed of the crankshaft, for the forces over its angle: constant, linear in time in a run-up, or of a file."""
 
-    rpm: float = quantity(
+    rpm: float | None = quantity(
         "1/min",
         "speed of the crankshaft, in a run-up at its beginning",
         at_least=300.0,
-        at_most=10000.0,
+        at_most=HIGHEST_RPM,
         why="engines idle at 600 to 1000",
+        default=None,
     )
     end_rpm: float | None = quantity(
-        "1/min", "speed at the end of a run-up; by default constant", at_least=300.0, at_most=10000.0, default=None
+        "1/min",
+        "speed at the end of a run-up; by default constant",
+        at_least=300.0,
+        at_most=HIGHEST_RPM,
+        default=None,
     )
     run_up_time: float | None = quantity(
         "s", "time from the beginning of the run to the end of the run-up", at_least=1.0, at_most=3600.0, default=None
     )
+    file: str | None = quantity(
+        "-", "file with a measured speed over time, in place of rpm", is_file=True, default=None
+    )
+    channel: str | None = quantity(
+        "-",
+        "channel of the file by number or name; by default the only one in 1/min or rpm",
+        is_file=True,
+        default=None,
+    )
 
     def __post_init__(self) -> None:
         validate(self)
+        if (self.rpm is None) == (self.file is None):
+            raise ConfigurationError("Crank.rpm: needed is either rpm or the file of a measured speed")
         if (self.end_rpm is None) != (self.run_up_time is None):
             raise ConfigurationError("Crank.end_rpm: a run-up needs end_rpm and run_up_time; set both")
+        if self.file is None and self.channel is not None:
+            raise ConfigurationError("Crank.file: missing; channel belongs to a file")
+        if self.file is not None and self.end_rpm is not None:
+            raise ConfigurationError("Crank.end_rpm: belongs to rpm; a file has the whole run-up")
 
     @property
     def run_up(self) -> RunUp | None:
-        """Run-up of the crankshaft; None at constant speed."""
+        """Run-up of the crankshaft; None at constant speed.
+
+        Raises:
+            ConfigurationError, DataError: its file cannot be read or has no speed.
+        """
+        if self.file is not None:
+            # Files are read without numpy as long as none is named.
+            from vehicle.model.parameters.crank_file import measured_speed
+
+            return RunUp(*measured_speed(self.file, self.channel or ""))
         if self.end_rpm is None or self.run_up_time is None or self.end_rpm == self.rpm:
             return None
-        return RunUp(self.rpm * math.pi / 30.0, self.end_rpm * math.pi / 30.0, self.run_up_time)
+        assert self.rpm is not None
+        return RunUp((0.0, self.run_up_time), (self.rpm * math.pi / 30.0, self.end_rpm * math.pi / 30.0))
+
+    @property
+    def highest(self) -> float:
+        """Highest speed [rad/s]."""
+        run_up = self.run_up
+        return max(run_up.speeds) if run_up else (self.rpm or 0.0) * math.pi / 30.0
 
 
 def crank_of(table: Mapping[str, Any]) -> Crank | None:

@@ -74,8 +74,7 @@ def force_targets(
         body: centre of gravity of the trimmed body [m].
     """
     listed = list(parts)
-    highest = 0.0 if crank is None else max(crank.rpm, crank.end_rpm or crank.rpm)
-    speeds = {CRANK: highest * math.pi / 30.0} | {f"wheel_{wheel.name}": 0.0 for wheel in wheels}
+    speeds = {CRANK: 0.0 if crank is None else crank.highest} | {f"wheel_{wheel.name}": 0.0 for wheel in wheels}
     for tyre in connections:
         if tyre.rolling is not None:
             radius = getattr(tyre.law, "rolling_radius", None) or tyre.rolling.arm[2]

@@ -10,7 +10,7 @@ from typing import Any
 
 from vehicle.model.parameters.body import MAX_MODES, BodyInertia, BodyMode, TrimmedBody
 from vehicle.model.parameters.compose import parameter_kinds
-from vehicle.model.parameters.driving import Driving
+from vehicle.model.parameters.driving import Crank, Driving
 from vehicle.model.parameters.engine_orders import ENGINE, ORDERS, EngineOrders
 from vehicle.model.parameters.force_elements import Bushing, Damper, Hydromount, MainSpring, Tyre
 from vehicle.model.parameters.force_table import ForceTable
@@ -45,7 +45,7 @@ def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
             "shaker_wheel_in_source",
             "apply_forces",
             "solver.timestep",
-            *("crank.rpm", "crank.end_rpm", "crank.run_up_time"),
+            *(f"crank.{key}" for key in Crank.__dataclass_fields__),
             *(f"driving.{key}" for key in _keys(Driving, everything=False)),
             *(f"body.{key}" for key in _keys(TrimmedBody, everything=False) if key != "modes"),
         ],

@@ -36,8 +36,10 @@ def run_up_notice(car: Any) -> tuple[str, ...]:
     if run_up is None or not orders:
         return ()
     modes = [mode for mode in car.modes(highest=HIGHEST) if 0.0 < mode.damping_ratio < 1.0]
-    turn_rate = abs(run_up.last - run_up.first) / (2.0 * math.pi * run_up.duration)
-    low, high = sorted((run_up.first / (2.0 * math.pi), run_up.last / (2.0 * math.pi)))
+    # Of a measured speed the mean rate between its extremes.
+    slowest, fastest = (run_up.speeds.index(each) for each in (min(run_up.speeds), max(run_up.speeds)))
+    low, high = (run_up.speeds[each] / (2.0 * math.pi) for each in (slowest, fastest))
+    turn_rate = (high - low) / abs(run_up.times[fastest] - run_up.times[slowest] or math.inf)
     passed = [
         (mode, order) for order in sorted(orders) for mode in modes if order * low < mode.frequency < order * high
     ]
@@ -51,7 +53,7 @@ def run_up_notice(car: Any) -> tuple[str, ...]:
     read, late = run_up_peak(mode.frequency, mode.damping_ratio, rate, window)
     if read > 1.0 - LOW:
         return ()
-    direction = "late" if run_up.last > run_up.first else "early"
+    direction = "late" if fastest > slowest else "early"
     return (
         f"the run-up passes the mode at {number(mode.frequency)} Hz ({number(100.0 * mode.damping_ratio, 2)} %, "
         f"{mode.description}) in order {order:g} with {number(rate, 2)} Hz/s: its peak is "

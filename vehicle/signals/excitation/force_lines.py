@@ -2,13 +2,13 @@
 
 A force F(t) = w(t) sum_j Re(Z_j exp(i theta_j)) + c r(t) is a sum over w cos(theta_j) and w sin(theta_j) with the
 coefficients Re Z_j and -Im Z_j, and over records r of files, so that any number of forces at one frequency has two
-histories. theta = W t at a constant frequency. In a run-up the speed of the angle rises linearly from W_1 to W_2 within
-T and stays there:
+histories. theta = W t at a constant frequency. In a run-up the speed W of the angle is linear between points, from W_1
+at t_1 to W_2 at t_2, and constant after the last:
 
-    theta = order (W_1 t + (W_2 - W_1) t^2/(2 T)),
+    theta = order (theta_1 + W_1 (t - t_1) + (W_2 - W_1) (t - t_1)^2/(2 (t_2 - t_1))),
 
 and a force that grows with the power p of the speed has the histories (W(t)/W_h)^p w cos(theta) and sin, W_h the
-higher one of both speeds.
+highest speed.
 """
 
 from __future__ import annotations
@@ -34,29 +34,33 @@ class SweptLine(NamedTuple):
     """Order of an angle in a run-up.
 
     Attributes:
-        first, last: angular speeds at the beginning and at the end [rad/s].
-        duration: time between both [s].
+        times: times between which the speed of the angle is linear, from 0 on [s]; afterwards it is constant.
+        speeds: speeds of the angle at these times [rad/s].
         order: multiple of the angle.
         power: exponent p of the growth of the force with the speed.
     """
 
-    first: float
-    last: float
-    duration: float
+    times: tuple[float, ...]
+    speeds: tuple[float, ...]
     order: float = 1.0
     power: float = 0.0
 
     def angle(self, time: Vector) -> tuple[Vector, Vector]:
         """Return the angle [rad] and its speed [rad/s], without the order, at some times [s]."""
-        rising, rate = np.clip(time, 0.0, self.duration), (self.last - self.first) / self.duration
-        angle = (self.first + 0.5 * rate * rising) * rising
-        after = np.maximum(time - self.duration, 0.0)
-        return angle + self.last * after + self.first * np.minimum(time, 0.0), self.first + rate * rising
+        times, speeds = np.array(self.times), np.array(self.speeds)
+        lengths, changes = np.diff(times), np.diff(speeds)
+        turned = np.append(0.0, np.cumsum(lengths * (speeds[:-1] + 0.5 * changes)))
+        rising = np.clip(time, times[0], times[-1])
+        piece = np.clip(np.searchsorted(times, rising, side="right") - 1, 0, len(lengths) - 1)
+        since, rate = rising - times[piece], (changes / lengths)[piece]
+        angle = turned[piece] + (speeds[piece] + 0.5 * rate * since) * since
+        angle = angle + speeds[-1] * np.maximum(time - times[-1], 0.0) + speeds[0] * np.minimum(time - times[0], 0.0)
+        return angle, speeds[piece] + rate * since
 
     @property
     def highest(self) -> float:
         """Highest frequency of the order [rad/s]."""
-        return self.order * max(self.first, self.last)
+        return self.order * max(self.speeds)
 
 
 History = float | SweptLine | ForceRecord

@@ -41,10 +41,11 @@ class DrivenCar(Plant):
         self.car, self.wheels, self.engine, self.target = car, wheels, engine, target
         self.dampers = car.vehicle.composition.dampers
         car.vehicle.require_wheels(wheels)
-        if forces := [force.path for force in car.vehicle.composition.forces if force.harmonics]:
+        shaking = [force.path for force in car.vehicle.composition.forces if force.harmonics or force.recorded]
+        if shaking:
             raise ConfigurationError(
-                f"{forces[0]}: shakes the car, and the plates would be made to repeat its motion; leave it out, or set "
-                "enabled = false"
+                f"{shaking[0]}: shakes the car, and the plates would be made to repeat its motion; leave it out, or "
+                "all forces by --set apply_forces=false"
             )
         car.vehicle.require_channels(target.channels, car.vehicle.acceleration_channels)
         self.damping = np.array([equivalent_damping(damper.law, np.zeros(1), np.zeros(1)) for damper in self.dampers])
