@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from vehicle.commands.fit_damper import main
+from vehicle.errors import ConfigurationError
 from vehicle.model.laws.damper import damper_law
 from vehicle.model.laws.jenkins import Jenkins
 from vehicle.model.laws.presliding import presliding_elements
@@ -18,8 +19,9 @@ from vehicle.model.parameters.toml_file import build
 from vehicle.studies.dampers.damper_fit import DamperFit
 from vehicle.studies.dampers.damper_law import DamperLaw
 from vehicle.studies.dampers.damper_test import read_test
-from vehicle.studies.dampers.damper_text import control_lines, vehicle_lines
-from vehicle.studies.dampers.fitted_damper import FittedDamper
+from vehicle.studies.dampers.damper_text import vehicle_lines
+from vehicle.studies.dampers.fitted_damper import FittedDamper, fit_damper
+from vehicle.studies.dampers.over_condition import control_lines
 
 HEAD = "time [s],displacement [mm],velocity [mm/s],force [N]"
 
@@ -58,11 +60,28 @@ def test_a_current_gives_a_fit_each_and_the_limits_of_a_semi_active_damper(tmp_p
     files = records(tmp_path, (800.0, 2400.0), ("_0A", "_1A"))
     assert main([*files, "--pattern", "*_{current}A", "--quiet", "--output", str(tmp_path / "out")]) == 0
     names = {path.name for path in (tmp_path / "out").iterdir() if path.suffix in (".toml", ".png", ".csv")}
-    assert names == {"damper_tests.csv", "damper_control.toml"} | {
+    assert names == {"damper_tests.csv", "damper_control.toml", "damper_control.png"} | {
         f"damper_current_{current}.{ending}" for current in (0, 1) for ending in ("toml", "png")
     }
     control = tomllib.loads((tmp_path / "out" / "damper_control.toml").read_text())
     assert control == pytest.approx({"minimum_damping": 800.0, "maximum_damping": 2400.0}, rel=0.02)
+    page = (tmp_path / "out" / "report.html").read_text()
+    for text in ("Law at current 0", "Law at current 1", "maximum_damping", "friction_law", "sine20_1A"):
+        assert text in page
+    settings = [line.split() for line in (tmp_path / "out" / "damper_control.toml").read_text().splitlines()[3:5]]
+    assert [float(words[4]) for words in settings] == pytest.approx([60.0, 60.0], abs=3.0)  # friction
+
+
+def test_typed_conditions(tmp_path):
+    """A value for each file, or for all; the law is that of the files with that condition."""
+    files = records(tmp_path, (800.0, 2400.0), ("_a", "_b"))
+    fits = fit_damper(files, conditions={"current": "0,0,1.5,1.5", "temperature": "20"})
+    assert [dict(each.conditions) for each in fits] == [
+        {"current": current, "temperature": 20.0} for current in (0.0, 1.5)
+    ]
+    assert [each.curve_damping() for each in fits] == pytest.approx([800.0, 2400.0], rel=0.02)
+    with pytest.raises(ConfigurationError, match="3 values for 4 files; give one for all, or one for each"):
+        fit_damper(files, conditions={"current": "0,1,2"})
 
 
 LAWS = {
@@ -95,7 +114,7 @@ def test_the_lines_are_the_fitted_law(law, tmp_path):
     # The smooth friction of arrays is an arcus tangent, 4 % low at 1 mm/s; the clamped line is that of the car.
     moving = np.abs(test.velocity) > 0.02
     np.testing.assert_allclose(force[moving], fit.force(test)[moving], atol=2.0)
-    assert control_lines([fitted, fitted]).startswith("# damping constant with the work of the curve in the tests")
+    assert control_lines([fitted, fitted]).startswith("# damping: constant with the work of the curve in the tests")
 
 
 def test_wrong_files_are_named(tmp_path, capsys):

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import argparse
 import json
+import shlex
 from functools import partial
 from pathlib import Path
 
 from vehicle.commands.command_line import command
 from vehicle.commands.destination import output_files_of
 from vehicle.commands.input_options import record_choice, record_options
-from vehicle.commands.options import command_parser, message_options, output_options
+from vehicle.commands.options import command_parser, head_options, message_options, output_options
 from vehicle.commands.parser import Parser
 
-TABLE, CONTROL = "damper_tests.csv", "damper_control.toml"
+TABLE, REPORT = "damper_tests.csv", "report.html"
+CONTROL = "damper_control.toml", "damper_control.png"
 
 
 def parser() -> Parser:
@@ -30,32 +32,28 @@ def parser() -> Parser:
     )  # fmt: skip
     parser.add_argument(
         "--condition", action="append", default=[], metavar="NAME=VALUE",
-        help="condition of the tests, as current=1, or current=channel:I for the mean of a channel of each file; tests "
-        "of equal conditions are fitted together. May be repeated",
+        help="condition of the tests: current=1, a value for each file as current=0,0,1, or current=channel:I for the "
+        "mean of a channel of each file; tests of equal conditions are fitted together; may be repeated",
     )  # fmt: skip
     parser.add_argument(
         "--pattern", default="", metavar="PATTERN",
         help="conditions in the names of the files without ending, in braces, with * for the rest, as '*Hz{current}A'",
     )  # fmt: skip
-    output_options(parser, None, default=f"damper.toml, {TABLE} and damper.png in runs/damper")
+    output_options(parser, None, default=f"damper.toml, {TABLE}, damper.png and {REPORT} in runs/damper")
+    head_options(parser)
     parser.add_argument("--json", action="store_true", help="print JSON: law, parameters, errors of the tests")
     message_options(parser, quiet=True)
     return parser
 
 
 def _job(options: argparse.Namespace) -> None:
-    from vehicle.drawing.rendering.damper_plot import DamperLoop, plot_damper
+    from vehicle.drawing.rendering.damper_plot import plot_damper, plot_settings
     from vehicle.runs.output.folder import whole_files, write_text, write_whole
     from vehicle.signals.records.choice import pairs
-    from vehicle.studies.dampers.damper_text import (
-        caption_of,
-        control_lines,
-        fit_json,
-        summary_lines,
-        tests_text,
-        vehicle_lines,
-    )
+    from vehicle.studies.dampers.damper_page import damper_page, loops_of
+    from vehicle.studies.dampers.damper_text import caption_of, fit_json, summary_lines, tests_text, vehicle_lines
     from vehicle.studies.dampers.fitted_damper import fit_damper
+    from vehicle.studies.dampers.over_condition import control_lines, curve_lines, settings_of
 
     named = pairs("--unit", options.units, "")  # by role, or by the name or number of a column
     fits = fit_damper(
@@ -65,24 +63,24 @@ def _job(options: argparse.Namespace) -> None:
         conditions=pairs("--condition", options.condition, ""),
         pattern=options.pattern,
     )
-    names = [TABLE, *(f"damper{each.name}.{ending}" for each in fits for ending in ("toml", "png"))]
-    names += [CONTROL] if len(fits) > 1 else []
+    names = [TABLE, REPORT, *(f"damper{each.name}.{ending}" for each in fits for ending in ("toml", "png"))]
+    names += CONTROL if len(fits) > 1 else ()
     paths = dict(zip(names, output_files_of(options, Path("runs/damper"), names), strict=True))
+    command_line = f"python -m vehicle fit-damper {shlex.join(options.words)}"
     with whole_files(list(paths.values())) as temporary:
         new = dict(zip(names, temporary, strict=True))
         write_text(new[TABLE], tests_text(fits))
+        write_text(new[REPORT], damper_page(fits, command_line, author=options.author, project=options.project))
         for fitted in fits:
             write_text(new[f"damper{fitted.name}.toml"], vehicle_lines(fitted))
-            loops = [
-                DamperLoop(f"{test.name}: error {error:.3f}, left out {outside:.3f}", test.displacement, test.velocity,
-                           test.force, fitted.fit.force(test))
-                for test, error, outside in zip(fitted.tests, fitted.fit.fitted, fitted.fit.left_out, strict=True)
-            ]  # fmt: skip
             title = fitted.fit.law.title[:1].upper() + fitted.fit.law.title[1:]
-            write_whole(new[f"damper{fitted.name}.png"],
-                        partial(plot_damper, loops=loops, title=title, caption=caption_of(fitted)))  # fmt: skip
+            plot = partial(plot_damper, loops=loops_of(fitted), title=title, caption=caption_of(fitted))
+            write_whole(new[f"damper{fitted.name}.png"], plot)
         if len(fits) > 1:
-            write_text(new[CONTROL], control_lines(fits))
+            lines, picture = CONTROL
+            write_text(new[lines], control_lines(fits))
+            plot = partial(plot_settings, curves=curve_lines(fits), settings=settings_of(fits))
+            write_whole(new[picture], plot)
     if options.json:
         texts = [fit_json(fitted) for fitted in fits]
         print(json.dumps(texts[0] if len(texts) == 1 else {"dampers": texts}, indent=2, allow_nan=False))

@@ -43,6 +43,7 @@ LAWS = [
     DamperLaw(friction="presliding", elements=2),
     DamperLaw(bends=2, own_sides=True, friction="presliding", elements=2, series=True, gas_stiffness=True),
     DamperLaw(bends=1, friction="coulomb", series=True),
+    DamperLaw(bends=1, friction="stribeck", series=True),
 ]
 
 

@@ -29,7 +29,7 @@ def write(path, head=HEAD, late=0.0, sign=1.0, columns=(0, 1, 2, 3, 4)):
 
 def test_channels_are_found_and_converted(tmp_path):
     test = read_test(write(tmp_path / "a.csv"))
-    assert test.sine and test.cycle == pytest.approx(0.5, rel=0.01)
+    assert test.waveform.words == "sine, 2 Hz" and test.cycle == pytest.approx(0.5, rel=0.01)
     assert np.sum(test.force * test.velocity) / np.sum(test.velocity**2) == pytest.approx(1500.0, rel=1e-3)
     assert np.ptp(test.displacement) == pytest.approx(0.02, rel=1e-3)
     inside = test.time[test.settled]

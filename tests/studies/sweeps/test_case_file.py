@@ -80,6 +80,7 @@ def test_command(tmp_path, capsys, monkeypatch):
         ('roads = ["C"]', "set roads and speeds"),
         ('roads = ["C"]\nspeeds = [80]\nspeed = 3', "speed: unknown parameter"),
         ('roads = "C"\nspeeds = [80]', "roads: found 'C', must be a list"),
+        ('roads = ["C"]\nspeeds = [80]', "no states and no variants: add one, as [variants.soft]"),
         ("roads = [", "not a TOML file"),
     ],
 )

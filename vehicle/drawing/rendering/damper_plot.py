@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
-from vehicle.drawing.rendering.figure import COLOURS, saved_figure
+from vehicle.drawing.rendering.figure import COLOURS, LINES, saved_figure
 from vehicle.signals.analysis.samples import Vector
 
 MOST_POINTS = 6000
@@ -29,7 +29,7 @@ class DamperLoop(NamedTuple):
     fitted: Vector
 
 
-def plot_damper(path: Path, loops: Sequence[DamperLoop], title: str, caption: str) -> None:
+def plot_damper(path: Path, loops: Sequence[DamperLoop], title: str = "", caption: str = "") -> None:
     """Write the picture of a fitted damper, a row for each test.
 
     Args:
@@ -47,3 +47,43 @@ def plot_damper(path: Path, loops: Sequence[DamperLoop], title: str, caption: st
         grid[-1, 0].set(xlabel="velocity [mm/s]")
         grid[-1, 1].set(xlabel="displacement [mm]")
         grid[0, 0].legend(loc="upper left")
+
+
+class ShownSetting(Protocol):
+    """Damping and friction at a condition."""
+
+    @property
+    def words(self) -> str:
+        """Condition, as "current 1"."""
+
+    @property
+    def damping(self) -> float:
+        """Damping constant [N s/m]."""
+
+    @property
+    def friction(self) -> float:
+        """Friction [N]."""
+
+
+def plot_settings(
+    path: Path, curves: Sequence[tuple[str, Vector, Vector]], settings: Sequence[ShownSetting], title: str = ""
+) -> None:
+    """Write the picture of a damper over its conditions: force over velocity, damping and friction.
+
+    Args:
+        path, title: see `saved_figure`.
+        curves: words of the condition, velocities [m/s] and forces [N] of each condition.
+        settings: damping and friction at each condition.
+    """
+    with saved_figure(path, (9.0, 3.6), title) as figure:
+        left, middle, right = figure.subplots(1, 3, width_ratios=(2.0, 1.0, 1.0))
+        for number, (words, velocity, force) in enumerate(curves):
+            style = {"color": COLOURS[number % len(COLOURS)], "linestyle": LINES[number // len(COLOURS) % len(LINES)]}
+            left.plot(1e3 * velocity, force, label=words, **style)
+        left.set(xlabel="velocity [mm/s]", ylabel="force of curve and friction [N]")
+        left.legend(loc="upper left")
+        words = [each.words for each in settings]
+        for axis, name, unit in ((middle, "damping", "N s/m"), (right, "friction", "N")):
+            axis.plot(words, [getattr(each, name) for each in settings], "o-", color=COLOURS[0])
+            axis.set(ylabel=f"{name} [{unit}]", ylim=(0.0, None))
+            axis.tick_params(axis="x", labelrotation=30)

@@ -2,14 +2,14 @@
 
     minimise  sum over tests of mean over time of (F_law - F)^2 / var(F),
 
-over the logarithms of the parameters (F_0 and k_g: over the parameter itself). A law grows by one part at a time
-(`DamperLaw.larger`), and is pursued while its error on tests left out falls: each candidate is fitted without one test
-in turn, and judged by that test. In the end the law with the fewest parameters within one standard error of the
-best is chosen, by the logarithms of the ratios of their errors, so that all tests count alike. With less than three
-tests, parts of the records are left out in place of tests.
+(in a test with velocity steps: of the means over each of its strokes), over the logarithms of the parameters (F_0 and
+k_g: over the parameter itself). A law grows by one part at a time (`DamperLaw.larger`), and is pursued while its error
+on tests left out falls: each candidate is fitted without one test in turn, and judged by that test. In the end the law
+with the fewest parameters within one standard error of the best is chosen, by the logarithms of the ratios of their
+errors, so that all tests count alike. With less than three tests, parts of the records are left out in place of tests.
 
 The standard errors are those of White's estimator with blocks of a cycle (residuals within a block may be correlated in
-any way), or of independent residuals where these are larger:
+any way), or of independent residuals of equal size in each test where these are larger:
 
     cov = H^-1 (sum over blocks of g_b g_b') H^-1 B/(B - 1),   H = J'J,   g_b = J_b' r_b.
 
@@ -31,15 +31,17 @@ from vehicle.errors import DataError
 from vehicle.studies.dampers.damper_force import force_and_slopes
 from vehicle.studies.dampers.damper_law import LINEAR, DamperLaw, plain_parameters
 from vehicle.studies.dampers.damper_test import DamperTest
+from vehicle.studies.dampers.waveform import reversals
 
 Vector = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 PER_CYCLE, CYCLES = 250, 2
-"""Samples of a cycle, and settled cycles of a sine test, with which laws are compared; the chosen law has all."""
+"""Samples of a cycle, and settled cycles of a periodic test, with which laws are compared; the chosen law has all."""
 
 JUMP, AFTER = 0.1, 12
-"""Change of the velocity in a sample, over its maximum, after which `AFTER` samples are kept."""
+"""Change of the velocity in a sample, over its maximum, after which `AFTER` samples stay single; as many do before and
+after a reversal."""
 
 FEW_TESTS, PARTS = 3, 4
 """Number of tests from which on whole tests are left out, and number of parts of a record otherwise."""
@@ -47,14 +49,18 @@ FEW_TESTS, PARTS = 3, 4
 FOLDS = 6
 """Maximum number of fits with tests left out; above it several tests are left out together."""
 
-BEAM, GAIN = 2, 0.99
-"""Number of laws that get a further part at a time, and their maximum error left out over the least so far."""
+BEAM = 2
+"""Number of laws that get a further part at a time."""
 
 BLOCKS = 8
 """Blocks of a test in the comparison of two laws."""
 
-FLOOR = 1e-20
-"""Minimum mean square of the errors of a block: below it are the errors of the arithmetic."""
+FLOOR = 0.01
+"""Error over the standard deviation of the force that is added in quadrature to that of each block: laws that describe
+a damper within this are alike."""
+
+RELEVANT = 0.03
+"""Relative difference of two errors, with `FLOOR` in them, that is a reason for a further part."""
 
 DETERMINED = 0.5
 """Maximum relative standard error of a parameter that the tests determine."""
@@ -85,7 +91,7 @@ class DamperFit:
         fitted: RMS error over the standard deviation of the force, settled part of each test; (tests,).
         whole: the same for the whole record; (tests,).
         left_out: the same of the settled part of each test, by the fits without that test; NaN if not computed.
-        blocks: mean squares of the errors left out, by blocks; (b,).
+        blocks: mean squares of the errors left out and of `FLOOR`, by blocks; (b,).
     """
 
     law: DamperLaw
@@ -98,7 +104,7 @@ class DamperFit:
 
     @property
     def left_out_error(self) -> float:
-        """Geometric mean of the RMS errors left out, over the standard deviation of the force."""
+        """Geometric mean of the RMS errors left out and `FLOOR`, over the standard deviation of the force."""
         return float(np.exp(0.5 * np.mean(np.log(self.blocks))))
 
     @property
@@ -159,7 +165,7 @@ def fit_law(tests: Sequence[DamperTest], law: DamperLaw, starts: Sequence[Vector
             values, rows, columns = plain(inner), [], []
             for test, mask in used:
                 force, slopes = force_and_slopes(law, values, test.motion)
-                share = test.intervals[mask]
+                share = test.weights[mask]
                 weight = np.sqrt(share / np.sum(share)) / test.scale
                 rows.append(weight * (force - test.force)[mask])
                 columns.append(weight[:, None] * slopes[mask] * np.where(linear, scale, values))
@@ -253,26 +259,31 @@ def judged(tests: Sequence[DamperTest], law: DamperLaw, starts: Sequence[Vector]
                 error[mask] = (force_and_slopes(law, part, test.motion)[0] - test.force)[mask] / test.scale
     blocks, left_out = [], []
     for test, error in zip(tests, errors, strict=True):
-        squares, shares = error[test.settled] ** 2, test.intervals[test.settled]
+        squares, shares = error[test.settled] ** 2, test.weights[test.settled]
         left_out.append(np.sqrt(np.average(squares, weights=shares)))
         for rows in np.array_split(np.arange(squares.size), BLOCKS):
-            blocks.append(max(float(np.average(squares[rows], weights=shares[rows])), FLOOR))
+            blocks.append(float(np.average(squares[rows], weights=shares[rows])) + FLOOR**2)
     return DamperFit(law=law, parameters=parameters, left_out=np.array(left_out), blocks=np.array(blocks))
 
 
 def thinned(test: DamperTest) -> DamperTest:
-    """Return a test with fewer samples: dense where the velocity changes; of a sine test at most `CYCLES` cycles."""
+    """Return a test with means over parts of a cycle, of a periodic test at most `CYCLES` cycles.
+
+    Samples stay single where the velocity changes fast, and around reversals.
+    """
     last = test.time.size
-    if test.sine:
+    if test.waveform.periodic:
         end = test.time[np.argmax(test.settled)] + CYCLES * test.cycle
         last = min(last, int(np.searchsorted(test.time, end)) + 1)
     change = np.abs(np.diff(test.velocity, prepend=test.velocity[0])) / np.max(np.abs(test.velocity))
     stroke = np.abs(np.diff(test.displacement, prepend=test.displacement[0])) / np.ptp(test.displacement)
     count = np.floor(np.cumsum(PER_CYCLE * (change / 8.0 + stroke / 4.0)))
-    chosen = np.diff(count, prepend=-1.0) > 0.0
+    first = np.diff(count, prepend=-1.0) > 0.0
     for jump in np.flatnonzero(change > JUMP):
-        chosen[max(jump - 1, 0) : jump + AFTER] = True
-    return test.part(np.flatnonzero(chosen[:last]))
+        first[max(jump - 1, 0) : jump + AFTER] = True
+    for turn in reversals(test.displacement, test.velocity):
+        first[max(turn - AFTER, 0) : turn + AFTER] = True
+    return test.averaged(np.flatnonzero(first[:last]), last)
 
 
 def choose_law(tests: Sequence[DamperTest]) -> tuple[DamperFit, list[DamperFit]]:
@@ -302,7 +313,7 @@ def choose_law(tests: Sequence[DamperTest]) -> tuple[DamperFit, list[DamperFit]]
         front = [
             fit
             for fit in sorted(new, key=lambda fit: fit.left_out_error)[:BEAM]
-            if fit.left_out_error < GAIN * lowest_error
+            if fit.left_out_error * (1.0 + RELEVANT) < lowest_error
         ]
     compared = sorted(fits.values(), key=lambda fit: fit.left_out_error)
     top = compared[0]
@@ -315,6 +326,8 @@ def choose_law(tests: Sequence[DamperTest]) -> tuple[DamperFit, list[DamperFit]]
 def _better(fit: DamperFit, other: DamperFit, tests: int) -> bool:
     """True if the errors of a fit on what was left out are smaller than those of another by over one standard error.
 
+    A difference below `RELEVANT` does not count.
+
     The mean logarithm of the ratio is compared with its standard error over blocks, or over tests where that is larger:
     blocks of one test share the error of a law that does not fit that test.
 
@@ -323,10 +336,10 @@ def _better(fit: DamperFit, other: DamperFit, tests: int) -> bool:
         tests: number of tests, `BLOCKS` blocks each.
     """
     ratios = np.log(other.blocks / fit.blocks)
-    spreads = [float(np.std(ratios, ddof=1)) / np.sqrt(ratios.size)]
+    spreads = [float(np.std(ratios, ddof=1) / np.sqrt(ratios.size))]
     if tests >= FEW_TESTS:
         spreads.append(float(np.std(ratios.reshape(tests, -1).mean(axis=1), ddof=1)) / np.sqrt(tests))
-    return bool(np.mean(ratios) > max(spreads))
+    return bool(np.mean(ratios) > max(*spreads, 2.0 * np.log(1.0 + RELEVANT)))
 
 
 def finished(tests: Sequence[DamperTest], fit: DamperFit) -> DamperFit:
@@ -334,7 +347,7 @@ def finished(tests: Sequence[DamperTest], fit: DamperFit) -> DamperFit:
     law = fit.law
     parameters = fit_law(tests, law, [fit.parameters], tolerance=1e-7)
     scores, curvature, fitted, whole = [], np.zeros((parameters.size,) * 2), [], []
-    squares = samples = 0.0
+    noise = np.zeros_like(curvature)
     # Columns of equal size: the parameters differ by many orders of magnitude.
     sizes = np.maximum(
         np.abs(parameters), [{"gas_force": 1.0, "gas_stiffness": 10.0}.get(n, 0.0) for n in law.parameters]
@@ -342,19 +355,16 @@ def finished(tests: Sequence[DamperTest], fit: DamperFit) -> DamperFit:
     for test in tests:
         force, slopes = force_and_slopes(law, parameters, test.motion)
         error = (force - test.force) / test.scale
-        weight = 1.0 / np.sqrt(np.count_nonzero(test.settled))
-        rows = weight * slopes[test.settled] * sizes / test.scale
-        residual = weight * error[test.settled]
-        curvature += rows.T @ rows
-        count = max(2, int((test.time[test.settled][-1] - test.time[test.settled][0]) / test.cycle))
-        scores += [a.T @ b for a, b in zip(np.array_split(rows, count), np.array_split(residual, count), strict=True)]
-        squares, samples = squares + float(residual @ residual), samples + residual.size
+        shares = np.where(test.settled, test.weights, 0.0) / np.sum(test.weights[test.settled])
+        columns = slopes * sizes / test.scale
+        curvature += columns.T @ (shares[:, None] * columns)
+        noise += (shares @ error**2) * columns.T @ (shares[:, None] ** 2 * columns)
+        scores += [columns[rows].T @ (shares[rows] * error[rows]) for rows in test.cycle_rows]
         fitted.append(np.sqrt(np.mean(error[test.settled] ** 2)))
         whole.append(np.sqrt(np.mean(error**2)))
     inverse = np.linalg.pinv(curvature, hermitian=True, rcond=1e-12)
     middle = np.array(scores).T @ np.array(scores) * len(scores) / (len(scores) - 1)
-    correlated = inverse @ middle @ inverse * np.outer(sizes, sizes)
-    independent = inverse * squares / samples * np.outer(sizes, sizes)
+    correlated, independent = (inverse @ each @ inverse * np.outer(sizes, sizes) for each in (middle, noise))
     return dataclasses.replace(
         fit, parameters=parameters, fitted=np.array(fitted), whole=np.array(whole),
         errors=np.sqrt(np.maximum(_variances(law, correlated), _variances(law, independent))),

@@ -12,8 +12,8 @@ The derivatives of s over the parameters solve the linearised equations of all s
 
 from __future__ import annotations
 
-import dataclasses
 import itertools
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -23,12 +23,16 @@ import scipy
 from vehicle.studies.dampers.damper_law import EXPONENT, STEP, DamperLaw, DamperValues, values_of
 
 Vector = npt.NDArray[np.float64]
+Counts = npt.NDArray[np.intp]
 
 CLOSED = 1e-10
 """Residual of a sample over the sum of its forces."""
 
 ITERATIONS = 60
 """Maximum number of iterations of a sample: Newton's method, with bisection where it leaves the bracket."""
+
+SLOW = 8
+"""Number of iterations from which on every second one is a bisection: the force may fall with the velocity."""
 
 
 FASTEST_GROWTH = 2.0
@@ -41,24 +45,22 @@ class Motion(NamedTuple):
     Attributes:
         time, displacement, velocity: [s], [m], [m/s]; (n,).
         first_force: force at the first sample [N].
-        parts: steps of the solution of a series stiffness from one sample to the next, on the cubic through
-            displacements and velocities.
+        parts: steps of the solution of a series stiffness from each sample to the next, on the cubic through
+            displacements and velocities; (n - 1,), or 1 for all.
     """
 
     time: Vector
     displacement: Vector
     velocity: Vector
     first_force: float
-    parts: int = 1
+    parts: Counts | int = 1
 
-    def refined(self) -> Motion:
-        """Return the motion with its parts as samples."""
-        if self.parts == 1:
-            return self
-        samples = np.arange((self.time.size - 1) * self.parts + 1) / self.parts
-        time = np.interp(samples, np.arange(self.time.size), self.time)
+    def refined(self) -> tuple[Motion, Counts]:
+        """Return the motion with its parts as samples, and the numbers of the samples of this motion among them."""
+        rows = np.concatenate([[0], np.cumsum(np.broadcast_to(self.parts, self.time.size - 1))])
+        time = np.interp(np.arange(rows[-1] + 1), rows, self.time)
         cubic = scipy.interpolate.CubicHermiteSpline(self.time, self.displacement, self.velocity)
-        return Motion(time, cubic(time), cubic.derivative()(time), self.first_force)
+        return Motion(time, cubic(time), cubic.derivative()(time), self.first_force), rows
 
 
 def force_and_slopes(law: DamperLaw, parameters: Vector, motion: Motion) -> tuple[Vector, Vector]:
@@ -72,15 +74,15 @@ def force_and_slopes(law: DamperLaw, parameters: Vector, motion: Motion) -> tupl
     values = values_of(law, parameters)
     if not law.series:
         return _rigid(law, values, motion)
-    fine = motion.refined()
+    fine, rows = motion.refined()
     deflection, inner, sticking = _march(values, fine)
     columns = _slopes(law, values, fine, deflection, inner, sticking)
-    return values.series * deflection[:: motion.parts], columns[:: motion.parts]
+    return values.series * deflection[rows], columns[rows]
 
 
 def _curve(values: DamperValues) -> tuple[list[float], list[float], list[float]]:
     """Return breakpoints, slopes and offsets of the segments of F_c with Coulomb friction, from bump to rebound."""
-    step = values.friction[0] / STEP
+    step = values.friction[1] / STEP
     knots: list[float] = []
     forces: list[float] = []
     ends = []
@@ -121,6 +123,8 @@ def _march(values: DamperValues, motion: Motion) -> tuple[Vector, Vector, npt.ND
     edges = [*knots, np.inf]
     spring, gas, offset = values.series, values.gas_stiffness, values.offset
     rates, near, far = _difference(motion.time).tolist()
+    sliding, at_rest, critical = values.friction
+    drop = at_rest - sliding
     elements = list(zip(values.stiffness.tolist(), values.limit.tolist(), strict=True))
     forces = [0.0] * len(elements)
     previous = before = motion.first_force / spring
@@ -131,7 +135,7 @@ def _march(values: DamperValues, motion: Motion) -> tuple[Vector, Vector, npt.ND
     for at, (x, v) in enumerate(zip(motion.displacement.tolist()[1:], motion.velocity.tolist()[1:], strict=True), 1):
         rate, back = rates[at], -near[at] * previous - far[at] * before
         low, high, anchor = -np.inf, np.inf, x - last + previous
-        for _ in range(ITERATIONS):
+        for count in range(ITERATIONS):
             w = v - rate * s + back
             while w > edges[segment]:
                 segment += 1
@@ -139,6 +143,11 @@ def _march(values: DamperValues, motion: Motion) -> tuple[Vector, Vector, npt.ND
                 segment -= 1
             slope = slopes[segment]
             curve = slope * w + offsets[segment]
+            if drop:
+                weight = math.exp(-((abs(w) / critical) ** EXPONENT))
+                curve -= math.copysign(drop * (1.0 - weight), w)
+                # Where the force falls with the velocity, its slope is left out: a shorter step of the iteration.
+                slope = max(slope - drop * weight * EXPONENT * abs(w) ** (EXPONENT - 1.0) / critical**EXPONENT, 0.0)
             size = abs(curve) + abs(offset)
             error, total = spring * s - curve - gas * (x - s) - offset, spring + rate * slope + gas
             for (k, limit), t in zip(elements, forces, strict=True):
@@ -155,7 +164,7 @@ def _march(values: DamperValues, motion: Motion) -> tuple[Vector, Vector, npt.ND
                 break
             low, high = (low, min(high, s)) if error > 0.0 else (max(low, s), high)
             s -= error / total
-            if not low < s < high:
+            if not low < s < high or (count > SLOW and count % 2 and high - low < math.inf):
                 s = 0.5 * (low + high)
         change = anchor - s
         states = [t + k * change for (k, _), t in zip(elements, forces, strict=True)]
@@ -183,9 +192,17 @@ def _curve_columns(law: DamperLaw, values: DamperValues, velocity: Vector) -> tu
         columns.append(np.column_stack([sign * column for column in [*covered, *shifted]]))
     step = np.abs(velocity) < STEP
     curve = np.concatenate(columns, axis=1) if law.own_sides else columns[0] + columns[1]
+    sliding, at_rest, critical = values.friction
+    slope = slope + step * at_rest / STEP
+    stuck, sign = np.clip(velocity / STEP, -1.0, 1.0), np.sign(velocity)
     if law.friction == "coulomb":
-        slope = slope + step * values.friction[0] / STEP
-        curve = np.column_stack([curve, np.clip(velocity / STEP, -1.0, 1.0)])
+        curve = np.column_stack([curve, stuck])
+    if law.friction == "stribeck":
+        ratio = (size / critical) ** EXPONENT
+        weight = np.exp(-ratio)
+        change = (at_rest - sliding) * weight * EXPONENT * ratio
+        slope = slope - change / np.maximum(size, 1e-30)
+        curve = np.column_stack([curve, sign * (1.0 - weight), stuck - sign * (1.0 - weight), sign * change / critical])
     return slope, curve
 
 
@@ -194,18 +211,12 @@ def _rigid(law: DamperLaw, values: DamperValues, motion: Motion) -> tuple[Vector
     x, v = motion.displacement, motion.velocity
     _, curve = _curve_columns(law, values, v)
     knots, slopes, offsets = _curve(values)
-    if law.friction == "stribeck":
-        knots, slopes, offsets = _curve(_without_friction(values))
     segment = np.searchsorted(knots, v)
     force = np.array(slopes)[segment] * v + np.array(offsets)[segment] + values.gas_stiffness * x + values.offset
-    columns = [-np.ones((x.size, 1)), curve]
+    sliding, at_rest, critical = values.friction
     if law.friction == "stribeck":
-        sliding, at_rest, critical = values.friction
-        ratio = (np.abs(v) / critical) ** EXPONENT
-        weight, sign = np.exp(-ratio), np.clip(v / STEP, -1.0, 1.0)
-        force = force + sign * (sliding + (at_rest - sliding) * weight)
-        fall = (at_rest - sliding) * weight * EXPONENT * ratio / critical
-        columns.append(np.column_stack([sign * (1.0 - weight), sign * weight, sign * fall]))
+        force -= np.sign(v) * (at_rest - sliding) * -np.expm1(-((np.abs(v) / critical) ** EXPONENT))
+    columns = [-np.ones((x.size, 1)), curve]
     for k, limit in zip(values.stiffness, values.limit, strict=True):
         path = _slider_force(x, float(k), float(limit))
         slips = np.maximum.accumulate(np.where(np.abs(path) >= limit, np.arange(x.size), -1))
@@ -225,11 +236,6 @@ def _slider_force(x: Vector, stiffness: float, limit: float) -> Vector:
         return min(max(force + stiffness * dx, -limit), limit)
 
     return np.array(list(itertools.accumulate(np.diff(x).tolist(), next_force, initial=0.0)))
-
-
-def _without_friction(values: DamperValues) -> DamperValues:
-    """Return the values without Coulomb friction."""
-    return dataclasses.replace(values, friction=(0.0, 0.0, 1.0))
 
 
 def _slopes(

@@ -25,10 +25,11 @@ MAX_BENDS, MAX_ELEMENTS = 3, 4
 """Maximum numbers of breakpoints on each side of a curve, and of Jenkins elements."""
 
 SMOOTHING = 1e4
-"""Smoothing eps [s/m] of Coulomb and Stribeck friction in a fit and in its lines."""
+"""Smoothing eps [s/m] of Coulomb and Stribeck friction in the lines: full friction from 0.16 mm/s."""
 
-STEP = np.pi / (2.0 * SMOOTHING)
-"""Velocity [m/s] at which Coulomb friction reaches its limit: 0.16 mm/s."""
+STEP = 1e-6
+"""Velocity [m/s] at which friction reaches its limit in a fit. The 0.16 mm/s of the lines would creep by a tenth of the
+deflection of a machine of 2e7 N/m while dry friction turns, and its stiffness would be fitted 15 % too low."""
 
 EXPONENT = 2.0
 """Exponent delta of Stribeck friction; tests determine it hardly beside the velocity vs."""
@@ -92,25 +93,26 @@ class DamperLaw:
         return " + ".join(parts + (["series stiffness"] if self.series else []))
 
     def larger(self) -> Iterator[DamperLaw]:
-        """Yield the laws with one more part; a series stiffness excludes Stribeck friction, whose force falls.
+        """Yield the laws with one more part.
 
-        A slider is close to Coulomb friction behind a series stiffness, with as many parameters: that law is tried too.
+        A slider is close to dry friction behind a series stiffness: those laws are tried too.
         """
         change = dataclasses.replace
         if self.bends < MAX_BENDS:
             yield change(self, bends=self.bends + 1)
         if not self.own_sides:
             yield change(self, own_sides=True)
-        if not self.series and self.friction != "stribeck":
+        if not self.series:
             yield change(self, series=True)
         if not self.gas_stiffness:
             yield change(self, gas_stiffness=True)
         if not self.friction:
             yield change(self, friction="coulomb")
-        if not self.series and self.friction == "coulomb":
+        if self.friction == "coulomb":
             yield change(self, friction="stribeck")
         if self.elements == 1 and not self.series:
             yield change(self, friction="coulomb", elements=0, series=True)
+            yield change(self, friction="stribeck", elements=0, series=True)
         if self.friction != "stribeck" and self.elements < MAX_ELEMENTS:
             yield change(self, friction="presliding", elements=self.elements + 1)
 

@@ -6,8 +6,8 @@ import dataclasses
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,7 @@ from vehicle.signals.formats.channel import Measurement
 from vehicle.signals.formats.reader import read_record
 from vehicle.signals.records.choice import Choice, choose, pick
 from vehicle.studies.dampers.damper_force import Motion
+from vehicle.studies.dampers.waveform import Waveform, reversal_times, reversals, waveform_of
 
 Vector = npt.NDArray[np.float64]
 
@@ -35,15 +36,17 @@ CONSISTENT = 0.02
 """Maximum RMS difference of a measured velocity from the derivative of the displacement, over its RMS: twice the
 calibration error of a good sensor. Above it the derivative is used."""
 
-FULL = 0.95
-"""Minimum swing of a settled cycle, over the median swing: smaller swings at both ends are run-up and run-down."""
-
-EQUAL = 0.05
-"""Maximum relative standard deviation of the settled swings of a sine test."""
-
 STEPS = 200
-"""Minimum number of steps of a cycle in the solution of a series stiffness: with 83, the force of a friction of 60 N
-behind 2e7 N/m at 12 Hz is 2 % off, with 167 0.5 %."""
+"""Minimum number of steps of a cycle in the solution of a series stiffness."""
+
+FINE, COARSE = (1e-8, 0.15, 64), (4e-8, 0.3, 32)
+"""Of a test, and of one with means for the comparison of laws: travel [m] in the first step after a reversal, length of
+the further steps over the time since then, and maximum number of steps between two samples. Dry friction turns while
+the machine deflects by twice its force over the stiffness, 4 um for 50 N on 2.5e7 N/m, in 1 ms at 8 mm and 4 Hz: with
+steps of 1 ms the stiffness was 8 % low."""
+
+SMALLEST_TURN = 0.01
+"""Smallest swing between such reversals, over the stroke."""
 
 HEADLESS = {3: ("displacement", "force"), 4: ("displacement", "velocity", "force")}
 """Roles of the columns behind the time in a file without a header, by the number of its columns."""
@@ -58,7 +61,7 @@ LEAST_SAMPLES = 50
 """Minimum number of samples of a test."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class DamperTest:
     """Record of a test, positive in extension.
 
@@ -66,10 +69,10 @@ class DamperTest:
         name: name of the file without its ending.
         time: times [s]; (n,).
         displacement, velocity, force: measured motion [m], [m/s] and force [N]; (n,).
-        settled: True for the samples that are fitted: all but run-up and run-down of a sine test; (n,).
-        sine: True for a sine test, with settled cycles of equal size.
+        waveform: of the displacement, with the samples that are fitted.
         conditions: name of a condition to its value.
         notices: messages on what was done to the record.
+        coarse: True for means over samples, see `averaged`.
     """
 
     name: str
@@ -77,46 +80,82 @@ class DamperTest:
     displacement: Vector
     velocity: Vector
     force: Vector
-    settled: npt.NDArray[np.bool_]
-    sine: bool
+    waveform: Waveform
     conditions: Mapping[str, float]
     notices: tuple[str, ...]
+    coarse: bool = False
 
-    @property
+    @cached_property
     def motion(self) -> Motion:
-        """Motion for `force_and_slopes`."""
-        of_cycle = self.time.size * self.cycle / (self.time[-1] - self.time[0])
-        parts = max(1, int(np.ceil(STEPS / of_cycle)))
-        return Motion(self.time, self.displacement, self.velocity, float(self.force[0]), parts)
+        """Motion for `force_and_slopes`, with steps for a cycle and for the turn of dry friction at its reversals."""
+        x, v, steps = self.displacement, self.velocity, np.diff(self.time)
+        turns = reversals(x, v, SMALLEST_TURN)[1:-1]
+        rise = (v[turns + 1] - v[turns]) / steps[turns]
+        times = np.concatenate([[-np.inf], reversal_times(self.time, v, turns), [np.inf]])
+        travel, growth, most = COARSE if self.coarse else FINE
+        first = np.concatenate([[np.inf], np.sqrt(2.0 * travel / np.abs(rise)), [np.inf]])
+        middle = self.time[:-1] + 0.5 * steps
+        after = np.searchsorted(times, middle)
+        swings = reversals(x, v)
+        longest = (np.diff(self.time[swings]) / (0.5 * STEPS))[self._strokes(swings)[:-1]]
+        for turn in (after - 1, after):
+            longest = np.minimum(longest, np.maximum(first[turn], growth * np.abs(middle - times[turn])))
+        parts = np.minimum(np.ceil(steps / longest - 1e-6).astype(int), most)
+        return Motion(self.time, x, v, float(self.force[0]), parts)
 
     @property
-    def intervals(self) -> Vector:
-        """Time step around each sample [s], the weight of the error of that sample; (n,)."""
-        return np.asarray(np.gradient(self.time))
+    def settled(self) -> npt.NDArray[np.bool_]:
+        """True for the samples that are fitted: all but run-up and run-down of equal swings; (n,)."""
+        return self.waveform.settled
+
+    @property
+    def weights(self) -> Vector:
+        """Weight of the error of each sample: its time step, with velocity steps over the time of its stroke; (n,)."""
+        steps = np.gradient(self.time)
+        if not self.waveform.steps:
+            return np.asarray(steps)
+        turns = reversals(self.displacement, self.velocity)
+        return np.asarray(steps / np.diff(self.time[turns])[self._strokes(turns)])
+
+    def _strokes(self, turns: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
+        """Return the number of the stroke between two reversals that contains each sample; (n,)."""
+        return np.clip(np.searchsorted(turns, np.arange(self.time.size), side="right") - 1, 0, turns.size - 2)
+
+    @property
+    def cycle_rows(self) -> list[npt.NDArray[np.intp]]:
+        """Settled samples of each cycle; of halves of the test where it has less than two cycles."""
+        rows = np.flatnonzero(self.settled)
+        starts = np.searchsorted(rows, reversals(self.displacement, self.velocity)[2:-1:2])
+        starts = starts[(starts > 0) & (starts < rows.size)]
+        return np.split(rows, starts) if starts.size else np.array_split(rows, 2)
 
     @property
     def scale(self) -> float:
-        """Standard deviation of the force [N], to which errors are related."""
-        return float(np.std(self.force))
+        """Standard deviation of the force over time [N], to which errors are related."""
+        share = np.gradient(self.time)
+        return float(np.sqrt(np.average((self.force - np.average(self.force, weights=share)) ** 2, weights=share)))
 
     @property
     def cycle(self) -> float:
         """Duration of a cycle [s]: twice the median swing between reversals."""
-        return 2.0 * float(np.median(np.diff(self.time[_reversals(self.displacement, self.velocity)])))
+        return 2.0 * float(np.median(np.diff(self.time[reversals(self.displacement, self.velocity)])))
 
-    def part(self, chosen: slice | npt.NDArray[Any]) -> DamperTest:
-        """Return the test with some of its samples."""
-        names = ("time", "displacement", "velocity", "force", "settled")
-        return dataclasses.replace(self, **{name: getattr(self, name)[chosen] for name in names})
+    def averaged(self, first: npt.NDArray[np.intp], last: int) -> DamperTest:
+        """Return the test with means over groups of samples: the first of each group, and the number of samples."""
+        size = np.diff(first, append=last)
+        means = {
+            name: np.add.reduceat(getattr(self, name)[:last], first) / size
+            for name in ("time", "displacement", "velocity", "force")
+        }
+        settled = np.logical_and.reduceat(self.settled[:last], first)
+        return dataclasses.replace(self, coarse=True, waveform=self.waveform._replace(settled=settled), **means)
 
     @property
     def caption(self) -> str:
         """Description of the test in a line."""
         stroke, speed = 1e3 * np.ptp(self.displacement), 1e3 * np.max(np.abs(self.velocity))
-        waveform = "no sine"
-        if self.sine:
-            waveform = f"sine, {number(1.0 / self.cycle, 2)} Hz"
-        return f"{waveform}, stroke {stroke:.3g} mm, up to {speed:.3g} mm/s, {self.time[-1] - self.time[0]:.3g} s"
+        words, duration = self.waveform.words, self.time[-1] - self.time[0]
+        return f"{words}, stroke {stroke:.3g} mm, up to {speed:.3g} mm/s, {duration:.3g} s"
 
 
 def read_test(path: Path, choice: Choice | None = None, *, compression: bool = False,
@@ -152,11 +191,12 @@ def read_test(path: Path, choice: Choice | None = None, *, compression: bool = F
     if np.sum(force * velocity) < 0.0:
         force = -force
         notices.append("the force is opposite to the velocity, as that of a damper on its machine: sign inverted")
-    settled, sine = settled_part(x, velocity)
+    waveform = waveform_of(time, x, velocity)
+    settled = waveform.settled
     if not settled.all():
         notices.append(f"fitted from {time[settled][0]:.3g} to {time[settled][-1]:.3g} s, without run-up and run-down")
     return DamperTest(
-        name=path.stem, time=time, displacement=x, velocity=velocity, force=force, settled=settled, sine=sine,
+        name=path.stem, time=time, displacement=x, velocity=velocity, force=force, waveform=waveform,
         conditions=_conditions(path, measurement, conditions or {}, pattern), notices=tuple(notices),
     )  # fmt: skip
 
@@ -251,29 +291,6 @@ def _velocity(x: Vector, measured: Vector | None, step: float, notices: list[str
     notices.append(f"velocity from the displacement, Savitzky-Golay filter of {WINDOW} samples: no delay, within "
                    f"{100.0 * GAIN_ERROR:.0f} % up to {limit:.3g} Hz")  # fmt: skip
     return np.asarray(derivative)
-
-
-def _reversals(x: Vector, velocity: Vector) -> npt.NDArray[np.intp]:
-    """Return the samples at reversals with swings of at least a tenth of the stroke, and both ends."""
-    smallest_swing = 0.1 * np.ptp(x)
-    turns = [0]
-    for at in np.flatnonzero(np.diff(np.sign(velocity)) != 0.0):
-        if abs(x[at] - x[turns[-1]]) >= smallest_swing:
-            turns.append(int(at))
-    return np.array([*turns, x.size - 1])
-
-
-def settled_part(x: Vector, velocity: Vector) -> tuple[npt.NDArray[np.bool_], bool]:
-    """Return True for the samples without run-up and run-down, (n,), and True if the test is a sine."""
-    turns = _reversals(x, velocity)
-    swings = np.abs(np.diff(x[turns]))
-    full = np.flatnonzero(swings >= FULL * np.median(swings))
-    inner = swings[full[0] : full[-1] + 1]
-    sine = inner.size >= 4 and float(np.std(inner)) <= EQUAL * float(np.mean(inner))
-    settled = np.zeros(x.size, dtype=bool)
-    first, last = (turns[full[0]], turns[full[-1] + 1]) if sine else (0, x.size - 1)
-    settled[first : last + 1] = True
-    return settled, bool(sine)
 
 
 def _conditions(path: Path, measurement: Measurement, typed: Mapping[str, str], pattern: str) -> dict[str, float]:

@@ -26,9 +26,8 @@ SHOWN_LAWS = 5
 
 def caption_of(fitted: FittedDamper) -> str:
     """Return the conditions, the number and the names of the tests."""
-    conditions = ", ".join(f"{name} {value:g}" for name, value in fitted.conditions.items())
-    names = ", ".join(test.name for test in fitted.tests)
-    return f"{f'{conditions}: ' if conditions else ''}{len(fitted.tests)} test{'s'[: len(fitted.tests) > 1]}: {names}"
+    names, words = ", ".join(test.name for test in fitted.tests), fitted.condition_words
+    return f"{f'{words}: ' if words else ''}{len(fitted.tests)} test{'s'[: len(fitted.tests) > 1]}: {names}"
 
 
 def vehicle_lines(fitted: FittedDamper) -> str:
@@ -62,7 +61,7 @@ def vehicle_lines(fitted: FittedDamper) -> str:
         lines.append(_line("stribeck_friction", max(at_rest, friction), "N", spread["friction_at_rest"]))
         lines.append(_line("stribeck_velocity", critical, "m/s", spread["stribeck_velocity"]))
         lines.append(f"stribeck_exponent = {EXPONENT}  # [-] assumed")
-    lines += [f"smoothing = {SMOOTHING}  # [s/m] of the fit", f"slip_velocity = {SLIP}  # [m/s] assumed"]
+    lines += [f"smoothing = {SMOOTHING}  # [s/m] assumed", f"slip_velocity = {SLIP}  # [m/s] assumed"]
     if law.gas_stiffness:
         travel = max(float(np.max(np.abs(test.displacement))) for test in fitted.tests)
         force = _short(values.gas_stiffness * travel)
@@ -119,20 +118,6 @@ def _short(value: float) -> str:
 def _line(name: str, value: float, unit: str, error: float) -> str:
     """Return the line of a parameter with its standard error."""
     return f"{name} = {_short(float(value))}  # [{unit}] standard error {number(error, 2)}"
-
-
-def control_lines(fits: Sequence[FittedDamper]) -> str:
-    """Return lines for the table of a semi-active damper: its softest and firmest setting over the conditions."""
-    dampings = [fitted.curve_damping() for fitted in fits]
-    lines = ["# damping constant with the work of the curve in the tests, by condition:"]
-    for fitted, damping in zip(fits, dampings, strict=True):
-        lines.append(f"# {caption_of(fitted).split(':')[0]}: {damping:.5g} N s/m")
-    lines += [
-        "# for a table [AXLE.damper.control]; friction, gas and stop remain those of the table of the damper",
-        f"minimum_damping = {_short(min(dampings))}  # [N s/m]",
-        f"maximum_damping = {_short(max(dampings))}  # [N s/m]",
-    ]
-    return "\n".join(lines) + "\n"
 
 
 def fit_json(fitted: FittedDamper) -> dict[str, Any]:

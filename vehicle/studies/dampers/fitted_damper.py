@@ -8,12 +8,15 @@ from os import PathLike
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError
 from vehicle.signals.records.choice import Choice
 from vehicle.studies.dampers.damper_fit import DamperFit, choose_law, kind_of, limits_of
 from vehicle.studies.dampers.damper_law import LINEAR, values_of
 from vehicle.studies.dampers.damper_test import DamperTest, by_conditions, read_test
+
+Vector = npt.NDArray[np.float64]
 
 SLOW = 0.01
 """Maximum velocity [m/s] of a test that shows friction near rest."""
@@ -44,21 +47,31 @@ class FittedDamper:
         return "".join(f"_{name}_{value:g}" for name, value in self.conditions.items())
 
     @property
+    def condition_words(self) -> str:
+        """Conditions in words, as "current 1, clicks 4"; empty without conditions."""
+        return ", ".join(f"{name} {value:g}" for name, value in self.conditions.items())
+
+    @property
     def speeds(self) -> tuple[float, float]:
         """Highest velocities of the slowest and of the fastest test [m/s]."""
         speeds = [float(np.max(np.abs(test.velocity))) for test in self.tests]
         return min(speeds), max(speeds)
 
-    def curve_damping(self) -> float:
-        """Return the damping constant with the work of the curve F_c in these tests, sum F_c v / sum v^2 [N s/m]."""
+    def curve(self, velocity: Vector) -> Vector:
+        """Return the force of the curve F_c [N] at velocities [m/s]; (n,)."""
         values = values_of(self.fit.law, self.fit.parameters)
-        v = np.concatenate([test.velocity[test.settled] for test in self.tests])
-        force = np.zeros(v.size)
-        for side, slopes, widths in zip((v > 0.0, v <= 0.0), values.slopes, values.widths, strict=True):
+        force = np.zeros(velocity.size)
+        sides = velocity > 0.0, velocity <= 0.0
+        for side, slopes, widths in zip(sides, values.slopes, values.widths, strict=True):
             ends = np.concatenate([[0.0], np.cumsum(widths)])
             for start, width, slope in zip(ends, [*widths, np.inf], slopes, strict=True):
-                force += side * np.sign(v) * slope * np.clip(np.abs(v) - start, 0.0, width)
-        return float(np.sum(force * v) / np.sum(v**2))
+                force += side * np.sign(velocity) * slope * np.clip(np.abs(velocity) - start, 0.0, width)
+        return force
+
+    def curve_damping(self) -> float:
+        """Return the damping constant with the work of the curve F_c in these tests, sum F_c v / sum v^2 [N s/m]."""
+        v = np.concatenate([test.velocity[test.settled] for test in self.tests])
+        return float(np.sum(self.curve(v) * v) / np.sum(v**2))
 
     def left_open(self) -> list[str]:
         """Return texts on the parameters that the tests do not determine."""
@@ -95,7 +108,7 @@ def fit_damper(
         files: measurement files of any format, with displacement, force, and velocity if measured.
         choice: channels, units and excerpt; see `vehicle.studies.dampers.damper_test.read_test`.
         compression: the files are positive in compression.
-        conditions: name of a condition to a number, or to "channel:NAME".
+        conditions: name of a condition to a number, to numbers of all files as "0,0.5,1", or to "channel:NAME".
         pattern: pattern of the file names with conditions in braces, as "*Hz{current}A".
 
     Returns:
@@ -108,9 +121,26 @@ def fit_damper(
     paths = [Path(file) for file in files]
     if not paths or len(set(paths)) < len(paths):
         raise ConfigurationError(f"{len(paths)} files of tests: name one or more, each once")
-    tests = [read_test(path, choice, compression=compression, conditions=conditions, pattern=pattern) for path in paths]
+    typed = _typed(conditions or {}, len(paths))
+    tests = [
+        read_test(path, choice, compression=compression, conditions=of_file, pattern=pattern)
+        for path, of_file in zip(paths, typed, strict=True)
+    ]
     fitted = []
     for group in by_conditions(tests).values():
         fit, compared = choose_law(group)
         fitted.append(FittedDamper(conditions=group[0].conditions, tests=group, fit=fit, compared=compared))
     return fitted
+
+
+def _typed(conditions: Mapping[str, str], files: int) -> list[dict[str, str]]:
+    """Return the conditions of each file: one value for all, or values of all files with commas between them."""
+    columns = {}
+    for name, text in conditions.items():
+        values = [text] if text.startswith("channel:") else text.split(",")
+        if len(values) not in (1, files):
+            raise ConfigurationError(
+                f"--condition {name}={text}: {len(values)} values for {files} files; give one for all, or one for each"
+            )
+        columns[name] = values * (files // len(values))
+    return [{name: values[number] for name, values in columns.items()} for number in range(files)]

@@ -97,10 +97,16 @@ def read_cases(file: Path) -> CaseFile:
     """Read the cases of a TOML file.
 
     Raises:
-        ConfigurationError: the file is missing, or a key is unknown or wrong; the message names file and key.
+        ConfigurationError: the file is missing, a key is unknown or wrong, or there is neither a laden state nor a
+            variant; the message names file and key.
     """
     try:
-        return build(CaseFile, read_table(file))
+        cases = build(CaseFile, read_table(file))
+        if not cases.states and not cases.variants:
+            raise ConfigurationError(
+                'no states and no variants: add one, as [variants.soft] with "damper.viscous" = 900'
+            )
+        return cases
     except ConfigurationError as error:
         text = str(error)
         raise ConfigurationError(text if text.startswith(str(file)) else f"{file}: {text}") from None

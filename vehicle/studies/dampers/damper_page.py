@@ -1,0 +1,96 @@
+"""Report of fitted dampers: laws, errors of the tests, pictures of every test, and the lines of the vehicle file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+
+from markupsafe import Markup
+
+from vehicle.digits import number
+from vehicle.drawing.rendering.damper_plot import DamperLoop, plot_damper, plot_settings
+from vehicle.runs.report.markup import templates
+from vehicle.runs.report.page import document, head_line
+from vehicle.runs.report.svg_figure import drawing
+from vehicle.studies.dampers.damper_text import SHOWN_LAWS, caption_of, vehicle_lines
+from vehicle.studies.dampers.fitted_damper import FittedDamper
+from vehicle.studies.dampers.over_condition import control_lines, curve_lines, settings_of
+
+fill = templates(__file__)
+
+PAGE_POINTS = 600
+"""Maximum number of points of a line in the page, a cycle of a sine and more."""
+
+
+def damper_page(fits: Sequence[FittedDamper], command: str, *, author: str = "", project: str = "") -> str:
+    """Return the report of fitted dampers as one HTML document.
+
+    Args:
+        fits: fits in the order of their conditions.
+        command: command line of the fit.
+        author, project: names in the head of the page; may be empty.
+    """
+    parts = []
+    if len(fits) > 1:
+        parts.append(("Over the conditions", "conditions", _conditions(fits)))
+    for number_of_fit, fitted in enumerate(fits):
+        words = fitted.condition_words
+        parts.append((f"Law{f' at {words}' if words else ''}", f"law{number_of_fit}", _law(fitted)))
+    parts.append(("How to repeat the fit", "repeat", fill("repeat_damper", command=command)))
+    tests = [test for fitted in fits for test in fitted.tests]
+    return document(f"Damper from {len(tests)} test{'s'[: len(tests) > 1]}", (head_line(author, project),), parts)
+
+
+def loops_of(fitted: FittedDamper, points: int = 0) -> list[DamperLoop]:
+    """Return measured and fitted force of each test, settled samples, at most `points` of them if not 0."""
+    loops = []
+    for test, error, outside in zip(fitted.tests, fitted.fit.fitted, fitted.fit.left_out, strict=True):
+        rows = test.settled.nonzero()[0]
+        rows = rows[:: 1 + rows.size // points] if points else rows
+        label = f"{test.name}: error {error:.3f}, left out {outside:.3f}"
+        loops.append(
+            DamperLoop(label, test.displacement[rows], test.velocity[rows], test.force[rows],
+                       fitted.fit.force(test)[rows])
+        )  # fmt: skip
+    return loops
+
+
+def _conditions(fits: Sequence[FittedDamper]) -> Markup:
+    """Return table and picture of damping and friction over the conditions, and the lines of a semi-active damper."""
+    settings = settings_of(fits)
+    heads = ["condition", "damping [N s/m]", "friction [N]", "bend force [N]", "slope [N s/m]"]
+    rows = [(each.words, *(number(value, 4) for value in each[1:])) for each in settings]
+    figure = drawing(partial(plot_settings, curves=curve_lines(fits), settings=settings), "Laws over the conditions")
+    return fill("settings", heads=heads, rows=rows, figure=figure, lines=control_lines(fits))
+
+
+def _law(fitted: FittedDamper) -> Markup:
+    """Return law, parameters, errors and pictures of the tests, and the lines of the vehicle file."""
+    fit = fitted.fit
+    parameters = [
+        (name, unit, number(value, 5), number(error, 2))
+        for (name, unit), value, error in zip(fit.law.parameters.items(), fit.values, fit.errors, strict=True)
+    ]
+    tests = [
+        (f"{test.name}: {test.caption}", *(number(error, 3) for error in errors))
+        for test, *errors in zip(fitted.tests, fit.fitted, fit.left_out, fit.whole, strict=True)
+    ]
+    laws = [
+        (each.law.title, len(each.law.parameters), number(each.left_out_error, 3))
+        for each in fitted.compared[:SHOWN_LAWS]
+    ]
+    sentence = (
+        f"{fit.law.title.capitalize()}: the fewest parameters within one standard error of the least error on tests "
+        f"left out, of {len(fitted.compared)} laws."
+    )
+    return fill(
+        "law",
+        sentence=sentence,
+        tests=tests,
+        figure=drawing(partial(plot_damper, loops=loops_of(fitted, PAGE_POINTS)), f"Tests: {caption_of(fitted)}"),
+        parameters=parameters,
+        laws=laws,
+        left_open=fitted.left_open(),
+        noted=[f"{test.name}: {text}" for test in fitted.tests for text in test.notices],
+        lines=vehicle_lines(fitted),
+    )

@@ -1,0 +1,84 @@
+"""Damping and friction over the conditions of the tests, as current: numbers of a semi-active damper.
+
+The damping is the constant with the work of the curve in the tests, sum F_c v / sum v^2; F_c = F_b + c v holds beyond
+the last bend, where F_b is the force that a magnetorheological damper has to yield at.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.studies.dampers.damper_law import values_of
+from vehicle.studies.dampers.fitted_damper import FittedDamper
+
+Vector = npt.NDArray[np.float64]
+
+POINTS = 400
+"""Even number of points of a curve in a picture: none at rest, where the friction changes its sign."""
+
+
+class Setting(NamedTuple):
+    """Damping and friction of a damper at a condition.
+
+    Attributes:
+        words: condition, as "current 1".
+        damping: constant with the work of the curve in the tests [N s/m].
+        friction: sliding friction beside the curve [N].
+        bend_force: mean force of the curve beyond its last bend, extended to rest, of rebound and bump [N].
+        slope: mean slope there [N s/m].
+    """
+
+    words: str
+    damping: float
+    friction: float
+    bend_force: float
+    slope: float
+
+
+def settings_of(fits: Sequence[FittedDamper]) -> list[Setting]:
+    """Return the settings of fits in the order of their conditions."""
+    settings = []
+    for fitted in fits:
+        values = values_of(fitted.fit.law, fitted.fit.parameters)
+        bend = ((values.slopes[:, :-1] - values.slopes[:, -1:]) * values.widths).sum(axis=1)
+        friction = float(values.friction[0] + values.limit.sum())
+        settings.append(
+            Setting(
+                words=fitted.condition_words, damping=fitted.curve_damping(), friction=friction,
+                bend_force=float(bend.mean()), slope=float(values.slopes[:, -1].mean()),
+            )
+        )  # fmt: skip
+    return settings
+
+
+def curve_lines(fits: Sequence[FittedDamper]) -> list[tuple[str, Vector, Vector]]:
+    """Return condition, velocities [m/s] and forces of curve and friction [N] of each fit, for a picture."""
+    lines = []
+    for fitted, setting in zip(fits, settings_of(fits), strict=True):
+        velocity = np.linspace(-fitted.speeds[1], fitted.speeds[1], POINTS)
+        lines.append((setting.words, velocity, fitted.curve(velocity) + setting.friction * np.sign(velocity)))
+    return lines
+
+
+def control_lines(fits: Sequence[FittedDamper]) -> str:
+    """Return lines for the table of a semi-active damper: its softest and firmest setting over the conditions."""
+    settings = settings_of(fits)
+    lines = [
+        "# damping: constant with the work of the curve in the tests; bend force and slope: the curve beyond its last",
+        "# bend is bend force + slope times velocity; friction: that beside the curve",
+        "# condition           damping [N s/m]  friction [N]  bend force [N]  slope [N s/m]",
+    ]
+    for words, damping, friction, force, slope in settings:
+        lines.append(f"# {words:<18} {damping:>16.5g} {friction:>13.4g} {force:>15.4g} {slope:>14.4g}")
+    dampings = [each.damping for each in settings]
+    lines += [
+        "# for a table [AXLE.damper.control]: the coefficient replaces the curve; friction, gas and stop remain those",
+        f"# of the table of the damper, as in damper{fits[0].name}.toml",
+        f"minimum_damping = {float(f'{min(dampings):.5g}')!r}  # [N s/m]",
+        f"maximum_damping = {float(f'{max(dampings):.5g}')!r}  # [N s/m]",
+    ]
+    return "\n".join(lines) + "\n"
