@@ -40,7 +40,8 @@ def test_a_second_simulation_is_refused_and_the_first_goes_on():
             pass
         assert callbacks() == before
     assert str(caught.value) == (
-        "mjcb_control is taken by another simulation in this process; finish it first, or use a process for each simulation"
+        "mjcb_control is taken by another simulation in this process; finish it first, or use "
+        "a process for each simulation"
     )
     assert callbacks() == (None, None, None)
 

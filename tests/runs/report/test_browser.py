@@ -156,5 +156,5 @@ def test_after_printing_the_page_is_folded_as_before(browser):
 
 
 def test_the_page_is_short(browser):
-    """5978 px for a run of the car with film, 6718 for this changed car: a second statement and picture, more notices."""
+    """5978 px for a run with film, 6718 for this changed car: a second statement and picture, more notices."""
     assert browser.execute_script("return document.documentElement.scrollHeight;") < 6900

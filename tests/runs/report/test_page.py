@@ -69,21 +69,8 @@ def test_the_page_is_whole_and_asks_nobody(reported, outline):
     assert outline.links and all(link.startswith(("#", "data:")) for link in outline.links)
     assert not re.search(r"url\((?!#)|@import|<iframe|<object|<base", reported.text)
     assert "default-src 'none'" in unescape(reported.text)
-    wanted = [
-        "Result",
-        "This run",
-        "Frequency responses",
-        "Car, signal, engine",
-        "Try it",
-        "Findings",
-        "Notices",
-        "Dampers",
-        "Time histories",
-        "Comfort",
-        "Modes",
-        "Spectra",
-        "The car",
-    ]
+    wanted = ["Result", "This run", "Frequency responses", "Car, signal, engine", "Try it", "Findings", "Notices"]
+    wanted += ["Dampers", "Time histories", "Comfort", "Modes", "Spectra", "The car"]
     assert outline.titles == [*wanted, "All values", "How to repeat the run"]
     assert reported.text.count("<svg ") == 6  # change, FRFs, time histories, bands of the comfort, spectra, car
 

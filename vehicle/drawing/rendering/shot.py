@@ -15,6 +15,7 @@ from vehicle.drawing.rendering.cameras import close_up, whole_car
 from vehicle.drawing.rendering.canvas import Canvas
 from vehicle.drawing.rendering.drawing import Drawing
 from vehicle.drawing.rendering.excerpt import FPS, choose_excerpt
+from vehicle.drawing.rendering.force_arrows import ForceArrows
 from vehicle.drawing.rendering.layout import Layout, Picture
 from vehicle.drawing.rendering.motion import Motion, RecordedMotion
 from vehicle.drawing.rendering.overlay import Overlay
@@ -154,6 +155,7 @@ class Shot:
         chosen = 1.0 if self.rests else round_factor(min(VISIBLE_TRAVEL / largest, LARGEST_FACTOR))
         factor = chosen if take.exaggeration is None else take.exaggeration
         self.cut = Cut(start=start, frames=frames, interval=interval, exaggeration=factor, reason=excerpt.reason)
+        self.arrows = ForceArrows(self.motion, self.composition, recording, start, start + excerpt.length)
         self.road = None
         if take.speed is not None:
             self.road = RoadStrip(self.composition.wheels, recording, take.speed, interval, take.profile)
@@ -191,6 +193,7 @@ class Shot:
                     drawing.see(camera, opacity)
                     if self.road is not None:
                         self.road.draw(canvas.scene, time, self.cut.interval, factor)
+                    self.arrows.draw(canvas.scene, state, factor, time, self.cut.interval)
                     canvas.render(viewport)
                 yield self.overlay.draw(canvas.read(), time, self._lamps(time))
 
@@ -242,6 +245,7 @@ class Shot:
             *road,
             f"excerpt from {cut.start:.2f} s ({cut.reason}); "
             f"{f'SLIP: above {1e3 * self.slip:g} mm/s; ' if self.dampers else ''}tyres {self.vehicle.driving.words}",
+            *filter(None, [self.arrows.words]),
         ]
 
     def _traces(self) -> list[Trace]:
