@@ -80,8 +80,8 @@ def _law(fitted: FittedDamper) -> Markup:
         for each in fitted.compared[:SHOWN_LAWS]
     ]
     sentence = (
-        f"{fit.law.title[:1].upper()}{fit.law.title[1:]}: the fewest parameters within one standard error of the least error on tests "
-        f"left out, of {len(fitted.compared)} laws."
+        f"{fit.law.title[:1].upper()}{fit.law.title[1:]}: the fewest parameters within one standard error of the least "
+        f"error on tests left out, of {len(fitted.compared)} laws."
     )
     return fill(
         "law",
