@@ -164,8 +164,8 @@ def _linearity(run: FinishedRun) -> list[str]:
     if not run.responses:
         if run.summary["input"].get("road"):
             return [
-                "There are no FRFs: on a road the rear wheels meet what the front wheels have met, and responses to the "
-                "plates cannot be told apart."
+                "There are no FRFs: on a road the rear wheels follow the front wheels over the same heights, and the "
+                "responses to the plates cannot be separated."
             ]
         reason = next((text.removeprefix("no FRFs: ") for text in run.summary["notices"] if "no FRFs" in text), "")
         return [f"There are no FRFs: {reason}." if reason else "There are no FRFs."]
