@@ -49,6 +49,18 @@ def test_cars_are_ranked_by_the_mean_over_the_inputs():
     assert lines[-1] == "most comfortable is the first car: front.spring = 30"
 
 
+def test_what_an_input_sets_makes_no_car():
+    """Over a cleat the tyres of every car may lift off: two cars on two inputs, not four cars."""
+    table = table_of([("30",), ("10",)], ["front.spring"])
+    cases = [
+        replace(case, overrides=(*case.overrides, "tyre.one_sided=true")) if case.source.name == "b" else case
+        for case in table.cases
+    ]
+    cars = ranked(replace(table, cases=cases))
+    assert cars.paths == ["front.spring"] and cars.weighted.tolist() == [2.0, 3.0]
+    assert ranking_lines(cars)[-1] == "most comfortable is the first car: front.spring = 30"
+
+
 def test_a_failed_run_takes_its_car_out():
     table = table_of([("30",), ("10",), ("20",)], ["front.spring"])
     failed = [replace(table.results[0], values={}, reason="stopped"), *table.results[1:]]

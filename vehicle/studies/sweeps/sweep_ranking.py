@@ -136,14 +136,20 @@ def ranked_cars(table: SweptCases) -> RankedCars | None:
     for number, case in enumerate(table.cases):
         cells = tuple(cell or default for cell, default in zip(parameter_cells(case, paths), unchanged, strict=True))
         rows.setdefault(cells, []).append(number)
-    # The speed of rolling tyres is a parameter of the input: it has the same value in all cars, or in those of a road.
-    varied = [column for column in range(len(paths)) if len({cells[column] for cells in rows}) > 1]
+    # A parameter that each input sets for all cars belongs to the input: speed, tyres that lift off an obstacle.
+    of_input: dict[object, list[tuple[str, ...]]] = {}
+    for cells, numbers in rows.items():
+        for source in {table.cases[number].source for number in numbers}:
+            of_input.setdefault(source, []).append(cells)
+    varied = [
+        column
+        for column, path in enumerate(paths)
+        if path != "driving.speed" and any(len({cells[column] for cells in each}) > 1 for each in of_input.values())
+    ]
     cars: dict[tuple[str, ...], list[int]] = {}
     for cells, numbers in rows.items():
-        cars.setdefault(tuple(cells[column] for column in varied if paths[column] != "driving.speed"), []).extend(
-            numbers
-        )
-    names = [paths[column] for column in varied if paths[column] != "driving.speed"]
+        cars.setdefault(tuple(cells[column] for column in varied), []).extend(numbers)
+    names = [paths[column] for column in varied]
     weighted, unweighted, *seat_values = (
         np.array([float(np.mean(column[numbers])) for numbers in cars.values()])
         for column in map(table.column, (ranked_by, f"{prefix}{UNWEIGHTED}", *([SEAT_VALUE] if prefix else [])))
