@@ -89,6 +89,17 @@ def test_groups():
             single_changes(vehicle, every, share)
 
 
+def test_the_forces_of_a_curve_are_one_parameter():
+    vehicle = Car.load("sedan").vehicle
+    parameters = varied_parameters(vehicle)
+    curve = vehicle.table["front"]["damper"]["force"]
+    assert parameters["front.damper.force"] == (max(map(abs, curve)), "N")
+    (_, (softer,), (harder,)), _ = single_changes(vehicle, {"front.damper.force": parameters["front.damper.force"]}, 0.2)
+    for text, factor in ((softer, 0.8), (harder, 1.2)):
+        changed = Car.load("sedan", [text]).vehicle.table["front"]["damper"]["force"]
+        assert changed == pytest.approx([factor * force for force in curve], rel=1e-12)
+
+
 def test_parameters_without_effect_are_named():
     """The Stribeck parameters of Coulomb friction have none; alone they are refused."""
     vehicle = Car.load("focus").vehicle

@@ -7,7 +7,7 @@ All cars drive on the same road, so a change has a far smaller error than the co
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,7 @@ from scipy.special import stdtrit
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.idle import idle_parameters
 from vehicle.model.parameters.parameter_list import parameter_list
+from vehicle.model.parameters.paths import value_at
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import AXES
 from vehicle.runs.car import Car
@@ -44,12 +45,17 @@ def varied_parameters(vehicle: Vehicle, groups: Sequence[str] = ()) -> dict[str,
         vehicle: the car.
         groups: paths or parts of paths, as "front.damper", "viscous" or "tyre".
 
+    Returns:
+        Path to value and unit; the forces of a curve are one parameter, whose value is the largest of them.
+
     Raises:
         ConfigurationError: a group has no parameter that is a number other than 0.
     """
     numbers: dict[str, tuple[float, str]] = {}
     for each in parameter_list(vehicle, None):
-        if isinstance(each.value, int | float) and not isinstance(each.value, bool):
+        if _is_curve(each.path, each.value):
+            numbers[each.path] = max(map(abs, each.value)), each.unit
+        elif isinstance(each.value, int | float) and not isinstance(each.value, bool):
             numbers[each.path] = float(each.value), each.unit
         elif isinstance(each.value, list | tuple) and len(each.value) == len(AXES):
             components = {f"{each.path}.{axis}": part for axis, part in zip(AXES, each.value, strict=True)}
@@ -89,15 +95,26 @@ def single_changes(
     """
     if not 0.0 < share < 1.0:
         raise ConfigurationError(f"--each {100.0 * share:g} %: must be above 0 and below 100 %")
-    texts = {path: f"{path}={value!r}" for path, (value, _) in parameters.items()}
-    without = tuple(path for path, text in texts.items() if idle_parameters(vehicle, (text,)))
+    without = tuple(path for path in parameters if idle_parameters(vehicle, (_scaled(vehicle, path, parameters, 1.0),)))
     changes: list[tuple[str, ...]] = [()]
-    for path, (value, _) in parameters.items():
+    for path in parameters:
         if path not in without:
-            changes += [(f"{path}={value * factor!r}",) for factor in (1.0 - share, 1.0 + share)]
+            changes += [(_scaled(vehicle, path, parameters, factor),) for factor in (1.0 - share, 1.0 + share)]
     if len(changes) == 1:
         raise ConfigurationError(f"--vary: no parameter has an effect on this car: {', '.join(without)}")
     return changes, without
+
+
+def _is_curve(path: str, value: Any) -> bool:
+    """True for the forces of a curve, as `damper.force` over `damper.velocity`."""
+    return path.rpartition(".")[2] == "force" and isinstance(value, list | tuple)
+
+
+def _scaled(vehicle: Vehicle, path: str, parameters: Mapping[str, tuple[float, str]], factor: float) -> str:
+    """Return the override of a parameter, or of all forces of a curve, times a factor."""
+    present = value_at(vehicle.table, path)
+    value = [force * factor for force in present] if _is_curve(path, present) else parameters[path][0] * factor
+    return f"{path}={value!r}"
 
 
 @with_settings(EffectSettings)
