@@ -48,21 +48,26 @@ DIRECTIONS = {"x": "fore-aft", "y": "lateral", "z": "vertical"}
 def answer(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> Markup:
     """Return the statement on a single run, or statements and a picture of each further run against the first.
 
+    A run on another input than the first is compared with the first run on that input, if there is one before it.
+
     Args:
         runs: finished runs.
         modes: modes of the car of each run, for dampers "stuck" and "sliding".
     """
     if len(runs) == 1:
         return _of_one(runs[0], modes[0])
-    first, statements, figure = runs[0], [], Markup()
-    for run, run_modes in zip(runs[1:], modes[1:], strict=True):
-        texts = [_effect(first, run)]
-        if abs(_percent(first, run) or 0.0) >= SMALL:
-            texts.append(_reason(first, run, modes[0], run_modes))
+    statements, figure, changes = [], Markup(), {}
+    for number_of_run, (run, run_modes) in enumerate(zip(runs[1:], modes[1:], strict=True), 1):
+        on_input = [k for k in range(number_of_run) if _input_words(runs[k]) == _input_words(run)]
+        reference = on_input[0] if on_input else 0
+        before = runs[reference]
+        texts = [_effect(before, run)]
+        if abs(_percent(before, run) or 0.0) >= SMALL:
+            texts.append(_reason(before, run, modes[reference], run_modes))
         statements.append(" ".join(texts))
-    changes = {f"{run.name} against {first.name}": _changes(first, run) for run in runs[1:]}
+        changes[f"{run.name} against {before.name}"] = _changes(before, run)
     if all(changes.values()):
-        title = f"Change of comfort and loads from {first.name}"
+        title = "Change of comfort and loads"
         caption = "green: smaller vibration or load, red: larger; grey: no rating"
         figure = drawing(partial(plot_changes, changes=changes, title=title, caption=caption), title)
     return fill("answer", texts=statements, figure=figure)
@@ -172,8 +177,10 @@ def _effect(first: FinishedRun, run: FinishedRun) -> str:
     if abs(percent) < SMALL:
         effect = f"stays at {number(before)} m/s²"
     else:
-        word, rating = ("rises", "worse") if percent > 0.0 else ("falls", "better")
-        effect = f"{word} from {number(before)} to {number(after)} m/s² ({difference(before, after)}, {rating})"
+        word, rating = ("rises", ", worse") if percent > 0.0 else ("falls", ", better")
+        if _input_words(first) != _input_words(run):
+            rating = ""  # of the inputs, not of the cars
+        effect = f"{word} from {number(before)} to {number(after)} m/s² ({difference(before, after)}{rating})"
     return f"{_what_changed(first, run)}: the weighted acceleration at the seat rail (ISO 2631-1) {effect}."
 
 
@@ -254,8 +261,14 @@ def _reason(first: FinishedRun, run: FinishedRun, modes: Modes, run_modes: Modes
     parts = [f"{share} of the change (mean square) {_is_within(band)}"]
     mode = strongest(first, band, modes.get(damper_state(first), ()))
     if mode is not None:
-        other = counterpart(mode, run_modes.get(damper_state(run), ()), first.car.matrices.system.mass)
-        parts += [f"mainly by the mode {_moved(mode, other)}", *_path_words(first, band, mode)]
+        states = [damper_state(each) for each in (first, run)]
+        other = counterpart(mode, run_modes.get(states[1], ()), first.car.matrices.system.mass)
+        moved = (
+            _moved(mode, other)
+            if states[0] == states[1]
+            else f"of {mode_words(mode)} with {states[0]} dampers, which are {states[1]} now"
+        )
+        parts += [f"mainly by the mode {moved}", *_path_words(first, band, mode)]
     slips = [slip_shares(each.summary) for each in (first, run)]
     if list(slips[0]) == list(slips[1]) and slips[0]:
         wheel = max(slips[0], key=lambda name: abs(slips[1][name] - slips[0][name]))
