@@ -67,7 +67,7 @@ def test_targets_that_exclude_each_other(sedan):
     found = meet_targets(sedan, targets(0.5, 0.1), RANGES, duration=3.0)
     assert not found.change.feasible and found.change.active == (0,)
     assert "No car within these bounds meets all 2 targets: the ride misses its limit by" in found.sentence
-    assert "at its bound is" in found.sentence and "front.bushings.tyre.stiffness.z" in found.sentence
+    assert "the bound of" in found.sentence and "front.bushings.tyre.stiffness.z" in found.sentence
 
 
 def test_a_car_that_meets_its_targets(sedan):

@@ -138,15 +138,20 @@ class TargetSearch:
             ]
             decisive = [named[index] for index in self.change.active]
             text = f"The smallest change that meets all {len(named)} targets: {', '.join(changes)}"
-            return f"{text}; decisive is {' and '.join(decisive)}." if decisive else f"{text}."
+            if not decisive:
+                return f"{text}."
+            return (
+                f"{text}; decisive is {' and '.join(decisive)}. There the car is just at the limit, and on another "
+                "road it may miss it: check it with report --targets, or search with a stricter limit."
+            )
         worst, *others = sorted(self.change.active, key=lambda index: -self.change.excess[index])
         text = (
             f"No car within these bounds meets all {len(named)} targets: {named[worst]} misses its limit by "
             f"{100.0 * self.change.excess[worst]:.3g} % at best"
         )
         if others:
-            text += f"; against it stands {' and '.join(named[index] for index in others)}"
-        return text + (f"; at its bound is {' and '.join(bound)}." if bound else ".")
+            text += f"; there {' and '.join(named[index] for index in others)} is at the limit, too"
+        return text + (f"; the bound of {' and '.join(bound)} stops the search." if bound else ".")
 
     def rows(self) -> list[tuple[str, str, str, str, str, str]]:
         """Return name, input, limit with unit, both values and the state of each figure as texts."""
