@@ -21,7 +21,8 @@ def live_cars(app: Any, error: Exception | None) -> None:
     folder = Path(app.outdir) / "live"
     if error is None and app.builder.format == "html":
         folder.mkdir(exist_ok=True)
-        cars = {"shaker": ("focus", "low.csv"), "road": ("focus_road", road("B", 80, duration=30))}
+        road_b = road("B", 80, duration=30)
+        cars: dict[str, tuple[str, str | Road]] = {"shaker": ("focus", "low.csv"), "road": ("focus_road", road_b)}
         for name, (car, source) in cars.items():
             (folder / f"{name}.html").write_text(live_page(Car.load(car), source), encoding="utf-8")
 
@@ -42,10 +43,10 @@ def live_page(car: Car, source: str | Road) -> str:
     wheel = car.vehicle.shaker_wheel
     if isinstance(source, Road):
         drive = source.under(car.vehicle, car.overrides)
-        summary = drive.summary(signal := drive.signal())
+        summary: dict[str, Any] = {**drive.summary(signal := drive.signal())}
         car, name, skip = car.with_(drive.overrides), f"road of class {summary['class']}", drive.skip
-        road = RunRoad(road_class=summary["class"], speed=summary["speed_kmh"], behind=summary["behind_m"])
-        numbers = trial_data(car, signal, wheel=wheel, skip=skip, road=road)
+        driven = RunRoad(road_class=summary["class"], speed=summary["speed_kmh"], behind=summary["behind_m"])
+        numbers = trial_data(car, signal, wheel=wheel, skip=skip, road=driven)
     else:
         signal, name = read_signal(find_input(source), wheel=wheel), source
         numbers = trial_data(car, signal, wheel=wheel)

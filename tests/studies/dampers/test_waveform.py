@@ -11,6 +11,7 @@ from vehicle.studies.dampers.waveform import waveform_of
 STEPS = [0.01, 0.1, 0.5]
 CASES = {
     "sine, 4 Hz": lambda: sine(0.008, 4.0, 2.0),
+    "sine, 0.1 Hz": lambda: sine(0.004, 0.1, 20.0),  # three swings between its ends
     "triangle, 4 mm/s": lambda: strokes([0.004], 0.008, 0.04, 3),
     "velocity steps, 10, 100, 500 mm/s": lambda: strokes(STEPS, 0.04, 0.03, 2),
     "random motion": lambda: random_motion(8.0, 0.008, 1),
@@ -24,7 +25,7 @@ def test_a_motion_is_named(words):
     noise = 5e-4 * np.ptp(x) * np.random.default_rng(3).standard_normal(x.size)
     found = waveform_of(time, x + noise, v)
     assert found.words == words
-    assert found.periodic == words.startswith(("sine", "triangle")) and found.steps == words.startswith("velocity")
+    assert found.periodic == words.startswith(("sine, 4", "triangle")) and found.steps == words.startswith("velocity")
 
 
 def test_sines_of_several_frequencies_in_a_record():

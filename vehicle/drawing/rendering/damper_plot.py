@@ -77,13 +77,13 @@ def plot_settings(
     """
     with saved_figure(path, (9.0, 3.6), title) as figure:
         left, middle, right = figure.subplots(1, 3, width_ratios=(2.0, 1.0, 1.0))
-        for number, (words, velocity, force) in enumerate(curves):
+        for number, (condition, velocity, force) in enumerate(curves):
             style = {"color": COLOURS[number % len(COLOURS)], "linestyle": LINES[number // len(COLOURS) % len(LINES)]}
-            left.plot(1e3 * velocity, force, label=words, **style)
+            left.plot(1e3 * velocity, force, label=condition, **style)
         left.set(xlabel="velocity [mm/s]", ylabel="force of curve and friction [N]")
         left.legend(loc="upper left")
-        words = [each.words for each in settings]
+        conditions = [each.words for each in settings]
         for axis, name, unit in ((middle, "damping", "N s/m"), (right, "friction", "N")):
-            axis.plot(words, [getattr(each, name) for each in settings], "o-", color=COLOURS[0])
+            axis.plot(conditions, [getattr(each, name) for each in settings], "o-", color=COLOURS[0])
             axis.set(ylabel=f"{name} [{unit}]", ylim=(0.0, None))
             axis.tick_params(axis="x", labelrotation=30)

@@ -78,7 +78,7 @@ class ForceArrows:
             if (force := recording.channels.get(f"tyre_{wheel.name}_force_z")) is not None:
                 point = np.add(wheel.center, (0.0, wheel.side * BESIDE_WHEEL, 0.0))
                 body = int(model.body(hub_of(composition, wheel.name)).id)
-                self._add(body, point, (0.0, 0.0, 1.0), force - force[0], TYRE)
+                self._add(body, point, np.array([0.0, 0.0, 1.0]), force - force[0], TYRE)
         joints = {joint.name: (part, joint) for part in composition.parts for joint in part.joints}
         for damper in composition.dampers:
             if (force := recording.channels.get(f"{damper.name}_force")) is not None:

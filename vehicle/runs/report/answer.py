@@ -88,7 +88,9 @@ def _of_one(run: FinishedRun, modes: Modes) -> Markup:
         mode = strongest(run, band, modes.get(damper_state(run), ()))
         parts = [f"{100.0 * band.share:.0f} % of it (mean square) {_is_within(band)}"]
         if mode is not None:
-            parts += [f"mainly by the mode of {mode_words(mode)}", *_path_words(run, band, mode)]
+            # The linear model has the smallest slope of sliding dampers, and no friction.
+            words = mode_words(mode, "at least " if damper_state(run) == "sliding" else "")
+            parts += [f"mainly by the mode of {words}", *_path_words(run, band, mode)]
         texts.append(f"{', '.join(parts)}{_damper_words(run)}.")
     return fill("answer", texts=[" ".join(texts)], figure="")
 
@@ -151,9 +153,9 @@ def _path_words(run: FinishedRun, band: MainBand, mode: Mode) -> list[str]:
     return [f"carried into the body by {path}"] if path else []
 
 
-def mode_words(mode: Mode) -> str:
-    """Return a mode in words: frequency, largest motion, damping ratio."""
-    return f"{mode.frequency:.1f} Hz ({_motion(mode)}, damping ratio {number(100.0 * mode.damping_ratio, 2)} %)"
+def mode_words(mode: Mode, bound: str = "") -> str:
+    """Return a mode in words: frequency, largest motion, damping ratio, with a word before it as "at least "."""
+    return f"{mode.frequency:.1f} Hz ({_motion(mode)}, damping ratio {bound}{number(100.0 * mode.damping_ratio, 2)} %)"
 
 
 def _motion(mode: Mode) -> str:

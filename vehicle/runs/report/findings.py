@@ -105,7 +105,9 @@ def _resonances(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[s
             )
     if not sentences and not run.summary["input"]["rms_m"]:
         return ["No plate moves, so there are no FRFs and no resonances."]
-    return sentences or ["No resonance was identified: the input excites none, or there are no FRFs."]
+    if not sentences and not run.responses:
+        return ["Resonances are read from FRFs, and this run has none; the modes of the car are listed below."]
+    return sentences or ["The FRFs have no resonance that the input excites."]
 
 
 def main_points(run: FinishedRun, wheel: str) -> dict[str, str]:
@@ -160,7 +162,13 @@ def _linearity(run: FinishedRun) -> list[str]:
     if not run.responses and not run.summary["input"]["rms_m"]:
         return sentences
     if not run.responses:
-        return ["There are no FRFs: see the notices." if run.summary["notices"] else "There are no FRFs."]
+        if run.summary["input"].get("road"):
+            return [
+                "There are no FRFs: on a road the rear wheels follow the front wheels over the same heights, and the "
+                "responses to the plates cannot be separated."
+            ]
+        reason = next((text.removeprefix("no FRFs: ") for text in run.summary["notices"] if "no FRFs" in text), "")
+        return [f"There are no FRFs: {reason}." if reason else "There are no FRFs."]
     rows = {name: row for row, name in enumerate(run.car.vehicle.acceleration_channels)}
     multiple = "multiple coherence, with all plates," if len(run.responses) > 1 else "coherence"
     points = {channel: point for wheel, _, _ in run.peaks for channel, point in main_points(run, wheel).items()}

@@ -38,6 +38,19 @@ DRIFT_SHARE = 1.0
 of its lowest frequency has less than 0.2."""
 
 
+class ImplausibleError(DataError):
+    """A level that indicates a wrong unit or quantity.
+
+    Args:
+        found: what was found, and what is allowed.
+        remedy: what may be wrong, and how to mend it.
+    """
+
+    def __init__(self, found: str, remedy: str) -> None:
+        super().__init__(f"{found}; {remedy}")
+        self.found = found
+
+
 def check_level(
     path: Path, displacement: Mapping[str, Vector], timestep: float, units: Mapping[str, str] | None = None
 ) -> list[str]:
@@ -54,7 +67,7 @@ def check_level(
         A notice for each plate that exceeds a level in rare events; see `rare_events`.
 
     Raises:
-        DataError: |z| > 0.15 m or |z''| > 50 m/s2 other than rare events, or RMS < 1e-7 m (unless another
+        ImplausibleError: |z| > 0.15 m or |z''| > 50 m/s2 other than rare events, or RMS < 1e-7 m (unless another
             plate moves).
     """
     events = []
@@ -75,19 +88,20 @@ def check_level(
                 f"beyond {per_metre * LARGEST_DISPLACEMENT:g} {unit}: a pothole or a kerb?"
             )
         elif abs(z[index]) > LARGEST_DISPLACEMENT:
-            raise DataError(
+            raise ImplausibleError(
                 f"{path}: plate {wheel} is displaced by {per_metre * z[index]:.6g} {unit} at sample {index} "
-                f"(t = {index * timestep:.6g} s); allowed {per_metre * LARGEST_DISPLACEMENT:g} {unit}; {question}; "
-                f"{remedy}, or remove a constant offset (--remove-mean)"
+                f"(t = {index * timestep:.6g} s); allowed {per_metre * LARGEST_DISPLACEMENT:g} {unit}",
+                f"{question}; {remedy}, or remove a constant offset (--remove-mean)",
             )
         rms = float(np.std(z))
         if rms < SMALLEST_RMS and not (moving and np.ptp(z) == 0.0):
             question = (
                 "does the column, declared in [mm], hold metres?" if unit == "mm" else "does the column hold metres?"
             )
-            raise DataError(
+            raise ImplausibleError(
                 f"{path}: RMS of plate {wheel} is {per_metre * rms:.3g} {unit}; allowed from "
-                f"{per_metre * SMALLEST_RMS:g} {unit}; {question} Otherwise it is another quantity, or a dead sensor"
+                f"{per_metre * SMALLEST_RMS:g} {unit}",
+                f"{question} Otherwise it is another quantity, or a dead sensor",
             )
         acceleration = band_limited_acceleration(z, timestep)
         index = int(np.argmax(np.abs(acceleration)))
@@ -98,11 +112,11 @@ def check_level(
                 f"{ACCELERATION_BAND:g} Hz), beyond {LARGEST_ACCELERATION:g} m/s2: a pothole, or a spike of the logger?"
             )
         elif abs(acceleration[index]) > LARGEST_ACCELERATION:
-            raise DataError(
+            raise ImplausibleError(
                 f"{path}: plate {wheel} accelerates by {acceleration[index]:.4g} m/s2 at t = {index * timestep:.6g} s "
-                f"(below {ACCELERATION_BAND:g} Hz); allowed {LARGEST_ACCELERATION:g} m/s2; {question}; {remedy}. "
-                "Otherwise look there for a jump or a spike in the record, or set --any-level if it is a road, not a "
-                "shaker signal"
+                f"(below {ACCELERATION_BAND:g} Hz); allowed {LARGEST_ACCELERATION:g} m/s2",
+                f"{question}; {remedy}. Otherwise look there for a jump or a spike in the record, or set --any-level "
+                "if it is a road, not a shaker signal",
             )
     return events
 

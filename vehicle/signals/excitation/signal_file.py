@@ -13,7 +13,14 @@ from vehicle.errors import ConfigurationError, DataError, OutputError
 from vehicle.names import CORNERS, in_order, is_wheel
 from vehicle.replacement import replaced_file
 from vehicle.signals.excitation.chosen_plates import WHEEL_REMEDY, chosen_plates
-from vehicle.signals.excitation.plausibility import aliasing_notices, check_level, clipping, drifts, pauses
+from vehicle.signals.excitation.plausibility import (
+    ImplausibleError,
+    aliasing_notices,
+    check_level,
+    clipping,
+    drifts,
+    pauses,
+)
 from vehicle.signals.excitation.rest import start_from_rest
 from vehicle.signals.excitation.signal import MINIMUM_SAMPLES, Signal, uniform_time
 from vehicle.signals.excitation.time_grid import FINE_RATE, LOWEST_RATE, SMOOTH_RATE, check_rate, fill_missing
@@ -138,10 +145,10 @@ def read_signal(
     notices.extend(drifts(columns))
     try:
         notices.extend(check_level(path, columns, timestep, units if is_plain_table else dict.fromkeys(units, "")))
-    except DataError as error:
+    except ImplausibleError as error:
         if not accept_implausible:
             raise
-        notices.append(f"accepted on request: {error}")
+        notices.append(f"accepted on request: {error.found}")
     columns, ramped = start_from_rest(columns, timestep=timestep)
     samples = next(iter(columns.values())).size
     return Signal(

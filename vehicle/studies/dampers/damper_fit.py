@@ -59,6 +59,9 @@ FLOOR = 0.01
 """Error over the standard deviation of the force that is added in quadrature to that of each block: laws that describe
 a damper within this are alike."""
 
+LARGEST = 1e6
+"""Largest square of an error over the standard deviation of the force, also of one that is not finite."""
+
 RELEVANT = 0.03
 """Relative difference of two errors, with `FLOOR` in them, that is a reason for a further part."""
 
@@ -164,7 +167,9 @@ def fit_law(tests: Sequence[DamperTest], law: DamperLaw, starts: Sequence[Vector
         if key not in last:
             values, rows, columns = plain(inner), [], []
             for test, mask in used:
-                force, slopes = force_and_slopes(law, values, test.motion)
+                # A step of the search may overflow: the search refuses it, and takes a shorter one.
+                with np.errstate(over="ignore", invalid="ignore"):
+                    force, slopes = force_and_slopes(law, values, test.motion)
                 share = test.weights[mask]
                 weight = np.sqrt(share / np.sum(share)) / test.scale
                 rows.append(weight * (force - test.force)[mask])
@@ -256,10 +261,12 @@ def judged(tests: Sequence[DamperTest], law: DamperLaw, starts: Sequence[Vector]
         part = fit_law(tests, law, [parameters], remaining, 12)
         for test, mask, error in zip(tests, masks, errors, strict=True):
             if mask.any():
-                error[mask] = (force_and_slopes(law, part, test.motion)[0] - test.force)[mask] / test.scale
+                with np.errstate(over="ignore", invalid="ignore"):
+                    error[mask] = (force_and_slopes(law, part, test.motion)[0] - test.force)[mask] / test.scale
     blocks, left_out = [], []
     for test, error in zip(tests, errors, strict=True):
-        squares, shares = error[test.settled] ** 2, test.weights[test.settled]
+        squares = np.minimum(np.nan_to_num(error[test.settled] ** 2, nan=LARGEST), LARGEST)
+        shares = test.weights[test.settled]
         left_out.append(np.sqrt(np.average(squares, weights=shares)))
         for rows in np.array_split(np.arange(squares.size), BLOCKS):
             blocks.append(float(np.average(squares[rows], weights=shares[rows])) + FLOOR**2)

@@ -20,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from vehicle.studies.dampers.damper_law import EXPONENT, STEP, DamperLaw, DamperValues, values_of
+from vehicle.studies.dampers.damper_law import EXPONENT, SOFT_STEP, STEP, DamperLaw, DamperValues, values_of
 
 Vector = npt.NDArray[np.float64]
 Counts = npt.NDArray[np.intp]
@@ -80,9 +80,12 @@ def force_and_slopes(law: DamperLaw, parameters: Vector, motion: Motion) -> tupl
     return values.series * deflection[rows], columns[rows]
 
 
-def _curve(values: DamperValues) -> tuple[list[float], list[float], list[float]]:
-    """Return breakpoints, slopes and offsets of the segments of F_c with Coulomb friction, from bump to rebound."""
-    step = values.friction[1] / STEP
+def _curve(values: DamperValues, step_width: float) -> tuple[list[float], list[float], list[float]]:
+    """Return breakpoints, slopes and offsets of the segments of F_c with Coulomb friction, from bump to rebound.
+
+    Friction reaches its limit at a velocity of `step_width` [m/s].
+    """
+    step = values.friction[1] / step_width
     knots: list[float] = []
     forces: list[float] = []
     ends = []
@@ -91,11 +94,13 @@ def _curve(values: DamperValues) -> tuple[list[float], list[float], list[float]]
         points = []
         for slope, width in zip(slopes, widths, strict=False):
             at, force = at + width, force + slope * width
-            points.append((sign * at, sign * (force + step * min(at, STEP))))
+            points.append((sign * at, sign * (force + step * min(at, step_width))))
         if step:
-            inside = sum(c * max(min(STEP - a, w), 0.0) for c, a, w in zip(
+            inside = sum(c * max(min(step_width - a, w), 0.0) for c, a, w in zip(
                 slopes, [0.0, *itertools.accumulate(widths)], [*widths, np.inf], strict=True))  # fmt: skip
-            points = sorted([*points, (sign * STEP, sign * (inside + step * STEP))], key=lambda each: abs(each[0]))
+            points = sorted(
+                [*points, (sign * step_width, sign * (inside + step * step_width))], key=lambda each: abs(each[0])
+            )
         ends.append(slopes[-1] + (step if not points else 0.0))
         knots = [*knots, *(v for v, _ in points)] if sign > 0.0 else [*(v for v, _ in points[::-1]), 0.0, *knots]
         forces = [*forces, *(f for _, f in points)] if sign > 0.0 else [*(f for _, f in points[::-1]), 0.0, *forces]
@@ -119,7 +124,7 @@ def _difference(time: Vector) -> Vector:
 
 def _march(values: DamperValues, motion: Motion) -> tuple[Vector, Vector, npt.NDArray[np.bool_]]:
     """Return deflection s [m], inner velocity w [m/s], (n,), and True where a Jenkins element sticks, (m, n)."""
-    knots, slopes, offsets = _curve(values)
+    knots, slopes, offsets = _curve(values, STEP)
     edges = [*knots, np.inf]
     spring, gas, offset = values.series, values.gas_stiffness, values.offset
     rates, near, far = _difference(motion.time).tolist()
@@ -176,7 +181,7 @@ def _march(values: DamperValues, motion: Motion) -> tuple[Vector, Vector, npt.ND
     return np.array(deflection), np.array(inner), np.array(sticking).reshape(len(sticking), len(elements)).T
 
 
-def _curve_columns(law: DamperLaw, values: DamperValues, velocity: Vector) -> tuple[Vector, Vector]:
+def _curve_columns(law: DamperLaw, values: DamperValues, velocity: Vector, step_width: float) -> tuple[Vector, Vector]:
     """Return dF_c/dv, (n,), and the derivatives of F_c over the parameters of the curve, (n, c)."""
     size, slope, columns = np.abs(velocity), np.zeros(velocity.size), []
     for number, (slopes, widths) in enumerate(zip(values.slopes, values.widths, strict=True)):
@@ -190,11 +195,11 @@ def _curve_columns(law: DamperLaw, values: DamperValues, velocity: Vector) -> tu
         beyond = [(size > end) * (slopes[j] - slopes[j + 1]) for j, end in enumerate(ends)]
         shifted = list(np.cumsum(beyond[::-1], axis=0)[::-1]) if beyond else []
         columns.append(np.column_stack([sign * column for column in [*covered, *shifted]]))
-    step = np.abs(velocity) < STEP
+    step = np.abs(velocity) < step_width
     curve = np.concatenate(columns, axis=1) if law.own_sides else columns[0] + columns[1]
     sliding, at_rest, critical = values.friction
-    slope = slope + step * at_rest / STEP
-    stuck, sign = np.clip(velocity / STEP, -1.0, 1.0), np.sign(velocity)
+    slope = slope + step * at_rest / step_width
+    stuck, sign = np.clip(velocity / step_width, -1.0, 1.0), np.sign(velocity)
     if law.friction == "coulomb":
         curve = np.column_stack([curve, stuck])
     if law.friction == "stribeck":
@@ -209,8 +214,8 @@ def _curve_columns(law: DamperLaw, values: DamperValues, velocity: Vector) -> tu
 def _rigid(law: DamperLaw, values: DamperValues, motion: Motion) -> tuple[Vector, Vector]:
     """Return force and derivatives without a series stiffness."""
     x, v = motion.displacement, motion.velocity
-    _, curve = _curve_columns(law, values, v)
-    knots, slopes, offsets = _curve(values)
+    _, curve = _curve_columns(law, values, v, SOFT_STEP)
+    knots, slopes, offsets = _curve(values, SOFT_STEP)
     segment = np.searchsorted(knots, v)
     force = np.array(slopes)[segment] * v + np.array(offsets)[segment] + values.gas_stiffness * x + values.offset
     sliding, at_rest, critical = values.friction
@@ -252,7 +257,7 @@ def _slopes(
     names = list(law.parameters)
     u = motion.displacement - s
     du = np.diff(u, prepend=u[0])
-    slope, curve = _curve_columns(law, values, w)
+    slope, curve = _curve_columns(law, values, w, STEP)
     size = m + 1
     right = np.zeros((n, size, len(names)))
     right[:, 0, 0] = -1.0

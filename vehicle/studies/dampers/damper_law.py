@@ -27,9 +27,12 @@ MAX_BENDS, MAX_ELEMENTS = 3, 4
 SMOOTHING = 1e4
 """Smoothing eps [s/m] of Coulomb and Stribeck friction in the lines: full friction from 0.16 mm/s."""
 
+SOFT_STEP = np.pi / (2.0 * SMOOTHING)
+"""Velocity [m/s] at which friction reaches its limit in a fit without a series stiffness, that of the lines."""
+
 STEP = 1e-6
-"""Velocity [m/s] at which friction reaches its limit in a fit. The 0.16 mm/s of the lines would creep by a tenth of the
-deflection of a machine of 2e7 N/m while dry friction turns, and its stiffness would be fitted 15 % too low."""
+"""The same with a series stiffness. With 0.16 mm/s the damper would creep by a tenth of the deflection of a machine of
+2e7 N/m while dry friction turns, and that stiffness would be fitted 15 % too low."""
 
 EXPONENT = 2.0
 """Exponent delta of Stribeck friction; tests determine it hardly beside the velocity vs."""

@@ -34,8 +34,8 @@ def damper_page(fits: Sequence[FittedDamper], command: str, *, author: str = "",
     if len(fits) > 1:
         parts.append(("Over the conditions", "conditions", _conditions(fits)))
     for number_of_fit, fitted in enumerate(fits):
-        words = fitted.condition_words
-        parts.append((f"Law{f' at {words}' if words else ''}", f"law{number_of_fit}", _law(fitted)))
+        condition = fitted.condition_words
+        parts.append((f"Law{f' at {condition}' if condition else ''}", f"law{number_of_fit}", _law(fitted)))
     parts.append(("How to repeat the fit", "repeat", fill("repeat_damper", command=command)))
     tests = [test for fitted in fits for test in fitted.tests]
     return document(f"Damper from {len(tests)} test{'s'[: len(tests) > 1]}", (head_line(author, project),), parts)
@@ -80,8 +80,8 @@ def _law(fitted: FittedDamper) -> Markup:
         for each in fitted.compared[:SHOWN_LAWS]
     ]
     sentence = (
-        f"{fit.law.title[:1].upper()}{fit.law.title[1:]}: the fewest parameters within one standard error of the least error on tests "
-        f"left out, of {len(fitted.compared)} laws."
+        f"{fit.law.title[:1].upper()}{fit.law.title[1:]}: the fewest parameters within one standard error of the least "
+        f"error on tests left out, of {len(fitted.compared)} laws."
     )
     return fill(
         "law",

@@ -92,7 +92,7 @@ class DamperTest:
         turns = reversals(x, v, SMALLEST_TURN)[1:-1]
         rise = (v[turns + 1] - v[turns]) / steps[turns]
         times = np.concatenate([[-np.inf], reversal_times(self.time, v, turns), [np.inf]])
-        travel, growth, most = COARSE if self.coarse else FINE
+        travel, growth, maximum = COARSE if self.coarse else FINE
         first = np.concatenate([[np.inf], np.sqrt(2.0 * travel / np.abs(rise)), [np.inf]])
         middle = self.time[:-1] + 0.5 * steps
         after = np.searchsorted(times, middle)
@@ -100,7 +100,7 @@ class DamperTest:
         longest = (np.diff(self.time[swings]) / (0.5 * STEPS))[self._strokes(swings)[:-1]]
         for turn in (after - 1, after):
             longest = np.minimum(longest, np.maximum(first[turn], growth * np.abs(middle - times[turn])))
-        parts = np.minimum(np.ceil(steps / longest - 1e-6).astype(int), most)
+        parts = np.minimum(np.ceil(steps / longest - 1e-6).astype(int), maximum)
         return Motion(self.time, x, v, float(self.force[0]), parts)
 
     @property
@@ -143,19 +143,22 @@ class DamperTest:
     def averaged(self, first: npt.NDArray[np.intp], last: int) -> DamperTest:
         """Return the test with means over groups of samples: the first of each group, and the number of samples."""
         size = np.diff(first, append=last)
-        means = {
-            name: np.add.reduceat(getattr(self, name)[:last], first) / size
-            for name in ("time", "displacement", "velocity", "force")
-        }
+
+        def mean(values: Vector) -> Vector:
+            return np.asarray(np.add.reduceat(values[:last], first) / size)
+
         settled = np.logical_and.reduceat(self.settled[:last], first)
-        return dataclasses.replace(self, coarse=True, waveform=self.waveform._replace(settled=settled), **means)
+        return dataclasses.replace(
+            self, coarse=True, waveform=self.waveform._replace(settled=settled), time=mean(self.time),
+            displacement=mean(self.displacement), velocity=mean(self.velocity), force=mean(self.force),
+        )  # fmt: skip
 
     @property
     def caption(self) -> str:
         """Description of the test in a line."""
         stroke, speed = 1e3 * np.ptp(self.displacement), 1e3 * np.max(np.abs(self.velocity))
-        words, duration = self.waveform.words, self.time[-1] - self.time[0]
-        return f"{words}, stroke {stroke:.3g} mm, up to {speed:.3g} mm/s, {duration:.3g} s"
+        waveform, duration = self.waveform.words, self.time[-1] - self.time[0]
+        return f"{waveform}, stroke {stroke:.3g} mm, up to {speed:.3g} mm/s, {duration:.3g} s"
 
 
 def read_test(path: Path, choice: Choice | None = None, *, compression: bool = False,

@@ -72,8 +72,8 @@ def control_lines(fits: Sequence[FittedDamper]) -> str:
         "# bend is bend force + slope times velocity; friction: that beside the curve",
         "# condition           damping [N s/m]  friction [N]  bend force [N]  slope [N s/m]",
     ]
-    for words, damping, friction, force, slope in settings:
-        lines.append(f"# {words:<18} {damping:>16.5g} {friction:>13.4g} {force:>15.4g} {slope:>14.4g}")
+    for condition, damping, friction, force, slope in settings:
+        lines.append(f"# {condition:<18} {damping:>16.5g} {friction:>13.4g} {force:>15.4g} {slope:>14.4g}")
     dampings = [each.damping for each in settings]
     lines += [
         "# for a table [AXLE.damper.control]: the coefficient replaces the curve; friction, gas and stop remain those",

@@ -24,8 +24,8 @@ FULL = 0.95
 EQUAL = 0.05
 """Maximum relative standard deviation of swings, or of their durations, that count as equal."""
 
-FEWEST = 4
-"""Minimum number of swings of a test with a waveform."""
+FEWEST, NAMED = 4, 2
+"""Minimum number of equal swings of a periodic test, and of swings of a waveform that is named."""
 
 LIKE = 0.02
 """Maximum relative deviation from a waveform: half of that between a sine and a straight swing."""
@@ -80,32 +80,33 @@ def waveform_of(time: Vector, x: Vector, velocity: Vector) -> Waveform:
     settled = np.ones(x.size, dtype=bool)
     if inner.size <= FEWEST or not _equal(np.abs(np.diff(x[inner]))):
         # The first and the last swing may be parts of swings.
-        inner = turns[1:-1] if turns.size > FEWEST + 2 else turns
+        inner = turns[1:-1] if turns.size > NAMED + 2 else turns
     else:
         settled[: inner[0]] = settled[inner[-1] + 1 :] = False
     equal = _equal(np.abs(np.diff(x[inner])))
     times = reversal_times(time, velocity, inner)
     durations = np.diff(times)
-    swings = [(time[a : b + 1], x[a : b + 1]) for a, b in itertools.pairwise(inner)]
-    shapes = [_shape(*swing, first, last) for swing, first, last in zip(swings, times[:-1], times[1:], strict=True)]
+    pieces = [(time[a : b + 1], x[a : b + 1]) for a, b in itertools.pairwise(inner)]
+    shapes = [_shape(*piece, first, last) for piece, first, last in zip(pieces, times[:-1], times[1:], strict=True)]
     straight, sine = (sum(shape == name for shape in shapes) > 0.75 * len(shapes) for name in ("straight", "sine"))
-    if len(shapes) < FEWEST or not (straight or sine):
+    if len(shapes) < NAMED or not (straight or sine):
         return Waveform("random motion", False, False, np.ones(x.size, dtype=bool))
     periodic = equal and _equal(durations)
     if sine:
         rates = 0.5 / durations
-        rate = number(float(np.mean(rates)), 2) if periodic else f"{number(rates.min(), 2)} to {number(rates.max(), 2)}"
-        return Waveform(f"{'sine' if periodic else 'sine steps'}, {rate} Hz", periodic, False, settled)
-    steps = _steps(np.array([_speed(*swing) for swing in swings]))
-    words = [number(1e3 * speed, 3) for speed in steps]
-    listed = ", ".join(words) if len(words) <= NAMED_STEPS else f"{words[0]} to {words[-1]}"
+        single = _equal(durations, NAMED)
+        rate = number(float(np.mean(rates)), 2) if single else f"{number(rates.min(), 2)} to {number(rates.max(), 2)}"
+        return Waveform(f"{'sine' if single else 'sine steps'}, {rate} Hz", periodic, False, settled)
+    steps = _steps(np.array([_speed(*piece) for piece in pieces]))
+    texts = [number(1e3 * speed, 3) for speed in steps]
+    listed = ", ".join(texts) if len(texts) <= NAMED_STEPS else f"{texts[0]} to {texts[-1]}"
     single = len(steps) == 1
     return Waveform(f"{'triangle' if single else 'velocity steps'}, {listed} mm/s", periodic, not single, settled)
 
 
-def _equal(values: Vector) -> bool:
-    """True for `FEWEST` or more values that are equal within `EQUAL`."""
-    return bool(values.size >= FEWEST and np.std(values) <= EQUAL * np.mean(values))
+def _equal(values: Vector, fewest: int = FEWEST) -> bool:
+    """True for `fewest` or more values that are equal within `EQUAL`."""
+    return bool(values.size >= fewest and np.std(values) <= EQUAL * np.mean(values))
 
 
 def _shape(time: Vector, x: Vector, first: float, last: float) -> str:
