@@ -17,6 +17,9 @@ NEEDS = {"durability": "rainflow", "fmu-master": "fmpy", "pareto": "pymoo"}
 LARGEST_DIFFERENCE = 0.1
 """Maximum `difference` of a drawn from the committed picture: drawn again 0.00, of two pages at least 0.44."""
 
+LARGEST_OF_A_SCREEN = 0.3
+"""The same of an HTML page, whose lines may move: 0.20 after a smaller gap above a heading."""
+
 HEAVIEST = 64_000
 """Maximum size of a picture [byte]: the repository stays light."""
 
@@ -40,14 +43,15 @@ def test_a_page_runs_and_its_picture_and_numbers_are_those_of_the_program(page, 
     if drawn.suffix == ".html" and not CHROMIUM.is_file():
         pytest.skip("the picture is a page in chromium, which is not installed")
     change = difference(light(drawn), Image.open(picture.file))
-    assert change < LARGEST_DIFFERENCE, f"python -m tests.documentation.gallery {page} draws the picture anew"
+    limit = LARGEST_OF_A_SCREEN if drawn.suffix == ".html" else LARGEST_DIFFERENCE
+    assert change < limit, f"python -m tests.documentation.gallery {page} draws the picture anew"
 
 
 def test_another_curve_is_another_picture():
     pages = gallery_pages()
     pictures = [Image.open(shown(page).file) for page in pages]
     pairs = [(one, other) for index, one in enumerate(pictures) for other in pictures[:index]]
-    assert len(pairs) > 100 and min(difference(*pair) for pair in pairs) > 4.0 * LARGEST_DIFFERENCE
+    assert len(pairs) > 100 and min(difference(*pair) for pair in pairs) > LARGEST_OF_A_SCREEN
 
 
 @pytest.mark.parametrize("page", gallery_pages())
