@@ -130,6 +130,7 @@ def shown_texts(path: Path) -> list[tuple[int, str]]:
         source = re.sub(
             r"\{\{-?\s*(.*?)\s*-?\}\}", r"{\1}", re.sub(r"\{[%#].*?[%#]\}", "", source, flags=re.S), flags=re.S
         )
+        source = re.sub(r"\{(?:table|cells)\(.*?\)\}", "", source, flags=re.S)
         blocks = re.split(r"</?(?:p|li|td|th|div|caption|summary|label|span|h\d|option|button|dt|dd)\b[^>]*>", source)
         return [(1, text) for text in (" ".join(re.sub(r"<[^>]+>", "", b).split()) for b in blocks) if prose(text)]
     texts, nested = [], set[int]()

@@ -126,7 +126,7 @@ def test_undeletable_old_results_are_no_error(tmp_path, monkeypatch, capsys):
         patch.setattr(work_folder, "discard", fails)
         results(tmp_path / "run", "new")
     assert read(tmp_path / "run") == ["new", "new"]
-    assert "is complete; something is left of the results of before" in capsys.readouterr().err
+    assert "is complete; files of the earlier results remain" in capsys.readouterr().err
     put_in_order(tmp_path / "run")
     assert visible(tmp_path) == ["run"] and "are in place now" in capsys.readouterr().err
 

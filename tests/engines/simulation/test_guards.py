@@ -66,7 +66,7 @@ def test_lift_off_is_reported_with_the_time(car):
     assert len(warnings) == 1 and "fr" in warnings[0]
     found = re.fullmatch(
         r"tyre fr would lift off its plate at t = (\S+) s \(lowest load (\S+) N at (\S+) s\); "
-        r"the model pulls there, so the result is out of its validity",
+        r"the linear tyre then pulls the wheel down, so the result is invalid",
         warnings[0],
     )
     assert found

@@ -55,11 +55,11 @@ TEMPLATES = {
     ),
     "one point above": ("above = [", 'above = [["strut_top"],', "above: found ['strut_top']; must be two points"),
     "not TOML": ("mirrored = true", "mirrored = tru", "not a TOML file: Invalid value (at line"),
-    "no axis": (f", {LINE}", "", "joint.damper.along: a slide needs two points in along, or its axis, one of them"),
+    "no axis": (f", {LINE}", "", "joint.damper.along: a slide needs either two points in along or an axis"),
     "two axes": (
         LINE,
         f"{LINE}, axis = [0, 0, 1]",
-        "joint.damper.along: a slide needs two points in along, or its axis",
+        "joint.damper.along: a slide needs either two points in along or an axis",
     ),
     "an axis of no length": (
         LINE,

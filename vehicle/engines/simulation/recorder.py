@@ -349,7 +349,7 @@ class Recorder:
                 start = int(np.argmax(first < 0.0)) / self.car.vehicle.solver.record_rate
                 messages.append(
                     f"tyre {wheel} would lift off its plate at t = {start:.3f} s (lowest load {load:.0f} N at "
-                    f"{when:.3f} s); the model pulls there, so the result is out of its validity"
+                    f"{when:.3f} s); the linear tyre then pulls the wheel down, so the result is invalid"
                 )
         return tuple(messages)
 

@@ -45,7 +45,7 @@ class Joint:
         if self.kind in ("ball", "hinge", "slide", "cardan", "spin") and self.at is None:
             raise ConfigurationError(f"Joint.at: missing; a {self.kind} needs a point")
         if self.kind in ("hinge", "slide", "cardan") and (self.along is None) == (self.axis is None):
-            raise ConfigurationError(f"Joint.along: a {self.kind} needs two points in along, or its axis, one of them")
+            raise ConfigurationError(f"Joint.along: a {self.kind} needs either two points in along or an axis")
         if self.along is not None and (len(self.along) != 2 or self.along[0] == self.along[1]):
             raise ConfigurationError(f"Joint.along: found {list(self.along)}; must be two different points")
         if self.axis is not None and not any(self.axis):

@@ -302,7 +302,7 @@ def _put_in_place(goal: Path) -> None:
                 _retire(replaced, goal)
         (goal / COMPLETE).unlink(missing_ok=True)
     except OSError:
-        say(f"{goal}: is complete; something is left of the results of before, which the next command there removes")
+        say(f"{goal}: is complete; files of the earlier results remain, which the next command there removes")
 
 
 def _retire(replaced: Path, goal: Path) -> None:
