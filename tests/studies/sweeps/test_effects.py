@@ -94,7 +94,8 @@ def test_the_forces_of_a_curve_are_one_parameter():
     parameters = varied_parameters(vehicle)
     curve = vehicle.table["front"]["damper"]["force"]
     assert parameters["front.damper.force"] == (max(map(abs, curve)), "N")
-    (_, (softer,), (harder,)), _ = single_changes(vehicle, {"front.damper.force": parameters["front.damper.force"]}, 0.2)
+    chosen = {"front.damper.force": parameters["front.damper.force"]}
+    (_, (softer,), (harder,)), _ = single_changes(vehicle, chosen, 0.2)
     for text, factor in ((softer, 0.8), (harder, 1.2)):
         changed = Car.load("sedan", [text]).vehicle.table["front"]["damper"]["force"]
         assert changed == pytest.approx([factor * force for force in curve], rel=1e-12)
