@@ -78,7 +78,7 @@ def test_a_car_that_meets_its_targets(sedan):
 @pytest.mark.parametrize(
     ("figure", "ranges", "message"),
     [
-        ({"road": ""}, RANGES, "weighted: a search needs its input"),
+        ({"road": ""}, RANGES, "weighted: a search needs the input of the target"),
         ({"speed": None}, RANGES, r"weighted: speed \[km/h\] is missing"),
         ({"channels": ("seat rail q",)}, RANGES, "weighted: "),
         ({"unit": "g"}, RANGES, "weighted: unit: found 'g'"),
