@@ -90,7 +90,7 @@ def command_for(measurement: Measurement, file: str, databases: Sequence[Path] =
         names = ", ".join(channel.name for _, channel in plates[:4])
         return (
             "",
-            f"{names}: this looks like a height above the sea, a distance, or the travel of a spring. "
+            f"{names}: a height above the sea, a distance, or the travel of a spring. "
             "Needed is the height of a plate or road",
         )
     if empty:

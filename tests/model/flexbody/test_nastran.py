@@ -98,7 +98,7 @@ def test_nodes_and_names_may_be_given(tmp_path):
     path.write_text("\n".join(line for line in text.splitlines() if not line.startswith("GRID")) + "\n")
     matrices = read_matrices(tmp_path / "job.pch:KGG", tmp_path / "job.pch:MAAX", None, tmp_path / "job.bdf")
     assert len(matrices.node) == 48
-    with pytest.raises(DataError, match="DMIG matrices KGG, MAAX, must be one"):
+    with pytest.raises(DataError, match="DMIG matrices KGG, MAAX, must be two"):
         read_matrices(tmp_path / "job.pch:KAAX", None, None, tmp_path / "job.bdf")
     with pytest.raises(DataError, match=r"node 1 of the matrices has no position in the list of nodes"):
         read_matrices(path, None, None, None)
