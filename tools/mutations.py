@@ -61,7 +61,7 @@ FAULTS = (
     Fault("vehicle/engines/linear/step_map.py", "beta * ((e - 2.0) * e + 1.0)", "beta * ((e - 2.0) * e + 1.1)", "engines/linear/test_step_map.py engines/linear/test_step_error.py"),
     Fault("vehicle/engines/linear/mode_shares.py", "(inputs[:, :w] + poles[:, None] * inputs[:, w:])", "(inputs[:, :w] - poles[:, None] * inputs[:, w:])", "engines/linear/test_mode_shares.py"),
     Fault("vehicle/engines/linear/displacement_laws.py", "share = 0.5 * (breakpoints[near] / DIFFERENCE_STEP + 1.0)", "share = 0.5 * (1.0 - breakpoints[near] / DIFFERENCE_STEP)", "engines/reduced/test_small_terms.py engines/reduced/test_displacement_laws.py"),
-    Fault("vehicle/engines/reduced/plate_samples.py", "values[2]) / 24.0", "values[2]) / 12.0", "engines/reduced/test_small_terms.py engines/reduced/test_rolling_road.py"),
+    Fault("vehicle/engines/reduced/plate_samples.py", "np.diff(values, 2) / 24.0", "np.diff(values, 2) / 12.0", "engines/reduced/test_small_terms.py engines/reduced/test_rolling_road.py"),
     Fault("vehicle/engines/reduced/equivalent_damping.py", "np.mean((force - force.mean()) * velocity)", "np.mean(force * velocity)", "engines/reduced/test_small_terms.py"),
     Fault("vehicle/engines/kinematics/axle_curves.py", "/ (2.0 * SMALL)", "/ SMALL", "engines/kinematics/test_axle_statics.py runs/car/test_motion_figures.py"),
     Fault("scenarios/lumped/road_holding.py", "LINES_PER_BAND) + 0.5)", "LINES_PER_BAND) + 0.0)", "scenarios/lumped"),

@@ -35,7 +35,7 @@ BESIDE_WHEEL, BESIDE_DAMPER = 0.16, 0.14
 """Distance of an arrow outwards from the centre of the wheel and the axis of the damper [m], so that it is seen."""
 
 TYRE, DAMPER = (np.array(colour, dtype=np.float32) for colour in ((0.84, 0.37, 0.0, 1.0), (0.52, 0.20, 0.60, 1.0)))
-"""Orange and purple, which stay apart for the colour-blind, and which nothing else in the film has."""
+"""Orange and purple: the colour-blind distinguish them, and the film has them only here."""
 
 WORDS = "arrows: force on the car; orange: tyre, change from rest; purple: damper; {length:g} cm is {force:g} N"
 

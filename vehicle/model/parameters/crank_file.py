@@ -42,7 +42,7 @@ def _speed(file: str, channel: str, changed: int) -> tuple[tuple[float, ...], tu
         raise DataError(f"{where} has no times; give the file a column of time")
     time, rpm = np.asarray(measured.axis, dtype=float), np.asarray(measured.values, dtype=float)
     if time.size < 2 or not np.isfinite([time, rpm]).all() or np.any(np.diff(time) <= 0.0):
-        raise DataError(f"{where} has a gap, or times that do not rise; repair the record")
+        raise DataError(f"{where} has a gap, or falling times; repair the record")
     low, high = float(np.min(rpm)), float(np.max(rpm))
     if low < 0.0 or not 0.0 < high <= HIGHEST_RPM:
         raise DataError(
@@ -60,6 +60,6 @@ def _channel(measurement: Measurement, file: str, wanted: str) -> Channel:
         chosen = [each for each in channels if (each.name == wanted if wanted else each.unit in UNITS)]
     if len(chosen) != 1:
         listed = ", ".join(f"{n} {each.name!r} [{each.unit}]" for n, each in enumerate(channels, 1))
-        what = f"match {wanted!r}" if wanted else "are in 1/min or rpm"
-        raise DataError(f"{file}: {len(chosen)} channels {what}; set crank.channel to a number or name of: {listed}")
+        failure = f"match {wanted!r}" if wanted else "are in 1/min or rpm"
+        raise DataError(f"{file}: {len(chosen)} channels {failure}; set crank.channel to a number or name of: {listed}")
     return chosen[0]

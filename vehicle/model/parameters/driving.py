@@ -132,7 +132,7 @@ class Crank(Validated):
             ConfigurationError, DataError: its file cannot be read or has no speed.
         """
         if self.file is not None:
-            # Files are read without numpy as long as none is named.
+            # Files are read without numpy until a file is named.
             from vehicle.model.parameters.crank_file import measured_speed
 
             return RunUp(*measured_speed(self.file, self.channel or ""))

@@ -81,7 +81,7 @@ class EngineOrders:
             )
         if self.pressure is not None and self.torque:
             raise ConfigurationError(
-                f"EngineOrders.torque: found {self.torque:g} N m beside a file of the pressure, which gives it; set "
+                f"EngineOrders.torque: found {self.torque:g} N m and a file of the pressure, which determines it; set "
                 "torque or pressure"
             )
         if self.rod <= 0.5 * self.stroke:

@@ -89,11 +89,11 @@ def nearest(path: str, known: Iterable[str]) -> str:
     return ends[difflib.get_close_matches(path, list(ends)[::-1], n=1, cutoff=0.0)[0]]
 
 
-def _missing(table: Mapping[str, Any], path: str, known: Iterable[str]) -> ConfigurationError:
-    """Return the error of a path that does not exist: with the law that has no such parameter, or the nearest path."""
+def _missing(table: Mapping[str, Any], path: str, candidates: Iterable[str]) -> ConfigurationError:
+    """Return the error of a path that does not exist, with the nearest path or the law that lacks the parameter."""
     law = next(iter(_existing(table, f"{path}_law")), "")
     if not law.endswith("viscous_law"):
-        return ConfigurationError(f"no parameter {path}; the nearest is {nearest(path, known)}")
+        return ConfigurationError(f"no parameter {path}; the nearest is {nearest(path, candidates)}")
     return ConfigurationError(
         f"no parameter {path}: {law} is {value_at(table, law)}, which has none; --set {law}=linear --set {path}=VALUE "
         "gives the car one"
@@ -120,8 +120,8 @@ def meant(table: Mapping[str, Any], path: str, optional: Optional = list) -> lis
     matches = [each for each in existing if _ends(each, end)]
     matches += [each for each in further if _ends(each, end) and (sided or not _of_one_side(each))]
     if not matches:
-        known = [*existing, *(each for each in further if sided or not _of_one_side(each))]
-        raise _missing(table, path, known)
+        candidates = [*existing, *(each for each in further if sided or not _of_one_side(each))]
+        raise _missing(table, path, candidates)
     return matches if every else [path if path in matches else _only(matches, path)]
 
 

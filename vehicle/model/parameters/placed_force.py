@@ -65,7 +65,7 @@ class PlacedForce:
 
     @property
     def channel(self) -> str:
-        """Channel of its history, recorded on request; empty for one that changes a tyre."""
+        """Channel of its history, recorded on request; empty if it changes a tyre."""
         return "" if self.tyre else f"{'torque' if self.unit == 'N m' else 'force'}_{self.name}"
 
     @property
@@ -98,13 +98,17 @@ def force_named(name: str, forces: Sequence[PlacedForce], *, own: bool = False) 
         own: only those of a table [force.NAME].
 
     Raises:
-        ConfigurationError: there is none of this name.
+        ConfigurationError: the car has no force of this name.
     """
-    known = {force.name: index for index, force in enumerate(forces) if not own or force.path.startswith("force.")}
-    if name not in known:
+    indices = {force.name: index for index, force in enumerate(forces) if not own or force.path.startswith("force.")}
+    if name not in indices:
         table = "no table [force.NAME]" if own else "no force"
         raise ConfigurationError(
             f"force: found {name!r}, {table} of this car; "
-            + (f"the nearest is {nearest(name, known)}" if known else "add a table [force.NAME] to the vehicle file")
+            + (
+                f"the nearest is {nearest(name, indices)}"
+                if indices
+                else "add a table [force.NAME] to the vehicle file"
+            )
         )
-    return known[name]
+    return indices[name]

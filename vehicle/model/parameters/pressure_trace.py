@@ -46,7 +46,7 @@ def pressure_at(file: str, angles: Vector) -> Vector:
 
     Raises:
         ConfigurationError: the file does not exist.
-        DataError: the file has no such columns, does not cover a cycle, is not sorted, or is implausible.
+        DataError: the columns are missing, do not cover a cycle, are not sorted, or are implausible.
     """
     path = Path(file)
     changed = path.stat().st_mtime_ns if path.is_file() else 0
@@ -105,15 +105,15 @@ def _plausible(file: str, angle: Vector, pressure: Vector) -> None:
     unit = find_unit("bar")
     assert unit is not None
     bar = pressure / unit.factor
-    top, least = int(np.argmax(bar)), float(bar.min())
+    top, lowest = int(np.argmax(bar)), float(bar.min())
     if not LOWEST_PEAK <= bar[top] <= HIGHEST_PEAK:
         raise DataError(
             f"{file}: the largest pressure is {bar[top]:.4g} bar, must be {LOWEST_PEAK:g} to {HIGHEST_PEAK:g} bar; "
             "correct the unit of the column"
         )
-    if least <= 0.0:
+    if lowest <= 0.0:
         raise DataError(
-            f"{file}: the smallest pressure is {least:.4g} bar, must be above 0: pressures are absolute; add the "
+            f"{file}: the smallest pressure is {lowest:.4g} bar, must be above 0: pressures are absolute; add the "
             "ambient pressure, or the offset of the sensor"
         )
     behind = math.remainder(float(angle[top]), CYCLE)

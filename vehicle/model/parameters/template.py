@@ -189,10 +189,10 @@ def _check(template: Template, raw: Mapping[str, Any]) -> None:
                 )
 
     for port, part in template.port_defaults.items():
-        for word, known in ((port, {*template.ports}), (part, parts - {port})):
-            if word not in known:
+        for word, allowed in ((port, {*template.ports}), (part, parts - {port})):
+            if word not in allowed:
                 raise ConfigurationError(
-                    f"port_defaults.{port}: found {word!r}, unknown name; the nearest is {nearest(word, known)}"
+                    f"port_defaults.{port}: found {word!r}, unknown name; the nearest is {nearest(word, allowed)}"
                 )
     used: set[str] = set()
 

@@ -344,7 +344,7 @@ class Car:
             damper: state of all dampers, "stuck" or "sliding".
 
         Raises:
-            ConfigurationError: the car has no such force or channel.
+            ConfigurationError: the force or the channel does not exist.
         """
         return force_frf(self, channels, frequency, is_stuck(damper), force)
 

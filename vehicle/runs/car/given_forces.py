@@ -32,7 +32,7 @@ def with_histories(car: Any, forces: Mapping[str, GivenForce], time: Vector) -> 
         time: times of the signal [s]; (n,).
 
     Raises:
-        ConfigurationError: the car has no such force, or it is not enabled.
+        ConfigurationError: the force does not exist, or is not enabled.
         DataError: a history has not one finite value for each time.
     """
     composition = car.vehicle.composition

@@ -110,7 +110,7 @@ def _compared(
 
 
 def offsets(records: Sequence[RecordComparison]) -> list[str]:
-    """Return a notice for each acceleration whose mean differs so much that its RMS ratio says little.
+    """Return a notice for each acceleration whose mean differs by more than `LARGEST_OFFSET`.
 
     Args:
         records: see `compare_records`.

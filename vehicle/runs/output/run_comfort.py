@@ -46,7 +46,7 @@ class RimValues(TypedDict, total=False):
 
 
 def rim_values(run: Run) -> RimValues:
-    """Return the comfort values at the rim of the steering wheel; empty without such an output."""
+    """Return the comfort values at the rim of the steering wheel; empty without the output."""
     if not _recorded(run, RIM):
         return {}
     value = run.comfort(RIM)

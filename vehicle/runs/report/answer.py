@@ -94,8 +94,8 @@ def _of_one(run: FinishedRun, modes: Modes) -> Markup:
         parts = [f"{100.0 * band.share:.0f} % of it (mean square) {_is_within(band)}"]
         if mode is not None:
             # The linear model has the smallest slope of sliding dampers, and no friction.
-            words = mode_words(mode, "at least " if damper_state(run) == "sliding" else "")
-            parts += [f"mainly by the mode of {words}", *_path_words(run, band, mode)]
+            named = mode_words(mode, "at least " if damper_state(run) == "sliding" else "")
+            parts += [f"mainly by the mode of {named}", *_path_words(run, band, mode)]
         texts.append(f"{', '.join(parts)}{_damper_words(run)}.")
     return fill("answer", texts=[" ".join(texts)], figure="")
 

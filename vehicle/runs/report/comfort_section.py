@@ -21,7 +21,7 @@ def comfort(run: FinishedRun, bands: Markup = NO_FIGURE) -> Markup:
 
     Args:
         run: finished run.
-        bands: figure of the frequencies, beside the reactions; empty for none.
+        bands: figure of the frequencies, left of the reactions; may be empty.
     """
     points, totals = [], {}
     for point, value in run.comfort.items():

@@ -51,7 +51,7 @@ def order_points_sentences(orders: OrderPoints) -> list[str]:
         if not np.isfinite(orders.stuck[row, top]):
             continue
         frequency = order * float(orders.turns[top])
-        alone = len(orders.points) == 1
+        single = len(orders.points) == 1
         edge = top in (0, len(orders.points) - 1)
         # The largest amplitude of a range that ends there is no peak of a mode.
         mode = None if edge else orders.nearest_mode(frequency)
@@ -60,8 +60,8 @@ def order_points_sentences(orders: OrderPoints) -> list[str]:
         error = float(orders.error[row, top])
         size = number(float(peaks[row])) + (f" ± {number(error, 2)}" if error > 0.01 * peaks[row] else "")
         sentences.append(
-            f"Order {order:g}{'' if alone else ' is largest'} at {orders.points[top]:g} {orders.point_unit} "
-            f"({number(frequency)} Hz{near}){', the end of the range' if edge and not alone else ''}: "
+            f"Order {order:g}{'' if single else ' is largest'} at {orders.points[top]:g} {orders.point_unit} "
+            f"({number(frequency)} Hz{near}){', the end of the range' if edge and not single else ''}: "
             f"{where} {size} m/s² (amplitude). "
             f"There {slip}; dampers that stick would give {number(float(orders.stuck[row, top]))} m/s², dampers "
             f"without friction {number(float(orders.free[row, top]))} m/s²."

@@ -69,7 +69,7 @@ def what_was_found(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> Mar
 
 
 def notices(run: FinishedRun) -> Markup | None:
-    """Return the notices on this run; None if there are none."""
+    """Return the notices on this run; None without notices."""
     texts = without_general(run.summary["notices"], run.car.vehicle)
     return fill("notices", texts=texts) if texts else None
 

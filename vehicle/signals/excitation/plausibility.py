@@ -42,13 +42,13 @@ class ImplausibleError(DataError):
     """A level that indicates a wrong unit or quantity.
 
     Args:
-        found: what was found, and what is allowed.
+        observation: what was found, and what is allowed.
         remedy: what may be wrong, and how to mend it.
     """
 
-    def __init__(self, found: str, remedy: str) -> None:
-        super().__init__(f"{found}; {remedy}")
-        self.found = found
+    def __init__(self, observation: str, remedy: str) -> None:
+        super().__init__(f"{observation}; {remedy}")
+        self.observation = observation
 
 
 def check_level(

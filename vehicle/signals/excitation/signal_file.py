@@ -148,7 +148,7 @@ def read_signal(
     except ImplausibleError as error:
         if not accept_implausible:
             raise
-        notices.append(f"accepted on request: {error.found}")
+        notices.append(f"accepted on request: {error.observation}")
     columns, ramped = start_from_rest(columns, timestep=timestep)
     samples = next(iter(columns.values())).size
     return Signal(

@@ -94,7 +94,7 @@ def of_wheel_or_engine(channel: Channel) -> bool:
 
 def point_of(channel: Channel) -> tuple[str, ...]:
     """Return the words of the name and the place of a channel without those of its axis."""
-    along = {word for words in AXES.values() for word in words}
+    along = {word for axis in AXES.values() for word in axis}
     return tuple(word for word in words_of(f"{channel.name} {channel.place}") if word not in along)
 
 

@@ -84,16 +84,16 @@ class GroupDelay:
         remainder = self.delay - self.taken_out
         after = f" of {command}" if command else ""
         others = 0.0 if self.against == RUN else self.delay
-        alone = [
+        separate = [
             f"{channel} {'lags' if delay > others else 'leads'} the other {self.group} by "
             f"{1e3 * abs(delay - others):.3g} ms: a delay of this sensor? Take it out with --delay "
             f"{channel}={1e3 * delay:.5g}ms{after}"
             for channel, delay in self.unlike.items()
         ]
         if self.against == RUN or not abs(remainder) > max(SHARE_OF_STEP * step, SIGNIFICANT * self.error):
-            return alone
+            return separate
         return [
-            *alone,
+            *separate,
             f"the {self.group} {'lag' if self.delay > 0.0 else 'lead'} the {self.against} by "
             f"{1e3 * abs(self.delay):.3g} ms (+- {number(1e3 * self.error, 1)} ms, in {self.agreeing} of "
             f"{self.channels} channels): a sensor delay, or a car with other phases (tune fits both)? Take it out with "
@@ -143,7 +143,7 @@ def group_delays(lags: Sequence[ChannelLag], step: float, reference: str = "") -
         lag, error, out, agreeing = _mean(groups[group], step)
         is_first = group == first
         zero = lag if is_first else base[0]
-        rests = {each: (each.lag - each.taken_out) - (lag - out) for each in groups[group]}
+        remainders = {each: (each.lag - each.taken_out) - (lag - out) for each in groups[group]}
         delays.append(
             GroupDelay(
                 group=group,
@@ -155,8 +155,8 @@ def group_delays(lags: Sequence[ChannelLag], step: float, reference: str = "") -
                 channels=len(groups[group]),
                 unlike={
                     each.channel: each.lag - zero
-                    for each, rest in rests.items()
-                    if abs(rest) > max(step, SIGNIFICANT * each.error)
+                    for each, remainder in remainders.items()
+                    if abs(remainder) > max(step, SIGNIFICANT * each.error)
                 },
             )
         )

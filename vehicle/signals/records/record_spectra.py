@@ -88,8 +88,8 @@ def record_spectra(
         choice: channels of a measurement file by the names that they get here, their units, and the excerpt.
 
     Raises:
-        ConfigurationError: no such run or channel, or a channel that is no acceleration.
-        DataError: a damaged file, no such channel in it, or a record too short for the range.
+        ConfigurationError: the run or the channel does not exist, or is not an acceleration.
+        DataError: a damaged file, a missing channel, or a record too short for the range.
     """
     source = time_file(path)
     if not path.is_dir():
@@ -114,12 +114,12 @@ def record_spectra(
 def _file_spectra(
     path: Path, channels: Sequence[str] | None, frequency_range: tuple[float, float], choice: Choice
 ) -> RecordSpectra:
-    """Return the spectra of a measurement file; arguments and errors as of `record_spectra`."""
+    """Return the spectra of a measurement file; arguments and errors: see `record_spectra`."""
     measurement = read_record(path, choice.databases)
-    # A file that has the channel by its own name, as one of a run, needs no name of it.
-    own = {channel.name for channel in measurement.channels}
+    # The channels of a run have the names of the model already.
+    names = {channel.name for channel in measurement.channels}
     roles = {
-        role: role if role in own and not matching(measurement, name, lambda channel: True) else name
+        role: role if role in names and not matching(measurement, name, lambda channel: True) else name
         for role, name in choice.channels.items()
         if role != "time"
     }

@@ -60,7 +60,7 @@ FLOOR = 0.01
 a damper within this are alike."""
 
 LARGEST = 1e6
-"""Largest square of an error over the standard deviation of the force, also of one that is not finite."""
+"""Largest square of an error over the standard deviation of the force; larger or infinite errors count as this."""
 
 RELEVANT = 0.03
 """Relative difference of two errors, with `FLOOR` in them, that is a reason for a further part."""

@@ -46,7 +46,7 @@ the machine deflects by twice its force over the stiffness, 4 um for 50 N on 2.5
 steps of 1 ms the stiffness was 8 % low."""
 
 SMALLEST_TURN = 0.01
-"""Smallest swing between such reversals, over the stroke."""
+"""Smallest swing between two reversals, over the stroke."""
 
 HEADLESS = {3: ("displacement", "force"), 4: ("displacement", "velocity", "force")}
 """Roles of the columns behind the time in a file without a header, by the number of its columns."""

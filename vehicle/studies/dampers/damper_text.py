@@ -26,8 +26,8 @@ SHOWN_LAWS = 5
 
 def caption_of(fitted: FittedDamper) -> str:
     """Return the conditions, the number and the names of the tests."""
-    names, words = ", ".join(test.name for test in fitted.tests), fitted.condition_words
-    return f"{f'{words}: ' if words else ''}{len(fitted.tests)} test{'s'[: len(fitted.tests) > 1]}: {names}"
+    names, condition = ", ".join(test.name for test in fitted.tests), fitted.condition_words
+    return f"{f'{condition}: ' if condition else ''}{len(fitted.tests)} test{'s'[: len(fitted.tests) > 1]}: {names}"
 
 
 def vehicle_lines(fitted: FittedDamper) -> str:

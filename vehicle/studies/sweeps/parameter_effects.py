@@ -106,7 +106,7 @@ def single_changes(
 
 
 def _is_curve(path: str, value: Any) -> bool:
-    """True for the forces of a curve, as `damper.force` over `damper.velocity`."""
+    """Return True for the forces of a curve, as `damper.force` over `damper.velocity`."""
     return path.rpartition(".")[2] == "force" and isinstance(value, list | tuple)
 
 

@@ -37,7 +37,7 @@ def value_lines(result: TuningResult, vehicle: Vehicle) -> list[str]:
 
 
 def known_digits(value: float, error: float) -> int:
-    """Return the significant digits of a value that its standard error leaves: as many decimals as the error has."""
+    """Return the significant digits of a value that its standard error leaves: with the decimals of the error."""
     if not (math.isfinite(error) and error > 0.0 and value != 0.0):
         return 6
     return min(max(math.floor(math.log10(abs(value))) - math.floor(math.log10(error)) + 2, 2), 8)
