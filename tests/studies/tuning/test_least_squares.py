@@ -164,7 +164,7 @@ def test_progress_is_called():
 
 
 def test_invalid_parameters_and_targets_are_rejected():
-    with pytest.raises(ConfigurationError, match="none to fit"):
+    with pytest.raises(ConfigurationError, match="no parameter to fit"):
         fit([], [MeasuredMasses()], dict)
     with pytest.raises(ConfigurationError, match="targets: no measurement"):
         fit(PARAMETERS, [], dict)
