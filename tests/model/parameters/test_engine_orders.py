@@ -169,7 +169,7 @@ def test_a_trace_gives_the_torque_itself(tmp_path: Path, monkeypatch: pytest.Mon
     trace(tmp_path, modelled)
     monkeypatch.chdir(tmp_path)
     numbers = {f"engine.orders.{key}": value for key, value in {**FOUR, "pressure": "p.csv"}.items()}
-    with pytest.raises(ConfigurationError, match=r"engine.orders.torque: found 60 N m beside a file of the pressure"):
+    with pytest.raises(ConfigurationError, match=r"engine.orders.torque: found 60 N m and a file of the pressure"):
         Car.load("sedan", {"crank.rpm": 750, **numbers})
     car = Car.load("sedan", {"crank.rpm": 750, **numbers, "engine.orders.torque": 0})
     forces = {force.name: force for force in car.vehicle.composition.forces}
