@@ -214,7 +214,7 @@ CASES = {
     "frd in t": Case("modes.frd", nothing, ("import", "FILE", "--mass-unit", "t"), 'Set --mass-unit "kg".'),
     "method of modes": option("--method", "rubin", says="--method: belongs to stiffness and mass"),
     "modal mass of matrices": Case("K.mtx", nothing, (*MARKET, "--modal-mass", "1"), "--modal-mass: belongs to", 2),
-    "nodes of a job": Case("job.sti", nothing, (*JOB, "--nodes", "nodes.csv"), "--nodes: belongs to files of stiffness", 2),
+    "nodes of a job": Case("job.sti", nothing, (*JOB, "--nodes", "nodes.csv"), "--nodes: belongs to files", 2),
     "nodes of modes": option("--nodes", "nodes.csv", says="--nodes: belongs to files of stiffness and mass"),
     "attachment modes": option("--attachment-modes", "200", says="belongs to --method rubin or craig-bampton"),
     "output as text": option("--output", "body.txt", says="a body model is written as .toml or .npz"),
