@@ -15,6 +15,9 @@ TURN = 2.0 * math.pi
 BODY, WHEEL, SPRING, TYRE = 320.0, 40.0, 22e3, 200e3
 """Quarter car of the course: body and wheel [kg], spring and tyre [N/m]."""
 
+SERIES = SPRING * TYRE / (SPRING + TYRE)
+"""Spring and tyre in series [N/m]."""
+
 FRICTION = 60.0
 """Friction force of its damper [N]."""
 
@@ -96,7 +99,6 @@ def response_level() -> Exercise:
 def wheel_hop() -> Exercise:
     """Return exercise 3.1: natural frequency of the wheel with the body at rest, sqrt((k + kt) / mu) / 2 pi."""
     value = math.sqrt((SPRING + TYRE) / WHEEL) / TURN
-    series = SPRING * TYRE / (SPRING + TYRE)
     return Exercise(
         value,
         "Hz",
@@ -104,7 +106,7 @@ def wheel_hop() -> Exercise:
         (
             Slip(value * TURN, "that is w in rad/s; f = w / 2 pi"),
             Slip(math.sqrt(TYRE / WHEEL) / TURN, "the wheel moves between tyre and spring: both push it back"),
-            Slip(math.sqrt(series / WHEEL) / TURN, "the springs act side by side on the wheel: their stiffnesses add"),
+            Slip(math.sqrt(SERIES / WHEEL) / TURN, "the springs act side by side on the wheel: their stiffnesses add"),
             Slip(math.sqrt((SPRING + TYRE) / BODY) / TURN, "the wheel moves, not the body: use its mass"),
         ),
         "f = sqrt(stiffness / mass) / 2 pi, with the mass that moves and all springs that it compresses",
@@ -114,7 +116,6 @@ def wheel_hop() -> Exercise:
 def stuck_heave() -> Exercise:
     """Return exercise 3.2: heave with the damper stuck, body and wheel as one mass: sqrt(kt / (ms + mu)) / 2 pi."""
     value = math.sqrt(TYRE / (BODY + WHEEL)) / TURN
-    series = SPRING * TYRE / (SPRING + TYRE)
     return Exercise(
         value,
         "Hz",
@@ -122,7 +123,7 @@ def stuck_heave() -> Exercise:
         (
             Slip(value * TURN, "that is w in rad/s; f = w / 2 pi"),
             Slip(math.sqrt(TYRE / BODY) / TURN, "the wheel moves with the body: add its mass"),
-            Slip(math.sqrt(series / BODY) / TURN, "that is the heave of a sliding damper; here the strut is rigid"),
+            Slip(math.sqrt(SERIES / BODY) / TURN, "that is the heave of a sliding damper; here the strut is rigid"),
         ),
         "with a rigid strut one mass stands on one spring: which mass, which spring?",
     )
