@@ -9,7 +9,7 @@ import pytest
 
 from scenarios.signals.random_road import random_road
 from tests.documentation.pages import blocks
-from vehicle import Car, Road, register_law
+from vehicle import Car, Road, register_law, sweep
 from vehicle.engines.reduced.batch_simulation import COARSE_STEP, simulate_batch
 from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.errors import ConfigurationError, SimulationError
@@ -164,3 +164,12 @@ def test_the_example_of_numba():
     exec(compile(block, "own-law.md", "exec"), names)
     found = law_by_address("jitted")
     assert found.viscous == pytest.approx(4500.0) and found.force(1.0) == pytest.approx(1650.0)
+
+
+def test_a_sweep_with_one_job_knows_the_law():
+    ride = Road("C", speed=80.0, duration=3.0)
+    table = sweep(car_with("degressive"), {"body.mass": [1250.0, 1350.0]}, ride, engine="reduced")
+    alone = [car_with("degressive", **{"body.mass": mass}).run(ride, engine="reduced") for mass in (1250.0, 1350.0)]
+    expected = [run.comfort().unweighted.overall for run in alone]
+    # Cars of a table march together in single precision.
+    assert table.column("unweighted") == pytest.approx(expected, rel=1e-4)

@@ -23,7 +23,7 @@ from vehicle.runs.targets.values import Histories, value_of
 from vehicle.runs.targets.verdict import state_of
 from vehicle.studies.optimisation.problem import Vector
 from vehicle.studies.optimisation.smallest_change import SmallestChange, smallest_change
-from vehicle.studies.sweeps.executors import StandingExecutor, process_pool
+from vehicle.studies.sweeps.executors import StandingExecutor, ThisProcess, process_pool
 from vehicle.studies.sweeps.measure import STEP, of_one
 from vehicle.studies.sweeps.plan import plan_sweep
 from vehicle.studies.sweeps.run_batch import Runs
@@ -249,7 +249,7 @@ def meet_targets(
 
     low, high = (np.log([getattr(each, key) / each.start for each in started]) for key in ("low", "high"))
     # The processes of all batches of cars: each imports the program and builds the reference car once.
-    with StandingExecutor(partial(process_pool, jobs)) as executor:
+    with StandingExecutor(partial(process_pool, jobs) if jobs > 1 else ThisProcess) as executor:
         change = smallest_change(
             lambda positions: scale * senses * (values(positions, executor) - limits),
             low,

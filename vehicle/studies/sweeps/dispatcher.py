@@ -16,7 +16,7 @@ import numpy as np
 from vehicle.errors import ConfigurationError, SimulationError, VehicleError
 from vehicle.studies.sweeps.case import Case
 from vehicle.studies.sweeps.case_result import Block, Result
-from vehicle.studies.sweeps.executors import StandingExecutor, close, worker_remedy, workers_of
+from vehicle.studies.sweeps.executors import StandingExecutor, ThisProcess, close, worker_remedy, workers_of
 from vehicle.studies.sweeps.measure import Measure
 from vehicle.studies.sweeps.program import program_digest
 from vehicle.studies.sweeps.store import Indices
@@ -199,6 +199,8 @@ class Dispatcher:
         while waiting or flying:
             workers = self._count_workers()
             at_once = UNKNOWN_WORKERS if workers is None else PER_WORKER * max(workers, 1)
+            if isinstance(self.executor, ThisProcess):
+                at_once = 1  # a row is kept as soon as it is finished
             while waiting and len(flying) < at_once and not lost:
                 task, task_cases = self._next_task(waiting, cases, size, at_once)
                 try:

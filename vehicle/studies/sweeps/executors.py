@@ -8,12 +8,12 @@ import os
 import signal
 import threading
 from collections.abc import Callable
-from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor
+from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
 from multiprocessing import connection, get_context, parent_process
 from typing import Any, Self
 
 from vehicle.errors import ConfigurationError, MissingPartError, SimulationError
-from vehicle.threads import one_thread_each
+from vehicle.threads import one_blas_thread, one_thread_each
 
 DASK = "dask://"
 
@@ -36,6 +36,22 @@ def executor_factory(text: str) -> Callable[[], Executor]:
     if text.count(":") == 1 and all(text.split(":")):
         return _own(*text.split(":"))
     raise ConfigurationError(f"--executor {text!r}: must be dask://host:port or module:factory")
+
+
+class ThisProcess(Executor):
+    """Executor that runs a task in this process as it is submitted: no start of a process, and own laws are known."""
+
+    _max_workers = 1
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any, **named: Any) -> Future[Any]:
+        """Return the finished task; BLAS has one thread, as in `process_pool`, so that rounding is equal."""
+        future: Future[Any] = Future()
+        try:
+            with one_blas_thread():
+                future.set_result(function(*arguments, **named))
+        except Exception as error:
+            future.set_exception(error)
+        return future
 
 
 def process_pool(jobs: int) -> ProcessPoolExecutor:

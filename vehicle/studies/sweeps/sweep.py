@@ -17,7 +17,7 @@ from vehicle.studies.sweeps.case import Case, drivings
 from vehicle.studies.sweeps.case_keys import CaseKeys
 from vehicle.studies.sweeps.case_result import Block
 from vehicle.studies.sweeps.dispatcher import Dispatcher
-from vehicle.studies.sweeps.executors import process_pool
+from vehicle.studies.sweeps.executors import ThisProcess, process_pool
 from vehicle.studies.sweeps.measure import Measure
 from vehicle.studies.sweeps.program import libraries, program_digest
 from vehicle.studies.sweeps.store import ROWS, Indices, StoredRows
@@ -29,11 +29,13 @@ from vehicle.studies.sweeps.table_files import write_table
 def sweep_cases(cases: Sequence[Case], measure: Measure, settings: RunSettings) -> SweepTable:
     """Run cases and tabulate their measured values.
 
-    A failed run is a row with an error message. Workers get tasks of many runs, about a second of work. If a worker
-    dies, no finished row is lost: a new executor is created and the submitted tasks are repeated one at a time. The
-    runs of a task that kills its worker again are repeated one at a time, and the run that kills its worker is a failed
-    row. With a folder, rows are stored as their tasks finish, and stored rows are not computed again if car, input,
-    measure and program are equal. The table is bitwise independent of the number of workers and the sizes of the tasks.
+    A failed run is a row with an error message. With one job, no executor and no time limit the runs are in this
+    process, so that a script needs no guard of its main module. Otherwise workers get tasks of many runs, about a
+    second of work. If a worker dies, no finished row is lost: a new executor is created and the submitted tasks are
+    repeated one at a time. The runs of a task that kills its worker again are repeated one at a time, and the run that
+    kills its worker is a failed row. With a folder, rows are stored as their tasks finish, and stored rows are not
+    computed again if car, input, measure and program are equal. The table is bitwise independent of the number of
+    workers and the sizes of the tasks.
 
     The time limit of a run includes its car and, for the first run of a worker, imports and compilation; the worker of
     a run that takes longer is ended.
@@ -71,8 +73,10 @@ def sweep_cases(cases: Sequence[Case], measure: Measure, settings: RunSettings) 
                     progress(done / len(cases))
 
         if len(todo):
+            # A run in this process cannot be stopped.
+            apart = settings.jobs > 1 or settings.time_limit is not None
             dispatcher = Dispatcher(
-                settings.executor or partial(process_pool, settings.jobs),
+                settings.executor or (partial(process_pool, settings.jobs) if apart else ThisProcess),
                 measure,
                 key_of=key_of,
                 time_limit=settings.time_limit,

@@ -45,7 +45,11 @@ class PoolSettings(Settings):
     """Settings of many runs on processes or a cluster; the results do not depend on them."""
 
     jobs: int = setting(
-        "processes for independent runs; %(default)s by default", 1, within="[1, inf)", type=_jobs, metavar="N"
+        "processes for independent runs; %(default)s by default, which starts no other process",
+        1,
+        within="[1, inf)",
+        type=_jobs,
+        metavar="N",
     )
     executor: Callable[[], Executor] | Executor | None = setting(
         "function that returns an executor, in place of `jobs`; or an executor, which stays open and is not replaced "
