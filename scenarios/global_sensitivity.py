@@ -1,6 +1,6 @@
-"""Global sensitivity of comfort to ten parameters: Sobol indices, Morris effects or a Latin hypercube.
+"""Global sensitivity of comfort to ten parameters: Sobol indices.
 
-python -m scenarios.global_sensitivity [--method sobol|morris|lhs] [--runs N] [--road smooth|rough] [--jobs N] [--quick]
+python -m scenarios.global_sensitivity [--runs N] [--road smooth|rough] [--jobs N] [--quick]
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 import argparse
 import sys
 import time as clock
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -35,7 +35,7 @@ from vehicle.signals.analysis.ride_comfort import MEANING, UNWEIGHTED, WEIGHTED
 from vehicle.studies.sweeps.case import all_tyre_words
 from vehicle.studies.sweeps.case_table import table_cases
 from vehicle.studies.sweeps.executors import executor_factory
-from vehicle.studies.sweeps.indices import latin_hypercube, morris_effects, morris_sample, sobol_indices, sobol_sample
+from vehicle.studies.sweeps.indices import sobol_indices, sobol_sample
 from vehicle.studies.sweeps.store import ROWS
 from vehicle.studies.sweeps.sweep import sweep
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
@@ -78,18 +78,12 @@ DURATION_S = 20.0
 SOBOL_RUNS = 12288
 """1024 base points, times ten parameters and two."""
 
-MORRIS_RUNS = 440
-"""40 trajectories of ten steps."""
-
-METHODS = ("sobol", "morris", "lhs")
-
 
 def parser() -> Parser:
     """Return the parser of the command."""
     study_options = study_parser("global_sensitivity", quick="a few short runs, to see that everything works")
-    study_options.add_argument("--method", choices=METHODS, default="sobol", help="sobol by default")
     study_options.add_argument(
-        "--runs", type=int, metavar="N", help=f"about this many runs; {SOBOL_RUNS} (sobol), {MORRIS_RUNS} (others)"
+        "--runs", type=int, default=SOBOL_RUNS, metavar="N", help=f"at most this many runs; {SOBOL_RUNS} by default"
     )
     study_options.add_argument("--road", choices=sorted(ROAD_RMS), default="smooth", help="smooth by default")
     study_options.add_argument("--vehicle", type=vehicle_file, metavar="FILE.toml", help=VEHICLE_HELP)
@@ -105,26 +99,20 @@ def main(arguments: list[str] | None = None) -> int:
     return parse_and_run(parser(), _job, arguments)
 
 
-def points_of(method: str, runs: int, seed: int) -> Matrix:
-    """Return the points of a method with at most about `runs` runs; (points, parameters)."""
-    size = len(RANGES)
-    if method == "sobol":
-        base = 2 ** int(np.log2(max(runs // (size + 2), 2)))
-        return sobol_sample(RANGES, base, seed=seed)
-    if method == "morris":
-        return morris_sample(RANGES, max(runs // (size + 1), 2), seed=seed)
-    return latin_hypercube(RANGES, runs, seed=seed)
+def points_of(runs: int, seed: int) -> Matrix:
+    """Return the points of at most `runs` runs; (points, parameters)."""
+    base = 2 ** int(np.log2(max(runs // (len(RANGES) + 2), 2)))
+    return sobol_sample(RANGES, base, seed=seed)
 
 
 def _job(options: argparse.Namespace) -> None:
-    runs = options.runs or (SOBOL_RUNS if options.method == "sobol" else MORRIS_RUNS)
-    duration, lead = DURATION_S, LEAD_S
+    runs, duration, lead = options.runs, DURATION_S, LEAD_S
     if options.quick:
-        runs, duration, lead = 24 if options.method == "sobol" else 22, 2.0, 1.0
+        runs, duration, lead = 24, 2.0, 1.0
     if runs < len(RANGES) + 2:
         raise ConfigurationError(f"--runs {runs}: needed are at least {len(RANGES) + 2} for {len(RANGES)} parameters")
     make = None if options.executor is None else executor_factory(options.executor)
-    points = points_of(options.method, runs, options.seed)
+    points = points_of(runs, options.seed)
     wheel = load_vehicle(options.vehicle).shaker_wheel
     road = RoadInput(
         name=f"{options.road} road",
@@ -170,7 +158,7 @@ def _job(options: argparse.Namespace) -> None:
             f"{1e3 * road.rms:g} mm, {duration:g} s after {lead:g} s left out; {len(cases)} runs, tyres "
             f"{all_tyre_words(cases)}, engine {engine}, seed {options.seed}"
         )
-        text = _evaluate(options.method, folder, table, points, caption, options.seed)
+        text = _evaluate(folder, table, caption)
         write_text(folder / "results.md", f"# Global sensitivity of comfort\n\n{caption}\n\n{text}\n\n{ranges}\n")
     print(
         f"{output}: {len(cases)} runs, {len(table.failed)} failed, tyres {all_tyre_words(cases)}, {seconds:.0f} s; "
@@ -178,16 +166,16 @@ def _job(options: argparse.Namespace) -> None:
     )
 
 
-def _evaluate(method: str, folder: Path, table: SweepTable, points: Matrix, caption: str, seed: int) -> str:
-    """Draw and write the result of a method; returns its text."""
-    evaluate = {"sobol": _sobol, "morris": _morris, "lhs": _hypercube}[method]
+def _evaluate(folder: Path, table: SweepTable, caption: str) -> str:
+    """Draw and write the result; returns its text."""
     content: dict[str, object] = {"caption": caption}
     texts = []
     for name in (UNWEIGHTED, WEIGHTED):
         comfort = table.column(name)
         if np.all(np.isnan(comfort)):
             raise SimulationError(f"every run failed; the first: {table.failed[0][1]}")
-        data, text = evaluate(_Result(folder, name), points, comfort, f"{name} {caption}", seed)
+        figure = folder / ("indices.png" if name == UNWEIGHTED else f"{name}_indices.png")
+        data, text = _sobol(figure, comfort, f"{name} {caption}")
         plain = {key: value.tolist() if isinstance(value, np.ndarray) else value for key, value in data.items()}
         content |= plain if name == UNWEIGHTED else {name: plain}
         spread = f"{name}: {np.nanmean(comfort):.3f} +- {np.nanstd(comfort):.3f} m/s2 (mean and scatter)."
@@ -196,31 +184,17 @@ def _evaluate(method: str, folder: Path, table: SweepTable, points: Matrix, capt
     return "\n\n".join(texts)
 
 
-@dataclass(frozen=True, slots=True)
-class _Result:
-    """Folder of the files of one comfort value."""
+def _sobol(path: Path, comfort: Matrix, caption: str) -> tuple[dict[str, object], str]:
+    """Draw first-order and total indices as bars with 95 % intervals, the largest on top.
 
-    folder: Path
-    name: str
-
-    def __truediv__(self, file: str) -> Path:
-        """Return the path of a figure; the name of the weighted value is in front of the name of the file."""
-        return self.folder / (file if self.name == UNWEIGHTED else f"{self.name}_{file}")
-
-
-Evaluation = tuple[dict[str, object], str]
-"""Entries of `results.json`, and the text of the table."""
-
-WHISKERS = "; whiskers: 95 % intervals (bootstrap)"
-
-
-def _sobol(folder: _Result, points: Matrix, comfort: Matrix, caption: str, seed: int) -> Evaluation:
-    """Draw first-order and total indices as bars with 95 % intervals, the largest on top; return entries and table."""
+    Returns:
+        Entries of `results.json`, and the text of the table.
+    """
     sobol = sobol_indices(RANGES, comfort)
     order = np.argsort(sobol.total)
     position = np.arange(len(order))
     with figure_file(
-        folder / "indices.png", (9.0, 5.6), "", f"{caption}; whiskers: 95 % intervals ({sobol.scramblings} scramblings)"
+        path, (9.0, 5.6), "", f"{caption}; whiskers: 95 % intervals ({sobol.scramblings} scramblings)"
     ) as figure:
         axes = figure.add_subplot()
         for values, errors, shift, label, colour in (
@@ -247,46 +221,6 @@ def _sobol(folder: _Result, points: Matrix, comfort: Matrix, caption: str, seed:
         "(jackknife, Student's t). From half the sample to the whole, no ST moved by more than "
         f"{sobol.drift:.3f}. Sum of S1 {np.sum(sobol.first):.2f}." + left
     )
-
-
-def _morris(folder: _Result, points: Matrix, comfort: Matrix, caption: str, seed: int) -> Evaluation:
-    """Draw the scatter of the elementary effects over their mean size; return entries and table."""
-    morris = morris_effects(RANGES, points, comfort, seed=seed)
-    with figure_file(folder / "effects.png", (9.0, 5.6), "", caption + WHISKERS) as figure:
-        axes = figure.add_subplot()
-        axes.errorbar(
-            morris.mean_size, morris.scatter, xerr=morris.mean_size_error, fmt="o", color=COLOURS[0], capsize=2
-        )
-        for name, x, y in zip(morris.paths, morris.mean_size, morris.scatter, strict=True):
-            axes.annotate(_short(name), (x, y), xytext=(6, 4), textcoords="offset points", fontsize=8)
-        axes.set_xlabel("mu*, mean size of the effect over the whole range [m/s2]")
-        axes.set_ylabel("sigma, scatter of the effect: interaction and curvature [m/s2]")
-        axes.margins(0.15)
-    rows = [
-        [
-            *(morris.paths[i], f"{morris.mean_size[i]:.4f}", f"{morris.mean_size_error[i]:.4f}"),
-            *(f"{morris.mean[i]:+.4f}", f"{morris.scatter[i]:.4f}"),
-        ]
-        for i in np.argsort(-morris.mean_size)
-    ]
-    return asdict(morris), (
-        f"{markdown(('parameter', 'mu* [m/s2]', '+-', 'mu [m/s2]', 'sigma [m/s2]'), rows)}\n\n"
-        "Change of the comfort value over the whole range of a parameter: mean size, mean, scatter."
-    )
-
-
-def _hypercube(folder: _Result, points: Matrix, comfort: Matrix, caption: str, seed: int) -> Evaluation:
-    """Draw the comfort value of every run over each parameter; return entries and table."""
-    with figure_file(folder / "scatter.png", (13.0, 2.8 * -(-len(RANGES) // 5) + 0.6), "", caption) as figure:
-        panels = figure.subplots(-(-len(RANGES) // 5), 5, sharey=True, squeeze=False)
-        for axes, parameter, values in zip(panels.flat, RANGES, points.T, strict=True):
-            axes.plot(values, comfort, ".", markersize=3, color=COLOURS[0])
-            axes.set_xlabel(f"{_short(parameter.path)} [{unit_of(load_vehicle(), parameter.path)}]", fontsize=7)
-            axes.tick_params(labelsize=7)
-        for axes in panels[:, 0]:
-            axes.set_ylabel("comfort value [m/s²],\nlower is better", fontsize=8)
-    finite_values = [None if np.isnan(value) else value for value in comfort.tolist()]
-    return {"points": points, "comfort": finite_values}, "Every run is a row of `table.csv`."
 
 
 def _short(path: str) -> str:

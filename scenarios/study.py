@@ -31,7 +31,7 @@ STUDIES = {
     "stribeck": "Coulomb against Stribeck friction: relative acceleration and damper force.",
     "comfort_sensitivity": "Comfort on a smooth and a rough road against parameters.",
     "tornado": "Comfort on both roads against all parameters, as a tornado chart.",
-    "global_sensitivity": "Sobol indices, Morris effects or a Latin hypercube of the comfort value, ten parameters.",
+    "global_sensitivity": "Sobol indices of the comfort value, ten parameters.",
     "tuning": "Fit parameters of the car to FRFs and bump records.",
     "four_post": "Four-post rig: heave, pitch, roll and warp of cars on four wheels, dampers stuck and sliding.",
     "quarter_car": "Quarter-car models with friction, engine, degressive damper and inclined strut.",

@@ -82,13 +82,19 @@ def _car(vehicle: Path, overrides: tuple[str, ...]) -> Car:
     return Car.load(vehicle, (*overrides, *imbalance))
 
 
+@lru_cache(maxsize=1)
+def _bare(drive: Drive) -> Run:
+    """Run a car without imbalance, which all masses on its road are compared with."""
+    return drive.run()
+
+
 def shake(pair: tuple[Drive, Drive]) -> float:
     """Return the amplitude of order 1 by an imbalance, over the imbalance [m/s2 per kg m].
 
     Args:
         pair: drive with the imbalance, and the same drive without it.
     """
-    loaded, bare = (drive.run() for drive in pair)
+    loaded, bare = pair[0].run(), _bare(pair[1])
     _, speed = loaded.car.vehicle.composition.turning(f"wheel_{WHEEL}")
     history = (loaded[CHANNEL] - bare[CHANNEL])[None]
     lines = order_lines(loaded.time, history, speed / (2.0 * np.pi), [1.0], begin=loaded.skip)

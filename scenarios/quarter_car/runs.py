@@ -116,7 +116,7 @@ class Runs:
     @property
     def duration(self) -> float:
         """Return the duration of a random road [s]; short roads have the same velocity PSD."""
-        return 10.0 if self.quick else WHOLE
+        return 6.0 if self.quick else WHOLE
 
     @property
     def resolution(self) -> float:
@@ -175,7 +175,7 @@ class Runs:
     @property
     def roads(self) -> int:
         """Return the number of random roads of an averaged spectrum."""
-        return 3 if self.quick else 8
+        return 4 if self.quick else 8
 
     def spectrum(
         self, family: str, level: float, variant: int = 0, *, resolution: float = 0.25, per_road: bool = False

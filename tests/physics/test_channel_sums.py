@@ -1,7 +1,5 @@
 """Channels that are a sum hold the whole: the force of a damper with its stop, of a rolling tyre with the slope."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -12,8 +10,6 @@ from tests.engines.simulation.test_load_channels import at_poses, centres, moved
 from tests.physics.rolling_car import rolling_car
 from tests.physics.test_displacement_tables import bent, changed_car
 from tests.validation import validated
-from vehicle.engines.reduced.batch_simulation import simulate_batch
-from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
 from vehicle.signals.excitation.signal import Signal, uniform_time
@@ -70,21 +66,6 @@ def test_the_force_of_a_damper_is_its_law_with_its_stop(stopped_runs):
         "Reduced engine", "RMS of the force of a stop on a bump of 15 mm", float(np.std(reduced)),
         float(np.std(mujoco)), rel=1e-2, unit="N", source="second derivation: MuJoCo",
     )  # fmt: skip
-
-
-def test_a_batch_has_the_stops_too():
-    car = changed_car(bent)
-    time = uniform_time(samples=201, timestep=1e-3)
-    signal = Signal(time=time, displacement={"fr": bump_shape(time, amplitude=15e-3, start=0.05)})
-    dampers = [damper.law for damper in car.vehicle.composition.dampers]
-    given = {"record_rate": car.vehicle.solver.record_rate, "channels": ["damper_fr_force"], "step": 5e-4}
-    single = simulate_reduced(car.poles, signal, dampers=dampers, tyre_load=car.static.tyre_load, **given)
-    batch = simulate_batch([car.poles], signal, dampers=[dampers], tyre_load=[car.static.tyre_load], **given)
-    force = single["damper_fr_force"]
-    # The batch is in single precision, and adds the force of a stop that is free at rest to that of its damper.
-    np.testing.assert_allclose(
-        batch.recording(0)["damper_fr_force"], force, rtol=0.0, atol=1e-5 * np.max(np.abs(force))
-    )
 
 
 @pytest.mark.parametrize("engine", ENGINES)

@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 
 from tests.engines.simulation.row_model import Stepper, add_damper, empty_spec
 from tests.validation import foreign, validated
-from vehicle.errors import ConfigurationError, DataError
+from vehicle.errors import ConfigurationError
 from vehicle.model.laws.curve import Curve
 from vehicle.model.parameters.shipped import FOCUS_FILE
 from vehicle.model.parameters.toml_file import read_table
@@ -53,31 +53,6 @@ def test_the_force_is_that_of_the_table_at_the_present_velocity(velocity):
         "Dampers and friction", f"force of a tabulated damper with gas at {velocity:g} m/s", force,
         table_force(velocity) + REST, rel=1e-6, abs=1e-4, unit="N",
         source="closed form: linear interpolation of the table",
-    )  # fmt: skip
-
-
-@pytest.mark.parametrize("amplitude", [0.002, 0.02, 0.08])
-def test_the_work_of_a_cycle_is_the_area_of_the_table(amplitude):
-    # A mass that no damper slows down swings as a sine at 2 Hz.
-    omega, heavy, step = 4.0 * np.pi, 1e9, 1e-3
-    run = strut(step, mass=heavy, stiffness=heavy * omega**2)
-    run.data.qvel[0] = amplitude * omega * np.cos(0.5 * omega * step)
-    e, data, samples = run.rows.layout.dampers, run.data, []
-
-    def after():
-        # Of the step before, at its beginning: MuJoCo's velocity is that of the middle of a step.
-        force = -(data.actuator_force[0] + np.sum(data.efc_force[[*e.rows, *e.valves[:, 0]]])) if data.nefc else 0.0
-        return force, data.qvel[0] - 0.5 * step * data.qacc[0]
-
-    samples = run.step(501, after)[1:]
-    work = np.sum(samples[:, 0] * samples[:, 1]) * step
-    phase = np.linspace(0.0, 2.0 * np.pi, 200001)[:-1]
-    speed = amplitude * omega * np.cos(phase)
-    expected = np.mean([table_force(v) * v for v in speed]) * 2.0 * np.pi / omega
-    assert expected > 0.1
-    validated(
-        "Dampers and friction", f"work of a tabulated damper in a cycle of 2 Hz and {1e3 * amplitude:g} mm", work,
-        expected, rel=1e-4, unit="J", source="closed form: integral of F v over the cycle",
     )  # fmt: skip
 
 
@@ -176,9 +151,6 @@ def test_a_file_of_a_test_gives_the_same_law(tmp_path, tabled):
 BAD = [
     ({"velocity": VELOCITY, "force": FORCE[1:]}, "front.damper.force: found 6 numbers for 7 of velocity"),
     ({}, "front.damper.velocity: found 0 points, must be 2 to 40"),
-    ({"velocity": [-1, 1, 1], "force": [-1, 0, 1]}, "front.damper.velocity: found 1.0 after 1.0, must be ascending"),
-    ({"velocity": [-1, 1], "force": [1, -1]}, "front.damper.force: found -1.0 N after 1.0 N, must not fall"),
-    ({"velocity": [0, 1], "force": [0, 1]}, "front.damper.velocity: found 0.0 to 1.0, must lie on both sides of 0"),
     ({"velocity": [-11, 1], "force": [0, 1]}, "front.damper.velocity: found -11.0 m/s, must be at least -10.0"),
     ({"curve": "none.csv"}, "front.damper.curve: "),
     ({"curve": "a.csv", "force": FORCE}, "front.damper.curve: found 'a.csv'; must be the name of a file, without"),
@@ -191,9 +163,3 @@ def test_bad_tables_are_refused_by_name(law, message):
     with pytest.raises(ConfigurationError) as caught:
         table_car(**law)
     assert str(caught.value).startswith(message)
-
-
-def test_a_file_without_the_columns_is_refused(tmp_path):
-    (tmp_path / "test.csv").write_text("speed [m/s],force [N]\n0,1\n", encoding="utf-8")
-    with pytest.raises((ConfigurationError, DataError), match=r"test\.csv.*velocity \[m/s\]"):
-        table_car(tmp_path, curve="test.csv")

@@ -151,19 +151,6 @@ def test_the_car_stands_on_its_tables(bent_car, car):
     assert model.nu == car.model.model.nu
 
 
-def test_tables_of_a_line_are_the_linear_car(car, bump_piece):
-    def straight(front):
-        front["main_spring"]["table"] = {
-            "displacement": [-0.2, -0.1, 0.1],
-            "force": [x * SPRING for x in (-0.2, -0.1, 0.1)],
-        }
-        front["bushings"]["tyre"]["table_z"] = {"displacement": [-0.1, 0.1], "force": [-0.1 * TYRE, 0.1 * TYRE]}
-
-    table_run, linear_run = changed_car(straight).run(bump_piece), car.run(bump_piece)
-    for name in ("seat_rail_acc_z", "tyre_fr_force_z", "damper_fr_velocity"):
-        np.testing.assert_allclose(table_run[name], linear_run[name], rtol=0.0, atol=1e-7 * np.std(linear_run[name]))
-
-
 def test_energy_balances_and_both_engines_follow_the_tables(bent_car, bump_piece):
     loads = ["main_spring_fr_force", "suspension_mount_fr_force_z"]
     channels = [*bent_car.vehicle.channels, *loads]

@@ -1,6 +1,4 @@
-"""A symmetric car on a mirrored road: its mirrored motion, exact in the reduced engine, of first order in MuJoCo."""
-
-from __future__ import annotations
+"""A symmetric car on a mirrored road in MuJoCo: its mirrored motion, with an error of first order."""
 
 import numpy as np
 import pytest
@@ -21,7 +19,7 @@ SYMMETRIC = [
 OTHER = {"fr": "fl", "fl": "fr", "rr": "rl", "rl": "rr"}
 
 
-def mirror_errors(car: Car, engine: str) -> dict[str, float]:
+def mirror_errors(car: Car) -> dict[str, float]:
     """Return the RMS difference between a run and the mirror image of the run on the mirrored road, over the RMS."""
     wheels = car.vehicle.wheels
     signals = [
@@ -29,9 +27,9 @@ def mirror_errors(car: Car, engine: str) -> dict[str, float]:
     ]
     time = signals[0].time
     displacement = {wheel: signal.displacement["fr"] for wheel, signal in zip(wheels, signals, strict=True)}
-    run = car.run(Signal(time=time, displacement=displacement), engine=engine)
+    run = car.run(Signal(time=time, displacement=displacement))
     mirrored = {OTHER[wheel]: height for wheel, height in displacement.items()}
-    image = car.run(Signal(time=time, displacement=mirrored), engine=engine)
+    image = car.run(Signal(time=time, displacement=mirrored))
     errors = {}
     for wheel, other in OTHER.items():
         for axis, sign in (("x", 1.0), ("y", -1.0), ("z", 1.0)):
@@ -40,19 +38,9 @@ def mirror_errors(car: Car, engine: str) -> dict[str, float]:
     return errors
 
 
-def test_the_reduced_engine_mirrors():
-    """Both runs sum over the poles in another order: round-off, with and without friction.
-
-    It is 1e-9 of the motion, 9.5e-9 along x of the rear knuckles; ten times that for other processors and libraries.
-    """
-    assert max(mirror_errors(Car.load("sedan", SYMMETRIC), "reduced").values()) < 1e-7
-
-
 def test_mujoco_mirrors_with_an_error_of_first_order():
     """Its gyroscopic and centrifugal forces are late by half a step, differently on the sides of the tree of bodies."""
-    coarse, fine = (
-        mirror_errors(Car.load("sedan", [*SYMMETRIC, f"solver.timestep={step}"]), "mujoco") for step in (1e-3, 5e-4)
-    )
+    coarse, fine = (mirror_errors(Car.load("sedan", [*SYMMETRIC, f"solver.timestep={step}"])) for step in (1e-3, 5e-4))
     assert max(coarse.values()) < 2.5e-3
     # Between two steps a pure first order is a ratio of 2; second order is 4.
     order = [float(np.log2(coarse[name] / fine[name])) for name in coarse]

@@ -1,7 +1,5 @@
 """A tyre on a moving plate: MuJoCo's mocap bodies have no velocity, the rows must bring it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -20,8 +18,8 @@ def wheel_on_plate(step):
     return Stepper(spec)
 
 
-def transmissibility(frequency, step, *, velocity=1.0, acceleration=1.0):
-    """Complex ratio of wheel to plate displacement; the shares let a test forget a part."""
+def transmissibility(frequency, step):
+    """Complex ratio of wheel to plate displacement, measured and exact."""
     omega = 2.0 * np.pi * frequency
     exact = (K + 1j * omega * B) / (K + 1j * omega * B - MASS * omega**2)
     run = wheel_on_plate(step)
@@ -31,8 +29,8 @@ def transmissibility(frequency, step, *, velocity=1.0, acceleration=1.0):
 
     def drive(time):
         run.data.mocap_pos[0, 2] = 1e-3 * np.cos(omega * time)
-        run.rows.state.plate_velocity[0, 2] = -1e-3 * omega * np.sin(omega * time) * velocity
-        run.rows.state.plate_acceleration[0, 2] = -1e-3 * omega**2 * np.cos(omega * time) * acceleration
+        run.rows.state.plate_velocity[0, 2] = -1e-3 * omega * np.sin(omega * time)
+        run.rows.state.plate_acceleration[0, 2] = -1e-3 * omega**2 * np.cos(omega * time)
 
     period = round(1.0 / (frequency * step))
     x = run.step(25 * period, run.position, drive)[-5 * period :, 2]
@@ -48,15 +46,3 @@ def test_wheel_on_a_moving_plate(frequency):
         "Tyres", f"transmissibility of a wheel on a moving plate at {frequency:g} Hz", measured, exact, rel=2e-3,
         unit="m/m", source="closed form: (k + i w c) / (k + i w c - m w^2)",
     )  # fmt: skip
-
-
-def test_without_the_plate_velocity_the_tyre_damper_is_wrong():
-    measured, exact = transmissibility(12.5, 1e-3, velocity=0.0)
-    assert abs(measured - exact) > 0.02 * abs(exact)
-
-
-def test_the_plate_acceleration_belongs_to_the_average_of_the_stiffness():
-    # K is averaged over three steps of wheel less plate; leaving the plate out triples the error at 40 Hz.
-    measured, exact = transmissibility(40.0, 1e-3)
-    without, _ = transmissibility(40.0, 1e-3, acceleration=0.0)
-    assert abs(without - exact) > 2.5 * abs(measured - exact)

@@ -1,7 +1,5 @@
 """The same physics twice: the quarter car in MuJoCo with the rows of the complete car, against a stiff solver."""
 
-from __future__ import annotations
-
 import dataclasses
 from functools import cache
 
@@ -16,12 +14,9 @@ from scenarios.lumped.quarter_car_spec import quarter_car_spec
 from scenarios.lumped.stiff_solution import stiff_solution
 from scenarios.quarter_car.in_mujoco import DEFAULT_STEP, friction_of_the_rows, in_mujoco
 from scenarios.signals.random_road import random_road
-from tests.engines.simulation.row_model import poles
 from tests.validation import foreign, validated
-from vehicle.engines.linear.natural_modes import natural_modes
 from vehicle.errors import ConfigurationError
 from vehicle.signals.analysis.slip import slip_share
-from vehicle.signals.excitation.signal import Signal
 
 CAR = load_quarter_car()
 LOOSE = dataclasses.replace(CAR, friction=Friction(limit=0.0, steepness=1e5))
@@ -161,48 +156,6 @@ def test_the_friction_model_converges_with_second_order():
     # The friction acts on the wheel and the damper directly: their accelerations jump, and sampled jumps that come a
     # fraction of a step late cannot converge as fast.
     assert 1.3 < slope["damper"] < slope["wheel"] < 2.0
-
-
-def test_stuck_the_frequencies_converge_with_fourth_order():
-    modes = natural_modes(quarter_car(CAR, damper="stick").first_order())
-    masses = np.array([CAR.body.mass, CAR.wheel.mass])
-    errors = []
-    for step in (4e-3, 2e-3, 1e-3):
-        motion = free_vibration("stick", step)
-        # The scheme keeps the mode shapes, so each mode is one oscillator with poles of its own.
-        frequencies = [np.abs(poles(motion @ (masses * shape.real), step)[0]) / (2.0 * np.pi) for shape in modes.shape]
-        errors.append(np.array(frequencies) / modes.frequency - 1.0)
-    slope = np.polyfit(np.log([4e-3, 2e-3, 1e-3]), np.log(np.abs(errors)), 1)[0]
-    validated(
-        "Integration in MuJoCo", "stuck quarter car, order of convergence of both frequencies", slope,
-        np.array([4.0, 4.0]), abs=0.1, source="closed form: (w h)^4 / 480",
-    )  # fmt: skip
-    # (w h)^4/480, which is 1.3e-6 for 25.13 Hz at 1 ms; its next term is (w h)^2 of it.
-    validated(
-        "Integration in MuJoCo", "stuck quarter car, relative error of both frequencies, step 1 ms", errors[-1],
-        (2.0 * np.pi * modes.frequency * 1e-3) ** 4 / 480.0, rel=0.05, source="closed form: (w h)^4 / 480",
-    )  # fmt: skip
-
-
-def free_vibration(damper, step):
-    """Return the motion of body and wheel about equilibrium, (T, 2), on a plate that has risen by 10 mm."""
-    # The spline of the plate oscillates after the step and falls to 0.27 with each sample: after 40, it is at rest.
-    settled = 40
-    time = step * np.arange(settled + 401)
-    risen = Signal(time=time, displacement={"fr": np.where(time > 0.0, 0.01, 0.0)}, source="a step")
-    motion = in_mujoco(CAR, risen, timestep=step, damper=damper)
-    return np.stack([motion.displacement[output] for output in ("body", "wheel")], axis=1)[settled:] - 0.01
-
-
-def test_the_friction_row_holds_the_damper():
-    """On a road too small to break it loose it creeps; without friction it slips."""
-    small = random_road(
-        rms=2e-5, seed=1, wheel="fr", duration=2.0, rate=1000.0, lower_band_edge=0.5, upper_band_edge=100.0
-    )
-    stuck, loose = in_mujoco(CAR, small), in_mujoco(LOOSE, small)
-    # It creeps with the slope of the law at rest, at most Fd / c = 1.6e-5 m/s.
-    assert np.abs(stuck.sliding_velocity).max() < np.pi / 2.0 / CAR.friction.steepness
-    assert slip_share(loose.sliding_velocity, 1e-4) > 0.5
 
 
 def test_it_is_made_of_the_elements_of_the_complete_car():

@@ -1,52 +1,17 @@
 """Horizontal force of a rolling tyre on a road: load times effective slope, apart from the effective height."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.integrate import cumulative_trapezoid
 
-from tests.physics.rolling_car import rolling_car
 from tests.validation import validated
-from vehicle.engines.reduced.batch_simulation import COARSE_STEP, simulate_batch
-from vehicle.engines.reduced.reduced_run import simulate_reduced
-from vehicle.engines.simulation.stepping import simulate
 from vehicle.errors import DataError
 from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
 from vehicle.signals.excitation.iso_road import Side
 from vehicle.signals.excitation.road_drive import RoadDrive
-from vehicle.signals.excitation.signal import Signal, uniform_time
 from vehicle.signals.excitation.tyre_envelope import TyreEnvelope
-
-SPEED = 15.0
-
-
-def test_a_slope_without_height_pushes_the_car_by_its_weight(tmp_path: Path) -> None:
-    """The hold of the course carries m g tan(beta): x = g tan(beta) / (2 pi f)^2 at its eigenfrequency f."""
-    car = rolling_car(
-        tmp_path,
-        SPEED,
-        gravity=9.81,
-        overrides=["driving.hold_frequency=0.5", "hardpoints.seat_rail=[2.1, 0.0, 0.9]"],
-    )
-    time, slope = uniform_time(samples=8001, timestep=1e-3), 1e-3
-    risen = 0.5 * (1.0 - np.cos(np.pi * np.clip(time / 0.5, 0.0, 1.0)))
-    signal = Signal(
-        time=time,
-        displacement={wheel: np.zeros(time.size) for wheel in car.vehicle.wheels},
-        slope_velocity=dict.fromkeys(car.vehicle.wheels, SPEED * slope * risen),
-    )
-    run = simulate(car.model, signal)
-    velocity = cumulative_trapezoid(run.channels["seat_rail_acc_x"], run.time, initial=0.0)
-    moved = cumulative_trapezoid(velocity, run.time, initial=0.0)[-1]
-    validated(
-        "Tyres", "displacement of a car on a slope of 0.1 % against its course spring", moved,
-        9.81 * slope / np.pi**2, rel=2e-3, unit="m", source="closed form: m g tan(beta) / k",
-    )  # fmt: skip
 
 
 def test_the_slope_of_a_drive_is_that_of_the_cams() -> None:
@@ -134,25 +99,6 @@ def test_engines_agree_on_a_cleat_but_for_products_of_motions() -> None:
         reason="products of three motions: the links turn by finite angles, and the motion along y is the smallest "
         "of the car; on 5 x 50 mm these channels agree within 0.1 %",
     )  # fmt: skip
-
-
-def test_a_batch_on_a_cleat_is_the_single_run_at_its_step() -> None:
-    drive = Road("cleat:20x50@15", speed=30.0, duration=3.5).under(Car.load("sedan").vehicle)
-    car, signal = Car.load("sedan", drive.overrides), drive.signal()
-    channels = ["seat_rail_acc_x", "seat_rail_acc_z", "knuckle_fr_acc_x"]
-    dampers = [damper.law for damper in car.vehicle.composition.dampers]
-    rate, load = car.vehicle.solver.record_rate, car.static.tyre_load
-    batch = simulate_batch(
-        2 * [car.poles], signal, dampers=2 * [dampers], record_rate=rate, tyre_load=2 * [load], channels=channels
-    ).recording(1)
-    single = simulate_reduced(
-        car.poles, signal, dampers=dampers, record_rate=rate, tyre_load=load, channels=channels, step=COARSE_STEP
-    )
-    fine = car.run(signal, engine="reduced")
-    for channel in channels:
-        size = np.std(single[channel])
-        assert np.std(batch[channel] - single[channel]) < 3e-3 * size, channel
-        assert np.std(batch[channel]) == pytest.approx(np.std(fine[channel]), rel=5e-3), channel
 
 
 def test_effective_slopes_of_cams_are_differences_of_closed_heights() -> None:

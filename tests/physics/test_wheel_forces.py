@@ -1,26 +1,16 @@
 """Non-uniform tyres and varying brakes in both engines: closed forms, matrices solved line by line, batches."""
 
-from __future__ import annotations
-
-import dataclasses
-
 import mujoco
 import numpy as np
 import pytest
 
-from tests.engines.linear.plain_matrices import plain_matrices
 from tests.physics.test_applied_forces import energies_of
 from tests.validation import validated
 from vehicle import Car, Run, road
-from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.reduced.batch_simulation import simulate_batch
-from vehicle.engines.reduced.pole_model import pole_model
-from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.model.parameters.force_elements import Tyre
-from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.output.run_forces import force_values
 from vehicle.signals.analysis.order_lines import order_lines
-from vehicle.signals.excitation.force_lines import ForceLines
 from vehicle.signals.excitation.signal import Signal
 
 SPEED = 100.0
@@ -105,7 +95,7 @@ def test_a_linear_car_answers_a_wheel_as_its_matrices_say(kind):
     )
 
 
-@pytest.mark.parametrize("kind", ["run-out", "rolling radius", "brake torque"])
+@pytest.mark.parametrize("kind", ["run-out", "brake torque"])
 def test_mujoco_answers_a_wheel_as_the_matrices_say(kind):
     car = Car.load("focus_road", {**TABLES[kind], **FREE})
     run = car.run(road("level", SPEED, duration=8), channels=CHANNELS)
@@ -118,68 +108,6 @@ def test_mujoco_answers_a_wheel_as_the_matrices_say(kind):
         peak=1e-3,
     )
     assert energies_of(run).residual < 1e-3
-
-
-BODY, WHEEL, SPRING, DAMPING, TYRE, DRAG = 300.0, 40.0, 2e4, 1500.0, 2e5, 120.0
-"""Quarter car: masses [kg], stiffness [N/m] and damping [N s/m] of the suspension and of the tyre."""
-
-
-def quarter_cars() -> CarMatrices:
-    """Two quarter cars with locked dampers beside their linear damping; the run-out is that of the right tyre."""
-    link = np.array([[1.0, -1.0], [-1.0, 1.0]])
-    wheels = np.array([[0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
-    matrices: CarMatrices = plain_matrices(
-        mass=np.kron(np.eye(2), np.diag([BODY, WHEEL])),
-        damping=np.kron(np.eye(2), DAMPING * link) + DRAG * wheels.T @ wheels,
-        stiffness=np.kron(np.eye(2), SPRING * link) + TYRE * wheels.T @ wheels,
-        dampers=np.array([0, 2]),
-        viscous=np.zeros(2),
-        plate_stiffness=TYRE * wheels,
-        plate_damping=DRAG * wheels,
-        tyre_stiffness=np.full(2, TYRE),
-        tyre_damping=np.full(2, DRAG),
-        outputs={"knuckle_fr_acc_z": wheels[0], "suspension_mount_fr_acc_z": np.eye(4)[0]},
-        body_rows={"body": np.zeros((6, 4))},
-        body_masses={"body": np.eye(6)},
-    )
-    turn = 2.0 * np.pi * 12.3
-    return dataclasses.replace(
-        matrices,
-        force_rows=np.zeros((1, 4)),
-        force_slips=np.zeros((1, 0)),
-        force_heights=np.array([[1.0, 0.0]]),
-        lines=ForceLines((turn,)),
-        coefficients=np.array([[3e-4, 2e-4]]),
-    )
-
-
-def test_a_quarter_car_answers_a_run_out_as_the_closed_form():
-    matrices = quarter_cars()
-    (turn,) = matrices.lines.frequencies
-    still = np.zeros(12001)
-    free = dataclasses.replace(load_vehicle().damper, viscous=0.0, coulomb_friction=0.0)
-    names = ["suspension_mount_fr_acc_z", "knuckle_fr_acc_z", "tyre_fr_force_z"]
-    run = simulate_reduced(
-        pole_model(matrices),
-        Signal(time=np.arange(12001) / 1e3, displacement={"fr": still, "fl": still}),
-        dampers=[free] * 2,
-        record_rate=1000.0,
-        tyre_load={"fr": 1e4, "fl": 1e4},
-        channels=names,
-    )
-    s, r = 1j * turn, 3e-4 - 2e-4j
-    suspension, tyre = SPRING + s * DAMPING, TYRE + s * DRAG
-    # M s^2 b = -S (b - w), m s^2 w = S (b - w) + T (r - w)
-    body_share = suspension / (BODY * s * s + suspension)
-    wheel = tyre * r / (WHEEL * s * s + BODY * s * s * body_share + tyre)
-    validated(
-        "Applied forces",
-        "run-out of the tyre of a quarter car, 12.3 Hz: acceleration of body and wheel, load of the tyre",
-        lines_of(run.time, np.array([run[name] for name in names]), turn, (1,))[:, 0],
-        np.array([s * s * body_share * wheel, s * s * wheel, tyre * (r - wheel)]),
-        source="closed form: M s2 b = -S (b - w), m s2 w = S (b - w) + T (r - w)",
-        rel=1e-4,
-    )
 
 
 def test_a_run_out_is_no_slope_on_a_road_either():
@@ -231,7 +159,7 @@ def test_the_range_over_the_phases_contains_every_car_and_reaches_its_ends():
     rows = {"front.imbalance.mass": 0.02, "front.imbalance.radius": 0.19, "front.nonuniformity.rfv": [[1, 40, 90]]}
     smooth, name = road("level", 120, duration=6), "seat_rail_acc_z"
     limits = []
-    for phase in (0.0, 60.0, 120.0, 180.0, 240.0, 300.0):
+    for phase in (0.0, 90.0, 180.0, 270.0):
         left = {"front.left.imbalance.angle": phase, "front.left.nonuniformity.rfv": [[1, 40, 90 + phase]]}
         run = Car.load("focus_road", {**rows, **left}).run(smooth, engine="reduced")
         (line,) = force_values(run)["orders"]

@@ -185,11 +185,6 @@ def test_ring_down_of_a_known_decay():
     assert np.isnan(ring_down_time(time[:1800], motion[:1800], 1.0))
 
 
-def test_a_film_must_be_an_mp4(tmp_path, capsys):
-    assert main(["--output", str(tmp_path / "out"), "--video", "film.avi", "--quick"]) == 2
-    assert ".mp4" in capsys.readouterr().err
-
-
 @pytest.mark.render
 def test_the_film_shows_both_bumps_in_step(car, tmp_path):
     if (reason := film_available()) is not None:

@@ -59,11 +59,6 @@ def test_one_process_is_asked_for_where_several_would_not_help(monkeypatch):
     assert runs([runs.case(SHORT)])
 
 
-def test_cases_know_the_engine_that_is_asked_for():
-    runs = CarRuns(engine="reduced")
-    assert [runs.case(SHORT).engine, runs.case(SHORT, engine="mujoco").engine] == ["reduced", "mujoco"]
-
-
 def findings(runs, folder, options):
     row = PREDICTED.statement("a statement", "so", "so", True, "because")
     return Findings(title="Example", claims=[row], unjudged={"another": "too short"}, notes=["a note"], data={"n": 1})

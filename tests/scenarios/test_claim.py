@@ -25,7 +25,7 @@ from scenarios.claims import (
     interval_claim,
     spread_claim,
 )
-from scenarios.study import STUDIES, lumped_study, main_of, study_parser
+from scenarios.study import STUDIES, lumped_study, main_of
 from scenarios.verdict import verdict
 from vehicle.errors import ConfigurationError, OutputError, SimulationError
 from vehicle.runs.output.folder import check_study, study_folder, write_text
@@ -61,10 +61,6 @@ def test_a_spread_agrees_where_the_interval_is_probable_and_prints_the_probabili
     assert outside.within is False and outside.probability is not None and 0.0 < outside.probability < 0.05
     wide = spread_claim("a", (0.5, 0.6), [0.1, 0.9, 0.3, 0.7, 0.5, 0.4, 0.6, 0.2], "w")
     assert wide.within and wide.probability is not None and 0.05 < wide.probability < 0.2
-
-
-def test_one_value_of_a_spread_is_compared_with_the_interval():
-    assert spread_claim("a", (0.5, 0.6), [0.55], "w") == interval_claim("a", (0.5, 0.6), 0.55, "w")
 
 
 def test_a_row_that_no_one_can_test_has_no_verdict_and_is_not_counted():
@@ -171,13 +167,6 @@ def test_file_in_the_way_of_a_folder_is_an_output_error(tmp_path):
         check_study(tmp_path / "file", force=True)
 
 
-def test_failed_write_leaves_nothing(tmp_path):
-    (tmp_path / "a").mkdir()
-    with pytest.raises(OutputError, match="cannot be written"):
-        write_text(tmp_path / "a", "text")
-    assert [path.name for path in tmp_path.iterdir()] == ["a"]
-
-
 def failing(error):
     def study(parameters: None, folder: Path, options: argparse.Namespace) -> Findings:
         raise error
@@ -196,15 +185,6 @@ def run(study, folder, *more):
 def test_errors_become_exit_codes(error, code, tmp_path, capsys):
     assert run(failing(error), tmp_path) == code
     assert capsys.readouterr().out == ""
-
-
-def test_debug_shows_the_traceback(tmp_path, capsys):
-    assert run(failing(ConfigurationError("c")), tmp_path, "--debug") == 2
-    assert "Traceback" in capsys.readouterr().err
-
-
-def test_default_folder_is_named_after_the_study():
-    assert str(study_parser("half_car_rider", quick="").parse_args([]).output) == "runs/half_car_rider"
 
 
 def test_the_list_holds_every_study_and_no_other(capsys):

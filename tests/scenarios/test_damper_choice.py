@@ -12,7 +12,7 @@ from scenarios.damper_choice.__main__ import main
 from scenarios.damper_choice.damper_curves import compare_curves
 from scenarios.damper_choice.other_vehicles import region_verdicts
 from scenarios.damper_choice.runs import complete_car_quarter, trade_off
-from scenarios.lumped.damper_choice import FITTED, damper_choice_parameters
+from scenarios.lumped.damper_choice import damper_choice_parameters
 from scenarios.lumped.road_holding import quarter_car_model, tyre_load_ratio
 from tests.scenarios.kept_table import contradictions
 from vehicle.model.parameters.vehicle import load_vehicle
@@ -85,13 +85,6 @@ def test_the_order_of_the_wheel_curves():
     assert region_verdicts(lines, np.array([soft, firm]), 2.0) == (False, True)
 
 
-def test_every_row_has_its_place_and_a_picture_that_is_there(results):
-    rows = json.loads((results / "results.json").read_text(encoding="utf-8"))["rows"]
-    assert all(row["place"] for row in rows)
-    assert {row["picture"] for row in rows} - {""} <= {path.name for path in results.iterdir()}
-    assert sum(row["picture"] == "" for row in rows) == 0
-
-
 def test_one_coefficient_gives_the_linear_tyre_load_and_rebound_pulls_the_body_down():
     comparison = compare_curves(P, duration=6.0)
     linear = tyre_load_ratio(quarter_car_model(P.quarter_car), P.highway, P.bands)[0]
@@ -106,27 +99,6 @@ def test_one_coefficient_gives_the_linear_tyre_load_and_rebound_pulls_the_body_d
     np.testing.assert_allclose(constant, car.wheel.suspension_damping * velocity)
     np.testing.assert_allclose(low[::-1], -low, atol=1e-9)
     assert rebound[-1] == pytest.approx(-2.0 * rebound[0])
-
-
-def test_both_roads_and_both_measures_are_reported(results):
-    optima = json.loads((results / "results.json").read_text(encoding="utf-8"))["optima"]
-    assert set(optima) == {"highway", "city"}
-    assert all(set(row) == {"printed", "physical"} for row in optima.values())
-    for row in optima.values():
-        for result in row.values():
-            assert sum(result["joint"]["values"]) <= sum(result["iteration"][-1]["fluctuation"]) + 1e-6
-
-
-def test_existing_results_are_not_overwritten_without_force(results, capsys):
-    assert main(["--output", str(results), "--quick"]) == 2
-    assert "holds files already; give another folder, or --force to overwrite" in capsys.readouterr().err
-
-
-def test_bad_parameter_is_refused_by_name(tmp_path, capsys):
-    path = tmp_path / "car.toml"
-    path.write_text(FITTED.read_text(encoding="utf-8").replace("decay = 0.19 ", "decay = 0.0 "), encoding="utf-8")
-    assert main(["--parameters", str(path), "--output", str(tmp_path / "out")]) == 2
-    assert capsys.readouterr().err == "error: highway.decay: found 0.0 s, must be greater than 0.0\n"
 
 
 def test_trade_off_scales_with_the_class_and_has_its_optima_inside():

@@ -6,7 +6,6 @@ import pytest
 from scenarios.damper_choice.fit import (
     FRONT_RATIOS,
     HALF_FREE,
-    QUARTER_FREE,
     QUARTER_RATIOS,
     REAR_RATIOS,
     fit_quarter_car,
@@ -76,7 +75,3 @@ def test_half_car_sits_in_a_valley_of_the_cost():
             if name == "wheelbase" and factor < 1.0:
                 continue  # below the shortest wheelbase that the fit allows
             assert cost(moved) > best, name
-
-
-def test_names_match_the_numbers_of_values():
-    assert (len(QUARTER_FREE), len(HALF_FREE)) == (QUARTER.size, HALF.size)

@@ -9,7 +9,6 @@ import pytest
 
 from scenarios.evidence import status_of
 from scenarios.inertia import (
-    led_by,
     loss_angle,
     main,
     moment_about_cog,
@@ -56,13 +55,6 @@ def test_the_roll_mode_is_where_the_roof_swings_sideways(ixx):
     lines = np.arange(4.2, 9.0, 0.01)
     lateral = np.abs(car.matrix_frf(["roof_left_rear_acc_y"], lines))[0] / lines**2
     assert lines[np.argmax(lateral)] == pytest.approx(mode.frequency, rel=2 * mode.damping_ratio)
-
-
-def test_modes_belong_to_the_part_with_most_energy(car):
-    modes = car.modes("stuck", highest=30.0)
-    for part in ("body", "engine"):
-        assert len(led_by(modes, part)) == 6
-        assert all(mode.energy[part] == max(mode.energy.values()) for mode in led_by(modes, part))
 
 
 def test_a_torsion_mode_far_above_the_wheel_mode_does_not_couple():

@@ -1,7 +1,5 @@
 """The table of everything: rows collected, none left out, finished studies read, pictures copied."""
 
-from __future__ import annotations
-
 import importlib
 import json
 from pathlib import Path
@@ -16,7 +14,7 @@ import scenarios.published.__main__ as published
 from scenarios import evidence
 from scenarios.published.pictures import LARGEST, write_copy
 from scenarios.published.sources import SOURCES, THESIS, place_of, section_of
-from scenarios.published.statements import STATEMENTS, unanswered
+from scenarios.published.statements import STATEMENTS
 from scenarios.study import STUDIES
 
 
@@ -176,10 +174,6 @@ def test_statements_without_a_row_are_named_on_the_page(studies, tmp_path):
     assert others == [statement for statement in STATEMENTS if statement not in answered]
 
 
-def test_a_place_answers_a_statement():
-    assert "quarter car: damping Dh" not in unanswered([row("quarter_car: anything", place="figure D.5")])
-
-
 def test_finished_studies_are_read_and_missing_ones_run(studies, tmp_path):
     assert command(tmp_path) == 0
     (tmp_path / "runs" / "levels" / "results.json").unlink()
@@ -236,13 +230,6 @@ def test_a_fresh_copy_of_the_kept_results_may_be_replaced(studies, tmp_path):
     assert command(tmp_path, "--reuse", "--force") == 0
 
 
-def test_an_occupied_folder_is_refused_before_anything_runs(studies, tmp_path, capsys):
-    assert command(tmp_path) == 0
-    assert command(tmp_path) == 2
-    assert "holds files already" in capsys.readouterr().err
-    assert len(studies["levels"]) == 2  # both cars, once
-
-
 def test_a_failed_study_ends_the_command(studies, tmp_path, monkeypatch, capsys):
     replace_studies(monkeypatch, lambda name: SimpleNamespace(main=lambda arguments: 3))
     assert command(tmp_path) == 4
@@ -263,13 +250,6 @@ def test_a_noisy_picture_is_made_smaller_until_it_fits(tmp_path):
     with Image.open(tmp_path / "small.png") as small:
         assert (tmp_path / "small.png").stat().st_size <= LARGEST and 300 < small.width < 1000
         assert small.width / small.height == pytest.approx(5.0 / 3.0, rel=0.01)
-
-
-def test_a_simple_picture_keeps_its_width(tmp_path):
-    Image.new("RGB", (800, 400), "white").save(tmp_path / "a.png")
-    write_copy(tmp_path / "a.png", tmp_path / "b.png")
-    with Image.open(tmp_path / "b.png") as copy:
-        assert copy.size == (800, 400)
 
 
 def test_a_short_red_line_keeps_its_colour_beside_blue_ones(tmp_path):

@@ -1,7 +1,5 @@
 """The command of the quarter-car study as a user runs it, and its table."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import fields
 
@@ -30,26 +28,6 @@ def test_one_figure_is_written_whole(tmp_path, capsys, name):
     assert {path.name for path in folder.iterdir()} == {figure, MARKER}
     assert (folder / figure).read_bytes().startswith(b"\x89PNG")
     assert capsys.readouterr().out.startswith(f"{folder}: 1 figure;")
-
-
-def test_every_figure_of_the_chapter_is_offered():
-    wanted = "2.5 2.6 2.9 2.10 2.12 2.13 2.14 2.15 2.17 2.18 2.20 2.21 B.1 C.2 C.3 D.4 D.5"
-    assert list(FIGURES) == wanted.split()
-
-
-def test_an_unknown_figure_is_refused_with_the_names_there_are(tmp_path, capsys):
-    assert main(["--figure", "2.7", "--output", str(tmp_path / "x")]) == 2
-    assert "invalid choice: '2.7'" in capsys.readouterr().err
-    assert not (tmp_path / "x").exists()
-
-
-def test_a_folder_with_foreign_files_is_refused(tmp_path, capsys):
-    (tmp_path / "mine.txt").write_text("kept", encoding="utf-8")
-    assert main(["--figure", "2.20", "--output", str(tmp_path)]) == 2
-    assert "holds files already" in capsys.readouterr().err
-    assert main(["--figure", "2.20", "--output", str(tmp_path), "--force"]) == 2
-    assert "mine.txt" in capsys.readouterr().err
-    assert (tmp_path / "mine.txt").read_text(encoding="utf-8") == "kept"
 
 
 def test_a_bad_parameter_file_is_refused_by_name(tmp_path, capsys):

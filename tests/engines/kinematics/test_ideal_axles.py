@@ -3,8 +3,6 @@
 Asked for are 1e-3 mm and 1e-4 degree.
 """
 
-from __future__ import annotations
-
 import copy
 from pathlib import Path
 from typing import Any
@@ -15,7 +13,7 @@ import pytest
 from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 
-from tests.engines.kinematics.strut import camber_and_toe, strut_geometry
+from tests.engines.kinematics.strut import camber_and_toe
 from tests.validation import validated
 from vehicle.engines.kinematics.axle_statics import AxleStatics, WheelPose
 from vehicle.errors import SimulationError
@@ -49,15 +47,6 @@ def require_pose(words: str, pose: WheelPose, moved: Vector, turn: Vector) -> No
         "Suspension kinematics", f"{words}: camber and toe", np.array([pose.camber_deg, pose.toe_deg]),
         np.array(camber_and_toe(turn)), abs=1e-4, unit="deg", source=own,
     )  # fmt: skip
-
-
-@pytest.mark.parametrize("travel", [-0.06, 0.04, 0.07])
-def test_the_strut_of_the_reference(reference, travel):
-    right, left = lifted(reference, "front").solve([travel, travel])
-    moved, turn = strut_geometry(reference.vehicle.points, travel)
-    require_pose(f"strut of the reference at {1e3 * travel:g} mm", right, moved, turn)
-    assert abs(right.toe_deg) > 0.5 and abs(right.lateral_m) > 1e-3
-    assert [getattr(left, name) for name in FREEDOMS] == pytest.approx([getattr(right, name) for name in FREEDOMS])
 
 
 def about(point: Vector, axis: Vector, place: Vector, height: float) -> tuple[Vector, Vector]:

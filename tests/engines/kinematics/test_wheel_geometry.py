@@ -3,8 +3,6 @@
 Required are 1e-6 m, and as much in radians.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -14,7 +12,7 @@ import pytest
 
 from tests.engines.kinematics.instant_centres import Centres, across, centres, motion, rod, rod_axle
 from tests.engines.kinematics.strut import strut_geometry
-from tests.model.assembly.test_templates import LOWER_IN, LOWER_OUT, UPPER_IN, UPPER_OUT, WHEEL, table
+from tests.model.assembly.test_templates import table
 from tests.validation import validated
 from vehicle.engines.kinematics.axle_curves import geometry_curve
 from vehicle.engines.kinematics.wheel_geometry import WheelGeometry, WheelMotion, roll_centre, wheel_geometry
@@ -140,22 +138,6 @@ def test_twist_beam(cars, name):
     # In the side view the swing centre is the pivot.
     assert found.side_swing_arm_m == pytest.approx(centre[0] - pivot[0], abs=1e-6)
     assert found.side_swing_height_m == pytest.approx(pivot[2] - contact[2], abs=1e-6)
-
-
-def test_plane_double_wishbone_against_two_crossing_lines():
-    """Arms in one transverse plane: their lines cross in the swing centre, as every textbook draws it."""
-    found = computed(Car(vehicle_of(table())), "front")
-    lines = np.array([np.subtract(LOWER_OUT, LOWER_IN), -np.subtract(UPPER_OUT, UPPER_IN)]).T
-    share = np.linalg.solve(lines, np.subtract(UPPER_IN, LOWER_IN))[0]
-    y, z = np.array(LOWER_IN) + share * np.subtract(LOWER_OUT, LOWER_IN)
-    ground = WHEEL[1] - 0.3
-    closed = "closed form: lines of the arms cross in the swing centre (Milliken, figure 17.6)"
-    validated(
-        SUBJECT, "plane double wishbone: roll centre and front-view swing arm",
-        np.array([found.roll_centre_height_m, found.front_swing_arm_m]),
-        np.array([(z - ground) * WHEEL[0] / (WHEEL[0] - y), WHEEL[0] - y]), abs=1e-6, unit="m", source=closed,
-    )  # fmt: skip
-    assert found.brake_support_deg == pytest.approx(0.0, abs=1e-6) and math.isnan(found.side_swing_arm_m)
 
 
 def tilted() -> dict[str, Any]:

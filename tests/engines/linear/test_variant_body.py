@@ -1,12 +1,9 @@
 """A body of another mass or centre of gravity by the short way, against cars that are built, and closed forms."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
 from tests.engines.linear.test_variant_matrices import require_same
-from vehicle.model.parameters.vehicle import vehicle_of
 from vehicle.runs.car import Car
 
 
@@ -26,22 +23,6 @@ def sedan():
 def test_a_rigid_body_varied_is_the_body_built(sedan, changes):
     """M, C, K, rows, static loads within 1e-9; no MuJoCo model is made."""
     require_same(sedan, "sedan", (), changes)
-
-
-def test_the_mass_alone_is_a_file_with_that_tensor(sedan):
-    """Every moment about the CoG of the shipped file times the factor, written into a file by hand."""
-    factor = 1300.0 / 1222.1
-    table = dict(sedan.vehicle.table)
-    moments = {name: factor * value for name, value in table["body"]["inertia"].items()}
-    separate = Car(vehicle_of({**table, "body": {**table["body"], "mass": 1300.0, "inertia": moments}}))
-    varied = sedan.with_(["body.mass=1300"])
-    for expected, mode in zip(separate.modes("sliding"), varied.modes("sliding"), strict=True):
-        assert mode.frequency == pytest.approx(expected.frequency, rel=1e-9)
-    for wheel, load in separate.static.tyre_load.items():
-        assert varied.static.tyre_load[wheel] == pytest.approx(load, rel=1e-12)
-    # More mass on the same springs is slower in heave and pitch, and quieter over a road.
-    slower = [[mode.frequency for mode in car.modes("sliding", highest=2.5)] for car in (sedan, varied)]
-    assert all(new < old for old, new in zip(*slower, strict=True))
 
 
 def test_a_flexible_body_varied_is_the_body_built():

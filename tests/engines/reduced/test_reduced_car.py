@@ -1,20 +1,15 @@
 """The reduced engine on the complete car: against MuJoCo, against the matrices, its validity, its refusals."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
 from scenarios.signals.bump import bump_shape
 from scenarios.signals.random_road import random_road
-from tests.periodic import multisine
 from tests.validation import validated
-from vehicle.engines.reduced import group_run
 from vehicle.engines.reduced.validity import LARGEST_ANGLE
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.car import Car
-from vehicle.signals.analysis.periodic_record import whole_record_responses
 from vehicle.signals.excitation.signal import Signal, uniform_time
 
 CHANNELS = load_vehicle().channels
@@ -76,22 +71,6 @@ def test_left_plate_and_both_plates_against_mujoco(high_piece):
             assert np.std(reduced[name] - stepped[name]) <= 1e-2 * np.std(stepped[name]), name
 
 
-@pytest.mark.parametrize(("damper", "friction"), [("sliding", 0.0), ("stuck", 1e4)])
-def test_frf_from_time_and_from_the_matrices(damper, friction):
-    car = Car.load(None, [f"damper.coulomb_friction={friction}"])
-    signal = multisine(rms=1e-5, seed=1, period=4.0, periods=4)
-    run = car.run(signal, engine="reduced")
-    channels = ["knuckle_fr_acc_z", "seat_rail_acc_x", "engine_acc_z"]
-    responses = np.array([run[name][:-1] for name in channels])
-    (frf,) = whole_record_responses(1e-3, run["plate_fr_displacement"][None, :-1], responses)
-    assert "periodic" in frf.estimator
-    exact = car.matrix_frf(channels, frf.frequency, damper=damper, wheel="fr")
-    error = np.sqrt(np.sum(np.abs(frf.response - exact) ** 2, axis=1) / np.sum(np.abs(exact) ** 2, axis=1))
-    # Sliding is linear and exact at any step; a stuck damper creeps with a constant force over each step.
-    # The rest of the transient after three periods is about 1e-3 for the least damped modes.
-    assert np.max(error) < (2e-3 if damper == "sliding" else 4e-3), error
-
-
 def test_a_coarser_record_is_the_same_motion(high_piece):
     fast = Car.load().run(high_piece, engine="reduced")
     slow = Car.load(None, ["solver.record_rate=500"]).run(high_piece, engine="reduced")
@@ -100,20 +79,6 @@ def test_a_coarser_record_is_the_same_motion(high_piece):
     # Differences over twice the interval: 0.014 % low at 50 Hz, 2.4 % at 100 Hz.
     name = "seat_rail_acc_z"
     np.testing.assert_allclose(slow[name], fast[name][::2], atol=5e-3 * np.max(np.abs(fast[name])))
-
-
-def test_blocks_leave_no_seam(high_piece, monkeypatch):
-    whole = Car.load().run(high_piece, engine="reduced")
-    monkeypatch.setattr(group_run, "BLOCK", 77)
-    pieces = Car.load().run(high_piece, engine="reduced")
-    for name in CHANNELS:
-        np.testing.assert_array_equal(pieces[name], whole[name], err_msg=name)
-
-
-def test_the_same_run_twice_is_the_same_bit_for_bit(high_piece):
-    first, second = (Car.load().run(high_piece, engine="reduced") for _ in range(2))
-    for name in CHANNELS:
-        assert np.array_equal(first[name], second[name]), name
 
 
 def test_it_may_record_few_channels(car, high_piece):

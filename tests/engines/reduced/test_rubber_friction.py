@@ -1,7 +1,5 @@
 """Rubber friction in the reduced engine: loops, order, linear limits, held loads, batches, on a quarter car."""
 
-from __future__ import annotations
-
 import dataclasses
 from typing import Any
 
@@ -132,21 +130,6 @@ def test_order_in_the_step():
         "Reduced engine", "quarter car with rubber friction, RMS error of the damper velocity, step 0.25 ms",
         errors[-1], 0.0, abs=1e-3, source=source,
     )  # fmt: skip
-
-
-def test_linear_limits():
-    stuck, sliding = quarter_cars(1e6, 1e6 * STROKE), quarter_cars(1e-7)
-    for name, car, linear in (
-        ("never slides", stuck, dataclasses.replace(stuck, laws=())),
-        ("has almost no force", sliding, matrices(TYRE_DAMPING)),
-    ):
-        run, other = reduced(car), reduced(linear)
-        for channel in CHANNELS:
-            validated(
-                "Reduced engine", f"{channel} of a quarter car with rubber friction that {name}", run[channel],
-                other[channel], peak=1e-5, source="closed form: linear car with the tangent at rest",
-            )  # fmt: skip
-    assert np.std(run[channel] - reduced(stuck)[channel]) > 1e-3 * np.std(run[channel])
 
 
 def test_a_held_load_does_not_creep():

@@ -1,7 +1,5 @@
 """What the linear geometry of the reduced engine lacks: products of two motions, from the equations and from MuJoCo."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np
@@ -130,19 +128,6 @@ def test_what_is_even_in_the_road_is_the_second_order_of_the_equations_of_motion
     )
 
 
-def test_half_the_road_has_a_quarter_of_the_even_part() -> None:
-    whole, half = even_part("kinematic_reference"), even_part("kinematic_reference", 0.5)
-    names = [channel for channel in whole if channel.startswith("knuckle") and channel[-1] != "z"]
-    validated(
-        "Reduced engine",
-        "even part of knuckle accelerations along x and y at half the road, over that of the whole",
-        [float(np.std(half[channel]) / np.std(whole[channel])) for channel in names],
-        0.25,
-        source="closed form: second order in the road",
-        abs=5e-4,
-    )
-
-
 @pytest.mark.parametrize("name", ["kinematic_reference", "sedan"])
 def test_second_order_from_patterns_of_the_motion(name: str) -> None:
     """Quadratic forms over patterns and single poles, against the equations at each sample and a solution per line."""
@@ -175,14 +160,6 @@ def test_second_order_from_patterns_of_the_motion(name: str) -> None:
         abs=0.005,
     )
     assert max(float(np.std(expected[channel]) / np.std(motion_of(name, channel, motion))) for channel in names) > 0.2
-
-
-def test_products_of_half_the_motion_are_a_quarter() -> None:
-    model = car("sedan").poles
-    second = SecondOrder(model, car("sedan").quadratic_forms, model.matrices.viscous)
-    coordinates = np.random.Generator(np.random.PCG64(1)).standard_normal((second.forms.projection.shape[0], 400))
-    whole, half = (second.response(scale * coordinates, 3e-3) for scale in (1.0, 0.5))
-    np.testing.assert_allclose(half, 0.25 * whole, atol=1e-4 * np.max(np.abs(whole)))
 
 
 def test_third_order_is_not_taken_for_second(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,7 +1,5 @@
 """Errors that a run of the reduced engine states of its channels, in words and against MuJoCo."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -38,12 +36,10 @@ def test_main_channels_decide() -> None:
 @pytest.mark.parametrize(
     ("name", "road"),
     [
-        ("sedan", Road("half_round:15", speed=20.0)),
         ("sedan", Road("half_round:29", speed=30.3)),
-        ("focus_road", Road("cleat:10x50", speed=30.0)),
         ("focus_road", Road("pothole:20x300", speed=40.0)),
     ],
-    ids=["sedan", "sedan_lifts_off", "focus_road", "focus_road_pothole"],
+    ids=["sedan_lifts_off", "focus_road_pothole"],
 )
 def test_stated_errors_against_mujoco(name: str, road: Road) -> None:
     """Forces on slopes and of lifting tyres act along the displaced wheels, and forces that balance belong together.

@@ -1,8 +1,5 @@
 """A bushing is its own K and B whatever hangs on it: 0.5 kg, 500 kg, or one on the other."""
 
-from __future__ import annotations
-
-import mujoco
 import numpy as np
 import pytest
 
@@ -35,17 +32,6 @@ def on_ground(mass, step, law=LAW, *, turn=None):
         ground.quat = turn
     add_bushing(spec, "x", body, ground, law)
     return Stepper(spec)
-
-
-@pytest.mark.parametrize(("mass", "step"), BODIES)
-def test_static_stiffness_of_every_axis(mass, step):
-    # Released at the deflection F / K under F, without speed: it may not move. A wrong K would accelerate it.
-    force = np.array([3.0, -5.0, 7.0])
-    run = on_ground(mass, step)
-    run.data.qpos[:3] = force / K
-    run.data.xfrc_applied[1, :3] = force
-    moved = run.step(50, run.position)[:, :3] - force / K
-    assert np.max(np.abs(moved) / np.abs(force / K)) < 1e-9  # rounding
 
 
 @pytest.mark.parametrize(("mass", "step"), BODIES)
@@ -129,16 +115,3 @@ def test_the_law_acts_in_the_axes_of_the_carrier(mass):
     run.data.xfrc_applied[1, :3] = force
     moved = run.step(20, run.position)[:, :3] - start - force / K[0]
     assert np.max(np.abs(moved)) < 1e-9 * force[1] / K[0]
-
-
-def test_the_row_does_not_know_its_mass():
-    # What MuJoCo would make of the same rows without the laws hangs on the mass: the reason for the callback.
-    deflection = []
-    for mass in (0.5, 500.0):
-        run = on_ground(mass, 1e-3)
-        model, data = run.model, mujoco.MjData(run.model)
-        data.xfrc_applied[1, 0] = 10.0 * mass
-        for _ in range(300):
-            mujoco.mj_step(model, data)
-        deflection.append(data.qpos[0])
-    assert deflection[0] == pytest.approx(deflection[1], rel=1e-3)  # equal acceleration, equal sag: K grows with m

@@ -1,9 +1,6 @@
 """MuJoCo's callbacks are global: never left behind, never shared, never called for another model."""
 
-from __future__ import annotations
-
 import mujoco
-import numpy as np
 import pytest
 
 from tests.engines.simulation.row_model import Stepper, add_bushing, add_free_body, element_law, empty_spec
@@ -44,19 +41,6 @@ def test_a_second_simulation_is_refused_and_the_first_goes_on():
         "a process for each simulation"
     )
     assert callbacks() == (None, None, None)
-
-
-def test_another_model_is_not_touched():
-    run, other = small(), small()
-    # A deflected spring would be pulled back by the laws; the other model must see MuJoCo's own answer.
-    alone, data = mujoco.MjData(other.model), mujoco.MjData(other.model)
-    for state in (alone, data):
-        state.qpos[0] = 1e-3
-    mujoco.mj_forward(other.model, alone)
-    with installed(run.rows):
-        mujoco.mj_forward(other.model, data)
-    np.testing.assert_array_equal(data.qacc, alone.qacc)
-    np.testing.assert_array_equal(data.efc_D, alone.efc_D)
 
 
 def test_an_exception_in_a_law_reaches_the_caller(monkeypatch):

@@ -1,7 +1,5 @@
 """What MuJoCo would pass over in silence stops a run: too long steps, lost states, lift-off; nothing is left behind."""
 
-from __future__ import annotations
-
 import re
 
 import mujoco
@@ -104,12 +102,3 @@ def test_item_21_a_car_that_nothing_holds_is_refused():
     settings = [f"bushings.{name}.stiffness=[0, 0, 0]" for name in ("linear_mount", "hydromount", "torque_arm_engine")]
     with pytest.raises(SimulationError, match="static trim: the car can move without resistance"):
         _ = Car.load(None, [*settings, "bushings.hydromount.maxwell_stiffness=0"]).model
-
-
-def test_friction_off_is_a_car_too():
-    # The viscous damper alone: what the comparison with the matrices calls "friction off".
-    run = Car.load(None, ["damper.coulomb_friction=0"]).run(SHORT)
-    force, velocity = run["damper_fr_force"], run["damper_fr_velocity"]
-    viscous = run.car.vehicle.damper.viscous
-    assert viscous is not None
-    np.testing.assert_allclose(force, viscous * velocity, atol=1e-3 * np.max(np.abs(force)))

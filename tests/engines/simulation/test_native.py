@@ -1,9 +1,6 @@
 """Callbacks and stepping loop of the core: right places in MuJoCo, the same results twice, or a clear error."""
 
-from __future__ import annotations
-
 import ctypes
-import re
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
@@ -61,19 +58,6 @@ def test_two_runs_are_the_same_bit_for_bit(car: Car, second: Signal, compiled: R
     for name, expected in compiled.channels.items():
         np.testing.assert_array_equal(again[name], expected)
     np.testing.assert_array_equal(again.poses, compiled.poses)
-
-
-def test_samples_of_a_lower_rate_are_those_of_a_higher_one(second: Signal) -> None:
-    fast, slow = (
-        simulate(Car.load(None, ["solver.timestep=0.0005", f"solver.record_rate={rate}"]).model, beginning(second, 301))
-        for rate in (2000.0, 500.0)
-    )
-    for name, values in slow.channels.items():
-        # Accelerations are differences over the interval of the samples.
-        if "_acc_" not in name:
-            np.testing.assert_array_equal(values, fast[name][::4], err_msg=name)
-    np.testing.assert_array_equal(slow.pose_time, fast.pose_time)
-    np.testing.assert_array_equal(slow.poses, fast.poses)
 
 
 def shifted(name: str) -> type[ctypes.Structure]:
@@ -155,29 +139,6 @@ def test_the_callbacks_leave_other_models_alone(car: Car) -> None:
         assert not np.any(data.userdata)
     for one, two in zip(*results, strict=True):
         np.testing.assert_array_equal(one, two)
-
-
-def test_an_interrupt_between_chunks_removes_the_callbacks(car: Car, second: Signal) -> None:
-    def interrupt(fraction: float) -> None:
-        assert None not in callbacks_in_place()
-        raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        simulate(car.model, second, progress=interrupt)
-    assert callbacks_in_place() == [None, None, None]
-
-
-def test_a_lost_state_stops_the_run(car: Car, second: Signal) -> None:
-    piece = beginning(second, 301)
-    displacement = piece.displacement["fr"].copy()
-    displacement[200:] += 1e7
-    jump = Signal(time=piece.time, displacement={"fr": displacement})
-    with pytest.raises(SimulationError) as caught:
-        simulate(car.model, jump)
-    found = re.search(r"^the state is no longer finite at t = (\S+) s \(joint \w+\); the step", str(caught.value))
-    assert found, str(caught.value)
-    assert float(found.group(1)) == pytest.approx(0.2, abs=0.01)
-    assert callbacks_in_place() == [None, None, None]
 
 
 def test_other_rows_than_those_compiled_for_lose_the_state(car: Car) -> None:

@@ -1,17 +1,11 @@
 """Masses, inertias, places and symmetry of the compiled car, read back from the model."""
 
-from __future__ import annotations
-
-import re
-
 import mujoco
 import numpy as np
 import pytest
 
 from vehicle.model.flexbody.rigid_body import rigid_body
 from vehicle.model.parameters.vehicle import load_vehicle
-
-RIGHT = re.compile("_fr(?![a-z])")  # the wheel, not "front"
 
 # Appendix E of Bommer 2006, per side [kg]; the split of damper and spring and the torque arm are assumed.
 APPENDIX_E = {
@@ -123,36 +117,6 @@ def test_the_compiled_trimmed_body_has_that_tensor(car):
     expected = rigid_body(car.vehicle.body)
     np.testing.assert_allclose(full_tensor(car.model.model, "body"), expected.inertia, rtol=1e-9, atol=1e-6)
     np.testing.assert_allclose(car.model.model.body("body").pos, expected.cog, atol=1e-15)
-
-
-def test_the_left_side_mirrors_the_right(car):
-    model = car.model.model
-    data = mujoco.MjData(model)
-    mujoco.mj_forward(model, data)
-    mirror = np.array([1.0, -1.0, 1.0])
-    bodies = sites = joints = 0
-    for index in range(model.nbody):
-        name = model.body(index).name
-        if name.endswith("_fr"):
-            twin = model.body(name.removesuffix("_fr") + "_fl").id
-            np.testing.assert_allclose(data.xipos[index] * mirror, data.xipos[twin], atol=1e-12)
-            np.testing.assert_allclose(model.body_inertia[index], model.body_inertia[twin], atol=1e-12)
-            bodies += 1
-    for index in range(model.nsite):
-        name = model.site(index).name
-        if RIGHT.search(name):
-            twin = model.site(RIGHT.sub("_fl", name)).id
-            np.testing.assert_allclose(data.site_xpos[index] * mirror, data.site_xpos[twin], atol=1e-12)
-            sites += 1
-    for index in range(model.njnt):
-        name = model.joint(index).name
-        if RIGHT.search(name):
-            twin = model.joint(RIGHT.sub("_fl", name)).id
-            # Bodies of one corner hang on each other, so anchors are compared, in the world.
-            if model.jnt_type[index] != mujoco.mjtJoint.mjJNT_FREE:
-                np.testing.assert_allclose(data.xanchor[index] * mirror, data.xanchor[twin], atol=1e-12)
-            joints += 1
-    assert (bodies, sites, joints) == (14, 19, 7)
 
 
 def test_sites_lie_on_their_hardpoints(car):

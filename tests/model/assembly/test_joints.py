@@ -1,7 +1,5 @@
 """Joints, rows and constants of the compiled car against section 3.1.3 of Bommer 2006."""
 
-from __future__ import annotations
-
 import mujoco
 import numpy as np
 import pytest
@@ -155,12 +153,3 @@ def test_a_rigid_body_has_no_modes(car):
     model = assemble(rigid.vehicle, car.trimmed_body).spec.compile()
     assert model.nv == 54
     assert not any(model.numeric(index).name.startswith("shape/") for index in range(model.nnumeric))
-
-
-def test_options_that_the_rows_need(car):
-    option, disable = car.model.model.opt, mujoco.mjtDisableBit
-    assert option.jacobian == mujoco.mjtJacobian.mjJAC_DENSE
-    assert option.integrator == mujoco.mjtIntegrator.mjINT_EULER
-    for bit in (disable.mjDSBL_ISLAND, disable.mjDSBL_AUTORESET, disable.mjDSBL_EULERDAMP, disable.mjDSBL_CONTACT):
-        assert option.disableflags & int(bit)
-    assert option.timestep == car.vehicle.solver.timestep

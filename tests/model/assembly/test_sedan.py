@@ -1,7 +1,5 @@
 """The sedan and the kinematic reference: another make, from files; its source is typed here again."""
 
-from __future__ import annotations
-
 import mujoco
 import numpy as np
 import pytest
@@ -10,7 +8,6 @@ from tests.validation import validated
 from vehicle.model.parameters.shipped import VEHICLES
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.car import Car
-from vehicle.signals.excitation.signal import Signal
 
 POINTS = {  # x forward, y to the left, z up from the middle of the front axle [m], left side
     "wheel_center": (0.0, 0.750062, 0.0),
@@ -98,16 +95,3 @@ def test_it_stands_and_rides(sedan):
     hop = [frequency for name, frequency in sliding if " wheel hop" in name and frequency < 30.0]
     assert len(heave) == 1 and 1.2 < heave[0] < 1.6
     assert len(hop) == 4 and min(hop) > 11.0 and max(hop) < 15.0
-
-
-def test_both_engines_drive_it(sedan):
-    time = np.arange(801) / 1000.0
-    rise = 2e-3 * 0.5 * (1.0 - np.cos(2.0 * np.pi * np.clip(time - 0.1, 0.0, 0.2) / 0.2))
-    plates = {wheel: np.roll(rise, 60 * index) for index, wheel in enumerate(sedan.vehicle.wheels)}
-    runs = [sedan.run(Signal(time=time, displacement=plates), engine=engine) for engine in ("mujoco", "reduced")]
-    for channel in ("seat_rail_acc_z", "knuckle_rr_acc_z", "tyre_fr_force_z", "tyre_rl_force_z"):
-        stepped, reduced = (run[channel] for run in runs)
-        validated(
-            "Reduced engine", f"sedan on a hump, RMS difference of {channel} to MuJoCo, of its RMS",
-            np.std(reduced - stepped) / np.std(stepped), 0.0, abs=0.02, source="second derivation: MuJoCo",
-        )  # fmt: skip

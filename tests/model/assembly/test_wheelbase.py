@@ -84,22 +84,3 @@ def test_pitch_has_notches_at_multiples_of_speed_over_wheelbase(over_a_hump):
     for n in range(1, 4):
         notch, open_to = (at_frequency(over_a_hump, pitch, f * EDGE) for f in (float(n), n - 0.5))
         assert notch < 1e-4 * open_to, n
-
-
-def test_the_linear_response_has_the_same_notches(over_a_hump):
-    """Plates in the ratio exp(-j 2 pi f d / V): heave is (1 + e) H, pitch (1 - e) H of one axle."""
-    car, frequency = over_a_hump.car, EDGE * np.array([0.25, 0.5, 1.0, 1.5, 2.0])
-    late = np.exp(-2j * np.pi * frequency * WHEELBASE / SPEED)
-    found = {
-        wheel: car.matrix_frf(
-            ["seat_rail_acc_z", "ahead_acc_z", "behind_acc_z"], frequency, damper="sliding", wheel=wheel
-        )
-        for wheel in ("fr", "fl", "rr", "rl")
-    }
-    heave, ahead, behind = found["fr"] + found["fl"] + late * (found["rr"] + found["rl"])
-    pitch = np.abs(ahead - behind)
-    np.testing.assert_allclose(np.abs(heave)[[1, 3]] / np.abs(heave)[0], 0.0, atol=1e-6)
-    np.testing.assert_allclose(pitch[[2, 4]] / pitch[0], 0.0, atol=1e-6)
-    # A quarter of V/L before the first notch of heave both are open alike: |1 + e| = |1 - e| = sqrt(2).
-    one = np.abs(found["fr"] + found["fl"])[0]
-    assert np.abs(heave)[0] == pytest.approx(np.sqrt(2.0) * one[0], rel=1e-6)

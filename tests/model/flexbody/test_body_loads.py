@@ -1,7 +1,5 @@
 """Loads: against the full matrices of the frame, against combined rigid bodies, and in limiting cases."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np
@@ -11,9 +9,9 @@ import scipy
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.body_design import read_design
 from vehicle.model.flexbody.body_frame import body_frame
-from vehicle.model.flexbody.body_loads import BodyLoad, followed, load_mass, with_loads
+from vehicle.model.flexbody.body_loads import BodyLoad, load_mass, with_loads
 from vehicle.model.flexbody.body_model import BODY_DESIGN
-from vehicle.model.flexbody.frame_modes import condense_rotations, rigid_shapes
+from vehicle.model.flexbody.frame_modes import condense_rotations
 from vehicle.model.flexbody.node_masses import NodeProperties
 from vehicle.model.parameters.vehicle import load_vehicle, vehicle_of
 from vehicle.runs.car import Car
@@ -66,18 +64,6 @@ def test_a_load_on_modes_is_exact_where_they_are_all_modes(frame, load):
     # With the nine modes of an import, Rayleigh's quotient is from above.
     nine = with_loads(frame.superelement(), [load]).frequencies
     assert np.all(nine > loaded.frequencies[:9] * (1.0 - 1e-12)) and nine[0] < 1.05 * loaded.frequencies[0]
-
-
-@pytest.mark.parametrize("load", [AT_NODE, APART])
-def test_a_load_is_exact_in_rigid_motion(frame, load):
-    """Rigid limit: in a rigid motion, displacement and rotation of the load are those of the body."""
-    positions = frame.skeleton.positions
-    motions = rigid_shapes(positions, np.zeros(3))
-    motion = np.einsum("cnj,anj->ac", followed(positions, load, 1e-3), motions)
-    at = np.array(load.at)
-    expected = np.hstack([np.vstack([np.eye(3), np.cross(np.eye(3), at)]), np.vstack([np.zeros((3, 3)), np.eye(3)])])
-    rows = slice(None) if any(load.moments) else slice(0, 3)
-    np.testing.assert_allclose(motion[:, rows], expected[:, rows], atol=1e-12)
 
 
 def test_a_rigid_body_with_a_load_is_the_body_of_both():

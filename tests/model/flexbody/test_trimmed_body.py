@@ -1,7 +1,5 @@
 """Shipped body: published properties, assumed properties, and reproduction of its file."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import scipy.optimize
@@ -11,7 +9,6 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.body_design import read_design
 from vehicle.model.flexbody.body_frame import body_frame
 from vehicle.model.flexbody.body_model import BODY_DESIGN, TRIMMED_BODY
-from vehicle.model.flexbody.frame_modes import rigid_shapes
 from vehicle.model.flexbody.inertia_tensor import about_cog, inertia_tensor, second_moments
 from vehicle.model.flexbody.mode_names import global_patterns, modal_assurance
 from vehicle.model.flexbody.node_masses import NodeProperties, matched_masses
@@ -67,12 +64,6 @@ def test_published_counts_frequencies_and_mass_properties(body):
     np.testing.assert_allclose(body.cog, [2.157, 0.0, 1.011], atol=1e-12)
     origin = inertia_tensor(ixx=1200.0, iyy=5268.0, izz=4600.0, ixy=0.0, izx=1800.0, iyz=0.0)  # symmetric on purpose
     np.testing.assert_allclose(body.inertia, about_cog(origin, 813.0, [2.157, 0.0, 1.011]), rtol=1e-10, atol=1e-8)
-
-
-def test_modes_are_orthogonal_to_rigid_motion_with_their_own_masses(body):
-    rigid = rigid_shapes(body.positions, np.zeros(3))  # the choice of the centre has no effect
-    content = np.einsum("ank,bnk,n->ab", rigid, body.shapes, body.node_mass)
-    np.testing.assert_allclose(content, 0.0, atol=1e-9)  # round-off of sums of 129 terms of up to 10 kg^1/2 m
 
 
 def test_torsion_is_where_it_was_fitted_and_the_next_mode_is_above_the_range(body, frame):

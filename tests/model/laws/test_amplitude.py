@@ -1,7 +1,5 @@
 """Rubber friction: Jenkins elements against Berg's curve, Masing's rule and a spring in series."""
 
-from __future__ import annotations
-
 import itertools
 from pathlib import Path
 from typing import Any
@@ -65,18 +63,6 @@ def test_loss_angle_over_displacement_amplitude():
         "Bushings, springs and stops", "work of rubber friction in a cycle over pi A F(A), its loss angle",
         np.array(loss), 8.0 * FORCE * area / (np.pi * AMPLITUDES * curve(AMPLITUDES)), abs=0.05,
         source="closed form: Masing's rule on Fmax x / (x2 + x)",
-    )  # fmt: skip
-
-
-def test_work_of_the_elements():
-    law, amplitude = friction_elements(FORCE, STROKE), 1.3 * STROKE
-    x, force = steady(law, amplitude, 400000)
-    work = np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(x))
-    slid = np.maximum(amplitude - law.limit / law.stiffness, 0.0)
-    validated(
-        "Bushings, springs and stops", "work of the elements of rubber friction in a cycle", work,
-        np.sum(4.0 * law.limit * slid), rel=1e-8, unit="J",
-        source="closed form: parallelogram of each slider, 4 L (A - L/k)",
     )  # fmt: skip
 
 

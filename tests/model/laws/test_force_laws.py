@@ -1,7 +1,5 @@
 """Each law against its printed equation, its derivative against differences, its bad parameters refused."""
 
-from __future__ import annotations
-
 import dataclasses
 from typing import Any
 
@@ -96,22 +94,6 @@ def test_smooth_coulomb_follows_2_4_and_the_regularised_law_has_its_slope_at_res
     )  # fmt: skip
     assert hard.slope(0.0) == pytest.approx(coefficient, rel=1e-15) == smooth.slope(0.0)
     assert hard.force(np.array([1e-6, 1.0, -1.0])) == pytest.approx([coefficient * 1e-6, 75.0, -75.0], rel=1e-14)
-
-
-def test_energy_per_cycle_of_the_smooth_law():
-    # x = A sin(w t): the integral of Fd (2/pi) atan(eps A w cos) A cos is, by differentiation under the integral sign,
-    # 4 Fd A (sqrt(1 + a^2) - 1)/a with a = eps A w; for large a it is Coulomb's 4 Fd A.
-    law = Coulomb(friction_limit=75.0, smoothing=1e3)
-    phase = np.arange(4096) * 2.0 * np.pi / 4096  # the periodic trapezoid converges faster than any power
-    for speed in (1e-4, 1e-3, 5e-2):
-        amplitude = 0.01
-        work = np.mean(law.force(speed * np.cos(phase)) * np.cos(phase)) * 2.0 * np.pi * amplitude
-        a = 1e3 * speed
-        validated(
-            "Dampers and friction", f"work of the smooth Coulomb law in a cycle of {speed:g} m/s", work,
-            4.0 * 75.0 * amplitude * (np.sqrt(1.0 + a * a) - 1.0) / a, rel=1e-9, unit="J",
-            source="closed form: 4 Fd A (sqrt(1 + a^2) - 1) / a, a = eps A w",
-        )  # fmt: skip
 
 
 def test_stribeck_follows_3_2():

@@ -1,7 +1,5 @@
 """Jenkins elements and the presliding curve of a damper against closed forms."""
 
-from __future__ import annotations
-
 import dataclasses
 from typing import Any
 
@@ -58,19 +56,6 @@ def test_a_loop_follows_masings_rule():
         source="closed form: Masing's rule on the curve of first loading",
     )  # fmt: skip
     assert 0.5 * LIMIT < np.max(expected) < LIMIT
-
-
-def test_work_of_a_loop():
-    law, size = elements(damper()), 1.7 * LIMIT / STIFFNESS
-    path = np.concatenate([np.linspace(0.0, size, 2001)] + 2 * [size * np.cos(np.linspace(0.0, 2.0 * np.pi, 400001))])
-    force = law.path(path)
-    work = np.sum(0.5 * (force[-400000:] + force[-400001:-1]) * np.diff(path[-400001:]))
-    x = np.linspace(0.0, size, 400001)
-    closed = 8.0 * (np.sum(0.5 * (polygon(x[1:]) + polygon(x[:-1])) * np.diff(x)) - 0.5 * size * polygon(size))
-    validated(
-        "Dampers and friction", "work of presliding friction in a cycle", work, closed, rel=1e-8, unit="J",
-        source="closed form: eight times the area between curve and chord of first loading",
-    )  # fmt: skip
 
 
 def test_the_curve_is_scaled_by_limit_and_stiffness():

@@ -1,7 +1,5 @@
 """Vehicle files and curves that are none: each one sentence with file and table, and the exit code 2."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest
@@ -35,6 +33,16 @@ VEHICLES = {
         "viscous =",
         "viscus = 1\nviscous =",
         "front.damper.viscus: unknown parameter; the nearest known",
+    ),
+    "part of an axle": (
+        "[front.parts.caliper]",
+        "[front.parts.brake]",
+        "front.parts.brake: unknown parameter; the nearest known",
+    ),
+    "no value": (
+        "viscous = 2250.0",
+        "# nothing",
+        "front.damper.viscous: missing; viscous_law = linear needs it [N s/m]",
     ),
     "of an axle": ("[front.damper]", "[front.dampers]", "front.dampers: unknown parameter; the nearest known name"),
     "of a side": (

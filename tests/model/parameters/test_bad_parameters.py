@@ -1,13 +1,10 @@
 """Items 20 to 32 of the bad inputs: refused before any model is written, by path, value and what is allowed."""
 
-from __future__ import annotations
-
 import re
 
 import pytest
 
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.shipped import FOCUS_FILE
 from vehicle.model.parameters.vehicle import load_vehicle
 
 INSTANCE = re.compile(r"(?<![\w.])(front|engine|rear)\.(?!toml)")
@@ -163,53 +160,6 @@ def test_a_degressive_damper_is_steeper_below_its_velocity():
     load_vehicle(None, ["damper.degressive_viscous=2000"])
     with pytest.raises(ConfigurationError, match=r"damper\.degressive_velocity: found 0\.0 m/s, must be greater than"):
         load_vehicle(None, ["damper.degressive_velocity=0"])
-
-
-def edited(tmp_path, old, new):
-    text = FOCUS_FILE.read_text(encoding="utf-8")
-    assert text.count(old) >= 1
-    path = tmp_path / "car.toml"
-    path.write_text(text.replace(old, new, 1), encoding="utf-8")
-    return path
-
-
-FILES = {
-    "30 misspelt": (
-        "coulomb_friction =",
-        "damper_c0ulomb =",
-        "front.damper.damper_c0ulomb: unknown parameter; the nearest known name is ",
-    ),
-    "30 misspelt table": (
-        "[front.main_spring]",
-        "[front.main_sprig]",
-        "front.main_sprig: unknown parameter; the nearest known name is main_spring",
-    ),
-    "30 unknown part": (
-        "[front.parts.caliper]",
-        "[front.parts.brake]",
-        "front.parts.brake: unknown parameter; the nearest known",
-    ),
-    "30 missing value": (
-        "viscous = 2250.0",
-        "# nothing",
-        "front.damper.viscous: missing; viscous_law = linear needs it [N s/m]",
-    ),
-    "30 unknown hardpoint": (
-        "engine_cog = [",
-        "engine_kog = [",
-        "engine.hardpoints.engine_kog: unknown parameter; the nearest known name is engine_cog",
-    ),
-    "31 not TOML": ("gravity = 9.81", "gravity = 9,81", "not a TOML file: "),
-    "31 given twice": ("gravity = 9.81", "gravity = 9.81\ngravity = 9.8", "not a TOML file: "),
-}
-
-
-@pytest.mark.parametrize("case", FILES)
-def test_bad_files_name_the_file_and_the_place(tmp_path, case):
-    old, new, expected = FILES[case]
-    path = edited(tmp_path, old, new)
-    with pytest.raises(ConfigurationError, match=re.escape(f"{path}: {expected}")):
-        load_vehicle(path)
 
 
 def test_missing_and_binary_files(tmp_path):

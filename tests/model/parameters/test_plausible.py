@@ -1,17 +1,12 @@
 """Item 56: cars that no engineer could mean are refused by parameter, value, range and reason, before any engine."""
 
-from __future__ import annotations
-
-import dataclasses
 import re
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from tests.model.parameters.test_bad_parameters import INSTANCE
-from vehicle.errors import ConfigurationError, DataError
-from vehicle.model.flexbody.superelement_checks import check_superelement
+from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.idle import idle_parameters
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.car import Car
@@ -175,12 +170,6 @@ def test_road_vehicles_are_accepted_in_both_engines(name, high_piece):
     car = Car.load(None, ROAD_VEHICLES[name])
     for engine in ("reduced", "mujoco"):
         assert car.run(high_piece, engine=engine).comfort().unweighted.overall > 0.1
-
-
-def test_a_body_of_rubber_is_refused(car):
-    body = car.trimmed_body
-    with pytest.raises(DataError, match=r"damping_ratio\[0\]: found 0\.99, must be 0 to 0\.3\. Specify the fraction"):
-        check_superelement(dataclasses.replace(body, damping_ratio=np.full_like(body.damping_ratio, 0.99)))
 
 
 def test_parameters_without_effect_are_said():

@@ -1,7 +1,5 @@
 """The fixed-step solution of a stack compared with the stiff solver, its order, and rejected inputs."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -28,11 +26,10 @@ def bumpy_road(time, size):
     return size * shape * np.sin(np.pi * time / END) ** 2
 
 
-@pytest.mark.parametrize("size", [0.001, 0.02])
 @pytest.mark.parametrize(
-    "parts",
-    [{}, {"engine": "elastomer", "strut": True}, {"degressive": True}],
-    ids=["friction", "engine and strut", "degressive"],
+    ("parts", "size"),
+    [({}, 0.001), ({}, 0.02), ({"engine": "elastomer", "strut": True}, 0.02), ({"degressive": True}, 0.001)],
+    ids=["friction, stuck", "friction", "engine and strut", "degressive"],
 )
 def test_convergence_to_the_stiff_solution_with_second_order(parts, size):
     model = quarter_car(CAR, damper="friction", **parts).first_order()
@@ -66,8 +63,8 @@ def gentle():
     return [fixed_step_solution(model, fine[n], road[::n], every=8 // n) for n in (4, 2, 1)], reference
 
 
-@pytest.mark.parametrize(("steepness", "name"), [(30.0, "body"), (30.0, "wheel"), (30.0, "damper")])
-def test_the_order_is_two_for_a_law_of_any_slope(gentle, steepness, name):
+@pytest.mark.parametrize("name", ["body", "wheel", "damper"])
+def test_the_order_is_two_for_a_law_of_any_slope(gentle, name):
     """A gentle law changes over the whole step: taken at its end the motion is first order."""
     histories, reference = gentle
     rough, _, finest = relative_errors(histories, reference, name)
@@ -119,21 +116,20 @@ def test_a_stack_moves_as_the_single_cars():
         )
 
 
-@pytest.mark.parametrize("method", ["Radau", "BDF"])
-def test_other_stiff_methods_agree(method):
+def test_another_stiff_method_agrees():
     model = quarter_car(CAR, damper="friction", engine="elastomer").first_order()
     time = np.linspace(0.0, 0.5, 501)
     road = Sampled(bumpy_road(time, 0.01), time[1])
     default = stiff_solution(model, time, road=road)
-    other = stiff_solution(model, time, road=road, method=method)
+    other = stiff_solution(model, time, road=road, method="Radau")
     # Each within its relative tolerance of 1e-6 per step, some thousand steps: 1e-4 of the largest value; the wheel
     # feels the friction force itself, which turns within microseconds, so single samples differ more.
     for output in ("body", "wheel", "engine"):
         a, b = default.acceleration(output), other.acceleration(output)
         validated(
-            "Quarter and half cars", f"acceleration of the {output} of a quarter car with friction, against {method}",
+            "Quarter and half cars", f"acceleration of the {output} of a quarter car with friction, against Radau",
             a, b, abs=(3e-3 if output == "wheel" else 1e-4) * np.abs(a).max(), unit="m/s2",
-            source=foreign("scipy", method),
+            source=foreign("scipy", "Radau"),
         )  # fmt: skip
 
 

@@ -1,7 +1,5 @@
 """The friction models against exact solutions of stick-slip problems."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -51,7 +49,7 @@ def steady_amplitude(time, motion, period):
     return 0.5 * (last.max() - last.min())
 
 
-@pytest.mark.parametrize(("ratio", "share"), [(0.75, 0.3), (1.25, 0.5), (1.5, 0.2)])
+@pytest.mark.parametrize(("ratio", "share"), [(0.75, 0.3), (1.25, 0.5)])
 def test_den_hartog_without_stops(ratio, share):
     omega = ratio * 10.0
     period = 2 * math.pi / omega
@@ -69,7 +67,7 @@ def test_den_hartog_without_stops(ratio, share):
     )  # fmt: skip
 
 
-@pytest.mark.parametrize(("ratio", "share"), [(0.3, 0.7), (0.5, 0.8), (0.25, 0.5)])
+@pytest.mark.parametrize(("ratio", "share"), [(0.5, 0.8), (0.25, 0.5)])
 @pytest.mark.parametrize("kind", ["smooth", "switch"])
 def test_den_hartog_with_stops(ratio, share, kind):
     """Slow or strongly braked motion stops in every cycle: compared with the closed forms between stops."""
@@ -119,19 +117,6 @@ def test_free_decay_with_coulomb_friction():
     assert x[-1] == pytest.approx(0.0013, abs=5e-5)
 
 
-def test_energy_lost_in_free_decay_is_friction_times_path():
-    time = np.arange(0.0, 3.0, 1e-4)
-    history = stiff_solution(oscillator(0.5), time, initial=[0.1, 0.0], tolerances=FINE)
-    v, x = history.sliding_velocity(), history.displacement("mass")
-    work = np.trapezoid(history.sliding_force[:, 0] * v, time)
-    # The trapezoid rule sees 3000 samples a half cycle and a few jumps of 1 N at a velocity of 1e-4 m/s: 1e-7 J.
-    validated(
-        "Dampers and friction", "work of Coulomb friction in free decay", work,
-        0.5 * 100 * 0.1**2 - 0.5 * 100 * x[-1] ** 2 - 0.5 * v[-1] ** 2, rel=1e-5, unit="J",
-        source="conservation: loss of energy of spring and mass",
-    )  # fmt: skip
-
-
 def test_mass_on_a_belt_with_kinetic_friction_alone():
     """Never as fast as the belt: an undamped oscillation about x = Fd/K, which the friction only shifts."""
     belt, friction, natural = 0.1, 2.0, 10.0
@@ -173,7 +158,7 @@ def test_mass_on_a_belt_with_static_and_kinetic_friction():
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("frequency", [1.0, 3.0, 8.0, 15.0, 40.0])
+@pytest.mark.parametrize("frequency", [1.0, 8.0, 40.0])
 def test_the_locked_strut_unlocks_where_its_force_reaches_the_limit(frequency):
     """'Boulevard ride': below A(w) the strut never slides; A = Fd / |friction force of the stuck car per road metre|.
 

@@ -69,23 +69,6 @@ def test_matrices_are_those_of_lagranges_equations():
         )  # fmt: skip
 
 
-def test_matrices_are_symmetric_and_the_car_stands_on_its_tyres():
-    for matrix in (MODEL.mass, MODEL.damping, MODEL.stiffness):
-        np.testing.assert_array_equal(matrix, matrix.T)
-    assert np.linalg.eigvalsh(MODEL.mass).min() > 0.0
-    assert np.linalg.eigvalsh(MODEL.stiffness).min() > 0.0
-    # seven dampers along seven independent extensions: no motion without dissipation
-    assert np.linalg.eigvalsh(MODEL.damping).min() > 0.0
-
-
-def test_rigid_heave_with_the_road_costs_no_force():
-    heave = np.array([0.0 if name == "pitch" else 1.0 for name in MODEL.coordinates])
-    force = MODEL.stiffness @ heave - MODEL.input_stiffness @ np.ones(2)
-    drag = MODEL.damping @ heave - MODEL.input_damping @ np.ones(2)
-    assert np.abs(force).max() < ROUNDING * np.abs(MODEL.stiffness).max()
-    assert np.abs(drag).max() < ROUNDING * np.abs(MODEL.damping).max()
-
-
 def test_static_loads_balance_weight_and_moment():
     front, rear = static_tyre_load(CAR)
     limbs = CAR.seat.mass + CAR.lower_limb.mass + CAR.upper_limb.mass

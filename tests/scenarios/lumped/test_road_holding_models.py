@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 import sympy
 
-from scenarios.lumped.axle import Axle
-from scenarios.lumped.damper_choice import RoadHoldingHalfCar, RoadHoldingQuarterCar, damper_choice_parameters
+from scenarios.lumped.damper_choice import damper_choice_parameters
 from scenarios.lumped.road_holding import half_car_model, quarter_car_model
 from vehicle.errors import ConfigurationError
 
@@ -49,20 +48,6 @@ def test_half_car_matrices_are_those_of_lagranges_equations():
         np.testing.assert_allclose(matrix, expected, rtol=0, atol=1e-12 * max(1.0, np.abs(expected).max()))  # rounding
 
 
-@pytest.mark.parametrize("car", [quarter_car_model(QUARTER), half_car_model(HALF)])
-def test_matrices_are_symmetric_definite_and_free_of_force_in_rigid_heave(car):
-    model = car.model
-    for matrix in (model.mass, model.damping, model.stiffness):
-        np.testing.assert_array_equal(matrix, matrix.T)
-    assert np.linalg.eigvalsh(model.mass).min() > 0.0
-    assert np.linalg.eigvalsh(model.stiffness).min() > 0.0
-    # the tyres have no damping: two motions of the half car, one of the quarter car, cost nothing
-    assert np.linalg.eigvalsh(model.damping).min() > -1e-9
-    heave = np.array([0.0 if name == "pitch" else 1.0 for name in model.coordinates])
-    force = model.stiffness @ heave - model.input_stiffness.sum(axis=1)
-    assert np.abs(force).max() < 1e-12 * np.abs(model.stiffness).max()
-
-
 def test_quarter_car_response_is_the_closed_form_of_the_source():
     """Section II: H_u = (ks + j w cs - w^2 Ms) (kt + j w ct) / det A, H_s = (ks + j w cs) (kt + j w ct) / det A."""
     car = dataclasses.replace(QUARTER, wheel=dataclasses.replace(QUARTER.wheel, tyre_damping=250.0))
@@ -75,25 +60,6 @@ def test_quarter_car_response_is_the_closed_form_of_the_source():
     wheel, body = quarter_car_model(car, 4000.0).response(LINES)
     np.testing.assert_allclose(wheel, b * tyre / determinant, rtol=1e-10)
     np.testing.assert_allclose(body, suspension * tyre / determinant, rtol=1e-10)
-
-
-def test_half_car_with_inertia_m_a_b_falls_apart_into_two_quarter_cars():
-    a, b, m = 1.1, 1.5, 700.0
-    front = Axle(
-        unsprung_mass=40.0, suspension_stiffness=2.5e4, suspension_damping=1500.0, tyre_stiffness=2e5, tyre_damping=90.0
-    )
-    rear = Axle(
-        unsprung_mass=60.0, suspension_stiffness=3.5e4, suspension_damping=2500.0, tyre_stiffness=3e5, tyre_damping=20.0
-    )
-    half = RoadHoldingHalfCar(sprung_mass=m, pitch_inertia=m * a * b, front_arm=a, rear_arm=b, front=front, rear=rear)
-    response = half_car_model(half).response(LINES)
-    corners = [
-        quarter_car_model(RoadHoldingQuarterCar(sprung_mass=share, wheel=axle)).response(LINES)
-        for share, axle in ((m * b / (a + b), front), (m * a / (a + b), rear))
-    ]
-    np.testing.assert_allclose(response[:2], [corners[0][0], corners[1][0]], rtol=1e-9)
-    np.testing.assert_allclose(response[2] - a * response[3], corners[0][1], rtol=1e-9)
-    np.testing.assert_allclose(response[2] + b * response[3], corners[1][1], rtol=1e-9)
 
 
 def test_static_loads_are_those_of_the_axles():

@@ -18,12 +18,6 @@ def test_band_amplitudes_are_the_roots_of_the_integrals():
     np.testing.assert_allclose(band_amplitudes(HIGHWAY, edges), expected, rtol=1e-12)
 
 
-def test_bands_add_up_in_square():
-    whole = band_amplitudes(HIGHWAY, [0.0, 25.0])[0]
-    parts = band_amplitudes(HIGHWAY, np.arange(26.0))
-    assert np.sqrt(np.sum(parts**2)) == pytest.approx(whole, rel=1e-12)
-
-
 def test_shipped_roads_are_those_of_table_1():
     parameters = damper_choice_parameters()
     assert exponential_density(parameters.highway, 0.0) == 4.85e-4

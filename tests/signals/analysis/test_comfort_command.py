@@ -115,21 +115,6 @@ def test_gravity_is_rejected_without_the_offset_option(ride, capsys):
     assert json.loads(capsys.readouterr().out)["z"]["vdv"] > 3.0
 
 
-def test_another_point_of_contact_has_its_weightings(ride, capsys):
-    assert main(["--input", ride(), "--json", "--place", "seat_bs6841"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert (found["z"]["weighting"], found["standard"]) == ("Wb", "BS 6841:1987")
-
-
-def test_a_dead_axis_is_null_with_a_reason(ride, capsys):
-    assert main(["--input", ride(y=0.0), "--json"]) == 0
-    out, err = capsys.readouterr()
-    found = json.loads(out)
-    assert found["y"]["crest_factor"] is None
-    assert "y: zero throughout" in found["reasons"][0]
-    assert "notice: y: constant at 0 m/s2 (no sensor?)" in err
-
-
 def test_bad_data_exits_3_and_a_bad_path_2(tmp_path, capsys):
     path = tmp_path / "bad.csv"
     path.write_text("time [s],x [m/s2],y [m/s2],z [m/s2]\n0,0,0,0\n0.001,0,nan,0\n0.002,0,0,0\n")
@@ -145,25 +130,6 @@ def test_bad_data_exits_3_and_a_bad_path_2(tmp_path, capsys):
     assert "point of contact: found 'sofa', must be one of seat" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("arguments", [[], ["--input"], ["--input", "a.csv", "--offset", "maybe"], ["--inp", "a.csv"]])
-def test_wrong_usage_exits_2(arguments, capsys):
-    assert main(arguments) == 2
-    assert "error:" in capsys.readouterr().err
-
-
-def test_a_traceback_appears_with_debug_only(tmp_path, capsys):
-    assert main(["--input", str(tmp_path / "nix.csv"), "--debug"]) == 2
-    assert "Traceback" in capsys.readouterr().err
-
-
-def test_an_interrupt_exits_130(ride, capsys, monkeypatch):
-    def interrupted(*_):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr("vehicle.signals.records.record_comfort.read_acceleration", interrupted)
-    assert main(["--input", "any.csv"]) == 130
-
-
 def test_the_module_runs_as_a_command_and_a_closed_pipe_is_quiet(ride):
     path = ride()
     command = [sys.executable, "-m", "vehicle.comfort", "--input", path, "--json"]
@@ -176,33 +142,3 @@ def test_the_module_runs_as_a_command_and_a_closed_pipe_is_quiet(ride):
         process.stdout.close()  # nobody reads: what `| head -0` does
         assert "Error" not in process.stderr.read()
         assert process.wait(timeout=HANG) == 6
-
-
-@pytest.mark.parametrize("skip", ["-5", "nan", "60"])
-def test_a_skip_outside_the_record_is_rejected(ride, capsys, skip):
-    assert main(["--input", ride(), "--skip", skip]) == 2
-    assert capsys.readouterr() == (
-        "",
-        f"error: skip: found {skip} s, must be at least 0 s and shorter than the record, 60 s\n",
-    )
-
-
-@pytest.mark.parametrize(("duration", "mean"), [(60, 9.81), (900, 9.81), (60, -1.5), (60, 0.05)])
-def test_gravity_is_refused_in_a_record_of_any_length_and_a_small_offset_does_no_harm(tmp_path, capsys, duration, mean):
-    time = np.arange(250 * duration) / 250
-    sway = np.cos(2 * np.pi * 0.2 * time) * 0.1 + np.cos(2 * np.pi * 8 * time)
-    found = []
-    for offset in (0.0, mean):
-        path = tmp_path / f"{offset}.csv"
-        columns = np.column_stack((time, sway, sway, sway + offset))
-        np.savetxt(path, columns, "%.9g", ",", header="time [s],x [m/s2],y [m/s2],z [m/s2]", comments="")
-        found.append(main(["--input", str(path), "--json"]))
-        out, err = capsys.readouterr()
-        if found[-1] == 0:
-            found.append(json.loads(out)["z"]["msdv"])
-    if abs(mean) > 1.0:
-        assert found[2] == 3
-        assert f"the mean of column 'z' is {mean:g} m/s2" in err
-        assert "set --offset remove" in err
-    else:
-        assert found[3] == pytest.approx(found[1], rel=0.01)  # it was twice

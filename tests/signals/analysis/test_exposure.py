@@ -110,18 +110,6 @@ def test_mtvv_is_the_largest_window_of_a_random_record():
     assert mtvv(STEP, record, average="exponential") == pytest.approx(mtvv(STEP, record), rel=0.1)
 
 
-def test_all_measures_are_proportional_to_the_acceleration():
-    record = np.random.default_rng(1).standard_normal(4000)
-    for measure in (
-        weighted_rms,
-        lambda r: mtvv(STEP, r),
-        lambda r: vibration_dose_value(STEP, r),
-        lambda r: motion_sickness_dose_value(STEP, r),
-    ):
-        assert measure(2.0 * record) == pytest.approx(2.0 * measure(record), rel=1e-12)
-    assert crest_factor(2.0 * record) == pytest.approx(crest_factor(record), rel=1e-12)
-
-
 def test_the_dose_of_a_tiny_or_huge_record_neither_vanishes_nor_overflows():
     assert vibration_dose_value(STEP, 1e-100 * SINE) == pytest.approx(1e-100 * (22.5) ** 0.25, rel=1e-12)
     assert vibration_dose_value(STEP, 1e100 * SINE) == pytest.approx(1e100 * (22.5) ** 0.25, rel=1e-12)

@@ -1,10 +1,9 @@
 import numpy as np
 import pytest
-from scipy.signal import lsim
 
-from tests.signals.analysis.oscillator import state_space, stationary_response, transmissibility
+from tests.signals.analysis.oscillator import stationary_response, transmissibility
 from tests.signals.analysis.single_input import frequency_response
-from tests.validation import foreign, validated
+from tests.validation import validated
 from vehicle.errors import DataError
 
 STEP = 1e-3
@@ -50,19 +49,6 @@ def test_an_oscillator_shows_its_analytic_response():
         source="closed form: transmissibility",
     )  # fmt: skip
     assert found.coherence.min() > 0.99
-
-
-def test_an_oscillator_integrated_in_time_has_the_analytic_frf():
-    # second derivation: not from the transfer function but from the equation of motion, exact between samples
-    excitation = stationary_response(noise(200_000, 5), STEP, lambda f: 1.0 / (1.0 + (f / 60.0) ** 8))
-    time = np.arange(excitation.size) * STEP
-    _, response, _ = lsim(state_space(), excitation, time)
-    found = frequency_response(STEP, excitation, response, window_s=16.0)
-    # as above with 23 averages, and linear interpolation of the plate between samples: (pi f dt)^2 / 3 = 0.8 % at 50 Hz
-    validated(
-        "FRF estimation and spectra", "H1 of an oscillator integrated in time", found.response[0],
-        transmissibility(found.frequency), rel=0.05, source=foreign("scipy", "lsim of the equation of motion"),
-    )  # fmt: skip
 
 
 def leaking_transmissibility(window_s, natural, damping):
@@ -117,26 +103,6 @@ def test_coherence_shows_the_known_share_of_noise(ratio):
     )  # fmt: skip
     # noise on the response does not bias H1
     assert np.abs(found.response.mean() - 1.0) < 4 * ratio / np.sqrt(2 * averages * 95)
-
-
-def test_doubling_the_input_doubles_the_response_and_keeps_the_frf():
-    excitation = noise(60_000)
-    response = stationary_response(excitation, STEP, transmissibility)
-    once = frequency_response(STEP, excitation, response)
-    both = frequency_response(STEP, 2.0 * excitation, 2.0 * response)
-    alone = frequency_response(STEP, excitation, 2.0 * response)
-    assert both.response == pytest.approx(once.response, rel=1e-12)
-    assert alone.response == pytest.approx(2.0 * once.response, rel=1e-12)
-    assert alone.coherence == pytest.approx(once.coherence, rel=1e-12)
-
-
-def test_a_still_response_is_nan_with_a_reason():
-    excitation = noise(30_000)
-    found = frequency_response(STEP, excitation, [excitation, np.full(30_000, 0.1)], names=("knuckle", "seat"))
-    assert np.isfinite(found.response[0]).all()
-    assert np.isnan(found.response[1]).all()
-    assert np.isnan(found.coherence[1]).all()
-    assert found.reasons == ("seat: constant, so its FRF and its coherence are undefined",)
 
 
 def test_a_still_excitation_is_refused():

@@ -110,8 +110,3 @@ def test_a_still_response_is_nan_with_a_reason(plates):
     assert np.isnan(found[1].response[1]).all()
     assert np.isnan(found[0].coherence[1]).all()
     assert found[0].reasons == ("seat: constant, so its FRF and its coherence are undefined",)
-
-
-def test_a_short_record_is_refused(plates):
-    with pytest.raises(DataError, match="record too short: 10 s hold"):
-        frequency_responses(STEP, plates[:, :10_000], plates[0, :10_000])

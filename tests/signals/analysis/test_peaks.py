@@ -80,14 +80,6 @@ def test_undefined_lines_split_the_search():
     assert resonance_peaks(LINES, np.full(LINES.size, np.nan)) == ()
 
 
-def test_scaling_the_magnitude_scales_the_peak_only():
-    magnitude = receptance(LINES, 28.1, 0.05)
-    (once,) = resonance_peaks(LINES, magnitude)
-    (twice,) = resonance_peaks(LINES, 2.0 * magnitude)
-    assert twice.frequency_hz == pytest.approx(once.frequency_hz, rel=1e-12)
-    assert twice.magnitude == pytest.approx(2.0 * once.magnitude, rel=1e-12)
-
-
 def test_a_flat_top_is_one_peak():
     magnitude = np.array([1.0, 2.0, 2.0, 2.0, 1.0])
     (peak,) = resonance_peaks(np.arange(5.0), magnitude)

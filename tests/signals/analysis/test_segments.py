@@ -50,11 +50,6 @@ def test_too_short_a_record_is_refused_with_the_length_needed():
         cut_into_segments(19_999, 1e-3, window_s=4.0, overlap=0.5, minimum_averages=8.0)
 
 
-def test_a_record_below_one_window_is_refused():
-    with pytest.raises(DataError, match=r"record too short: 3 s hold 0 effective averages .* at least 4 s"):
-        cut_into_segments(3000, 1e-3, window_s=4.0, overlap=0.5, minimum_averages=1.0)
-
-
 @pytest.mark.parametrize(("window_s", "overlap"), [(0.0, 0.5), (np.nan, 0.5), (-4.0, 0.5), (4.0, 1.0), (4.0, -0.1)])
 def test_window_and_overlap_out_of_range_are_refused(window_s, overlap):
     with pytest.raises(ConfigurationError, match=r"window_s: found|overlap: found"):

@@ -33,14 +33,6 @@ def test_intervals_start_above_and_end_back_below():
     assert slip_intervals(TIME, np.ones(10), 0.5) == pytest.approx(np.array([[0.0, 4.5]]))
 
 
-def test_intervals_add_up_to_the_share():
-    velocity = np.append(np.random.default_rng(0).standard_normal(999), 0.0)
-    time = np.arange(1000) * 1e-3
-    lasting = np.diff(slip_intervals(time, velocity, 0.5), axis=1).sum()
-    # the record ends at rest, so every interval is closed
-    assert lasting == pytest.approx(slip_share(velocity, 0.5) * 1.0, rel=1e-12)
-
-
 @pytest.mark.parametrize("limit", [-1e-3, np.nan, np.inf])
 def test_a_slip_velocity_out_of_range_is_refused(limit):
     with pytest.raises(ConfigurationError, match="slip velocity: found"):

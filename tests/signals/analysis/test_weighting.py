@@ -3,7 +3,7 @@ import pytest
 from scipy.signal import lsim
 
 from tests.validation import foreign, validated
-from vehicle.errors import ConfigurationError, DataError
+from vehicle.errors import ConfigurationError
 from vehicle.signals.analysis.evaluation import evaluate
 from vehicle.signals.analysis.weighting import WEIGHTINGS, weighted_record, weighting
 
@@ -195,32 +195,6 @@ def test_a_weighted_bump_solves_the_differential_equation_and_is_causal(name, ra
     )  # fmt: skip
     # causal: at rest until the bump begins
     assert np.abs(found[:rate]).max() < 1e-5 * peak
-
-
-def test_weighting_is_linear_and_keeps_the_shape():
-    records = np.random.default_rng(0).standard_normal((3, 2000))
-    weighted = weighted_record(1e-3, records, "Wk")
-    assert weighted.shape == (3, 2000)
-    assert weighted_record(1e-3, records[1], "Wk") == pytest.approx(weighted[1], abs=1e-12)
-    assert weighted_record(1e-3, 2.0 * records, "Wk") == pytest.approx(2.0 * weighted, rel=1e-12)
-
-
-def test_zeros_after_the_record_change_nothing_before():
-    record = bump(np.arange(2000) / 1000)
-    longer = np.concatenate((record, np.zeros(3000)))
-    assert weighted_record(1e-3, longer, "Wk")[:2000] == pytest.approx(weighted_record(1e-3, record, "Wk"), abs=1e-8)
-
-
-def test_the_response_to_a_constant_decays():
-    weighted = weighted_record(1e-3, np.full(20_000, 9.81), "Wk")
-    # exp(-1.78 * 10) = 2e-8 of the first peak, and the ringing of the end of the record, 5 s away
-    assert np.abs(weighted[10_000:15_000]).max() < 1e-6
-
-
-def test_slow_sampling_is_refused():
-    with pytest.raises(DataError) as refusal:
-        weighted_record(1 / 20, np.ones(1000), "Wk")
-    assert str(refusal.value) == "sampling rate: found 20 Hz, must be at least 25 Hz for Wk; sample faster"
 
 
 def test_an_unknown_weighting_is_rejected_with_the_known_names():

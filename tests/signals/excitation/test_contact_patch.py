@@ -1,7 +1,5 @@
 """The contact patch averages a road over its length."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -9,7 +7,6 @@ import pytest
 
 from tests.validation import validated
 from vehicle.errors import ConfigurationError
-from vehicle.signals.excitation.iso_road import IsoRoad
 from vehicle.signals.excitation.measured_road import MeasuredRoad
 from vehicle.signals.excitation.road_drive import CONTACT_PATCH, RoadDrive
 
@@ -59,16 +56,6 @@ def test_the_mean_over_the_patch_is_that_of_the_road_itself(corners: bool) -> No
         np.testing.assert_allclose(point.contact_at(np.linspace(0.0, 3.0, 501), "right")[0].max(), 0.02)
         # All of the cleat under the patch: its area over the length of the patch.
         assert road.contact_at(np.array([1.0255]), "right")[0] == pytest.approx(0.02 * 0.05 / PATCH)
-
-
-def test_a_class_is_lower_by_its_sinc() -> None:
-    sharp, mean = (
-        np.fft.rfft(IsoRoad(level=1e-6, seed=1, track=1.5, patch=patch).height(0.0, 0.02, 5000, "right", 20.0))
-        for patch in (0.0, PATCH)
-    )
-    wavenumber = np.fft.rfftfreq(5000, 0.02)
-    inside = (wavenumber > 0.02) & (wavenumber < 9.9)
-    assert mean[inside] / sharp[inside] == pytest.approx(np.sinc(wavenumber[inside] * PATCH), rel=1e-6)
 
 
 def test_a_drive_has_a_patch_and_may_do_without() -> None:

@@ -1,7 +1,5 @@
 """Files as users have them: what is accepted, converted, noticed or mended on request."""
 
-from __future__ import annotations
-
 import hashlib
 
 import numpy as np
@@ -27,10 +25,6 @@ def test_clean_file(tmp_path):
     assert signal.notices == ()
     assert signal.source == "signal.csv"
     assert signal.sha256 == hashlib.sha256(path.read_bytes()).hexdigest()
-
-
-def test_plain_column_drives_the_chosen_wheel(tmp_path):
-    assert read_plain(write(tmp_path, [HEADER, *rows()]), wheel="fl").wheels == ("fl",)
 
 
 def test_a_plain_column_needs_a_wheel(tmp_path):
@@ -86,12 +80,6 @@ def test_semicolons_and_decimal_commas_are_read_as_meant(tmp_path):
     signal = read_plain(write(tmp_path, [HEADER.replace(",", ";"), *lines]))
     assert np.array_equal(signal.displacement["fr"], CLEAN)
     assert signal.notices == ("delimiter ';' accepted; ',' is the usual one", "decimal comma read as decimal point")
-
-
-def test_tabs_are_accepted(tmp_path):
-    signal = read_plain(write(tmp_path, [line.replace(",", "\t") for line in (HEADER, *rows())]))
-    assert np.array_equal(signal.displacement["fr"], CLEAN)
-    assert signal.notices == ("delimiter '\\t' accepted; ',' is the usual one",)
 
 
 def test_time_is_shifted_to_zero_with_a_notice(tmp_path):

@@ -1,7 +1,3 @@
-from __future__ import annotations
-
-import pickle
-
 import numpy as np
 import pytest
 
@@ -39,13 +35,6 @@ def test_arrays_are_copies_that_nobody_can_change():
     assert signal.displacement["fr"][5] == 0.0
     with pytest.raises(ValueError, match="read-only"):
         signal.displacement["fr"][5] = 1.0
-
-
-def test_survives_pickling_for_parallel_studies():
-    signal = hertz(10.0)
-    again = pickle.loads(pickle.dumps(signal))
-    assert np.array_equal(again.displacement["fr"], signal.displacement["fr"])
-    assert again.source == signal.source
 
 
 @pytest.mark.parametrize(

@@ -6,10 +6,8 @@ import argparse
 import struct
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
-from tests.validation import validated
 from vehicle.commands.input_options import record_choice
 from vehicle.commands.road import road_drive
 from vehicle.commands.shaker import parser
@@ -213,24 +211,6 @@ def crg(path, form, grid, slope=None):
         lines += ["".join(cells[n : n + each]) for n in range(0, len(cells), each)]
     path.write_text(head + "\n".join(lines) + "\n")
     return path
-
-
-@pytest.mark.parametrize("form", ["LRFI", "LDFI", "KRBI", "KDBI"])
-def test_the_tracks_of_a_car_on_a_surface(tmp_path, form):
-    """Heights about 2 m, a slope and a bump, in each format of numbers; linear between the sections."""
-    u, v = 0.5 * np.arange(40), np.array([-1.0, 0.0, 1.0])
-    grid = 2.0 + 0.05 * np.sin(u)[:, None] + 0.01 * v + 0.02 * np.exp(-((u[:, None] - 7.0 - v) ** 2))
-    road = read_road(crg(tmp_path / "road.crg", form, grid, np.full(40, 0.01)), 1.2)
-    wanted: dict[Side, npt.NDArray[np.float64]] = {
-        "right": 0.6 * grid[:, 0] + 0.4 * grid[:, 1],
-        "left": 0.6 * grid[:, 2] + 0.4 * grid[:, 1],
-    }
-    for side, height_of_side in wanted.items():
-        validated(
-            "Roads and excitation", f"heights of an OpenCRG surface of format {form}, {side} track of a car",
-            road.contact_at(np.asarray(u, dtype=np.float64), side)[0], height_of_side - height_of_side[0] + 0.01 * u,
-            abs=1e-6, unit="m", source="second derivation: a writer of its own, linear between the sections",
-        )  # fmt: skip
 
 
 @pytest.mark.parametrize("form", ["LRFI", "LDFI", "KRBI", "KDBI"])

@@ -1,12 +1,9 @@
 """Two elliptical cams on a road of straight lines."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
 from tests.validation import validated
-from vehicle.errors import ConfigurationError
 from vehicle.signals.excitation.iso_road import IsoRoad
 from vehicle.signals.excitation.tyre_envelope import CAM_SETS, CAMS, TyreEnvelope
 
@@ -125,24 +122,3 @@ def test_samples_at_5_mm_are_enough_for_class_c() -> None:
         float(np.sqrt(np.mean((found - wanted) ** 2))), 0.0, abs=2e-6, unit="m",
         source="second derivation: samples at 0.6 mm",
     )  # fmt: skip
-
-
-def test_the_published_tyres_differ_little() -> None:
-    road, points = IsoRoad(level=256e-6, seed=1, track=1.5), 8000
-    z, at = road.height(0.0, 0.005, points, "right", 1e3), np.linspace(1.0, 39.0, 4000)
-    levels = [
-        np.std(
-            TyreEnvelope.of(cams, radius=0.3075, patch=0.1).height_and_slope(
-                0.005 * np.arange(points, dtype=np.float64), z, at
-            )[0]
-        )
-        for cams in CAM_SETS.values()
-    ]
-    assert max(levels) / min(levels) - 1.0 < 5e-4
-
-
-def test_cams_out_of_range_are_rejected() -> None:
-    with pytest.raises(ConfigurationError, match="half length"):
-        TyreEnvelope(distance=0.08, half_length=0.0, half_height=0.3, order=1.5)
-    with pytest.raises(ConfigurationError, match="order"):
-        TyreEnvelope(distance=0.08, half_length=0.4, half_height=0.3, order=1.0)

@@ -1,7 +1,5 @@
 """Fit of dampers: a known damper is found, a real damper is described, and what tests do not show is said."""
 
-from __future__ import annotations
-
 import dataclasses
 from pathlib import Path
 
@@ -88,7 +86,7 @@ def test_standard_errors_hold_for_correlated_residuals():
     (plain,) = records_of(KNOWN[1], 1, ("8mm",))
     x, v = 0.01 * np.sin(4.0 * np.pi * times), 0.04 * np.pi * np.cos(4.0 * np.pi * times)
     values, errors = [], []
-    for seed in range(60):
+    for seed in range(40):
         white = np.random.default_rng(seed).standard_normal(times.size + 400)
         slow = np.convolve(white, np.exp(-np.arange(200) / 25.0), mode="same")[200:-200]
         test = dataclasses.replace(plain, time=times, displacement=x, velocity=v, force=1500.0 * v + 10.0 * slow,
@@ -96,5 +94,5 @@ def test_standard_errors_hold_for_correlated_residuals():
         fit = finished([test], judged([test], law, [np.array([0.0, 1000.0])]))
         values.append(fit.values[1])
         errors.append(fit.errors[1])
-    # 60 draws give a standard deviation within 20 % at two standard errors; 16 cycles give errors that are a bit small.
+    # 40 draws give a standard deviation within 23 % at two standard errors; 16 cycles give errors that are a bit small.
     assert 0.7 < np.sqrt(np.mean(np.square(errors))) / np.std(values) < 1.3

@@ -1,7 +1,5 @@
 """Force of a damper law under a prescribed motion: closed forms, vehicle file, a stiff solver, derivatives."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import scipy
@@ -106,18 +104,3 @@ def test_a_degressive_damper_behind_a_spring_is_the_solution_of_a_stiff_solver()
         SUBJECT, "damper test: degressive damper behind a spring, 1 kHz", force[20:],
         2e6 * solution.y[0][20:], peak=2e-3, unit="N", source="foreign code: scipy, LSODA, 1e-8",
     )  # fmt: skip
-
-
-def test_the_error_falls_with_the_square_of_the_step():
-    law = DamperLaw(series=True)
-    w = 2.0 * np.pi * 5.0
-    errors = []
-    for step in (4e-3, 2e-3, 1e-3):
-        t = np.arange(0.0, 2.0, step)
-        force, _ = force_and_slopes(law, np.array([0.0, 4000.0, 8e5]),
-                                    Motion(t, 0.01 * np.sin(w * t), 0.01 * w * np.cos(w * t), 0.0))  # fmt: skip
-        exact = 0.01 * 1j * w * 4000.0 * 8e5 / (8e5 + 1j * w * 4000.0)
-        late = t > 1.0
-        errors.append(np.max(np.abs(force - (exact * np.exp(1j * w * t)).imag)[late]))
-    order = np.log2(errors[0] / errors[1]), np.log2(errors[1] / errors[2])
-    assert np.all(np.abs(np.array(order) - 2.0) < 0.15), order

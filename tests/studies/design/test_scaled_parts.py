@@ -1,7 +1,5 @@
 """Parts of a new car scaled by its mass, classes of cars, and the interval that a number can reach."""
 
-from __future__ import annotations
-
 import re
 
 import pytest
@@ -20,7 +18,7 @@ def unusual(result: NewCar) -> list[str]:
     return [note for note in result.notes if note.startswith("unusual")]
 
 
-@pytest.mark.parametrize("mass", [900.0, 1450.0, 2200.0, 2500.0])
+@pytest.mark.parametrize("mass", [900.0, 2500.0])
 def test_a_car_of_any_mass_has_parts_of_its_size(mass):
     result = new_car("one", "sedan", StatedNumbers(kerb_mass=mass))
     assert unusual(result) == []
@@ -108,9 +106,3 @@ def test_a_refused_hop_says_what_can_be_reached():
             check.name: check.value for check in new_car("one", "sedan", StatedNumbers(wheel_hop_rear=end)).checks
         }
         assert checks["wheel_hop_rear"] == pytest.approx(end, rel=1e-2)
-
-
-@pytest.mark.parametrize("hop", [11.0, 13.0])
-def test_rear_hops_of_real_cars_are_met(hop):
-    checks = {check.name: check.value for check in new_car("one", "sedan", StatedNumbers(wheel_hop_rear=hop)).checks}
-    assert checks["wheel_hop_rear"] == pytest.approx(hop, rel=1e-2)

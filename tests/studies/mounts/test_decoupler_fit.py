@@ -1,7 +1,5 @@
 """Hydromount with a decoupler: harmonic balance against time integration, and fitted to noisy synthetic points."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -150,7 +148,7 @@ def test_a_previous_solution_does_not_change_the_result(points):
 
 def test_a_fit_finds_the_decoupler_in_noise(points):
     worst, stiffness, angle = 0.0, 0.0, 0.0
-    for seed in range(3):
+    for seed in range(2):
         data = noisy(points, seed)
         best, second, *_ = fit_mount(data)
         assert best.law.name == "decoupler" and best.criterion < second.criterion - 100.0
@@ -159,18 +157,17 @@ def test_a_fit_finds_the_decoupler_in_noise(points):
         assert best.determined[[*range(7), 9]].all(), "all but damping and membrane of the decoupler"
         deviations = (np.abs(best.values - VALUES) / best.errors)[best.determined]
         worst = max(worst, float(np.max(deviations)))
-    source = "closed form: parameters of the points, which are integrated in time; three seeds"
+    source = "closed form: parameters of the points, which are integrated in time; two seeds"
     noise = "decoupler fitted to 48 points at three amplitudes with 3 % noise"
     validated(SUBJECT, f"{noise}: largest error of the stiffness", stiffness, 0.0, abs=0.05, source=source)
     validated(SUBJECT, f"{noise}: largest error of the loss angle", angle, 0.0, abs=3.0, unit="deg", source=source)
     validated(SUBJECT, f"{noise}: deviation in standard errors", worst, 0.0, abs=3.0, source=source)
 
 
-@pytest.mark.parametrize("seed", [0, 1])
-def test_a_mount_without_decoupler_gets_none(seed):
+def test_a_mount_without_decoupler_gets_none():
     frequency, amplitude = (grid.ravel() for grid in np.meshgrid(FREQUENCY, AMPLITUDE))
     exact = np.array([hydraulic_point(f, None) for f in frequency])
-    fits = {fit.law.name: fit for fit in fit_mount(noisy((frequency, amplitude, exact), seed))}
+    fits = {fit.law.name: fit for fit in fit_mount(noisy((frequency, amplitude, exact), 0))}
     assert next(iter(fits)) == "hydromount" and fits["decoupler"].criterion > fits["hydromount"].criterion + 5.0
     best = fits["hydromount"]
     assert np.max(np.abs(best.values - list(HYDRAULIC.values())) / best.errors) < 3.0

@@ -1,7 +1,5 @@
 """Wishes, bounds and tolerances as they are written, and what they mean."""
 
-from __future__ import annotations
-
 import math
 from concurrent.futures import Executor, Future
 from pathlib import Path
@@ -121,10 +119,6 @@ def test_share_of_new_cars_beyond_a_quantile(quantile, samples):
         # The share of one sample scatters by 0.05 at most, so its mean by 0.003.
         assert np.mean(below) == pytest.approx(quantile, abs=0.012)
         assert samples_for(quantile) <= samples
-
-
-def test_samples_for_a_quantile():
-    assert [samples_for(quantile) for quantile in (0.5, 0.75, 0.8, 0.9, 0.95, 0.99)] == [2, 4, 8, 16, 32, 128]
 
 
 class ImmediateExecutor(Executor):

@@ -1,7 +1,5 @@
 """Smallest change that meets limits: closed forms, brute force, and limits that exclude each other."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -25,7 +23,7 @@ def test_a_car_that_meets_its_limits_stays():
     assert found.feasible and found.cost == 0.0 and found.runs == 1 and not found.position.any()
 
 
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("count", [3, 5])
 def test_brute_force(count, seed):
     """Four curved excesses against 20 000 random cars: at most 2 % dearer than the cheapest of them that is allowed."""

@@ -1,7 +1,5 @@
 """Smallest change of a car that meets targets: brute force over cars, figures of single runs, what is refused."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 
@@ -42,20 +40,20 @@ RANGES = (
 
 
 def test_change_against_a_grid_of_cars(sedan):
-    """21 x 21 cars on the same road: the change found is at most 2 % larger than the smallest allowed of the grid."""
+    """Of 21 x 21 cars on the same road, none that is allowed has a change smaller than 0.98 of the one found."""
     ride = road("C", 80, duration=4)
     run = sedan.run(ride, engine="reduced")
     limit = 0.95 * run.comfort().weighted.overall
     found = meet_targets(sedan, targets(limit, 0.1), RANGES, duration=4.0)
     assert found.change.feasible and found.after[0] <= limit
     axes = [np.geomspace(each.low, each.high, 21).tolist() for each in RANGES]
-    cars = [(a, b) for a in axes[0] for b in axes[1]]
+    start = np.array([each.start for each in found.ranges])
+    grid = [(a, b) for a in axes[0] for b in axes[1]]
+    cars = [car for car in grid if np.linalg.norm(np.log(np.array(car) / start)) < found.change.cost / 1.02]
+    assert len(cars) > 10
     changes = [tuple(f"{each.path}={value!r}" for each, value in zip(RANGES, car, strict=True)) for car in cars]
     table = plan_sweep(sedan, changes, ride, SweepSettings(engine="reduced")).run()
-    allowed = table.column("weighted")[-len(cars) :] <= limit
-    start = np.array([each.start for each in found.ranges])
-    cost = np.sqrt(np.sum(np.log(np.array(cars) / start) ** 2, axis=1))
-    assert found.change.cost <= 1.02 * cost[allowed].min()
+    assert table.column("weighted")[-len(cars) :].min() > limit
     # The figures are those of a single run of the changed car; batches run in single precision.
     again = found.car.run(ride, engine="reduced")
     assert found.after[0] == pytest.approx(again.comfort().weighted.overall, rel=1e-5)

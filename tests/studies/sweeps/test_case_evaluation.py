@@ -1,7 +1,5 @@
 """Batches of cases: values independent of the other cases of a batch, single failures, and reruns with MuJoCo."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 
@@ -9,7 +7,7 @@ import numpy as np
 import pytest
 
 from scenarios.signals.bump import bump_shape
-from tests.studies.sweeps.sweep_samples import Peak, ShortRoad, grid
+from tests.studies.sweeps.sweep_samples import ShortRoad, grid
 from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.ride_comfort import WAVE_NAMES
@@ -104,12 +102,6 @@ def test_only_a_car_outside_the_valid_range_runs_in_mujoco():
     assert run.recording.statistics.engine == "mujoco"
     assert results[0].values == pytest.approx(MEASURE(run), rel=1e-12, nan_ok=True)
     assert results[2].values == results[3].values
-
-
-def test_a_measure_of_single_runs(cases):
-    (result,) = evaluate(cases[:1], Peak())
-    run = Car.load(None, cases[0].overrides).run(cases[0].source.signal(), engine="reduced")
-    assert result.values["peak"] == pytest.approx(float(abs(run["seat_rail_acc_z"]).max()), rel=1e-9)
 
 
 def test_cars_with_rubber_friction_are_run_in_batches():

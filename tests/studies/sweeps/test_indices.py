@@ -1,14 +1,12 @@
 """Samples within ranges, and sensitivity indices against closed forms."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
 from tests.validation import validated
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.parameters.ranges import Range
-from vehicle.studies.sweeps.indices import latin_hypercube, morris_effects, morris_sample, sobol_indices, sobol_sample
+from vehicle.studies.sweeps.indices import sobol_indices, sobol_sample
 
 ANGLES = [Range(path=f"x{i}", low=-np.pi, high=np.pi) for i in range(3)]
 UNIT = [Range(path=f"x{i}", low=0.0, high=2.0) for i in range(3)]
@@ -71,31 +69,6 @@ def test_a_small_sample_has_a_wide_interval():
     assert np.sum(small.total_error) > 2.5 * np.sum(large.total_error)
 
 
-def test_morris_effects_of_a_linear_function_are_its_slopes():
-    points = morris_sample(UNIT, 20, seed=1)
-    effects = morris_effects(UNIT, points, points @ np.array([3.0, -1.0, 0.0]))
-    # Effects refer to the whole range, whose width is 2.
-    validated(
-        "Sweeps, tuning and optimisation", "Morris effects of a linear function", effects.mean_size,
-        np.array([6.0, 2.0, 0.0]), abs=1e-9, source="closed form: slope times range",
-    )  # fmt: skip
-    np.testing.assert_allclose(effects.mean, [6.0, -2.0, 0.0], atol=1e-9)
-    np.testing.assert_allclose(effects.scatter, 0.0, atol=1e-9)
-    bilinear = morris_effects(UNIT, points, points[:, 0] * points[:, 1])
-    assert np.all(bilinear.scatter[:2] > 0.1)
-
-
-def test_a_latin_hypercube_fills_the_box():
-    box = [Range(path="a", low=10.0, high=20.0), Range(path="b", low=-1.0, high=0.0)]
-    points = latin_hypercube(box, 64, seed=5)
-    for column, bounds in enumerate(box):
-        # One point in each of 64 equal slices, unlike in a random sample.
-        slices = np.floor((points[:, column] - bounds.low) / (bounds.high - bounds.low) * 64).astype(int)
-        assert sorted(slices) == list(range(64))
-    assert np.array_equal(points, latin_hypercube(box, 64, seed=5))
-    assert not np.array_equal(points, latin_hypercube(box, 64, seed=6))
-
-
 def test_bad_arguments():
     with pytest.raises(ConfigurationError, match="must be ascending"):
         Range(path="a", low=1.0, high=1.0)
@@ -103,8 +76,6 @@ def test_bad_arguments():
         sobol_sample(UNIT, 100)
     with pytest.raises(DataError, match="found 7, must be a multiple of 5"):
         sobol_indices(UNIT, np.arange(7.0))
-    with pytest.raises(DataError, match=r"1 of 4 are missing \(failed runs\)"):
-        morris_effects(UNIT, np.zeros((4, 3)), [1.0, 2.0, np.nan, 3.0])
     with pytest.raises(DataError, match="1 of 2 base points have a failed run, must be at most half"):
         sobol_indices(UNIT, [1.0, 2.0, np.nan, 3.0, 4.0, *range(5)])
     with pytest.raises(DataError, match="all values are equal"):

@@ -72,8 +72,6 @@ def test_a_fit_with_a_forgotten_delay_prints_no_values(record, tmp_path, capsys)
     assert content["set"] == [] and content["refusal"] in said
     page = (tmp_path / "tune" / "report.html").read_text(encoding="utf-8")
     assert "The fit is not to be used" in page and f"--set {FRONT}" not in page
-    assert main([*words[:-1], str(tmp_path / "free"), "--delay", "knuckle_fl_acc_z=12.3ms", "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["delays"] == []
 
 
 def test_frfs_and_levels_have_the_delay_too(tmp_path):
