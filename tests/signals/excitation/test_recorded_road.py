@@ -20,7 +20,7 @@ from vehicle.signals.excitation.iso_road import Side
 from vehicle.signals.excitation.measured_road import read_road
 from vehicle.signals.excitation.recorded_road import RecordedDrive, delayed
 from vehicle.signals.excitation.road_drive import RoadDrive
-from vehicle.signals.formats.crg_format import read_surface
+from vehicle.signals.formats.crg_format import read_surface, road_words
 from vehicle.signals.formats.reader import read_record
 from vehicle.signals.records.choice import Choice
 
@@ -231,6 +231,13 @@ def test_the_tracks_of_a_car_on_a_surface(tmp_path, form):
             road.contact_at(np.asarray(u, dtype=np.float64), side)[0], height_of_side - height_of_side[0] + 0.01 * u,
             abs=1e-6, unit="m", source="second derivation: a writer of its own, linear between the sections",
         )  # fmt: skip
+
+
+@pytest.mark.parametrize(("turn", "curved"), [(0.01, True), (-0.01, True), (0.0, False)])
+def test_a_reference_line_that_turns_to_either_side_is_named(tmp_path, turn, curved):
+    path = crg(tmp_path / "road.crg", "LRFI", np.zeros((20, 3)), 0.3 + turn * np.arange(20))
+    path.write_text(path.read_text().replace("reference line slope,m/m", "reference line phi,rad"))
+    assert ("its reference line is curved" in road_words(read_surface(path))) == curved
 
 
 @pytest.mark.parametrize("form", ["LRFI", "LDFI", "KRBI", "KDBI"])

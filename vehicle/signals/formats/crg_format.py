@@ -124,12 +124,13 @@ def read_surface(path: Path) -> Surface:
 
     slope, banking = along("slope", "s"), along("banking", "b")
     rise = numbers.get("reference_line_start_z", 0.0) + np.concatenate([[0.0], np.cumsum(slope[1:]) * step])
-    heading = table[:, names.index("reference line phi")] if "reference line phi" in names else np.zeros(1)
+    phi = "reference line phi"
+    heading = table[1:, names.index(phi)] if phi in names else np.zeros(0)  # the first value of a heading is not used
     return Surface(
         u=u,
         v=v,
         z=table[:, longs] + rise[:, None] + banking[:, None] * v[None, :],
-        curved=bool(np.nanmax(heading[1:] if heading.size > 1 else heading) - np.nanmin(heading[-1:]) != 0.0),
+        curved=np.unique(heading[np.isfinite(heading)]).size > 1,
     )
 
 

@@ -89,11 +89,13 @@ class Chosen:
     notices: tuple[str, ...]
     highest: float
 
+    @property
+    def step(self) -> float:
+        """Mean sampling interval [s]."""
+        return float(self.time[-1] - self.time[0]) / (self.time.size - 1)
+
     def require_uniform(self, where: object) -> None:
         """Check that the times are uniform.
-
-        Args:
-            where: file, for the message.
 
         Raises:
             DataError: not uniform; the message lists the options that make them uniform.
