@@ -161,9 +161,6 @@ def epoch_seconds(values: Vector, unit: str) -> tuple[Vector, str, str] | None:
 def clock_of_day(value: float) -> float:
     """Return the seconds after midnight of a time of day written as a number HHMMSS.sss.
 
-    Args:
-        value: number in the file.
-
     Raises:
         ValueError: hours, minutes or seconds out of range.
     """

@@ -63,9 +63,6 @@ def read_surface(path: Path) -> Surface:
     z(u, v) = z_grid(u, v) + z_ref(u) + v b(u), with z_ref(u_i+1) = z_ref(u_i) + s(u_i+1) du with the slope s
     and the banking b, each constant or a channel.
 
-    Args:
-        path: OpenCRG file.
-
     Raises:
         DataError: not an OpenCRG file, damaged, with modifiers, or with a reference to another file.
 

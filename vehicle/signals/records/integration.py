@@ -22,7 +22,6 @@ def displacement(chosen: Chosen, choice: Choice, where: str) -> tuple[dict[str, 
     Args:
         chosen: selected channels, see `choose`.
         choice: selection with the corner frequency of the high-pass.
-        where: file, for messages.
 
     Returns:
         Role to displacement, and notices.
@@ -58,9 +57,6 @@ def displacement(chosen: Chosen, choice: Choice, where: str) -> tuple[dict[str, 
 
 def filtered(chosen: Chosen, corner: float) -> tuple[dict[str, Vector], tuple[str, ...]]:
     """Return the selected channels after the high-pass filter, without integration, and the notices.
-
-    Args:
-        chosen, corner: see `displacement` and `integrate`.
 
     Raises:
         DataError: see `integrate`.
