@@ -12,6 +12,7 @@ from vehicle.runs.car import Car, Road
 from vehicle.runs.output.saved_run import save_run
 from vehicle.signals.analysis.seat_value import weighted_rms_of
 from vehicle.signals.formats.units import STANDARD_GRAVITY as G
+from vehicle.signals.records.record_spectra import record_spectra
 
 
 def rows_of(path):
@@ -74,6 +75,16 @@ def test_a_logger_in_g_with_names_of_its_own(tmp_path, capsys):
     assert main([str(log), "--output", str(tmp_path / "all")]) == 0
     said = capsys.readouterr().out
     assert "Nabe z" in said and "8 Hz, 2.12 m/s2" in said
+
+
+def test_jitter_of_the_first_stamps_moves_no_line(tmp_path):
+    """The sampling rate is that of all samples: 1 kHz, with a first step 0.09 % too long."""
+    time = np.append(0.0, 9e-7 + 1e-3 * np.arange(1, 8000))
+    path = tmp_path / "jitter.csv"
+    np.savetxt(path, np.column_stack([time, np.sin(2 * np.pi * 8.0 * time)]), delimiter=",", comments="", fmt="%.9g",
+               header="time [s],seat_rail_acc_z [m/s2]")  # fmt: skip
+    frequency = record_spectra(path).channels[0].frequency
+    np.testing.assert_allclose(np.diff(frequency), 0.5, rtol=1e-6)
 
 
 def test_a_table_of_a_run_in_g(tmp_path, capsys):

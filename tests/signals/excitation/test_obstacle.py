@@ -125,7 +125,7 @@ def test_the_settling_time_of_a_decaying_sine() -> None:
     found = settling_time(time, values, 1.5)
     assert found == pytest.approx(np.log(10.0) / 2.0 - 0.5, abs=0.026)
     assert settling_time(time, np.ones_like(time), 1.5) is None
-    assert settling_time(time, values, 5.0) == 0.0
+    assert settling_time(time, values, 5.0) == settling_time(time, np.zeros_like(time), 1.5) == 0.0
 
 
 @pytest.fixture(scope="module")

@@ -18,7 +18,7 @@ from vehicle.signals.excitation.iso_road import Side
 from vehicle.signals.excitation.measured_road import read_road
 from vehicle.signals.excitation.recorded_road import RecordedDrive, delayed
 from vehicle.signals.excitation.road_drive import RoadDrive
-from vehicle.signals.formats.crg_format import read_surface
+from vehicle.signals.formats.crg_format import read_surface, road_words
 from vehicle.signals.formats.reader import read_record
 from vehicle.signals.records.choice import Choice
 
@@ -211,6 +211,13 @@ def crg(path, form, grid, slope=None):
         lines += ["".join(cells[n : n + each]) for n in range(0, len(cells), each)]
     path.write_text(head + "\n".join(lines) + "\n")
     return path
+
+
+@pytest.mark.parametrize(("turn", "curved"), [(0.01, True), (-0.01, True), (0.0, False)])
+def test_a_reference_line_that_turns_to_either_side_is_named(tmp_path, turn, curved):
+    path = crg(tmp_path / "road.crg", "LRFI", np.zeros((20, 3)), 0.3 + turn * np.arange(20))
+    path.write_text(path.read_text().replace("reference line slope,m/m", "reference line phi,rad"))
+    assert ("its reference line is curved" in road_words(read_surface(path))) == curved
 
 
 @pytest.mark.parametrize("form", ["LRFI", "LDFI", "KRBI", "KDBI"])

@@ -231,6 +231,7 @@ def test_vbox_over_midnight(tmp_path):
     ("old", "new", "said"),
     [
         ("235959.90", "237959.90", r"x.vbo:26: time 237959.9"),
+        ("235959.90", "inf", r"x.vbo:26: time inf"),
         ("[data]", "[dat]", r"0 rows; needed are \[column names\] and \[data\]"),
         (" +0.1000 +1.00", "", "row has 7 cells, the header 9"),
     ],

@@ -48,9 +48,6 @@ class CarScene:
     def update(self, car: Car) -> bool:
         """Show another car with the same parts; only shapes that differ are sent.
 
-        Args:
-            car: the car.
-
         Returns:
             True if its geometry differs from that of the last car.
         """
@@ -157,7 +154,6 @@ class CarScene:
         """Send the picture of an instant.
 
         Args:
-            pose: motion of the car.
             factor: exaggeration of the motion.
             top: displacement of the body at the end of the colours [m].
         """

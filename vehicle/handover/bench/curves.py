@@ -38,12 +38,7 @@ def density_curves(present: BenchNumbers, reference: BenchNumbers) -> tuple[Vect
 
 
 def damper_curves(present: BenchNumbers, reference: BenchNumbers, wheel: str) -> tuple[Vector, ...]:
-    """Return velocity [m/s], and lowest and highest force [N] in each class of it, of B and of A; NaN in empty classes.
-
-    Args:
-        present, reference: numbers of B and A.
-        wheel: wheel of the damper.
-    """
+    """Return velocity [m/s], and the force range [N] in each class of it, of B and of A; NaN in an empty class."""
     both = present, reference
     highest = max(float(np.abs(values.damper_velocity[wheel]).max()) for values in both)
     edges = np.linspace(-1.0, 1.0, CLASSES + 1) * max(highest, 1e-6) * (1.0 + 1e-9)

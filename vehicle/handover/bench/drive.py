@@ -62,7 +62,6 @@ def bench_drive(car: Car, source: Signal | Road, *, begin: float = 0.0, seconds:
     In the inputs of the FRFs all plates move alike, on a road each axle after its delay, x / V.
 
     Args:
-        car: the car.
         source: plate displacements, or a road.
         begin: begin of the excerpt of a signal [s].
         seconds: length of the evaluated excerpt [s]; by default `SECONDS`, and to 3 s after an obstacle.
@@ -109,8 +108,6 @@ def _road_drive(source: Road, drive: Drive, interval: float) -> BenchDrive:
     """Return the input of the bench for a drive over a road.
 
     Args:
-        source: the road with its length, at constant speed.
-        drive: drive of a car over it.
         interval: sampling interval of the inputs of the FRFs [s].
     """
     assert not isinstance(source.speed, str)
@@ -165,7 +162,6 @@ def excerpt(signal: Signal, begin: float, seconds: float) -> tuple[Signal, float
     smoothly from rest.
 
     Args:
-        signal: plate displacements.
         begin: begin of the evaluated part [s].
         seconds: length of the evaluated part [s]; less at the end of the signal.
 

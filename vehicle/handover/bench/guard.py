@@ -51,13 +51,7 @@ class Guard:
         return None
 
     def refusal(self, path: str, headers: Mapping[str, str], port: int) -> str:
-        """Return the reason to reject a request; empty for a request of the page.
-
-        Args:
-            path: path of the request.
-            headers: its headers; names in lower case.
-            port: port of the page.
-        """
+        """Return the reason to reject a request, whose headers have names in lower case; empty for one of the page."""
         hosts = (f"127.0.0.1:{port}", f"localhost:{port}")
         if headers.get("host", "") not in hosts:
             return "host"

@@ -67,12 +67,7 @@ class CarMotion:
 
 @one_blas_thread()
 def car_motion(car: Car, drive: BenchDrive) -> CarMotion:
-    """Simulate the shown part of the excerpt, from `BenchDrive.shown` on, and return the motion of all coordinates.
-
-    Args:
-        car: the car, with the overrides of the drive.
-        drive: input of the bench.
-    """
+    """Simulate the shown part of the excerpt, from `BenchDrive.shown` on, and return the motion of all coordinates."""
     drive = drive.under(car)
     record = drive.record
     count = min(round((drive.shown + SECONDS) / record.timestep) + 1, record.time.size)
@@ -107,7 +102,6 @@ def mode_motion(wire: CarWireframe, shape: Complex, frequency: float) -> CarMoti
     """Return a cycle of a mode without its decay, u = Re(shape exp(i phase)); the farthest point moves `FARTHEST`.
 
     Args:
-        wire: points of the car.
         shape: mode shape over the velocity coordinates of `Car.geometry`; (n,).
         frequency: natural frequency [Hz], above 0.
     """

@@ -83,7 +83,6 @@ def numbers(car: Car, drive: BenchDrive) -> BenchNumbers:
 
     Args:
         car: the car, with the overrides of the drive; fastest as `Car.with_` of a car whose matrices exist.
-        drive: the input.
 
     Raises:
         ConfigurationError: the car is unstable or cannot be built.

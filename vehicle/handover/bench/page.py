@@ -122,7 +122,6 @@ class Page:
         """Add the slider of a setting, if the page has no slider of this path.
 
         Args:
-            path: path of the setting.
             more: add it below the first sliders, for a searched parameter.
 
         Raises:

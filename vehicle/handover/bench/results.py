@@ -20,10 +20,6 @@ from vehicle.runs.output.saved_run import save_run
 def write_car(state: BenchState, folder: Path) -> Path:
     """Write the vehicle file of B, with its templates and body model, into the first free folder `car`, `car-2` ...
 
-    Args:
-        state: state of the bench.
-        folder: folder of all results.
-
     Returns:
         The vehicle file.
 

@@ -52,9 +52,6 @@ def settings(car: Car) -> dict[str, Setting]:
 
     Vectors with three components, as points, stiffnesses and damping, are three settings. Tables of curves, names,
     counts, truth values and steps of the solver have none.
-
-    Args:
-        car: the car.
     """
     return {
         setting.path: setting

@@ -81,7 +81,6 @@ class Stage:
 
         Args:
             car: the car; other parts are drawn again where their shape differs.
-            motion: its motion.
             slower: slow motion.
             larger: exaggeration; by default the largest displacement is drawn as 5 to 8 cm.
 

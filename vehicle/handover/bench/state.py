@@ -52,11 +52,7 @@ class BenchState:
         self.reference: tuple[Car, BenchNumbers] = (self.car, first)
 
     def search(self, text: str) -> list[str]:
-        """Return the paths with all words in path or meaning, at most `MOST_FOUND`.
-
-        Args:
-            text: words separated by spaces.
-        """
+        """Return the paths with all words in path or meaning, at most `MOST_FOUND`."""
         wanted = text.lower().split()
         matches = (
             path

@@ -71,9 +71,6 @@ class View:
 
         Another car keeps the chosen mode: that with the largest modal assurance criterion to the last.
 
-        Args:
-            car: the car, with the overrides of the drive.
-
         Raises:
             ConfigurationError: an unknown choice, or a car without modes.
         """

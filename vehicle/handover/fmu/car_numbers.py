@@ -79,7 +79,6 @@ def car_numbers(car: Car, channels: Sequence[str], step: float) -> CarNumbers:
     """Return the numbers of a car with all its outputs of channels, sensors and notices, and with its forces as inputs.
 
     Args:
-        car: the car.
         channels: names of the recorded channels among the outputs; plate displacements, which are inputs, are left
             out.
         step: internal time step [s].
@@ -108,7 +107,6 @@ def numbers_with(
     """Return the numbers of a car with given outputs.
 
     Args:
-        car: the car.
         step: internal time step [s].
         read: the outputs and their rows.
         watched: quantities that must stay within limits.

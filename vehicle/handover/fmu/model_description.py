@@ -21,9 +21,7 @@ def model_description(
     """Return the text of modelDescription.xml.
 
     Args:
-        name: name of the car.
         token: text that ties it to the resources.
-        entries: the variables.
         fmi: "2" or "3".
         step: internal time step [s].
         description: validity of the car and timing of its inputs.

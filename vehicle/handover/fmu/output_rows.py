@@ -94,7 +94,6 @@ def car_outputs(car: Car, channels: Sequence[str], model: PoleModel | None = Non
     """Return the outputs of a car: channels, displacements of the points, sensors of controlled dampers.
 
     Args:
-        car: the car.
         channels: names of channels; those that are inputs are left out.
         model: pole model of the car whose inputs are applied forces; without forces by default.
 
@@ -245,7 +244,6 @@ def motion_rows(car: Car, rows: Vector) -> OutputRows:
     """Return outputs that are linear in the displacement of the car.
 
     Args:
-        car: the car.
         rows: rows over the displacements u of the velocity coordinates; (k, n).
     """
     model = car.poles.without_forces()
@@ -259,7 +257,6 @@ def watched_outputs(car: Car, model: PoleModel | None = None) -> Watched:
     The limits are those of `vehicle.engines.reduced.validity`, for each axis of a rotation.
 
     Args:
-        car: the car.
         model: see `car_outputs`.
     """
     model = model or car.poles.without_forces()

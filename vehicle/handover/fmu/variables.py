@@ -71,12 +71,7 @@ class Variable:
 
 
 def variables(numbers: CarNumbers, dampers: Sequence[Damper]) -> list[Variable]:
-    """Return the variables of the FMU of a car: time, inputs, parameters, outputs.
-
-    Args:
-        numbers: numbers of the car.
-        dampers: laws of its dampers.
-    """
+    """Return the variables of the FMU of a car: time, inputs, parameters, outputs."""
     entries = [Variable(name="time", reference=0, causality="independent", unit="s")]
     for k, wheel in enumerate(numbers.plates):
         for part, (quantity, unit) in enumerate((("displacement", "m"), ("velocity", "m/s"))):

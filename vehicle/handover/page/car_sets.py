@@ -63,10 +63,6 @@ def stepped_sliders(car: Car, drive: PageInput) -> tuple[list[dict[str, Any]], l
 
     A slider contains its values and, for each value, the ratio of the speed and the index of the car. A position at
     which the car is unstable, or out of the range of its parameters, is left out.
-
-    Args:
-        car: car of the run.
-        drive: input of the run.
     """
     cars, sliders = [car], []
     for slider, changes in _changes(car, drive):

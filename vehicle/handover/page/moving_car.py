@@ -53,7 +53,6 @@ def static_shapes(car: Car, rows: Vector) -> Vector:
     """Return the displacements Phi of the velocity coordinates in the shapes of least energy; (n, k).
 
     Args:
-        car: the car.
         rows: rows R of the displacements that are held; (k, n).
     """
     system = car.matrices.system
@@ -78,12 +77,7 @@ def moving_picture(car: Car) -> dict[str, Any]:
 
 
 def turning_parts(car: Car, signal: Signal) -> list[int]:
-    """Return the rotations of parts that are largest on a signal, as indices of `rotation_outputs`; see `FASTEST_TURN`.
-
-    Args:
-        car: the car.
-        signal: displacement of the plates.
-    """
+    """Return the largest rotations of parts on a signal, as indices of `rotation_outputs`; see `FASTEST_TURN`."""
     matrices = car.matrices
     rows = np.vstack([matrices.body_rows[body][3:] for body in rotating_bodies(matrices)])
     loads = displacement_rows(matrices, rows)

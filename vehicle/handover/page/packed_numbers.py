@@ -58,7 +58,6 @@ def byte_runs(numbers: CarNumbers, coarse_outputs: int, *, exact: bool) -> list[
     Factors of the poles, effects of the forces, and rows of outputs are rounded; all else stays exact.
 
     Args:
-        numbers: the numbers.
         coarse_outputs: number of outputs at the end that are stored with `COARSE`.
         exact: all other coefficients in double precision; otherwise with the bytes of further cars.
     """

@@ -101,8 +101,6 @@ def page_input(car: Car, signal: Signal, road: RunRoad | None = None) -> PageInp
     """Return the input of a car in the page: at most `LONGEST` seconds, from the height of the first sample.
 
     Args:
-        car: the car.
-        signal: displacement of the plates.
         road: road of the run; None for another input.
     """
     count = min(signal.time.size, round(LONGEST / signal.timestep) + 1)
@@ -118,9 +116,7 @@ def _common_road(car: Car, signal: Signal, road: RunRoad) -> PageInput | None:
     """Return the input with a track for each side; None if the heights are not those of one road.
 
     Args:
-        car: the car.
         signal: displacement of the moving plates, not longer than in the page.
-        road: road of the run.
     """
     sides = {wheel.name: wheel.side > 0.0 for wheel in car.vehicle.composition.wheels}
     first = {side: wheel for wheel, side in sides.items() if road.behind.get(wheel) == 0.0}

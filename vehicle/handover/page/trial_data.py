@@ -68,7 +68,6 @@ def trial_data(car: Car, signal: Signal, *, wheel: str, skip: float = 0.0, road:
     """Return the numbers of a car and its plates for the script of a page, as JSON.
 
     Args:
-        car: the car.
         signal: displacement of the plates at the record rate of the car.
         wheel: wheel whose plate excites the FRF in the page, and whose damper the page shows.
         skip: excluded time at the beginning [s].
@@ -129,8 +128,6 @@ def _page_numbers(car: Car, drive: PageInput, rotations: Sequence[int]) -> CarNu
     """Return the numbers of a car with the outputs of the page.
 
     Args:
-        car: the car.
-        drive: its input.
         rotations: rotations that are watched, as indices of `rotation_outputs`.
     """
     names = [damper.name for damper in car.vehicle.composition.dampers]

@@ -16,9 +16,6 @@ def trial(run: FinishedRun) -> Trial:
     """Return the section with its numbers and scripts.
 
     If the page cannot run this car on these plates, the numbers are empty and the content is the reason.
-
-    Args:
-        run: the run.
     """
     try:
         numbers = _numbers(run)
@@ -45,9 +42,6 @@ def trial_of(numbers: str, duration: float, engine: str = "reduced") -> Trial:
 
 def _numbers(run: FinishedRun) -> str:
     """Return the numbers of the script as JSON.
-
-    Args:
-        run: the run.
 
     Raises:
         ConfigurationError: see `trial_data`; the car has applied forces; the road is seen through cams; a moving plate

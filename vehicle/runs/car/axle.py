@@ -48,11 +48,6 @@ def mass_and_cog(car: Any) -> tuple[float, npt.NDArray[np.float64]]:
 
 
 def direction_to_middle(car: Any, name: str) -> float:
-    """Return +1 for an axle ahead of the centre of gravity of the car, otherwise -1.
-
-    Args:
-        car: the car.
-        name: table of the axle in the vehicle file.
-    """
+    """Return +1 for an axle ahead of the centre of gravity of the car, otherwise -1."""
     wheel = next(wheel for wheel in car.vehicle.composition.wheels if wheel.axle == name)
     return 1.0 if wheel.center[0] < mass_and_cog(car)[1][0] else -1.0

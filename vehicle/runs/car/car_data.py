@@ -109,9 +109,6 @@ class CarData:
         share of the load transfer that the linkage carries. With a share of the brake or drive force the value is that
         share of it.
 
-        Args:
-            axle: axle of this car.
-
         Returns:
             Value for brake forces at the contact point, and for drive forces at the wheel centre; None without a
             wheelbase.

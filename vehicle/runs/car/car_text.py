@@ -59,9 +59,6 @@ FIGURES_NOTE = (
 def car_tables(data: CarData) -> list[TextTable]:
     """Return the tables of a car: the whole car, its figures with their usual ranges, its axles, its headline
     figures.
-
-    Args:
-        data: the car.
     """
     return [_whole_car(data), _usual(data), _axles(data), figures_table(data.figures)]
 
@@ -122,11 +119,7 @@ def _axles(data: CarData) -> TextTable:
 
 
 def figures_table(figures: Sequence[MotionFigure]) -> TextTable:
-    """Return the table of headline figures, with the modes that share their motions.
-
-    Args:
-        figures: figures for one or several states of the dampers.
-    """
+    """Return the table of headline figures, with the modes that share their motions."""
     by_state = {(figure.motion, figure.dampers): figure for figure in figures}
     motions, states = (tuple(dict.fromkeys(key)) for key in zip(*by_state, strict=True))
     rows = []
@@ -155,7 +148,6 @@ def parameter_table(parameters: Sequence[Parameter], *, shortened: bool = True) 
     """Return the table of parameters.
 
     Args:
-        parameters: the parameters.
         shortened: True to cut long values and sources to the width of a screen.
     """
 

@@ -13,7 +13,6 @@ def decoupling_table(modes: Decoupling, aim: float | None = None) -> str:
     """Return the shares of the motions in each mode, and the torque roll axis.
 
     Args:
-        modes: modes of the part.
         aim: percentage; modes whose largest share is below are marked.
     """
     state = "body fixed" if modes.grounded else "in the car"

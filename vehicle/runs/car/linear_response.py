@@ -16,11 +16,7 @@ from vehicle.model.parameters.placed_force import force_named
 
 
 def is_stuck(damper: str) -> bool:
-    """Return True for "stuck", False for "sliding" dampers.
-
-    Raises:
-        ConfigurationError: another word.
-    """
+    """Return True for "stuck", False for "sliding" dampers."""
     if damper not in ("stuck", "sliding"):
         raise ConfigurationError(f"damper: found {damper!r}, allowed are stuck, sliding")
     return damper == "stuck"

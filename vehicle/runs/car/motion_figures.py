@@ -97,7 +97,6 @@ def motion_share(mode: Mode, motion: str) -> float:
     """Return the share of a motion in the kinetic energy of a mode [-].
 
     Args:
-        mode: the mode.
         motion: as in `MotionFigure`; for the wheels of an axle the vertical motion of both, in any phase.
     """
     if motion in BODY_MOTIONS:

@@ -56,7 +56,6 @@ class Road(RoadSettings):
         """Return the drive of a car over the road, with the wheels where the car has them.
 
         Args:
-            vehicle: the car.
             overrides: texts "path=value" with which the car was loaded; driving.speed and one_sided among them decide
                 on the tyres.
 
@@ -132,7 +131,6 @@ def lifting_tyres(vehicle: Vehicle, overrides: Iterable[str] = ()) -> tuple[str,
     """Return the paths of the linear tyres, which would pull at an obstacle; empty if the overrides decide on it.
 
     Args:
-        vehicle: the car.
         overrides: texts "path=value" with which the car was loaded.
     """
     if any(text.partition("=")[0].strip().endswith("one_sided") for text in overrides):

@@ -20,11 +20,7 @@ HIGHEST = 60.0
 
 
 def run_up_notice(car: Any) -> tuple[str, ...]:
-    """Return text on the mode whose peak the speed of the run-up lowers most; none without a run-up.
-
-    Args:
-        car: the car.
-    """
+    """Return text on the mode whose peak the speed of the run-up lowers most; none without a run-up."""
     run_up = car.vehicle.composition.crank_run_up
     orders = set[float]()
     for force in car.vehicle.composition.forces:

@@ -29,8 +29,6 @@ def simulated_run(
     """Simulate a car on a signal.
 
     Args:
-        car: the car.
-        signal: displacement of the plates.
         progress, engine, channels: as in `Car.run`.
         stated: state the errors of the reduced engine, whose second order of the car takes a second once.
 
@@ -94,14 +92,7 @@ def simulated_run(
 
 
 def _with_forces(recording: Recording, car: Any, names: Sequence[str], shown: Mapping[str, str]) -> Recording:
-    """Return a recording with the notices on the forces of its car and their histories, in the order of `names`.
-
-    Args:
-        recording: channels of an engine.
-        car: the car.
-        names: names of all channels.
-        shown: units of the forces among them.
-    """
+    """Return a recording with the notices on the forces of its car and their histories, in the order of `names`."""
     composition = car.vehicle.composition
     recording = _with_notices(recording, [*force_notices(composition.forces), *run_up_notice(car)])
     if not shown:

@@ -11,11 +11,7 @@ from vehicle.model.parameters.shipped import sets_step
 
 
 def stepped_car(car: Any) -> Any:
-    """Return a car with a sufficiently small time step, or the car itself if its step is that; see `Car.stepped`.
-
-    Raises:
-        ConfigurationError: the given step is too large, or no step is small enough.
-    """
+    """Return a car with a sufficiently small time step, or the car itself if its step is that; see `Car.stepped`."""
     forces, solver = car.vehicle.composition.forces, car.vehicle.solver
     if solver.timestep is not None and sets_step(car.origin["file"], car.overrides):
         require_accurate_step(car.model, car.matrices)

@@ -104,11 +104,7 @@ def usual_ranges() -> Mapping[str, Mapping[str, Any]]:
 
 
 def car_figures(data: Any) -> tuple[UsualFigure, ...]:
-    """Return the figures of the whole car.
-
-    Args:
-        data: data of the car, see `CarData`.
-    """
+    """Return the figures of the whole car, from its `CarData`."""
     mean_track = float(np.mean([axle.track_m for axle in data.axles])) if data.axles else math.nan
     values = {
         "mass [kg]": (data.mass_kg, 1),
@@ -133,11 +129,7 @@ def car_figures(data: Any) -> tuple[UsualFigure, ...]:
 
 
 def axle_figures(data: Any) -> tuple[tuple[UsualFigure, ...], ...]:
-    """Return the figures of all axles: for each name one figure an axle; names that the car does not define are absent.
-
-    Args:
-        data: data of the car, see `CarData`.
-    """
+    """Return the figures of all axles: for each name a figure an axle; names undefined for the car are absent."""
     rows = []
     for name, (value_of, decimals) in AXLE_FIGURES.items():
         values: list[float | None] = _of_the_car(data, name) or [value_of(axle) for axle in data.axles]
@@ -169,11 +161,7 @@ def _of_the_car(data: Any, name: str) -> list[float | None] | None:
 
 
 def motion_values(figure: MotionFigure) -> tuple[UsualFigure, UsualFigure]:
-    """Return frequency and damping ratio of a headline figure; they have usual ranges if the dampers slide.
-
-    Args:
-        figure: the headline figure.
-    """
+    """Return frequency and damping ratio of a headline figure; they have usual ranges if the dampers slide."""
     axle, hop, _ = figure.motion.rpartition(" wheel hop")
     name = "wheel hop" if hop else figure.motion
     damping = None if figure.damping_ratio is None else 100.0 * figure.damping_ratio
@@ -193,11 +181,7 @@ def usual_range(motion: str) -> str:
 
 
 def usual_figures(data: Any) -> tuple[UsualFigure, ...]:
-    """Return all figures of a car: those of the whole car, of its axles, and the headline figures.
-
-    Args:
-        data: data of the car, see `CarData`.
-    """
+    """Return all figures of a car: those of the whole car, of its axles, and the headline figures."""
     rows = (*axle_figures(data), *(motion_values(figure) for figure in data.figures if figure.dampers == "sliding"))
     return (*car_figures(data), *(figure for row in rows for figure in row))
 

@@ -118,7 +118,6 @@ def reference_of(run: Run, window: float | None = None) -> Measured:
     """Return a run in place of a measurement.
 
     Args:
-        run: the run.
         window: length of Hann windows of its FRFs [s]; see `Run.frf`.
 
     Returns:
@@ -158,7 +157,6 @@ def comparison_of(
 
     Args:
         measured: measurement with the channel names of the run.
-        simulated: the run.
         edges: edges of the bands [Hz]; octaves by default.
         delay: the measurement began this long after the run [s].
         drift: the clock of the measurement is slow by this share [-].

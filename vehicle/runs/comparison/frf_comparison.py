@@ -116,7 +116,6 @@ def compare_responses(
 
     Args:
         measured, simulated: [m/s2 per m].
-        edges: edges of the bands [Hz].
 
     Returns:
         A comparison for each response, and the agreement of all together, None for a single response.

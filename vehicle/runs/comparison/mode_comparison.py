@@ -146,7 +146,6 @@ def compare_modes(
     """Compare the mode shapes of a file with those of a car at common points.
 
     Args:
-        car: the car.
         measurement: file with mode shapes (UFF 55), or what `read_record` read of it.
         mapping: output point of the car to node of the file; by default the nodes at output points of the car, within
             `NEAR`, in its axes (x to the rear, y to the driver's right, z up).

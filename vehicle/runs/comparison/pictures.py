@@ -33,14 +33,7 @@ DETAIL = 1.0
 
 
 def plot_responses(path: Path, point: str, responses: Sequence[FrfComparison], caption: str) -> None:
-    """Write magnitude, phase and both coherences of the responses of one output point, a column for each.
-
-    Args:
-        path: PNG file.
-        point: output point, for the title.
-        responses: responses of the output point.
-        caption: what was measured and what was simulated.
-    """
+    """Write magnitude, phase and both coherences of the responses of one output point, a column for each."""
     size = (max(7.6, 5.2 * len(responses) + 1.0), 8.2)
     coherences = [
         values for response in responses for values in (response.measured_coherence, response.simulated_coherence)
@@ -77,14 +70,7 @@ def draw_responses(axes: npt.NDArray[Any], responses: Sequence[FrfComparison]) -
 
 
 def plot_histories(path: Path, point: str, histories: Sequence[RecordComparison], caption: str) -> None:
-    """Write the time histories of one output point, a row for each: whole record, and excerpt with the highest level.
-
-    Args:
-        path: PNG file.
-        point: output point, for the title.
-        histories: time histories of the output point.
-        caption: what was measured and what was simulated.
-    """
+    """Write the time histories of an output point, a row for each: whole record, and excerpt with the highest level."""
     size = (13.0, 2.6 * len(histories) + 1.4)
     with saved_figure(path, size, f"{point}: measured and simulated", caption) as figure:
         axes = figure.subplots(len(histories), 2, sharey="row", width_ratios=(1.6, 1.4), squeeze=False)
@@ -118,13 +104,7 @@ def _highest_level(record: RecordComparison) -> slice:
 
 
 def plot_signatures(path: Path, signatures: Signatures, caption: str) -> None:
-    """Write CSAC and CSF over frequency.
-
-    Args:
-        path: PNG file.
-        signatures: CSAC and CSF.
-        caption: what was measured and what was simulated.
-    """
+    """Write CSAC and CSF over frequency."""
     with saved_figure(path, (9.0, 4.6), "Agreement of all responses together", caption) as figure:
         draw_signatures(figure.subplots(squeeze=False), signatures)
 
@@ -150,9 +130,7 @@ def plot_mac(
     """Write a picture of several MAC matrices.
 
     Args:
-        path: PNG file.
         tables: title, matrix, and the frequencies of its rows and columns [Hz].
-        caption: what was measured and what was simulated.
     """
     with saved_figure(path, (4.9 * len(tables) + 1.0, 5.4), "Modal assurance criterion", caption) as figure:
         axes = figure.subplots(1, len(tables), squeeze=False)[0]

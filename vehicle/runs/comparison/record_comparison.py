@@ -110,11 +110,7 @@ def _compared(
 
 
 def offsets(records: Sequence[RecordComparison]) -> list[str]:
-    """Return a notice for each acceleration whose mean differs by more than `LARGEST_OFFSET`.
-
-    Args:
-        records: see `compare_records`.
-    """
+    """Return a notice for each acceleration whose mean differs by more than `LARGEST_OFFSET`."""
     said = []
     for record in records:
         means = float(np.mean(record.measured)), float(np.mean(record.simulated))
@@ -128,11 +124,7 @@ def offsets(records: Sequence[RecordComparison]) -> list[str]:
 
 
 def unlike_copies(records: Sequence[RecordComparison]) -> list[str]:
-    """Return a notice for each pair of equal measured channels whose simulated channels differ.
-
-    Args:
-        records: see `compare_records`.
-    """
+    """Return a notice for each pair of equal measured channels whose simulated channels differ."""
     said = []
     for index, record in enumerate(records):
         for other in records[:index]:

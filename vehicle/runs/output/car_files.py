@@ -17,12 +17,6 @@ from vehicle.runs.output.folder import output_folder, write_json, write_text, wr
 def write_car(folder: Path, car: Car, data: CarData, *, force: bool = False) -> None:
     """Write car.png, car.json and parameters.csv into a new folder.
 
-    Args:
-        folder: the folder.
-        car: the car.
-        data: its data.
-        force: replace files of an earlier call.
-
     Raises:
         ConfigurationError: the folder exists without `force`, or holds other files.
         OutputError: a file cannot be written.

@@ -47,8 +47,6 @@ def write_comparison(folder: Path, comparison: Comparison, *, figures: bool = Tr
     """Write the tables and a picture for each output point.
 
     Args:
-        folder: folder of the files.
-        comparison: the comparison.
         figures: False writes no pictures.
 
     Returns:
@@ -69,14 +67,8 @@ def write_beside(
     """Compare a measurement with a run, and write the files into the folder of the run.
 
     Args:
-        folder: of the run.
-        measured: the measurement.
-        run: the run.
         files: name of each file by its purpose; the new files are added.
         figures: False writes no pictures.
-
-    Returns:
-        Entry of the summary.
     """
     comparison = comparison_of(measured, of_run(run), command="python -m vehicle compare, after the run")
     files |= write_comparison(folder, comparison, figures=figures)

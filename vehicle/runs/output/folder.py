@@ -151,7 +151,6 @@ def check_file(
     """Check the path of a single output file before the computation.
 
     Args:
-        path: path of the file.
         option: option that names the file.
         ending: required ending, as ".csv".
         force: replace a file that the program wrote.
@@ -183,11 +182,6 @@ def check_file(
 def check_files(folder: Path, names: Iterable[str], *, force: bool) -> None:
     """Check files that are added to a folder with other files.
 
-    Args:
-        folder: the folder; it need not exist.
-        names: names of the files, relative to the folder.
-        force: replace files of the program.
-
     Raises:
         ConfigurationError: the folder is a file, or a file is in the way.
         OutputError: the folder cannot be written.
@@ -201,9 +195,6 @@ def check_files(folder: Path, names: Iterable[str], *, force: bool) -> None:
 @contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
     """Yield a name for a file; on success, it takes the place of `path` and is added to the list of its folder.
-
-    Args:
-        path: final name.
 
     Yields:
         A path with the same ending, where the body writes the file.

@@ -1,4 +1,7 @@
-"""Free, or replaceable, names for the results of a command, locked until the command ends."""
+"""Free, or replaceable, names for the results of a command, locked until the command ends.
+
+`held` is the exit stack that holds the lock until then. Errors: see `check_output`, `check_file` and `folder_lock`.
+"""
 
 from __future__ import annotations
 
@@ -17,38 +20,18 @@ MOST = 10_000
 
 
 def named(held: ExitStack, path: Path, *, force: bool, protect: tuple[Path, ...] = ()) -> Path:
-    """Check and lock a folder that the user names.
+    """Check and lock a folder that the user names, and return it.
 
     Args:
-        held: exit stack that holds the lock until the command ends.
-        path: the folder.
         force: replace files of an earlier run.
         protect: input files; a folder that contains one of them is never replaced.
-
-    Returns:
-        The same path.
-
-    Raises:
-        ConfigurationError, OutputError: see `check_output` and `folder_lock`.
     """
     held.enter_context(claim(check_output(path, force=force, protect=protect)))
     return path
 
 
 def free_folder(held: ExitStack, default: Path, *, protect: tuple[Path, ...] = ()) -> Path:
-    """Lock the first folder of `low`, `low-2`, `low-3` ... that is free.
-
-    Args:
-        held: exit stack that holds the lock until the command ends.
-        default: first candidate.
-        protect: input files, see `named`.
-
-    Returns:
-        The folder.
-
-    Raises:
-        ConfigurationError, OutputError: see `check_output`.
-    """
+    """Lock the first folder of `low`, `low-2`, `low-3` ... that is free."""
     for number in itertools.count(1):
         path = default if number == 1 else default.with_name(f"{default.name}-{number}")
         if _claimed_if_free(held, path, number) and check_output(path, force=False, protect=protect):
@@ -72,19 +55,7 @@ def named_file(
 
 
 def free_file(held: ExitStack, default: Path, *, option: str = "--output") -> Path:
-    """Lock the first file of `road.csv`, `road-2.csv`, `road-3.csv` ... that is free.
-
-    Args:
-        held: exit stack that holds the lock until the command ends.
-        default: first candidate.
-        option: option that names the file, for messages.
-
-    Returns:
-        The file.
-
-    Raises:
-        ConfigurationError, OutputError: see `check_file`.
-    """
+    """Lock the first file of `road.csv`, `road-2.csv`, `road-3.csv` ... that is free."""
     for number in itertools.count(1):
         path = _numbered(default, number)
         if _claimed_if_free(held, path, number):
@@ -94,19 +65,7 @@ def free_file(held: ExitStack, default: Path, *, option: str = "--output") -> Pa
 
 
 def free_files(held: ExitStack, folder: Path, names: Sequence[str]) -> list[Path]:
-    """Lock the first free set of names: `loads.csv`, `loads.png`, then `loads-2.csv`, `loads-2.png` ...
-
-    Args:
-        held: exit stack that holds the lock until the command ends.
-        folder: folder of the files.
-        names: names of the files.
-
-    Returns:
-        The files.
-
-    Raises:
-        ConfigurationError, OutputError: see `check_file`.
-    """
+    """Lock the first free set of names: `loads.csv`, `loads.png`, then `loads-2.csv`, `loads-2.png` ..."""
     for number in itertools.count(1):
         paths = [folder / _numbered(Path(name), number) for name in names]
         if not any(path.exists() for path in paths[1:]) and _claimed_if_free(held, paths[0], number):

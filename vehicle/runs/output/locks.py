@@ -20,10 +20,7 @@ class OccupiedError(ConfigurationError):
 
 @contextmanager
 def claim(path: Path) -> Iterator[None]:
-    """Lock a folder or a file that a command writes later; `folder_lock` in this process does not block.
-
-    Args:
-        path: resolved path.
+    """Lock a resolved path that a command writes later; `folder_lock` in this process does not block.
 
     Raises:
         OccupiedError, OutputError: see `folder_lock`.

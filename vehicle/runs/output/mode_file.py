@@ -14,12 +14,7 @@ from vehicle.signals.formats.geometry import ModeShape
 
 
 def mode_shapes(car: Car, damper: str = "stuck") -> tuple[ModeShape, ...]:
-    """Return the complex modes of a car at its output points; the maximum translation of each mode is 1.
-
-    Args:
-        car: the car.
-        damper: state of the dampers, stuck or sliding.
-    """
+    """Return the complex modes of a car at its output points; the maximum translation of each mode is 1."""
     points = tuple(output.name for output in car.vehicle.composition.outputs)
     modes = [mode for mode in car.modes(damper) if mode.frequency > 0.0 and not mode.grows]
     shapes = []

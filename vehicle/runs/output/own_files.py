@@ -25,15 +25,8 @@ def parameters_text(car: Car, header: str) -> str:
 def write_own_files(folder: Path, car: Car) -> dict[str, str]:
     """Copy the templates and the body model of the user, which are not part of the package.
 
-    Args:
-        folder: folder of the run.
-        car: the car.
-
     Returns:
         Name of each file by its purpose, for the summary.
-
-    Raises:
-        OutputError: a file cannot be written.
     """
     files: dict[str, Path] = {}
     if car.folder is not None:

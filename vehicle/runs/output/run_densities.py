@@ -13,13 +13,7 @@ PSD_WINDOW, PSD_HIGHEST = 4.0, 100.0
 
 
 def write_densities(path: Path, run: Run, frame: str) -> None:
-    """Write one-sided power spectral densities of all channels up to `PSD_HIGHEST`, by Welch's method.
-
-    Args:
-        path: the file.
-        run: the run.
-        frame: line of the header on the frame of the axes.
-    """
+    """Write one-sided power spectral densities of all channels up to `PSD_HIGHEST`, by Welch's method."""
     window, recording = min(PSD_WINDOW, run.signal.duration - run.skip), run.recording
     each = [
         power_spectral_density(recording.timestep, values[run.evaluated], window_s=window)

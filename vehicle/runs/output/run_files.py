@@ -59,7 +59,6 @@ def require_plates(signal: Signal, *, separable: bool = True) -> None:
     """Check that the FRFs to the plates can be estimated: long enough, and no plate repeats another with a delay.
 
     Args:
-        signal: plate displacement.
         separable: False accepts plates that repeat another with a delay; their run has no FRFs.
 
     Raises:
@@ -99,7 +98,6 @@ def write_run(
 
     Args:
         folder: temporary folder of `output_folder`.
-        run: the run.
         time_format: "npz" or "csv".
         formats: further formats of `vehicle.signals.formats.formats.WRITTEN`.
         figures: False writes no pictures.
@@ -188,15 +186,8 @@ def _frfs(run: Run, accepted: type[DataError]) -> tuple[Sequence[MotionResponse]
 def save_last_state(error: SimulationError, output: Path) -> SimulationError:
     """Save the last good state of a failed run next to its folder, which is not made.
 
-    Args:
-        error: error of the simulation, with or without the state.
-        output: folder of the run.
-
     Returns:
         The same error; its message contains the file.
-
-    Raises:
-        OutputError: the file cannot be written.
     """
     if error.state is None:
         return error
@@ -224,7 +215,6 @@ def summarise(
     """Return the content of `summary.json`.
 
     Args:
-        run: finished run.
         responses: its FRFs of all acceleration channels to each independent plate motion; may be empty.
         files: name of each file by its purpose.
         measured: measurement that the run was compared with.

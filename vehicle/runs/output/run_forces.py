@@ -152,7 +152,6 @@ def phase_ranges(
     wheel alone the sum is at most sum |a_w|, and at least 2 max |a_w| - sum |a_w| or 0.
 
     Args:
-        forces: applied forces.
         amplitudes: amplitudes by each force, see `forced_response`; (forces, channels, frequencies).
         frequencies: the frequencies [rad/s].
         order: order of the wheels.

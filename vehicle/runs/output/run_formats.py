@@ -31,12 +31,7 @@ def time_channels(run: Run) -> tuple[Channel, ...]:
 
 
 def response_channels(responses: Sequence[MotionResponse], channels: Sequence[str]) -> tuple[Channel, ...]:
-    """Return each frequency response, followed by its coherence.
-
-    Args:
-        responses: FRFs to each independent plate motion.
-        channels: names of the rows.
-    """
+    """Return each frequency response, followed by its coherence."""
     result = []
     for motion, (row, name) in product(responses, enumerate(channels)):
         plate, response = motion.input, motion.response
@@ -97,9 +92,7 @@ def writer(
 
     Args:
         form: name in `vehicle.signals.formats.formats.WRITTEN`.
-        run: the run.
         responses: FRFs of the run; may be empty.
-        channels: names of the rows.
         frame: axes of the vectors, in words.
     """
     if BY_NAME[form].table:

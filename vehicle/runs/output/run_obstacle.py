@@ -76,7 +76,7 @@ def settling_time(
     """
     size = np.abs(values)
     outside = np.flatnonzero(size > share * size.max())
-    last = float(time[outside[-1]])
+    last = float(time[outside[-1]]) if outside.size else after
     if last > time[-1] - 0.25 * (time[-1] - after):
         return None
     return max(0.0, last - after)

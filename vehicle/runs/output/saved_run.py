@@ -103,8 +103,6 @@ def file_of_run(folder: Path, summary: RunSummary, purpose: str) -> Path:
     """Return the path of a file in the folder of a run.
 
     Args:
-        folder: the folder.
-        summary: content of its summary.
         purpose: key of the file in the summary, as "vehicle".
 
     Raises:
@@ -120,10 +118,6 @@ def file_of_run(folder: Path, summary: RunSummary, purpose: str) -> Path:
 
 def read_recording(folder: Path, summary: RunSummary) -> Recording:
     """Read the time histories in the folder of a run; without poses.
-
-    Args:
-        folder: the folder.
-        summary: content of its summary.
 
     Raises:
         DataError: the file is missing or damaged.

@@ -130,11 +130,7 @@ def _failures_undone(goal: Path, result_type: str) -> Iterator[None]:
 
 
 def put_in_order(path: Path) -> None:
-    """Finish or remove the results of a killed command at a folder or a file, and print a notice.
-
-    Args:
-        path: folder or file that a command reads or writes.
-    """
+    """Finish or remove the results of a killed command at a folder or a file, and print a notice."""
     with suppress(OSError, RuntimeError, ValueError):
         goal = path.resolve()
         _put_goal_in_order(goal)

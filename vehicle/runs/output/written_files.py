@@ -194,7 +194,6 @@ def refuse_foreign(folder: Path, *, changes_only: bool = False) -> None:
     """Check that a folder contains no files of the user before replacing it.
 
     Args:
-        folder: the folder.
         changes_only: accept other files, and reject only edited files of the program.
 
     Raises:
@@ -220,7 +219,6 @@ def refuse_foreign_file(path: Path, option: str = "--output") -> None:
 
     Args:
         path: the file; a missing file passes.
-        option: option that names the file.
 
     Raises:
         ConfigurationError: the program did not write the file, or it was edited.

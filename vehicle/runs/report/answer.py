@@ -51,7 +51,6 @@ def answer(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> Markup:
     A run on another input than the first is compared with the first run on that input, if there is one before it.
 
     Args:
-        runs: finished runs.
         modes: modes of the car of each run, for dampers "stuck" and "sliding".
     """
     if len(runs) == 1:
@@ -104,7 +103,6 @@ def comfort_bands(run: FinishedRun, modes: Modes, width: float) -> Markup:
     """Return the figure of the shares of one-third octaves in the weighted acceleration; empty without comfort.
 
     Args:
-        run: finished run.
         modes: modes of its car for dampers "stuck" and "sliding"; the strongest one in the main band is marked.
         width: width of the figure [inch].
     """

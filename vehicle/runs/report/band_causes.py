@@ -76,8 +76,6 @@ def strongest(run: FinishedRun, band: MainBand, modes: Sequence[Mode]) -> Mode |
     The plates move as in the run, at the lines of its periodogram; the state of the dampers is that of most of the run.
 
     Args:
-        run: the run.
-        band: axis and frequencies.
         modes: modes of the car in this state of the dampers.
 
     Returns:
@@ -119,9 +117,6 @@ def main_path(shares: Mapping[str, float]) -> str:
 
     Both sides of an axle are named together if each of them carries `OTHER_SIDE` of their sum. None is named if it
     carries less than `MAIN` of the sum, or if the others oppose it by more: large paths that cancel explain nothing.
-
-    Args:
-        shares: name of each attachment to its share.
     """
     corners = {name: corner.replace("_", " ").split() for corner, name in CORNERS.items()}
     groups: dict[tuple[str, str], dict[str, float]] = {}

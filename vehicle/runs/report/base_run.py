@@ -26,9 +26,6 @@ def base_run(run: FinishedRun) -> FinishedRun | None:
     The unchanged car is that of the vehicle file if the run sets parameters, else the base of the file, else the
     shipped car from which it was made (see `shipped_origin`).
 
-    Args:
-        run: the run.
-
     Returns:
         The run, without FRFs; None if the car is not changed, the engine is another one, the record is longer than
         `LONGEST`, or the unchanged car cannot stand on these plates.

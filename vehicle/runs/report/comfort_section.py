@@ -20,7 +20,6 @@ def comfort(run: FinishedRun, bands: Markup = NO_FIGURE) -> Markup:
     """Return tables of weighted and unweighted accelerations, and of reactions with the values of this run.
 
     Args:
-        run: finished run.
         bands: figure of the frequencies, left of the reactions; may be empty.
     """
     points, totals = [], {}

@@ -24,9 +24,6 @@ as a new car. Front ends and bodies are shared by shipped cars, which differ fro
 def shipped_origin(vehicle: Vehicle) -> Vehicle | None:
     """Return the shipped car of the same name, else the shipped car with the fewest different parameters.
 
-    Args:
-        vehicle: the car.
-
     Returns:
         The shipped car; None if every shipped car differs in more than `LARGEST_SHARE` of the parameters.
     """
@@ -43,9 +40,6 @@ def shipped_origin(vehicle: Vehicle) -> Vehicle | None:
 
 def changed_parameters(vehicles: Sequence[Vehicle]) -> list[tuple[str, str, list[str]]]:
     """Return the parameters in which cars differ.
-
-    Args:
-        vehicles: cars.
 
     Returns:
         Path, unit, and the value of each car as text ("–" for a missing parameter), in the order of the first car.
@@ -79,11 +73,7 @@ def _text(value: object) -> str:
 
 
 def key_figures(run: FinishedRun) -> dict[tuple[str, str], float | None]:
-    """Return the key figures for the comparison of runs, by name and unit.
-
-    Args:
-        run: the run.
-    """
+    """Return the key figures for the comparison of runs, by name and unit."""
     summary = run.summary
     figures: dict[tuple[str, str], float | None] = {}
     for point, value in run.comfort.items():
@@ -115,11 +105,7 @@ GENERAL = ("parts", "bushings", "points")
 
 
 def parameter_words(path: str) -> str:
-    """Return the path of a parameter in words: "front damper Coulomb friction" for front.damper.coulomb_friction.
-
-    Args:
-        path: path of a parameter in the vehicle file.
-    """
+    """Return the path of a parameter in words: "front damper Coulomb friction" for front.damper.coulomb_friction."""
     names = [point_words(name) for name in path.split(".") if name not in GENERAL]
     names = [name for name, following in zip(names, [*names[1:], ""], strict=True) if name not in following]
     return " ".join(names).replace("coulomb", "Coulomb")

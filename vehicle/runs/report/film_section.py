@@ -33,7 +33,6 @@ def film(run: FinishedRun, share: float = 1.0) -> Markup | None:
     """Return the film of a run, and a picture of it for paper; None if there is no film.
 
     Args:
-        run: the run.
         share: share of `BUDGET` for this film.
     """
     name = run.summary["files"].get("video")
@@ -56,9 +55,7 @@ def embedded(path: Path, budget: float, folder: Path) -> bytes | None:
     """Return the film with at most `budget` bytes; None if it cannot be made that small.
 
     Args:
-        path: the film.
         budget: maximum size [bytes].
-        folder: folder for temporary files.
     """
     if path.stat().st_size <= budget:
         return path.read_bytes()

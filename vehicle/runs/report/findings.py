@@ -39,7 +39,6 @@ def findings(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[Find
     """Return sentences on dampers, applied forces, resonances, body modes, crest factor, linearity and solver warnings.
 
     Args:
-        run: the run.
         modes: modes of the car, for dampers "stuck" and "sliding".
     """
     summary = run.summary

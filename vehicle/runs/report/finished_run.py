@@ -165,14 +165,7 @@ def _car(path: Path, summary: RunSummary) -> Car:
 def _responses(
     path: Path, channels: Sequence[str], estimate: FrfSummary, summary: RunSummary
 ) -> tuple[MotionResponse, ...]:
-    """Read the FRFs to each motion of the plates.
-
-    Args:
-        path: table of FRFs.
-        channels: names of the acceleration channels.
-        estimate: estimate of the FRFs, from the summary.
-        summary: the summary.
-    """
+    """Read the FRFs to each motion of the plates."""
     table = run_frf(path, summary)
     responses = []
     for motion in dict.fromkeys(name.motion for name in table.names):

@@ -11,12 +11,7 @@ from vehicle.runs.report.differences import shipped_origin
 
 
 def without_general(notices: Iterable[str], vehicle: Vehicle) -> list[str]:
-    """Return notices without those of every run of the shipped car from which a car was made.
-
-    Args:
-        notices: notices of a run.
-        vehicle: car of the run.
-    """
+    """Return notices without those of every run of the shipped car from which a car was made."""
     general = {NO_SEAT}
     origin = shipped_origin(vehicle)
     if origin is not None:

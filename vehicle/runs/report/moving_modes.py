@@ -23,9 +23,6 @@ def mode_set(name: str, wheel: str, wire: CarWireframe, modes: Mapping[str, Sequ
     """Return the modes of one car for the script of the page.
 
     Args:
-        name: name of the car or its run.
-        wheel: excited wheel.
-        wire: points and lines of the car.
         modes: modes for dampers "stuck" and "sliding".
 
     Returns:

@@ -100,7 +100,6 @@ def order_page(
 
     Args:
         orders: the amplitudes; at least two points.
-        name: name of the car.
         caption: road, length of the runs and engine.
         command: command line that made them.
         author, project: names in the head of the page; may be empty.

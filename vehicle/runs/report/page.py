@@ -60,7 +60,6 @@ def report_page(
     """Return the report of one run, or the comparison of several runs.
 
     Args:
-        runs: finished runs.
         progress: called with the finished fraction.
         trial: makes the section for trials of a single run.
         targets: figures with their limits; the report then begins with the verdict on them.
@@ -184,7 +183,6 @@ def document(
     """Return an HTML document; its security policy blocks external content and scripts.
 
     Args:
-        title: title of the page.
         subtitles: lines below the title.
         parts: title, anchor and content of each section.
         modes: points, lines and modes of the cars as JSON; empty for a page without moving pictures.

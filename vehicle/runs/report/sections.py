@@ -128,7 +128,6 @@ def time_figure(run: FinishedRun, runs: Sequence[FinishedRun] = ()) -> Markup:
     """Return the plot of plate, seat rail and dampers over time, as in time.png.
 
     Args:
-        run: the run.
         runs: runs whose figures have equal scales, with this run among them; empty for a single run.
     """
     figure = drawing(lambda path: plot_time(path, run, page=True, others=runs), f"Time histories of {run.name}")

@@ -14,15 +14,7 @@ FONTS = "'DejaVu Sans', Verdana, sans-serif"
 
 
 def drawing(plot: Callable[[Path], object], label: str) -> Markup:
-    """Return a figure as an HTML element.
-
-    Args:
-        plot: function that writes the figure to a path.
-        label: alternative text of the figure.
-
-    Returns:
-        A `figure` element with the SVG in it.
-    """
+    """Return a figure as an HTML element."""
     with TemporaryDirectory() as folder:
         path = Path(folder) / "figure.svg"
         plot(path)
@@ -31,12 +23,7 @@ def drawing(plot: Callable[[Path], object], label: str) -> Markup:
 
 
 def small(svg: str, label: str) -> str:
-    """Return an SVG file as a compact element: coordinates rounded to 0.01 points, no unused names.
-
-    Args:
-        svg: SVG text of matplotlib.
-        label: label of the figure.
-    """
+    """Return an SVG file as a compact element: coordinates rounded to 0.01 points, no unused names."""
     svg = svg[svg.index("<svg") :]
     svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.S)
     svg = re.sub(r'<g id="[^"]*"', "<g", svg)

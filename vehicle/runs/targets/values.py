@@ -101,8 +101,6 @@ def value_of(figure: Figure, ride: Histories, *, checked: bool = False) -> tuple
     """Return the value of a figure on a run, and its standard error or None.
 
     Args:
-        figure: the figure.
-        ride: the run.
         checked: True if the unit of the figure is known to be right.
 
     Raises:

@@ -119,7 +119,6 @@ def state_of(figure: Figure, value: float, error: float | None) -> str:
     """Return the state of a figure: `MET`, `MISSED` or `UNDECIDED`.
 
     Args:
-        figure: the figure.
         value: its value; infinite for an acceleration that does not settle.
         error: standard error; None if unknown.
     """
@@ -129,10 +128,6 @@ def state_of(figure: Figure, value: float, error: float | None) -> str:
 
 def verdict(figures: Mapping[str, Figure], runs: Sequence[RatedRun]) -> dict[str, dict[str, Rated]]:
     """Compare the figures of finished runs with their limits.
-
-    Args:
-        figures: see `read_targets`.
-        runs: finished runs of one or several cars.
 
     Returns:
         Car to the rated figures by name.
@@ -163,13 +158,7 @@ def verdict(figures: Mapping[str, Figure], runs: Sequence[RatedRun]) -> dict[str
 
 
 def sentence(figures: Mapping[str, Figure], car: str, rated: Mapping[str, Rated]) -> str:
-    """Return text with the met and missed targets of a car.
-
-    Args:
-        figures: see `read_targets`.
-        car: the car.
-        rated: its figures, see `verdict`.
-    """
+    """Return text with the met and missed targets of a car."""
 
     def named(state: str) -> list[str]:
         return [figures[name].words or name.replace("_", " ") for name, each in rated.items() if each.state == state]

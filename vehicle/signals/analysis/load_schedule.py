@@ -58,7 +58,6 @@ def scheduled_loads(
     """Return the loads of the channels that all runs have, in the order of the first run.
 
     Args:
-        runs: the runs.
         repeats: number of repeats of each, above 0.
         slope: slope k of the Woehler curve [-].
         reference: reference run; None without one.

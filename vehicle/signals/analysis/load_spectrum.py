@@ -43,9 +43,6 @@ class LoadSpectrum:
     def classes(self, count: int) -> tuple[Vector, Vector]:
         """Count the cycles in classes of equal width from zero to the largest range.
 
-        Args:
-            count: number of classes.
-
         Returns:
             Edges of the classes, (count + 1,), and cycles in each class, (count,); a class includes its upper edge.
         """

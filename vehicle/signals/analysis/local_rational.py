@@ -77,12 +77,7 @@ SAME = "the inputs are fully correlated there, so that their responses cannot be
 
 @one_blas_thread()
 def shortest_record(inputs: int, highest: float) -> float:
-    """Return the length of the shortest record for an FRF [s]: eight windows of lines up to the highest frequency.
-
-    Args:
-        inputs: number of simultaneous inputs.
-        highest: highest frequency [Hz].
-    """
+    """Return the length of the shortest record for an FRF [s]: eight windows of lines up to the highest frequency."""
     return 8 * (LEAST_HALF_WIDTH + LINES_OF_AN_INPUT * (inputs - 1)) / highest
 
 

@@ -67,10 +67,6 @@ def row_of(name: ResponseName, names: Sequence[ResponseName]) -> tuple[int, floa
     The FRF of an input to its plate p is H / a_p. The FRF of one plate also matches an input that moves further
     plates with it. An unknown input is the only one of the set.
 
-    Args:
-        name: name of an FRF.
-        names: names of the FRFs of the set.
-
     Raises:
         DataError: the input is unknown, and the set has several.
     """

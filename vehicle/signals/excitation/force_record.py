@@ -82,10 +82,7 @@ class ForceRecord:
         return _history(self, changed)
 
     def require_length(self, duration: float) -> None:
-        """Check that the record lasts for a run.
-
-        Args:
-            duration: length of the run [s].
+        """Check that the record lasts for a run of this length [s].
 
         Raises:
             DataError: the record is shorter.

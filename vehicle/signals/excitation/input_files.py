@@ -14,9 +14,6 @@ INPUT_FOLDER = Path(__file__).resolve().parents[1] / "inputs"
 def find_input(name: str | Path) -> Path:
     """Return the path of an existing file, else of the shipped input with this name.
 
-    Args:
-        name: path of a measurement file, or name of a shipped input, such as 'low.csv'.
-
     Raises:
         ConfigurationError: neither exists; the message lists the names of the shipped inputs.
     """

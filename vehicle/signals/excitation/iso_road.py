@@ -208,7 +208,6 @@ def drive(
     that rises, V tan(beta) w + w' z.
 
     Args:
-        road: road to drive on.
         speed: speed V [m/s].
         wheels: name of each wheel to its distance d behind the foremost wheel [m], at least 0, and its track.
         duration: length of the record [s].
@@ -259,11 +258,6 @@ def half_cosine_at(time: NDArray[np.float64], length: float) -> NDArray[np.float
 
 
 def half_cosine_rate_at(time: NDArray[np.float64], length: float) -> NDArray[np.float64]:
-    """Return the derivative of `half_cosine_at` [1/s].
-
-    Args:
-        time: times t [s].
-        length: length of the rise [s].
-    """
+    """Return the derivative of `half_cosine_at` [1/s]."""
     inside = (time > 0.0) & (time < length)
     return np.asarray(np.where(inside, 0.5 * np.pi / length * np.sin(np.pi * time / length), 0.0))

@@ -57,7 +57,6 @@ def check_level(
     """Reject levels that indicate a wrong unit or quantity; return notices on rare events, such as a pothole.
 
     Args:
-        path: file, for messages.
         displacement: wheel -> plate displacement [m], shape (n,).
         timestep: sampling interval [s].
         units: wheel -> unit of its column, "m" (by default) or "mm", used in messages; "" for a channel of a
@@ -162,7 +161,6 @@ def _low_pass(z: Vector, cutoff: float) -> Vector:
     """Return a record without its share above a cut-off frequency, without phase.
 
     Args:
-        z: the record; (n,).
         cutoff: frequency at which a quarter of the power stays, over the Nyquist frequency.
     """
     # The record goes on as its point reflection in both ends, for longer than the filter rings.
@@ -230,7 +228,6 @@ def pauses(wheel: str, time: Vector, values: Vector) -> list[str]:
     """Return a notice on the longest constant part between two motions if it is at least `PAUSE` long.
 
     Args:
-        wheel: wheel of the plate, for the message.
         time: sample times [s], shape (n,).
         values: displacement of the plate in any unit, shape (n,).
     """
@@ -250,7 +247,6 @@ def clipping(wheel: str, values: Vector) -> list[str]:
     """Return a notice for each side on which the displacement of a plate is clipped.
 
     Args:
-        wheel: wheel of the plate, for the message.
         values: displacement of the plate in any unit, shape (n,).
     """
     return [

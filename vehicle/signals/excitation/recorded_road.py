@@ -264,11 +264,7 @@ class RecordedDrive:
         }
 
     def summary(self, signal: Signal) -> Mapping[str, object]:
-        """Return the description of the road for the summary of a run.
-
-        Args:
-            signal: signal of the drive.
-        """
+        """Return the description of the road for the summary of a run."""
         return {
             "class": None,
             "profile": str(self.road),

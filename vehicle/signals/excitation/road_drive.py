@@ -242,11 +242,7 @@ class RoadDrive:
         return Signal(time=time, displacement=height, source=f"level road; {self.speed:.6g} km/h", profile=height)
 
     def slopes(self, signal: Signal) -> dict[str, NDArray[np.float64]]:
-        """Return the slope of the road that each wheel takes, tan(beta) [-], (n,): that of the cams, or w'/V.
-
-        Args:
-            signal: signal of the drive.
-        """
+        """Return the slope of the road that each wheel takes, tan(beta) [-], (n,): that of the cams, or w'/V."""
         rates = signal.slope_velocity or signal.plate_motion(signal.time).velocity
         return {wheel: rates[wheel] * 3.6 / self.speed for wheel in signal.wheels}
 
@@ -275,11 +271,7 @@ class RoadDrive:
         return identity
 
     def summary(self, signal: Signal) -> dict[str, object]:
-        """Return the description of the road for the summary of a run.
-
-        Args:
-            signal: signal of the drive.
-        """
+        """Return the description of the road for the summary of a run."""
         measured, obstacle = isinstance(self.road, Path), self.obstacle
         no_class = measured or obstacle is not None or self.road == LEVEL
         return {

@@ -255,12 +255,6 @@ def _uniform_columns(
 ) -> tuple[float, dict[str, Vector], float, list[str]]:
     """Check for uniform times, or resample the columns.
 
-    Args:
-        table: table of the columns, for messages.
-        time: increasing times [s], shape (n,).
-        columns: wheel -> displacement [m], shape (n,).
-        rate: new sampling rate [Hz]; None for that of the file.
-
     Returns:
         Step [s], columns, sampling rate that limits their band [Hz], and notices.
     """

@@ -24,11 +24,7 @@ FULL_RATE = 250.0
 
 
 def check_rate(path: Path, rate: float) -> tuple[str, ...]:
-    """Reject a sampling rate below `LOWEST_RATE`; return a notice on the usable band below `FULL_RATE`.
-
-    Args:
-        path: file, for messages.
-        rate: sampling rate of the file [Hz].
+    """Reject a sampling rate [Hz] below `LOWEST_RATE`; return a notice on the usable band below `FULL_RATE`.
 
     Raises:
         DataError: the rate is too low.
@@ -52,9 +48,7 @@ def fill_missing(table: Table, time: Vector, column: int) -> tuple[Vector, list[
     """Interpolate missing displacements by a cubic spline through the values on both sides.
 
     Args:
-        table: table with NaN for missing values.
         time: increasing times [s], shape (n,).
-        column: index of the column.
 
     Returns:
         Column, shape (n,), and a notice with the number of interpolated values, if any.

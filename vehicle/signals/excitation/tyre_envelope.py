@@ -119,7 +119,6 @@ class TyreEnvelope:
         """Return the cams of a tyre.
 
         Args:
-            cams: numbers without dimension.
             radius: radius of the tyre [m].
             patch: length of the contact patch [m].
         """

@@ -55,10 +55,7 @@ NO_VALUE = re.compile(
 
 
 def load_database(path: Path) -> Any:
-    """Load a database of CAN messages.
-
-    Args:
-        path: DBC file, or another format of canmatrix.
+    """Load a database of CAN messages: DBC, or another format of canmatrix.
 
     Raises:
         ConfigurationError: the file does not exist or contains no messages.
@@ -103,9 +100,6 @@ def decode(
     several buses, directions or identifiers are different channels, whose names state what differs.
 
     Args:
-        path: measurement file, for messages.
-        container: name of the log format, for messages.
-        log: data frames by source.
         databases: DBC files; the first that describes a message decodes it.
 
     Returns:
@@ -247,7 +241,6 @@ def raw_values(signal: Any, payload: NDArray[np.uint8]) -> NDArray[Any]:
 
     Args:
         signal: signal of a database, of at most `WIDEST` bits.
-        payload: bytes.
     """
     first, size = _first_bit(signal), signal.size
     begin, end = first // 8, -(-(first + size) // 8)

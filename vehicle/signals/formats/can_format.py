@@ -62,10 +62,6 @@ Parser = Callable[[str], "_Row | str"]
 def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
     """Read a bus log and decode its frames into channels.
 
-    Args:
-        path: bus log.
-        databases: DBC files.
-
     Raises:
         ConfigurationError: a database is missing or unreadable.
         DataError: no database, no frames, or no identifier of the log in the databases.

@@ -194,12 +194,6 @@ def clock_step(step: float, digits: int = 6) -> tuple[float, str]:
 def check_length(path: Path, claimed: float, available: float, part: str) -> None:
     """Reject a file whose header claims more data than the file contains, before memory is allocated.
 
-    Args:
-        path: measurement file, for the message.
-        claimed: number of bytes claimed by the header.
-        available: number of bytes in the file.
-        part: part of the file with that header, for the message.
-
     Raises:
         DataError: `claimed` is negative or larger than `available`.
     """

@@ -39,9 +39,7 @@ def check_uniform(table: Table, time: Vector, remedy: str = "resample it to unif
     """Reject time steps that deviate from the median step by more than `UNIFORM_TOLERANCE`.
 
     Args:
-        table: table of the times, for messages.
         time: increasing times [s], shape (n,).
-        remedy: alternative remedy, for messages.
 
     Raises:
         DataError: a pause or times that are not uniform; the message names the row of the largest deviation.
@@ -118,7 +116,6 @@ def check_stamps(where: object, time: Vector) -> None:
     """Reject stamps that are not the times of the samples; the message contains the rate.
 
     Args:
-        where: file, for the message.
         time: stamps [s], (n,).
 
     Raises:

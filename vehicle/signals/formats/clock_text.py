@@ -161,15 +161,14 @@ def epoch_seconds(values: Vector, unit: str) -> tuple[Vector, str, str] | None:
 def clock_of_day(value: float) -> float:
     """Return the seconds after midnight of a time of day written as a number HHMMSS.sss.
 
-    Args:
-        value: number in the file.
-
     Raises:
         ValueError: hours, minutes or seconds out of range.
     """
+    if not 0.0 <= value < 250000.0:  # also infinity and NaN
+        raise ValueError(value)
     whole = int(value)
     hours, minutes, seconds = whole // 10000, whole // 100 % 100, whole % 100
-    if not 0.0 <= value < 250000.0 or hours > 24 or minutes > 59 or seconds > 60:
+    if hours > 24 or minutes > 59 or seconds > 60:
         raise ValueError(value)
     return 3600.0 * hours + 60.0 * minutes + seconds + (value - whole)
 

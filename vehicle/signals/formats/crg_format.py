@@ -63,9 +63,6 @@ def read_surface(path: Path) -> Surface:
     z(u, v) = z_grid(u, v) + z_ref(u) + v b(u), with z_ref(u_i+1) = z_ref(u_i) + s(u_i+1) du with the slope s
     and the banking b, each constant or a channel.
 
-    Args:
-        path: OpenCRG file.
-
     Raises:
         DataError: not an OpenCRG file, damaged, with modifiers, or with a reference to another file.
 
@@ -124,12 +121,13 @@ def read_surface(path: Path) -> Surface:
 
     slope, banking = along("slope", "s"), along("banking", "b")
     rise = numbers.get("reference_line_start_z", 0.0) + np.concatenate([[0.0], np.cumsum(slope[1:]) * step])
-    heading = table[:, names.index("reference line phi")] if "reference line phi" in names else np.zeros(1)
+    phi = "reference line phi"
+    heading = table[1:, names.index(phi)] if phi in names else np.zeros(0)  # the first value of a heading is not used
     return Surface(
         u=u,
         v=v,
         z=table[:, longs] + rise[:, None] + banking[:, None] * v[None, :],
-        curved=bool(np.nanmax(heading[1:] if heading.size > 1 else heading) - np.nanmin(heading[-1:]) != 0.0),
+        curved=np.unique(heading[np.isfinite(heading)]).size > 1,
     )
 
 

@@ -27,9 +27,6 @@ def read(path: Path) -> Measurement:
     The second line contains NCHAN, NSAMP, NRECS, NBYTES, KEYNUM and STEP: channels, samples (-1: unknown), layout of
     binary data, number format, and the spacing of the samples in XUNITS.
 
-    Args:
-        path: file whose first line begins with ERDFILEV.
-
     Raises:
         DataError: a damaged header or table, binary numbers, or an unknown unit of the distance.
 

@@ -82,9 +82,6 @@ BY_NAME = {entry.name: entry for entry in FORMATS}
 def recognised_format(path: Path) -> Format:
     """Recognise the format of a file by its content, regardless of its name.
 
-    Args:
-        path: measurement file.
-
     Raises:
         ConfigurationError: the file does not exist.
         DataError: an unsupported format, or binary data.
@@ -116,9 +113,7 @@ def write_record(path: Path, name: str, record: Record, frame: str) -> None:
     """Write a record as a table.
 
     Args:
-        path: file to write.
         name: name of the format, one of `TABLES`.
-        record: time, channels and units.
         frame: description of the vector axes.
     """
     BY_NAME[name].function("table", "write")(path, record, frame)

@@ -106,7 +106,6 @@ def frf_data(motions: Sequence[MotionResponse], channels: Sequence[str]) -> FrfD
 
     Args:
         motions: FRFs to each motion, with a row for each channel.
-        channels: names of the rows.
     """
     pairs = [(row, motion) for row in range(len(channels)) for motion in motions]
     rows = {
@@ -123,12 +122,6 @@ def read_frf(path: Path) -> FrfData:
     `#` comments, one header line `frequency [Hz]`, then `<channel>_magnitude` [m/s2 per m], `<channel>_phase [deg]`
     and `<channel>_coherence` of each channel, optionally `<channel>_random_error` [m/s2 per m]; an empty cell for an
     undefined value. With several plates a channel is `<channel>/<plate>`, as `knuckle_fr_acc_z/plate_fr`.
-
-    Args:
-        path: table of FRFs.
-
-    Returns:
-        FRFs of all channels.
 
     Raises:
         ConfigurationError: the file does not exist.
@@ -208,10 +201,8 @@ def write_frf(
     """Write magnitude [m/s2 per m], phase [deg], coherence and random error of each channel; undefined values empty.
 
     Args:
-        path: file to write.
         responses: input, as "plate_fr", to the FRFs of the channels, in columns `<channel>_magnitude` for one input,
             `<channel>/<input>_magnitude` for several.
-        channels: channel names.
         frame: description of the vector axes.
         inputs: description of the inputs if there is more than one plate.
     """

@@ -224,9 +224,6 @@ def _attribute(item: Any, name: str) -> str:
 def write(path: Path, channels: tuple[Channel, ...], description: str) -> None:
     """Write channels to an HDF5 file, one array per channel.
 
-    Args:
-        path, channels, description: file to write, channels of any type, and description of the record.
-
     Raises:
         MissingPartError: h5py is not installed.
         OSError: the file cannot be written.

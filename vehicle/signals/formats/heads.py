@@ -93,7 +93,6 @@ def cells_of(row: str, delimiter: str) -> list[str]:
     """Split a row into cells; strip blanks and quotes; keep delimiters within quotes.
 
     Args:
-        row: line of text.
         delimiter: delimiter of the cells; "" for blanks.
     """
     if not delimiter:
@@ -110,8 +109,6 @@ def read_heads(path: Path, lines: Sequence[str], start: int, delimiter: str, cou
     """Read names, units and sources from the lines above a table.
 
     Args:
-        path: measurement file, for messages.
-        lines: all lines of the file.
         start: index of the first row of numbers.
         delimiter: delimiter of the cells; "" for blanks.
         count: number of columns.

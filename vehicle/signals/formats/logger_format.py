@@ -54,16 +54,7 @@ def read(path: Path) -> Measurement:
 
 
 def read_lines(path: Path, text: Text, format_name: str) -> Measurement:
-    """Read a table of numbers from lines of text.
-
-    Args:
-        path: measurement file, for messages.
-        text: text of the file.
-        format_name: name of the file format.
-
-    Raises:
-        DataError: see `read`.
-    """
+    """Read a table of numbers from lines of text."""
     lines = text.lines
     table = find_table(path, lines)
     lines, table = _without_last_delimiter(lines, table)

@@ -31,11 +31,8 @@ def check_matrix(path: Path, data: bytes, order: str, where: str, depth: int = 0
     """Check that the parts of a matrix element are consistent.
 
     Args:
-        path: MAT file, for messages.
         data: bytes of the element without its tag.
         order: byte order, "<" or ">".
-        where: name of the element, for messages.
-        depth: nesting depth of the matrix.
 
     Raises:
         DataError: a part of unknown type or size, or dimensions that contradict the amount of data.
@@ -69,7 +66,6 @@ def object_name(path: Path, data: bytes, order: str) -> tuple[str, str] | None:
     """Return name and class of a MATLAB object, such as a table; None for other matrices.
 
     Args:
-        path: MAT file, for messages.
         data: bytes of the element without its tag.
         order: byte order, "<" or ">".
 

@@ -53,7 +53,6 @@ def channels_of(
 
     Args:
         variables: name to array; structures are record arrays.
-        path: MAT file, for messages.
         objects: name to class of variables that are objects (tables, timetables, dates), which are not read.
 
     Raises:
@@ -267,11 +266,7 @@ def _check_elements(path: Path) -> dict[str, str]:
 
 
 def write(path: Path, channels: tuple[Channel, ...], description: str) -> None:
-    """Write one structure per channel, in the layout of Testlab.
-
-    Args:
-        path, channels, description: file to write, channels of any type, and description of the record.
-    """
+    """Write one structure per channel, in the layout of Testlab."""
     from scipy.io import savemat
 
     savemat(

@@ -49,7 +49,6 @@ def columns_of(name: str, values: Any) -> list[tuple[str, Vector]]:
     """Return the columns of an array with numbered names; the longest dimension is that of the samples.
 
     Args:
-        name: name of the array.
         values: numbers, (n,), (n, w), (w, n) or (w, ..., n).
     """
     array = np.asarray(values)

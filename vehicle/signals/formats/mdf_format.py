@@ -45,10 +45,6 @@ def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
 
     Raw frames of a CAN bus are decoded with the databases, and ignored without databases.
 
-    Args:
-        path: MDF file.
-        databases: DBC files for the frames of a CAN bus.
-
     Raises:
         ConfigurationError: a database is missing or unreadable.
         MissingPartError: asammdf is not installed.
@@ -100,8 +96,6 @@ def write(path: Path, channels: Sequence[Channel], description: str) -> None:
 
     Args:
         path: file to write, with the extension .mf4.
-        channels: time histories.
-        description: comment in the header of the file.
 
     Raises:
         MissingPartError: asammdf is not installed.

@@ -17,7 +17,6 @@ def named_columns(path: Path, wanted: Mapping[str, str]) -> dict[str, Vector]:
     """Read named columns of a measurement file in SI units.
 
     Args:
-        path: measurement file of any format.
         wanted: column name in lower case to SI unit of its quantity.
 
     Returns:

@@ -35,9 +35,6 @@ def extra(package: str, name: str, purpose: str) -> Any:
 def reading(path: Path, form: str, remedy: str) -> Iterator[None]:
     """Convert the errors of a library that reads a file; for damaged files libraries raise errors of any type.
 
-    Args:
-        path, form, remedy: file, its format and the remedy, for the message.
-
     Raises:
         DataError: any error in the block.
     """

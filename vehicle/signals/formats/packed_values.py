@@ -24,10 +24,6 @@ SET_BY_USER = 2
 def unpacked(name: str, dataset: Any) -> tuple[NDArray[Any], str, tuple[str, ...]]:
     """Read an array and unpack it.
 
-    Args:
-        name: name of the array, for messages.
-        dataset: numeric array of h5py.
-
     Returns:
         Values, NaN for missing values, shape of the array; the reason why the unit is wrong for them, empty if it is
         right; and notices.

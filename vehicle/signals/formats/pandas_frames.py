@@ -30,8 +30,6 @@ def frame_channels(path: Path, name: str, group: Any) -> tuple[list[Channel], st
     """Return the columns of a pandas frame or series as channels, and its start time.
 
     Args:
-        path: HDF5 file, for messages.
-        name: name of the group.
         group: group of an HDF5 file, with the attribute `pandas_type`.
 
     Raises:

@@ -68,10 +68,6 @@ def is_table(path: Path) -> bool:
 def read_columns(path: Path, needed: str = "'time [s]' and '<channel> [<unit>]'") -> Record:
     """Read a record: a table with a uniform column `time [s]`.
 
-    Args:
-        path: table file.
-        needed: description of the required columns, for messages.
-
     Raises:
         ConfigurationError: the file does not exist.
         DataError: the file is not a record; the message names line and column.

@@ -12,7 +12,6 @@ def with_remarks(lines: list[str], table: TextTable) -> tuple[list[str], TextTab
     """Extend all rows to the columns of the names above, if all cells outside the common columns are texts.
 
     Args:
-        lines: all lines of the file.
         table: table with the columns that the rows at its beginning have in common.
 
     Returns:

@@ -174,9 +174,6 @@ def _check_values(path: Path, head: dict[str, str], number: int, values: np.ndar
 def write(path: Path, channels: tuple[Channel, ...], description: str) -> None:
     """Write time histories of equal rate in floating point.
 
-    Args:
-        path, channels, description: file to write, time histories over equal times, and description of the record.
-
     Raises:
         DataError: different rates, or missing values, which the format does not support.
     """

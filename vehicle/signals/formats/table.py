@@ -155,10 +155,6 @@ def name_and_unit(cell: str) -> tuple[str, str | None]:
 def key_column(cell: str, needed: str) -> Callable[[Header], int]:
     """Return a function for `Wanted.key`: it checks for unique headers and finds the key column.
 
-    Args:
-        cell: header of the key column.
-        needed: description of the required columns, for messages.
-
     Returns:
         Function from a header to the index of the key column; it raises DataError for other headers.
     """

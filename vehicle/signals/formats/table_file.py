@@ -12,10 +12,6 @@ from vehicle.signals.formats.table import TIME, Table, Wanted, key_column, name_
 def read_table(path: Path, wanted: Wanted) -> Table:
     """Read a table from an archive of arrays or a text file.
 
-    Args:
-        path: table file.
-        wanted: requirements on the columns.
-
     Raises:
         ConfigurationError: the file does not exist.
         DataError: bad data; the message names line and column.

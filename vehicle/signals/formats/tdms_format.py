@@ -50,8 +50,6 @@ def _axis(properties: Mapping[str, Any], count: int, later: float) -> dict[str, 
     """Return axis, kind, function and remark of a waveform: x_i = start + wf_start_offset + i * wf_increment.
 
     Args:
-        properties: properties of the channel.
-        count: number of samples.
         later: start time after the earliest start time of the file [s].
     """
     step = properties.get("wf_increment")

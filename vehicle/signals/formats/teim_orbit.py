@@ -139,7 +139,6 @@ class PropertyFile:
         Points on a straight line between their neighbours, which do not change a law of straight lines, are left out.
 
         Args:
-            block: name of the block.
             x_unit: factor of the first column.
             y_unit: factor of the second column.
 
@@ -173,9 +172,6 @@ def is_property_file(path: Path) -> bool:
 
 def read_property_file(path: Path) -> PropertyFile:
     """Read a property file.
-
-    Args:
-        path: path of the file.
 
     Raises:
         ConfigurationError: the file is missing or too large.

@@ -59,9 +59,6 @@ class Text(NamedTuple):
 def read_text(path: Path) -> Text:
     """Read a UTF-8 file, or else Windows text (cp1252) with a notice; reject files before parsing that are no text.
 
-    Args:
-        path: text file.
-
     Memory needed = TEXT_COPIES * size + BYTES_PER_ROW * size / (mean length of the first rows).
 
     Raises:

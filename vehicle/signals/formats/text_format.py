@@ -99,7 +99,6 @@ def write_table(
     """Write a table in the format of `read`; undefined values (NaN) become empty cells.
 
     Args:
-        path: file to write.
         cells: column headers, including units.
         columns: numbers of each column, (rows,).
         comments: lines above the header.
@@ -142,12 +141,7 @@ def _split(row: str, delimiter: str) -> list[str]:
 
 
 def fast(rows: list[str], header: Header) -> Vector | None:
-    """Parse all numbers at once, (rows, columns); None unless all are finite and the number of columns is right.
-
-    Args:
-        rows: lines of text.
-        header: header with delimiter and number of columns.
-    """
+    """Parse all numbers at once, (rows, columns); None unless all are finite and the number of columns is right."""
     try:
         values = np.loadtxt(rows, delimiter=header.delimiter, comments=None, ndmin=2, dtype=np.float64)
     except ValueError:
@@ -163,7 +157,7 @@ def fast_with_gaps(rows: list[str], header: Header, key: int) -> Vector | None:
     Infinite cells stay infinite: they are no missing values, and the user of the channel refuses them.
 
     Args:
-        rows, header: see `fast`.
+        rows, header: lines of text; header with delimiter and number of columns.
         key: index of the column without missing values; -1 for none.
     """
     sign = re.escape(header.delimiter)
@@ -182,8 +176,7 @@ def careful(numbers: list[int], rows: list[str], header: Header, key: int, wante
     """Parse numbers cell by cell, (rows, columns), NaN for missing values if `Wanted.missing` allows.
 
     Args:
-        numbers: line number of each row.
-        rows, header: see `fast`.
+        rows, header: see `fast_with_gaps`.
         key: index of the column of times or frequencies; -1 for none.
         wanted: requirements on the table.
 

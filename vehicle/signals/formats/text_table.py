@@ -51,10 +51,6 @@ class TextTable:
 def find_table(path: Path, lines: Sequence[str]) -> TextTable:
     """Find the table of numbers in a text: numbers only, else with dates and clocks, else with text columns.
 
-    Args:
-        path: measurement file, for messages.
-        lines: all lines of the file.
-
     Raises:
         DataError: no table.
     """
@@ -85,12 +81,7 @@ def _kind(cell: str, delimiter: str) -> Kind:
 
 
 def kinds_of(row: str, delimiter: str) -> list[Kind]:
-    """Return the types of the cells of a row.
-
-    Args:
-        row: line of text.
-        delimiter: delimiter of the cells; "" for blanks.
-    """
+    """Return the types of the cells of a row."""
     return [_kind(cell, delimiter) for cell in cells_of(row, delimiter)]
 
 
@@ -160,12 +151,6 @@ def _goes_on(lines: Sequence[str], delimiter: str, kinds: Sequence[Kind]) -> boo
 
 def settled_kinds(path: Path, rows: Sequence[str], table: TextTable, names: Sequence[str]) -> tuple[Kind, ...]:
     """Determine the types of all columns, including columns whose first cells are empty.
-
-    Args:
-        path: measurement file, for messages.
-        rows: rows of the table.
-        table: position and layout of the table.
-        names: column names, for messages.
 
     Raises:
         DataError: rows of different sensors alternate in the table.

@@ -25,14 +25,6 @@ VECTORS = {2: 3, 3: 6}
 def read_shape(path: Path, number: int, where: str, lines: list[bytes], nodes: Nodes, units: Units) -> ModeShape | str:
     """Read a dataset of results at nodes as a mode shape in global axes.
 
-    Args:
-        path: universal file, for messages.
-        number: number of the dataset, 55 or 2414.
-        where: name of the dataset, for messages.
-        lines: lines after the number.
-        nodes: nodes and their axis systems.
-        units: units of lengths and forces.
-
     Returns:
         Mode shape, or the description of a result other than a mode.
 

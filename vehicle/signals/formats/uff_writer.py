@@ -32,9 +32,7 @@ def write(
     Steps and uneven frequencies have six digits in this format; functions over uneven frequencies are written as text.
 
     Args:
-        path: file to write.
         channels: time histories, frequency responses and coherences over uniform axes.
-        description: description of the record.
         geometry: coordinates and lines of the points.
         shapes: mode shapes at the points.
 

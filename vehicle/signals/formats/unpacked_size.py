@@ -26,7 +26,6 @@ def require_unpacked(
     """Refuse data that would fill the memory, or that are far denser than measurements.
 
     Args:
-        label: file, for the message.
         size: size of the unpacked data, as their headers state it [byte].
         packed: size in the file [byte].
         limit: maximum size [byte]; `MEMORY_LIMIT` by default.
@@ -62,8 +61,6 @@ def require_archive(
     The sizes are those of its directory, beyond which Python's `zipfile` does not unpack.
 
     Args:
-        label: file, for messages.
-        file: the archive.
         limit, freely, densest: see `require_unpacked`.
 
     Raises:

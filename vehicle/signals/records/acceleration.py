@@ -50,7 +50,6 @@ def _chosen(path: Path, choice: Choice, names: list[str]) -> Record:
     """Read the chosen channels of a measurement file as accelerations [m/s2].
 
     Args:
-        path: measurement file.
         choice: channels for the roles x, y, z; without roles, the channels named `names` are used.
         names: channel names of the result for the axes x, y, z.
     """

@@ -112,12 +112,7 @@ def of_receiver(channels: Sequence[Channel]) -> bool:
 
 
 def may_be_plate(channel: Channel, channels: Sequence[Channel]) -> bool:
-    """Return True if a displacement may be that of a plate or a road: no altitude, no distance, no travel of a spring.
-
-    Args:
-        channel: displacement.
-        channels: all channels of its file.
-    """
+    """Return True if a displacement may be that of a plate or a road: no altitude, distance or travel of a spring."""
     terms = set(words_of(channel.name))
     if terms & (ROUTE | SPRING):
         return False
@@ -133,7 +128,6 @@ def suggested_channels(channels: Sequence[Channel], model_channels: Collection[s
     knuckle_rl_acc_z.
 
     Args:
-        channels: channels of a measurement.
         model_channels: names of the model; by default those of a car with four wheels.
     """
     names = [channel.name for channel in channels]

@@ -89,11 +89,13 @@ class Chosen:
     notices: tuple[str, ...]
     highest: float
 
+    @property
+    def step(self) -> float:
+        """Mean sampling interval [s]."""
+        return float(self.time[-1] - self.time[0]) / (self.time.size - 1)
+
     def require_uniform(self, where: object) -> None:
         """Check that the times are uniform.
-
-        Args:
-            where: file, for the message.
 
         Raises:
             DataError: not uniform; the message lists the options that make them uniform.
@@ -112,8 +114,6 @@ def pairs(option: str, texts: Sequence[str], role: str) -> dict[str, str]:
     """Parse the values ROLE=VALUE of a repeated option into a dictionary.
 
     Args:
-        option: name of the option, for messages.
-        texts: values of the option.
         role: role for a text without "=".
 
     Raises:
@@ -139,7 +139,6 @@ def pick(
     """Return the index of the only channel that matches a number, exact name, pattern, or point with direction.
 
     Args:
-        measurement: contents of the file.
         wanted: value of the option; `12+Z` and `Dof 12 +Z` match the channel at node 12 in direction +Z.
         option: name of the option, for messages.
         allowed: predicate of the channels to search; all channels keep their numbers.
@@ -182,7 +181,6 @@ def choose(measurement: Measurement, choice: Choice) -> Chosen:
     """Return the selected channels of a measurement in SI units, after excerpt, resampling and trend removal.
 
     Args:
-        measurement: contents of the file.
         choice: selection with at least one role other than "time".
 
     Raises:

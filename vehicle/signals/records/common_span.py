@@ -53,10 +53,6 @@ def blocks_of(channels: Mapping[str, Channel]) -> list[Block]:
 def cut(where: object, blocks: list[Block]) -> tuple[list[Block], str]:
     """Return the common span of blocks whose samples coincide; other blocks are unchanged.
 
-    Args:
-        where: file, for the message.
-        blocks: channels by their times.
-
     Returns:
         One block and a notice, or the unchanged blocks and "".
 

@@ -69,7 +69,6 @@ def run_times(measured: Record, delay: float, drift: float, begin: float = 0.0) 
     """Return the times of a measurement on the clock of the run: t = t_m (1 + drift) + delay [s], (n,).
 
     Args:
-        measured: measured record.
         delay: time of the run at the beginning of the measurement [s].
         drift: relative slowness of the clock of the measurement [-].
         begin: first time in the file, subtracted from all its times [s].
@@ -82,7 +81,6 @@ def counterparts(measured: Record, simulated: Record, times: Vector) -> list[Cou
 
     Args:
         measured: measured record; `times` replace its times.
-        simulated: record of the run.
         times: times of the measured samples on the clock of the run [s], (n,).
     """
     step = max(float(times[-1] - times[0]) / (times.size - 1), simulated.step)
@@ -197,7 +195,6 @@ def response_faults(channel: str, measured: Complex, simulated: Complex, weight:
     """Return messages for a measured frequency response that is inverted or has a wrong unit at all frequencies.
 
     Args:
-        channel: channel name in the model.
         measured, simulated: frequency responses [m/s2 per m], (m,); NaN if undefined.
         weight: weight of each line [-], (m,).
     """

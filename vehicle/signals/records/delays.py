@@ -141,7 +141,6 @@ def responses_without_delays(frf: FrfData, delays: Mapping[str, float]) -> FrfDa
     """Return FRFs H_file(f) exp(2 pi i f d) of accelerations with delays d against the plates.
 
     Args:
-        frf: FRFs of the file.
         delays: channel -> delay against the plates [s].
     """
     lags = np.array([delays.get(channel, 0.0) for channel in frf.channels])

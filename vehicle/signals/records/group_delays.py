@@ -126,7 +126,6 @@ def group_delays(lags: Sequence[ChannelLag], step: float, reference: str = "") -
     they are half of a group or more, the group has no delay.
 
     Args:
-        lags: lags of channels.
         step: sampling interval of the comparison [s].
         reference: group with the lag 0; by default the plates, or else the first group, whose own delay is its lag
             against the run.

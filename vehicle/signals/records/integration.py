@@ -22,7 +22,6 @@ def displacement(chosen: Chosen, choice: Choice, where: str) -> tuple[dict[str, 
     Args:
         chosen: selected channels, see `choose`.
         choice: selection with the corner frequency of the high-pass.
-        where: file, for messages.
 
     Returns:
         Role to displacement, and notices.
@@ -32,7 +31,6 @@ def displacement(chosen: Chosen, choice: Choice, where: str) -> tuple[dict[str, 
     """
     orders = {"displacement": 0, "velocity": 1, "acceleration": 2}
     displacements, notices = {}, []
-    step = float(chosen.time[-1] - chosen.time[0]) / (chosen.time.size - 1)
     for role, values in chosen.values.items():
         quantity = chosen.quantities[role]
         if quantity not in orders:
@@ -48,7 +46,7 @@ def displacement(chosen: Chosen, choice: Choice, where: str) -> tuple[dict[str, 
             displacements[role] = values
             continue
         chosen.require_uniform(where)
-        displacements[role] = integrate(values, step, orders[quantity], choice.highpass)
+        displacements[role] = integrate(values, chosen.step, orders[quantity], choice.highpass)
         process = f"{quantity} integrated in the frequency domain, " if orders[quantity] else ""
         notices.append(
             f"{role}: {process}high-pass {choice.highpass:g} Hz on request (Butterworth, order {ORDER}, forwards and "
@@ -60,18 +58,12 @@ def displacement(chosen: Chosen, choice: Choice, where: str) -> tuple[dict[str, 
 def filtered(chosen: Chosen, corner: float) -> tuple[dict[str, Vector], tuple[str, ...]]:
     """Return the selected channels after the high-pass filter, without integration, and the notices.
 
-    Args:
-        chosen, corner: see `displacement` and `integrate`.
-
     Raises:
         DataError: see `integrate`.
     """
-    step = float(chosen.time[-1] - chosen.time[0]) / (chosen.time.size - 1)
     notice = f"high-pass {corner:g} Hz on request (Butterworth, order {ORDER}, forwards and backwards)"
-    return {role: integrate(values, step, 0, corner) for role, values in chosen.values.items()}, (
-        *chosen.notices,
-        notice,
-    )
+    values = {role: integrate(samples, chosen.step, 0, corner) for role, samples in chosen.values.items()}
+    return values, (*chosen.notices, notice)
 
 
 def integrate(values: Vector, step: float, order: int, corner: float) -> Vector:

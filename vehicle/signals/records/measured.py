@@ -195,8 +195,6 @@ def _same_names(file: Measurement, model_channels: Sequence[str], order: Sequenc
     """Map model channel names, and names as "knuckle_fr_acc_z/plate_fr", to the channels of these names.
 
     Args:
-        file: the file.
-        model_channels: channel names of the model.
         order: True for frequency responses, False for time histories; the first with a name has priority.
     """
     numbers: dict[str, str] = {}

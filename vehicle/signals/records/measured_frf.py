@@ -47,7 +47,6 @@ def measured_frfs(
     plates that the file names.
 
     Args:
-        measurement: contents of the file.
         channels: model channel name, as knuckle_fr_acc_z or knuckle_fr_acc_z/plate_fr, to number, name, pattern or
             point in the file.
         choice: selection with units that override those of the file.
@@ -200,12 +199,7 @@ def _places(frequency: Vector, axis: Vector) -> NDArray[np.int64]:
 
 
 def coherence_of(measurement: Measurement, response: Channel) -> Channel | None:
-    """Find the coherence of a response: same point, direction and reference, or same name; None if ambiguous.
-
-    Args:
-        measurement: contents of the file.
-        response: channel of the frequency response.
-    """
+    """Find the coherence of a response: same point, direction and reference, or same name; None if ambiguous."""
     coherences = [c for c in measurement.channels if c.function == "coherence" and not np.iscomplexobj(c.values)]
     point = (response.place, response.direction, response.reference)
     if any(point[:2]):

@@ -145,11 +145,10 @@ def _file_spectra(
             f"{path.name}: {roles[other]} is a {chosen.quantities[other]}; spectra are of accelerations [m/s2]"
         )
     chosen.require_uniform(path)
-    step = float(chosen.time[1] - chosen.time[0])
     return RecordSpectra(
         name=path.name,
         caption=f"{path.name}, {chosen.time[0]:g} to {chosen.time[-1]:g} s",
-        channels=vibration_spectra(step, chosen.values, dict.fromkeys(roles, "m/s2"), frequency_range),
+        channels=vibration_spectra(chosen.step, chosen.values, dict.fromkeys(roles, "m/s2"), frequency_range),
         road_levels={},
         notices=chosen.notices,
     )
@@ -176,7 +175,7 @@ def recorded_spectra(
         seated: True if the point "seat" is on a seat.
         road: road of the run, as in `summary.json`; None for a run on plates.
     """
-    step = float(record.time[1] - record.time[0])
+    step = float(record.time[-1] - record.time[0]) / (record.time.size - 1)
     evaluated = slice(max(round((begin - float(record.time[0])) / step), 0) if begin else 0, None)
     names = _chosen(channels, record.units, name, (*([SEAT] if seated else []), *BY_DEFAULT))
     histories = {name: record.channels[name][evaluated] for name in names}

@@ -16,7 +16,6 @@ def run_frf(path: Path, summary: RunSummary | None) -> FrfData:
     """Read the table of FRFs of a run under the names of its outputs and inputs.
 
     Args:
-        path: `frf.csv` of a run.
         summary: summary of the run, which contains the plates of each motion; None leaves them as the columns name
             them.
 
