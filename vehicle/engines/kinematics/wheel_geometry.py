@@ -138,11 +138,7 @@ def roll_centre(right: WheelMotion, left: WheelMotion) -> tuple[float, float]:
 
 
 def steering_geometry(wheel: WheelMotion) -> tuple[float, float, float, float]:
-    """Return caster [deg], kingpin inclination [deg], caster trail [m] and scrub radius [m]; nan without steering axis.
-
-    Args:
-        wheel: the wheel.
-    """
+    """Return caster and kingpin inclination [deg], caster trail and scrub radius [m]; nan without steering axis."""
     if wheel.steering_axis is None:
         return (math.nan,) * 4
     low, high = wheel.steering_axis

@@ -82,10 +82,6 @@ class LoadRows:
 def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
     """Return the rows of all load channels of a car.
 
-    Args:
-        car: compiled and trimmed car.
-        matrices: matrices of the car.
-
     Returns:
         The rows in the order of `LoadPlaces.names`.
     """

@@ -95,10 +95,6 @@ class StepError:
 def accurate_step(car: CarModel, matrices: CarMatrices) -> float:
     """Halve the time step of a car until it passes all criteria.
 
-    Args:
-        car: compiled and trimmed car with the first step to try.
-        matrices: matrices of the car.
-
     Raises:
         ConfigurationError: the car is unstable, or fails at every step down to `SMALLEST_STEP`; the message names the
             moving part and the responsible parameter.
@@ -118,10 +114,6 @@ def accurate_step(car: CarModel, matrices: CarMatrices) -> float:
 
 def require_accurate_step(car: CarModel, matrices: CarMatrices) -> None:
     """Raise an error if the time step of a car is too long, and name a sufficient step.
-
-    Args:
-        car: compiled and trimmed car with its time step.
-        matrices: matrices of the car.
 
     Raises:
         ConfigurationError: the car is unstable, or the step is too long; the message names the moving part, the

@@ -104,9 +104,6 @@ class VariantTerms:
     def variant(self, vehicle: Vehicle) -> CarVariant | None:
         """Compute the car with other parameter values.
 
-        Args:
-            vehicle: parameters of the new car.
-
         Returns:
             The new car; None if more than values of laws and masses differ, so that its model must be built.
 

@@ -62,12 +62,7 @@ class QuadraticForms:
 
 
 def quadratic_forms(car: CarModel, model: PoleModel) -> QuadraticForms:
-    """Return the second order of the equations of motion of a car over the patterns of its linear motion.
-
-    Args:
-        car: assembled car.
-        model: its pole model.
-    """
+    """Return the second order of the equations of motion of a car over the patterns of its linear motion."""
     rows, system, matrices = motion_rows(model), model.matrices.system, model.matrices
     whole, sums = np.vstack(rows), _state_products(model)
     # What must be right in a pattern, over the state: rotations, their rates, inertia and joint forces.

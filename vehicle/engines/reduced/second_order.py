@@ -217,11 +217,7 @@ def _faded(coordinates: Vector, count: int, interval: float) -> Vector:
 
 
 def error_sentence(errors: Mapping[str, float]) -> tuple[str, ...]:
-    """Return a warning about the channels whose RMS is off by more than `NAMED_ERROR`; empty if all are closer.
-
-    Args:
-        errors: relative error of the RMS by channel.
-    """
+    """Return a warning about the channels whose RMS is off by more than `NAMED_ERROR`; empty if all are closer."""
     off = sorted((name for name in errors if abs(errors[name]) > NAMED_ERROR), key=lambda name: -abs(errors[name]))
     if not off:
         return ()

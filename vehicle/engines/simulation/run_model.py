@@ -23,9 +23,6 @@ SEEN = 1e-10
 def run_model(car: CarModel) -> tuple[mujoco.MjModel, ModalSpace | None]:
     """Build the model of a run.
 
-    Args:
-        car: compiled car in static equilibrium.
-
     Returns:
         Prepared model; modal parameters for the callbacks if they integrate the modes, else None.
     """

@@ -35,7 +35,7 @@ SPARSE = ("efc_J_rownnz", "efc_J_rowadr", "efc_J_rowsuper", "efc_J_colind", "efc
 
 ROW_FIELDS = ("J", "KBIP", "pos", "vel", "aref", "D", "R", "frictionloss")
 """Fields of mjData over the constraint rows, whose addresses change between steps, without `efc_`; the order of
-`Ticket.efc`."""
+`efc` in the ticket of a simulation."""
 
 POINTERS = (*(f"efc_{name}" for name in ROW_FIELDS), *SPARSE[:-1], "efc_force", "userdata")
 """Array pointers of mjData that compiled code follows."""

@@ -52,10 +52,6 @@ def with_plates(signal: Signal, wheels: Iterable[str]) -> Signal:
 def with_run_out(signal: Signal, run_outs: RunOut) -> Signal:
     """Return the motion of the road as the tyres take it: with their run-out, and with the slope of the road alone.
 
-    Args:
-        signal: motion of the plates.
-        run_outs: run-outs, see `run_out`.
-
     Raises:
         ConfigurationError: the samples of the signal are too far apart for the run-out.
     """

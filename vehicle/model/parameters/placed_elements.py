@@ -33,11 +33,7 @@ from vehicle.names import SIDE_SIGN
 
 
 def element_kinds(car: Mapping[str, Instance]) -> dict[str, type]:
-    """Return the parameter class of each table of numbers of the instances, by its path in the vehicle file.
-
-    Args:
-        car: instances by name.
-    """
+    """Return the parameter class of each table of numbers of the instances, by its path in the vehicle file."""
     kinds: dict[str, type] = {}
     for i in car.values():
         kinds |= {f"{i.name}.parts.{name}": Part for name in i.template.parts}

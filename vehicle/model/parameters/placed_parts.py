@@ -31,9 +31,6 @@ class _Held:
 def placed_parts(car: Mapping[str, Instance]) -> list[PlacedPart]:
     """Return the parts of all instances; a parent comes before its children.
 
-    Args:
-        car: instances by name.
-
     Raises:
         ConfigurationError: a part without a joint, with two parents or in a loop of joints; a joint that would ignore
             the body flexibility; numbers that are missing or wrong.

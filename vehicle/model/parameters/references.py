@@ -22,10 +22,6 @@ GROUPS = ("hardpoints", "parts", "bushings", "ports")
 def require_ports(car: Mapping[str, Instance], names: set[str]) -> None:
     """Check that every port is bound to a part.
 
-    Args:
-        car: instances by name.
-        names: names of all parts.
-
     Raises:
         ConfigurationError: a port is bound to an unknown part.
     """
@@ -41,9 +37,6 @@ def require_ports(car: Mapping[str, Instance], names: set[str]) -> None:
 
 def require_geometry(car: Mapping[str, Instance]) -> None:
     """Check the geometry of all instances: pairs of points above each other, distinct points, triangles of arms.
-
-    Args:
-        car: instances by name.
 
     Raises:
         ConfigurationError: naming the points.
