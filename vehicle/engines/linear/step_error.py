@@ -139,13 +139,7 @@ def require_accurate_step(car: CarModel, matrices: CarMatrices) -> None:
 
 
 class _StepCheck:
-    """Time-step check of one car against its poles with stuck and sliding dampers.
-
-    Args:
-        car: compiled and trimmed car.
-        matrices: matrices of the car, with some elements softened to `LEFT`.
-        softened: constraint rows of these elements.
-    """
+    """Time-step check of one car against its poles, with some elements, by their rows, softened to `LEFT`."""
 
     def __init__(self, car: CarModel, matrices: CarMatrices, softened: Sequence[int] = ()) -> None:
         self.car, self.matrices, self.softened = car, matrices, softened

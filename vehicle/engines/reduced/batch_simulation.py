@@ -175,14 +175,7 @@ def _single_precision_factors(
     columns: Sequence[int],
     channels: Sequence[str],
 ) -> dict[int, CarFactors]:
-    """Return the factors of the cars for which single precision is sufficient, by their index.
-
-    Args:
-        models, dampers: pole models and damper laws of the cars.
-        timestep: time step [s].
-        columns: indices of the driven plates.
-        channels: names of the recorded channels; the force of a damper has that of its stop as a part.
-    """
+    """Return the factors of the cars for which single precision is sufficient, by their index."""
     forces = [name.replace("_force", "_stop_force") for name in channels]
     suitable = [
         car

@@ -230,18 +230,10 @@ class CarTable:
 
 
 def _packed_poles(rows: Sequence[Vector], pairs: int, blocks: int) -> Vector:
-    """Return the factors of the poles of a column in blocks of BLOCK states, as `poles.c` reads them.
+    """Return the factors of the poles of a column, (blocks, ...), in blocks of BLOCK states, as `poles.c` reads them.
 
     A block has the real and imaginary parts of E - 1 of four pairs, or E - 1 of eight real poles; for each input of
     a step its factors in the changes of the states; and for each sum the weights of the states.
-
-    Args:
-        rows: rows of the column, see `CarFactors.rows`.
-        pairs: number of pairs in the columns of the group, full blocks; then follow the real poles.
-        blocks: number of blocks.
-
-    Returns:
-        Table; (blocks, BLOCK (1 + inputs + sums)).
     """
     pair, real, pair_sums, real_sums = rows
     p, q, n, w = len(pair), len(real), real.shape[1] - 1, real_sums.shape[1]
@@ -256,10 +248,7 @@ def _packed_poles(rows: Sequence[Vector], pairs: int, blocks: int) -> Vector:
 def _corners(laws: Sequence[DisplacementLaw], effects: Vector, count: int) -> Vector:
     """Return the laws g over r = x + G g(x)/2 as sides, breakpoints and slope changes; (laws, count, 3).
 
-    Args:
-        laws: laws over displacement.
-        effects: effects G of their forces on their displacements [m/N]; (laws,).
-        count: number of breakpoints; laws with fewer have slope changes of zero.
+    G are the effects of their forces on their displacements [m/N]; laws with fewer breakpoints have zeros.
     """
     numbers = np.zeros((len(laws), count, 3))
     for row, law, effect in zip(numbers, laws, effects.tolist(), strict=True):
@@ -279,15 +268,9 @@ def _corners(laws: Sequence[DisplacementLaw], effects: Vector, count: int) -> Ve
 
 
 def _rubber(laws: Sequence[DisplacementLaw], effects: Vector, count: int) -> dict[str, Vector]:
-    """Return the elements of rubber friction for the time step; see `scalar_elements.h` of the core.
+    """Return the sections of rubber friction for the time step, (laws, count) each; see `scalar_elements.h`.
 
-    Args:
-        laws: rubber friction.
-        effects: effects G of their forces on their displacements [m/N]; (laws,).
-        count: number of elements; laws with fewer have elements without stiffness.
-
-    Returns:
-        Sections of the table by name; (laws, count) each.
+    The effects G are those of the forces on the displacements [m/N]; laws with fewer elements have zeros.
     """
     stiff, stroke, part, reach, weight = np.zeros((5, len(laws), count))
     for row, (law, effect) in enumerate(zip(laws, effects.tolist(), strict=True)):

@@ -133,16 +133,13 @@ class GroupRun:
         self.cars, self.feedback = packed_cars(models, factors, dampers, loads_of_tyres, start, self.timestep, element)
 
     def fill(self, table: Vector, rows_of_cars: Sequence[int], channels: Sequence[str]) -> list[Validity]:
-        """Simulate the cars and fill their rows of the table.
+        """Simulate the cars, fill their rows of the table, and return the validity of the motion of each car.
 
         Args:
             table: time histories; (channels, all cars, samples).
             rows_of_cars: rows of the cars of this group.
             channels: names of the channels; `friction_<index>` is the mean nonlinear force of a damper,
                 `law_<index>` the force g of a law over displacement.
-
-        Returns:
-            Validity of the motion of each car.
         """
         matrices = self.models[0].matrices
         system, laws, bodies = matrices.system, self.models[0].laws, rotating_bodies(matrices)

@@ -114,10 +114,6 @@ def _components(rows: Vector, sums: Vector) -> tuple[Vector, Vector]:
 
     The coordinates are the principal components of the rows: c = V' rows S with rows E(S S') rows' = V diag(w) V'. In
     as many dimensions as there are states, with E(S S') = F F': F' rows' rows F = U diag(w) U', V = rows F U / sqrt(w).
-
-    Args:
-        rows: what must be right, over the state; (n, states).
-        sums: means of the products of states E(S S'); (states, states).
     """
     levels = np.sqrt(np.maximum(np.diag(sums), 1e-300))
     shares, turn = np.linalg.eigh(sums / np.outer(levels, levels))

@@ -82,15 +82,12 @@ def with_numbers(layout: Layout, names: LawNames, numbers: Numbers, timestep: fl
 
 
 def law_fields(names: LawNames, numbers: Numbers, timestep: float) -> dict[str, dict[str, Any]]:
-    """Return the fields of the records of a layout that follow from law parameters, by record.
+    """Return the fields of the records of a layout that follow from laws, with curves at zero displacement, by record.
 
     Args:
         names: names of the elements.
         numbers: parameters of all laws, by the names of their fields.
         timestep: time step of controlled dampers [s].
-
-    Returns:
-        Fields, with operating points of curves at zero displacement.
 
     Raises:
         ConfigurationError: a law by address is not registered in this process.

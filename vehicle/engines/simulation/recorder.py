@@ -297,14 +297,7 @@ class Recorder:
         self.filled = 0
 
     def _keep_positions(self, chunk: slice, positions: Vector, turn: Vector, modal: Vector) -> None:
-        """Store the positions of all output points with their modal displacement.
-
-        Args:
-            chunk: range of samples.
-            positions: positions of the sites [m]; (chunk, 3 points).
-            turn: frame of the body, row by row; (chunk, 9).
-            modal: modal coordinates; (chunk, modes).
-        """
+        """Store positions (chunk, 3 points) with modal displacement, by frames (chunk, 9) and modes of the body."""
         for point, value in zip(self.places, np.split(positions, len(self.sites), axis=1), strict=True):
             if point in self.shapes:
                 value = value + np.einsum("nij,nj->ni", turn.reshape(-1, 3, 3), modal @ self.shapes[point].T)

@@ -52,13 +52,10 @@ def numeric(model: mujoco.MjModel, name: str) -> Vector | None:
 
 
 def read_layout(model: mujoco.MjModel) -> Layout:
-    """Read the elements of a compiled car from its custom fields.
+    """Read the elements of a compiled car from its custom fields, in the order of the constraint rows.
 
     Args:
         model: model from `vehicle.model.assembly`, or from its MJCF file.
-
-    Returns:
-        Records of the elements, in the order of the constraint rows.
     """
     kinds, law, numbers = mujoco.mjtEq, law_names(model), model_numbers(model)
     names, springs, laws = law.bushings, law.springs, laws_of(law, numbers)
@@ -278,10 +275,7 @@ def _rolling(
 ) -> dict[str, Any]:
     """Return the fields of the record of the rolling tyres that do not follow from their laws.
 
-    Args:
-        model: compiled car.
-        wheels: index among the bushings, sites and spin coordinate of each rolling tyre.
-        plates: index of the plate by index among the bushings.
+    `wheels` has index among the bushings, sites and spin coordinate of each tyre, `plates` the index of each plate.
     """
     order = sorted(int(position) for position in plates.values() if position >= 0)
     hubs = [int(model.site_bodyid[sites[0]]) for _, sites, _ in wheels]

@@ -45,16 +45,13 @@ def simulate(
     progress: Progress | None = None,
     requested: Sequence[str] = (),
 ) -> Recording:
-    """Run a car on its shaker plates.
+    """Run a car on its shaker plates; the recording is sampled at `solver.record_rate`.
 
     Args:
         car: compiled car in static equilibrium.
         signal: displacement of the plates.
         progress: function that is called with the finished fraction [-] about every `CHUNK` samples.
         requested: names of additional channels: loads and damper settings.
-
-    Returns:
-        Recording, sampled at `solver.record_rate`.
 
     Raises:
         ConfigurationError: the recording rate is not an integer fraction of the step rate, the core lacks a friction

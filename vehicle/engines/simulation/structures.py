@@ -71,9 +71,6 @@ def layout(name: str, last: str = "") -> Layout:
         name: name of the structure, like "mjData".
         last: last field of the class; all fields by default.
 
-    Returns:
-        Structure class; only its layout is used.
-
     Raises:
         LookupError: the declarations contain an unsupported type.
     """
@@ -111,14 +108,11 @@ def _ctype(declared: Any) -> Any:
 
 
 def pointer_offsets(data: mujoco.MjData, names: Iterable[str]) -> dict[str, int]:
-    """Return the byte offsets of array pointers in mjData.
+    """Return the byte offsets of array pointers in mjData, by name.
 
     Args:
         data: state after a forward evaluation, so that the arrays exist.
         names: names of the arrays.
-
-    Returns:
-        Offset [bytes] by name.
 
     Raises:
         LookupError: a pointer has another offset than declared.
