@@ -210,10 +210,8 @@ class CarTable:
         Returns:
             Table (rows, columns), a column for each car; rows: (tiles, states and plates, TILE) in C order.
         """
-        tile_count, poles = (
-            -(-len(weights[0]) // TILE),
-            (self.states - 2 * (len(self.cars[0].slip) + self.plates) - len(self.cars[0].strokes)),
-        )
+        tile_count = -(-len(weights[0]) // TILE)
+        poles = self.states - 2 * (len(self.cars[0].slip) + self.plates) - len(self.cars[0].strokes)
         table = aligned_table(tile_count * self.states * TILE, self.element)
         view = table.reshape(tile_count, self.states, TILE, table.shape[1])
         for lane, (car, part) in enumerate(self.lanes):

@@ -144,11 +144,8 @@ def placed_springs(car: Mapping[str, Instance]) -> tuple[list[PlacedSpring], lis
     """
     between, on_joints = list[PlacedSpring](), list[JointSpring]()
     for i, e, side in elements(car, "spring"):
-        law, path, tables = (
-            i.get(spring_kind(i.template, e), side, e.name),
-            f"{i.name}.{e.name}",
-            i.table_paths(side, e.name),
-        )
+        law, tables = i.get(spring_kind(i.template, e), side, e.name), i.table_paths(side, e.name)
+        path = f"{i.name}.{e.name}"
         if isinstance(law, MainSpring):
             between.append(
                 PlacedSpring(
