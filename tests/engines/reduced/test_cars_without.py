@@ -13,6 +13,8 @@ from tests.physics import rolling_car as small
 from tests.physics.rolling_car import rolling_car
 from vehicle import sweep
 from vehicle.commands.summary_text import summary_text
+from vehicle.engines.reduced.batch_simulation import simulate_batch
+from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.model.parameters.shipped import VEHICLES
 from vehicle.model.parameters.vehicle import vehicle_of
 from vehicle.runs.car import Car
@@ -105,3 +107,18 @@ def test_sweeps_and_files_name_the_dampers_that_there_are(name: str, dampers: tu
     assert tuple(slip_shares(summary)) == tuple(summary["first_slip_s"]) == dampers
     assert ("\ndamper " in summary_text(summary)) == bool(dampers)
     assert (folder / "time.png").is_file()
+
+
+def test_a_batch_has_the_forces_of_stops_behind_an_axle_without_dampers(tmp_path):
+    """The dampers of a car are not numbered like its wheels: a batch adds each stop to the force of its own damper."""
+    stop = "rear.damper.stop={displacement=[-0.03, -0.0002, 0.0002, 0.03], force=[-2800.0, 0.0, 0.0, 2800.0]}"
+    car = without_dampers(tmp_path, "front").with_([stop])
+    laws = [damper.law for damper in car.vehicle.composition.dampers]
+    names, load = ["damper_rr_force", "damper_rl_force"], car.static.tyre_load
+    run: dict[str, Any] = {"record_rate": 1000.0, "channels": names, "step": 5e-4}
+    signal = smooth(car.vehicle.wheels, 401)
+    batch = simulate_batch([car.poles], signal, dampers=[laws], tyre_load=[load], **run)
+    one = simulate_reduced(car.poles, signal, dampers=laws, tyre_load=load, **run)
+    for name in names:
+        # Single precision against double precision; the stop is a quarter of the force.
+        assert np.std(batch.channels[name][0] - one[name]) < 1e-4 * np.std(one[name])

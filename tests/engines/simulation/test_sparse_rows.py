@@ -81,19 +81,19 @@ def test_the_factor_solves_the_equations_of_a_step() -> None:
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     random = np.random.default_rng(5)
-    jacobian = np.zeros((len(nonzero), len(solution.matrix)))
+    jacobian = np.zeros((len(nonzero), len(solution["matrix"])))
     jacobian[:, : model.nv][nonzero] = random.normal(size=np.count_nonzero(nonzero))
     weight = random.uniform(0.1, 1e3, len(nonzero))
     mass = np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, mass)
     part = jacobian[:, : model.nv]
-    right = np.zeros(len(solution.matrix))
+    right = np.zeros(len(solution["matrix"]))
     right[: model.nv] = random.normal(size=model.nv)
     expected = np.linalg.solve(mass + part.T @ (weight[:, None] * part), right[: model.nv])
-    solution.right[:] = right
+    solution["right"][:] = right
     record = packed("Solution", solution)
     addresses = [array.ctypes.data for array in (data.M, jacobian, weight)] + [record.address]
     core().core_solution_d(*map(ctypes.c_void_p, addresses))
-    right = solution.right
+    right = solution["right"]
     np.testing.assert_allclose(right[: model.nv], expected, rtol=0.0, atol=1e-9 * np.max(np.abs(expected)))
-    assert len(solution.tiles) < 0.9 * (len(solution.starts) - 1) * len(solution.starts) / 2
+    assert len(solution["tiles"]) < 0.9 * (len(solution["starts"]) - 1) * len(solution["starts"]) / 2

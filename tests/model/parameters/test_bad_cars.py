@@ -235,6 +235,9 @@ def test_a_point_that_nothing_uses(tmp_path, capsys):
     text = text.replace("attachment_flexibility = true", "attachment_flexibility = false", 1)
     (tmp_path / "car.toml").write_text(text, encoding="utf-8")
     assert "hardpoints.spare: nothing uses it" in said_of(tmp_path, capsys)
+    force = '[force.push]\non = "engine"\nat = "spare"\nforce = [0, 0, 1]\nharmonics = [[1, 5, 0]]\nfrequency = 20.0\n'
+    (tmp_path / "car.toml").write_text(f"{text}\n{force}", encoding="utf-8")
+    assert load_vehicle(tmp_path / "car.toml").composition.forces[0].at == (1.0, 0.0, 1.0)
 
 
 HEAD = "velocity [m/s],force [N]\n"

@@ -86,9 +86,6 @@ def wheel_geometry(rolling: Sequence[WheelMotion], bouncing: Sequence[WheelMotio
         rolling: motions of both wheels, right and left, if the body rolls: opposite travel.
         bouncing: motions of both wheels for equal travel.
         towards: +1 for a front axle, -1 for a rear axle.
-
-    Returns:
-        The geometry.
     """
     lateral, height = roll_centre(*rolling)
     wheel, rolled = bouncing[0], rolling[0]
@@ -112,16 +109,13 @@ def wheel_geometry(rolling: Sequence[WheelMotion], bouncing: Sequence[WheelMotio
 
 
 def roll_centre(right: WheelMotion, left: WheelMotion) -> tuple[float, float]:
-    """Return the lateral position [m], to the right, and the height above the ground [m] of the roll centre.
+    """Return position to the right and height above the ground of the roll centre [m]; nan for parallel lines.
 
     In the transverse plane a contact point moves at a right angle to the line to its swing centre, so that line rises
     inwards by v_out / v_z. The lines of both wheels meet in the roll centre.
 
     Args:
         right, left: motions for opposite travel.
-
-    Returns:
-        Position; nan if the lines are parallel and not the same.
     """
     rises = [wheel.side * wheel.contact_velocity[1] / wheel.contact_velocity[2] for wheel in (right, left)]
     (y1, z1), (y2, z2) = right.contact[1:], left.contact[1:]
@@ -138,11 +132,7 @@ def roll_centre(right: WheelMotion, left: WheelMotion) -> tuple[float, float]:
 
 
 def steering_geometry(wheel: WheelMotion) -> tuple[float, float, float, float]:
-    """Return caster [deg], kingpin inclination [deg], caster trail [m] and scrub radius [m]; nan without steering axis.
-
-    Args:
-        wheel: the wheel.
-    """
+    """Return caster and kingpin inclination [deg], caster trail and scrub radius [m]; nan without steering axis."""
     if wheel.steering_axis is None:
         return (math.nan,) * 4
     low, high = wheel.steering_axis

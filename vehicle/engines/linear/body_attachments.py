@@ -48,12 +48,7 @@ def body_coordinates(car: CarModel, matrices: CarMatrices) -> list[int]:
 
 
 def body_attachments(car: CarModel, matrices: CarMatrices) -> list[Attachment]:
-    """Return the connections and springs between the body and other parts or the ground.
-
-    Args:
-        car: compiled and trimmed car.
-        matrices: matrices of the car.
-    """
+    """Return the connections and springs between the body and other parts or the ground."""
     model, data = car.model, mujoco.MjData(car.model)
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)

@@ -278,15 +278,12 @@ def law_matrices(
 
 
 def differences(rows: Rows, read: Callable[[mujoco.MjData], Vector]) -> Vector:
-    """Return central differences of a function of the state over the velocity coordinates in the design position.
+    """Return central differences of a function over the velocity coordinates in the design position; (..., n).
 
     Args:
         rows: rows of the car at rest.
         read: function of a state with written rows that returns an array (...); only the solution of the step is
             missing in the state.
-
-    Returns:
-        Derivatives, (..., n).
     """
     model = rows.model
     data = mujoco.MjData(model)

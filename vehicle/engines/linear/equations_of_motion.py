@@ -28,12 +28,7 @@ SHORT = 1e-7
 
 
 class Equations:
-    """Equations of motion of a car, evaluated in MuJoCo at any position, velocity and acceleration.
-
-    Args:
-        car: assembled car.
-        matrices: its linear car.
-    """
+    """Equations of motion of a car, evaluated in MuJoCo at any position, velocity and acceleration."""
 
     def __init__(self, car: CarModel, matrices: CarMatrices) -> None:
         self.model, self.basis, self.slope = copy.copy(car.model), free_basis(matrices.system), matrices.slope

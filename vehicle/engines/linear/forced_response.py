@@ -57,17 +57,14 @@ def unit_response(
     *,
     stuck: bool,
 ) -> npt.NDArray[np.complex128]:
-    """Return the complex amplitudes of acceleration channels per unit of applied forces.
+    """Return Z of Re(Z exp(jWt)) of acceleration channels per unit of applied forces; (forces, channels, frequencies).
 
     Args:
         matrices: matrices of the car; dampers that move have the viscous part that its C contains.
         channels: names of acceleration channels.
         frequencies: angular frequencies W [rad/s].
-        forces: indices of the forces in the order of `matrices.force_rows`.
+        forces: indices in the order of `matrices.force_rows`, with amplitudes [m/s2 per N, N m, m or m/s].
         stuck: lock the dampers.
-
-    Returns:
-        Amplitudes of Re(Z exp(jWt)) [m/s2 per N, N m, m or m/s]; (forces, channels, frequencies).
     """
     system = matrices.system
     basis = free_basis(system, stuck=stuck)

@@ -80,15 +80,7 @@ class LoadRows:
 
 
 def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
-    """Return the rows of all load channels of a car.
-
-    Args:
-        car: compiled and trimmed car.
-        matrices: matrices of the car.
-
-    Returns:
-        The rows in the order of `LoadPlaces.names`.
-    """
+    """Return the rows of all load channels of a car, in the order of `LoadPlaces.names`."""
     model, system = car.model, matrices.system
     rows = Rows(model, car.static.preload)
     data = standing_data(rows)

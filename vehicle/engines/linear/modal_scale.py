@@ -9,7 +9,7 @@ from vehicle.engines.linear.system import LinearSystem
 
 
 def modal_a(system: LinearSystem, pole: complex, shape: npt.NDArray[np.complex128]) -> complex:
-    """Return Modal A of a mode with pole s and shape u: u^T D'(s) u with the dynamic stiffness D.
+    """Return Modal A [kg/s] of a mode with pole s and shape u: u^T D'(s) u with the dynamic stiffness D.
 
     D(s) = s^2 M + s C + K + sum_b h_b^T K2 tau / (1 + s tau) (s e_b + g_b), so near s the receptance is
     u u^T / (A (j w - s)): the residue of the response at i to a force at k is u_i u_k / A. It is exact for
@@ -20,9 +20,6 @@ def modal_a(system: LinearSystem, pole: complex, shape: npt.NDArray[np.complex12
         system: the matrices.
         pole: s [rad/s].
         shape: displacements u, (n,), that joints and locked pairs allow.
-
-    Returns:
-        Modal A [kg/s] for a shape without unit.
 
     Source: Ewins, Modal Testing, 2nd ed., section 2.8; field "Modal A" of dataset 55 of the universal files.
     """

@@ -56,13 +56,7 @@ class NaturalModes:
 
 
 def natural_modes(form: FirstOrder) -> NaturalModes:
-    """Return the modes of one system from the eigenvalues of A.
-
-    Args:
-        form: first-order form of a single system.
-
-    Returns:
-        The oscillating modes and all unstable poles; other real poles are left out.
+    """Return the oscillating modes and all unstable poles of one system, from the eigenvalues of A.
 
     Raises:
         ConfigurationError: a stack of systems, or a system with sliding pairs.

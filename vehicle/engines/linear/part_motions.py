@@ -31,12 +31,7 @@ _NO_INERTIA = 1e-12
 
 
 def group_of(matrices: CarMatrices, body: str) -> str:
-    """Return the group of parts to which a rigid body belongs in the energy shares.
-
-    Args:
-        matrices: matrices of the car.
-        body: name of the body.
-    """
+    """Return the group of parts to which a rigid body belongs in the energy shares."""
     if matrices.carried_by.get(body) == "body":
         return "body"
     if body.startswith("stabilizer"):
@@ -47,9 +42,6 @@ def group_of(matrices: CarMatrices, body: str) -> str:
 
 def rigid_rows(matrices: CarMatrices) -> dict[str, Vector]:
     """Return the rows that map u' to the energy coordinates of each group of parts (see `group_of`).
-
-    Args:
-        matrices: matrices of the car.
 
     Returns:
         Group to rows (6, n): translations along x, y, z, rotations about them [kg^1/2 m/s].

@@ -87,17 +87,9 @@ def frequency_response(
 def _partial_fractions(
     omega: npt.NDArray[np.float64], poles: npt.NDArray[np.complex128], residues: npt.NDArray[np.complex128]
 ) -> npt.NDArray[np.complex128]:
-    """Sum residue/(j omega - pole) over the poles.
+    """Sum residue/(j omega - pole) over the poles (..., s) of residues (..., o, s) at omega (m,); (..., o, m).
 
     Uses real arithmetic, since a complex division takes several times as long, and blocks of systems.
-
-    Args:
-        omega: angular frequencies [rad/s], shape (m,).
-        poles: poles [1/s], shape (..., s).
-        residues: residues of the outputs, shape (..., o, s).
-
-    Returns:
-        Sums, shape (..., o, m).
     """
     size, lines, output_count = poles.shape[-1], omega.size, residues.shape[-2]
     flat_poles, flat_residues = poles.reshape(-1, size), residues.reshape(-1, output_count, size)

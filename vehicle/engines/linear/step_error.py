@@ -95,10 +95,6 @@ class StepError:
 def accurate_step(car: CarModel, matrices: CarMatrices) -> float:
     """Halve the time step of a car until it passes all criteria.
 
-    Args:
-        car: compiled and trimmed car with the first step to try.
-        matrices: matrices of the car.
-
     Raises:
         ConfigurationError: the car is unstable, or fails at every step down to `SMALLEST_STEP`; the message names the
             moving part and the responsible parameter.
@@ -118,10 +114,6 @@ def accurate_step(car: CarModel, matrices: CarMatrices) -> float:
 
 def require_accurate_step(car: CarModel, matrices: CarMatrices) -> None:
     """Raise an error if the time step of a car is too long, and name a sufficient step.
-
-    Args:
-        car: compiled and trimmed car with its time step.
-        matrices: matrices of the car.
 
     Raises:
         ConfigurationError: the car is unstable, or the step is too long; the message names the moving part, the
@@ -147,13 +139,7 @@ def require_accurate_step(car: CarModel, matrices: CarMatrices) -> None:
 
 
 class _StepCheck:
-    """Time-step check of one car against its poles with stuck and sliding dampers.
-
-    Args:
-        car: compiled and trimmed car.
-        matrices: matrices of the car, with some elements softened to `LEFT`.
-        softened: constraint rows of these elements.
-    """
+    """Time-step check of one car against its poles, with some elements, by their rows, softened to `LEFT`."""
 
     def __init__(self, car: CarModel, matrices: CarMatrices, softened: Sequence[int] = ()) -> None:
         self.car, self.matrices, self.softened = car, matrices, softened

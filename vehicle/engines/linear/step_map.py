@@ -102,12 +102,7 @@ def step_rows(
 
 
 def step_map(rows: StepRows, form: FirstOrder) -> StepMap:
-    """Return the one-step map of a car.
-
-    Args:
-        rows: terms of the rows for the step.
-        form: first-order form of the car with its dampers stuck or sliding.
-    """
+    """Return the one-step map of a car."""
     h, basis, system = rows.timestep, form.basis, form.system
     branch, size, position_count = system.branch_rows @ basis, basis.shape[1], form.placed
     drift = np.zeros_like(branch) if system.branch_drifts is None else system.branch_drifts @ basis

@@ -113,15 +113,12 @@ class LinearSystem:
 
 
 def form_row(form: Row, names: tuple[str, ...], shape: tuple[int, ...] = ()) -> Array:
-    """Convert a linear form to an array of coefficients.
+    """Convert a linear form to an array of coefficients; (*shape, len(names)).
 
     Args:
         form: name -> coefficient.
         names: names of the columns.
         shape: shape of the stack of systems.
-
-    Returns:
-        Coefficients, (*shape, len(names)).
 
     Raises:
         ConfigurationError: the form contains an unknown name.

@@ -102,13 +102,7 @@ class VariantTerms:
         return dict(zip(names, gravity * differences(self.rows, read), strict=True))
 
     def variant(self, vehicle: Vehicle) -> CarVariant | None:
-        """Compute the car with other parameter values.
-
-        Args:
-            vehicle: parameters of the new car.
-
-        Returns:
-            The new car; None if more than values of laws and masses differ, so that its model must be built.
+        """Compute the car with other parameter values; None if more than laws and masses differ: build its model.
 
         Raises:
             ConfigurationError, SimulationError: the car is invalid; see

@@ -107,6 +107,7 @@ def simulate_batch(
     signal = with_plates(signal, [wheel for model in models for wheel, _, _ in model.matrices.run_out])
     samples, every = time_steps(signal, record_rate, step)
     interval, wheels = 1.0 / record_rate, models[0].matrices.system.inputs
+    damper_names = models[0].matrices.damper_names
     # Stops that are free at rest have the forces g of their laws, which follow the channels.
     stopped = any(law.stop for laws in dampers for law in laws)
     most = max(len(model.laws) for model in models) if stopped else 0
@@ -152,7 +153,7 @@ def simulate_batch(
         every_name = [*channels, *(f"law_{index}" for index in range(len(laws)))]
         validities = group.fill(table[: len(every_name)], cars, every_name)
         for index, law in enumerate(laws):
-            name = f"damper_{wheels[law.element[1]]}_force" if law.element[0] == STOP else ""
+            name = f"{damper_names[law.element[1]]}_force" if law.element[0] == STOP else ""
             if name in channels:
                 table[channels.index(name), cars] += table[len(channels) + index, cars]
         time_of_car = (clock.perf_counter() - started) / len(cars)
@@ -174,14 +175,7 @@ def _single_precision_factors(
     columns: Sequence[int],
     channels: Sequence[str],
 ) -> dict[int, CarFactors]:
-    """Return the factors of the cars for which single precision is sufficient, by their index.
-
-    Args:
-        models, dampers: pole models and damper laws of the cars.
-        timestep: time step [s].
-        columns: indices of the driven plates.
-        channels: names of the recorded channels; the force of a damper has that of its stop as a part.
-    """
+    """Return the factors of the cars for which single precision is sufficient, by their index."""
     forces = [name.replace("_force", "_stop_force") for name in channels]
     suitable = [
         car

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from vehicle.engines.linear.displacement_laws import DisplacementLaw, forces_at_start
 from vehicle.engines.reduced.pole_model import Outputs
 from vehicle.engines.reduced.step_factors import CarFactors
-from vehicle.engines.reduced.table_layout import BLOCK, DOUBLE, TILE, TableRows, aligned_table
+from vehicle.engines.reduced.table_layout import BLOCK, DOUBLE, TILE, Counts, aligned_table, section_sizes
 from vehicle.errors import SimulationError
 from vehicle.model.laws.curve import BEYOND
 from vehicle.model.laws.damper import RECORD, damper_curve, pack
@@ -75,7 +75,8 @@ class CarTable:
         states: number of terms of an output in a column: states of a sample, and plate displacements.
         inputs, sums: numbers of inputs of a step, and of damper velocities and sensors.
         initial: states of the first sample; (..., columns).
-        rows: first rows of the sections.
+        rows: numbers of the record Sections: of states of pole pairs in a column, a multiple of BLOCK, of states of all
+            poles, of Gauss-Seidel iterations over the forces, of elements, and first rows of the sections.
         table: the table, which the time stepping changes; (rows, columns).
         poles: factors of the poles in blocks, see `_packed_poles`; (rows, columns).
         pieces: largest number of segments of each damper law; (d,).
@@ -100,39 +101,34 @@ class CarTable:
         self.lanes = [(min(lane, len(cars) - 1) if split == 1 else 0, slice(lane % split, None, split))
                       for lane in range(lanes)]  # fmt: skip
         self.cars = cars
-        d, m, g, laws = len(dampers[0]), start.shape[1], len(cars[0].strokes), len(cars[0].laws)
-        groups, e = cars[0].sliders.stiffness.shape
-        rubbers = sum(law.friction for law in cars[0].laws)
-        corners = max((len(law.breakpoints) for car in cars for law in car.laws if not law.friction), default=0)
+        laws = [law for car in cars for law in car.laws]
         # The elements of rubber friction are distributed over the parts of a car, too.
-        layers = -(-max((law.elements.shape[1] for car in cars for law in car.laws), default=0) // split)
+        layers = -(-max((law.elements.shape[1] for law in laws), default=0) // split)
         pairs, reals = (-(-max(getattr(car, name) for car in cars) // split) for name in ("pairs", "reals"))
         # Real poles begin a block, so that the sums of a car do not depend on the poles of others.
         pairs = BLOCK // 2 * -(-2 * pairs // BLOCK)
-        self.dampers, self.pairs, self.plates, self.states = d, pairs, m, 2 * pairs + reals + 2 * (d + m) + g
-        count = len(sensors[0].poles)
-        self.inputs, self.sums = cars[0].step.shape[1] - 1, d + g + count
         damper_data = [[damper_nodes(damper, whole) for damper in data_of_car] for data_of_car in dampers]
         node_counts = np.max([[len(nodes) for _, _, nodes in data_of_car] for data_of_car in damper_data], axis=0)
         node_count, self.pieces = int(np.max(node_counts, initial=1)), np.asarray(node_counts - 1, dtype=np.int64)
-        sizes = {
-            "slip": (d + g) * m,
-            "level": g * m,
-            "gain": (d + g) ** 2,
-            "ramp": (d + g) * d,
-            "full": d,
-            "viscous": d,
-        }
-        sizes |= {"direct": count * (2 * (d + m) + g), "rest": len(static[0]) if static else 0}
-        sizes |= dict.fromkeys(("spring", "give", "share"), groups * e)
-        sizes |= {"corner": 3 * (laws - rubbers) * corners, "own": laws, "heard": count * laws}
-        sizes |= dict.fromkeys(("stiff", "stroke", "part", "weight", "reach"), rubbers * layers)
-        # The sections from `law` on change during a run: the state of a car without its poles.
-        sizes |= {"law": 3 * d * node_count, "inputs": self.inputs}
-        sizes |= dict.fromkeys(("limit", "velocity", "earlier", "hold", "stuck", "stick"), d) | {"inverse": 2 * d}
-        sizes |= {"sensors": count, "past": count, "place": groups, "slider": groups * e, "excess": laws}
-        sizes |= {"anchor": rubbers * layers, "middle": rubbers * layers, "ahead": rubbers}
-        sizes |= {"work": d * (2 + 4 * node_count) + groups * (2 + 4 * e) + self.sums}
+        groups, elements = cars[0].sliders.stiffness.shape
+        counts = Counts(
+            dampers=len(dampers[0]),
+            plates=start.shape[1],
+            inputs=cars[0].step.shape[1] - 1,
+            sensors=len(sensors[0].poles),
+            sides=len(static[0]) if static else 0,
+            pieces=node_count - 1,
+            groups=groups,
+            elements=elements,
+            curves=len(cars[0].laws),
+            corners=max((len(law.breakpoints) for law in laws if not law.friction), default=0),
+            rubbers=sum(law.friction for law in cars[0].laws),
+            layers=layers,
+        )
+        d, m, g, curves, rubbers = counts.dampers, counts.plates, len(cars[0].strokes), counts.curves, counts.rubbers
+        self.dampers, self.pairs, self.plates, self.states = d, pairs, m, 2 * pairs + reals + 2 * (d + m) + g
+        self.inputs, self.sums = counts.inputs, d + g + counts.sensors
+        sizes = section_sizes(counts)
         section_ends = np.cumsum([0, *sizes.values()]).tolist()
         first_rows = dict(zip(sizes, section_ends, strict=False))
         blocks = -(-(2 * pairs + reals) // BLOCK)
@@ -147,52 +143,45 @@ class CarTable:
             law = [nodes[np.minimum(np.arange(node_count), len(nodes) - 1)] for _, _, nodes in damper_data[car]]
             self.poles[:, lane] = _packed_poles([rows[part] for rows in rows_of_cars[car]], pairs, blocks).ravel()
             slip, gain, ramp = cars[car].gains
-            values = {"gain": gain, "ramp": ramp, "law": np.array(law)}
+            columns, sliders = cars[car].columns, cars[car].sliders
+            at_start, stiff = start[:, : len(columns)], sliders.stiffness > 0.0
             # Sums over the poles are added over the parts of a car, with the contribution of the plates once.
-            values["slip"] = slip if part.start == 0 else 0.0 * slip
-            values["limit"], values["viscous"] = record["friction_limit"][:, lane], record["viscous_damping"][:, lane]
-            car_sensors, columns = sensors[car], cars[car].columns
-            z, rate = start[:, : len(columns)]
-            values["direct"] = cars[car].weights_of(car_sensors)[:, cars[car].states :]
-            values["sensors"] = car_sensors.height[:, columns] @ z + car_sensors.velocity[:, columns] @ rate
-            sliders = cars[car].sliders
-            values |= {"level": cars[car].levels if part.start == 0 else 0.0 * cars[car].levels}
-            values |= {"rest": static[car]} if static else {}
-            if laws:
+            once = float(part.start == 0)
+            values = {
+                "slip": once * slip,
+                "level": once * cars[car].levels,
+                "gain": gain,
+                "ramp": ramp,
+                "law": np.array(law),
+                "limit": record["friction_limit"][:, lane],
+                "viscous": record["viscous_damping"][:, lane],
+                "full": np.array([full for _, full, _ in damper_data[car]]),
+                "direct": cars[car].weights_of(sensors[car])[:, cars[car].states :],
+                "sensors": sensors[car].height[:, columns] @ at_start[0]
+                + sensors[car].velocity[:, columns] @ at_start[1],
+                "rest": static[car] if static else np.zeros(0),
+                "spring": sliders.stiffness,
+                "give": np.divide(1.0, sliders.stiffness, out=np.zeros(stiff.shape), where=stiff),
+                "share": sliders.limit,
+            }
+            if curves:
                 effect = np.diag(gain)[d + groups :]
-                tables, friction = cars[car].laws[: laws - rubbers], cars[car].laws[laws - rubbers :]
-                values |= {"own": 0.5 * effect, "corner": _corners(tables, effect[: laws - rubbers], corners)}
-                elements = _rubber(friction, effect[laws - rubbers :], split * layers)
+                tables, friction = cars[car].laws[: curves - rubbers], cars[car].laws[curves - rubbers :]
+                rubber = _rubber(friction, effect[curves - rubbers :], split * layers)
+                values |= {name: rows.reshape(rubbers, split, layers)[:, part.start] for name, rows in rubber.items()}
                 values |= {
-                    name: numbers.reshape(rubbers, split, layers)[:, part.start] for name, numbers in elements.items()
-                }
-                values |= {
-                    "excess": forces_at_start(cars[car].laws, columns, start[:, : len(columns)]),
+                    "own": 0.5 * effect,
+                    "corner": _corners(tables, effect[: curves - rubbers], counts.corners),
+                    "excess": forces_at_start(cars[car].laws, columns, at_start),
                     "heard": heard[car] if heard else np.zeros(0),
                 }
-            values |= {"spring": sliders.stiffness, "share": sliders.limit}
-            values["give"] = np.divide(
-                1.0, sliders.stiffness, out=np.zeros_like(sliders.stiffness), where=sliders.stiffness > 0.0
-            )
-            values["full"] = np.array([full for _, full, _ in damper_data[car]])
             for name, array in values.items():
                 self.table[first_rows[name] :, lane][: array.size] = array.ravel()
         for name in ("stuck", "stick"):
             self.table[first_rows[name] :][:d] = self.table[first_rows["full"] :][:d] > 0.0
         iterations = cars[0].iterations if element == DOUBLE else cars[0].single_iterations
-        self.rows = TableRows(
-            pairs=2 * pairs,
-            states=2 * pairs + reals,
-            iterations=iterations,
-            groups=groups,
-            elements=e,
-            curves=laws,
-            corners=corners,
-            rubbers=rubbers,
-            layers=layers,
-            pieces=node_count - 1,
-            **first_rows,
-        )
+        numbers = {"pairs": 2 * pairs, "states": 2 * pairs + reals, "iterations": iterations}
+        self.rows = {**counts._asdict(), **numbers, **first_rows}
         varying = sizes["rest"] > 0
         every = [damper for data_of_car in dampers for damper in data_of_car]
         varying |= any(damper.friction_law not in CONSTANT or damper.friction_function for damper in every)
@@ -221,10 +210,8 @@ class CarTable:
         Returns:
             Table (rows, columns), a column for each car; rows: (tiles, states and plates, TILE) in C order.
         """
-        tile_count, poles = (
-            -(-len(weights[0]) // TILE),
-            (self.states - 2 * (len(self.cars[0].slip) + self.plates) - len(self.cars[0].strokes)),
-        )
+        tile_count = -(-len(weights[0]) // TILE)
+        poles = self.states - 2 * (len(self.cars[0].slip) + self.plates) - len(self.cars[0].strokes)
         table = aligned_table(tile_count * self.states * TILE, self.element)
         view = table.reshape(tile_count, self.states, TILE, table.shape[1])
         for lane, (car, part) in enumerate(self.lanes):
@@ -241,18 +228,10 @@ class CarTable:
 
 
 def _packed_poles(rows: Sequence[Vector], pairs: int, blocks: int) -> Vector:
-    """Return the factors of the poles of a column in blocks of BLOCK states, as `poles.c` reads them.
+    """Return the factors of the poles of a column, (blocks, ...), in blocks of BLOCK states, as `poles.c` reads them.
 
     A block has the real and imaginary parts of E - 1 of four pairs, or E - 1 of eight real poles; for each input of
     a step its factors in the changes of the states; and for each sum the weights of the states.
-
-    Args:
-        rows: rows of the column, see `CarFactors.rows`.
-        pairs: number of pairs in the columns of the group, full blocks; then follow the real poles.
-        blocks: number of blocks.
-
-    Returns:
-        Table; (blocks, BLOCK (1 + inputs + sums)).
     """
     pair, real, pair_sums, real_sums = rows
     p, q, n, w = len(pair), len(real), real.shape[1] - 1, real_sums.shape[1]
@@ -267,10 +246,7 @@ def _packed_poles(rows: Sequence[Vector], pairs: int, blocks: int) -> Vector:
 def _corners(laws: Sequence[DisplacementLaw], effects: Vector, count: int) -> Vector:
     """Return the laws g over r = x + G g(x)/2 as sides, breakpoints and slope changes; (laws, count, 3).
 
-    Args:
-        laws: laws over displacement.
-        effects: effects G of their forces on their displacements [m/N]; (laws,).
-        count: number of breakpoints; laws with fewer have slope changes of zero.
+    G are the effects of their forces on their displacements [m/N]; laws with fewer breakpoints have zeros.
     """
     numbers = np.zeros((len(laws), count, 3))
     for row, law, effect in zip(numbers, laws, effects.tolist(), strict=True):
@@ -290,15 +266,9 @@ def _corners(laws: Sequence[DisplacementLaw], effects: Vector, count: int) -> Ve
 
 
 def _rubber(laws: Sequence[DisplacementLaw], effects: Vector, count: int) -> dict[str, Vector]:
-    """Return the elements of rubber friction for the time step; see `scalar_elements.h` of the core.
+    """Return the sections of rubber friction for the time step, (laws, count) each; see `scalar_elements.h`.
 
-    Args:
-        laws: rubber friction.
-        effects: effects G of their forces on their displacements [m/N]; (laws,).
-        count: number of elements; laws with fewer have elements without stiffness.
-
-    Returns:
-        Sections of the table by name; (laws, count) each.
+    The effects G are those of the forces on the displacements [m/N]; laws with fewer elements have zeros.
     """
     stiff, stroke, part, reach, weight = np.zeros((5, len(laws), count))
     for row, (law, effect) in enumerate(zip(laws, effects.tolist(), strict=True)):

@@ -47,7 +47,7 @@ def equivalent_damping(law: Damper, velocity: Vector, force: Vector) -> float:
 def linearised_response(
     model: PoleModel, damping: Vector, channels: Sequence[str], wheels: Sequence[str], frequency: Vector
 ) -> Complex:
-    """Return the FRFs of accelerations to plate displacements with viscous dampers.
+    """Return the FRFs of accelerations to plate displacements with viscous dampers [m/s2 per m]; (k, p, m).
 
     Args:
         model: pole model of the car.
@@ -55,9 +55,6 @@ def linearised_response(
         channels: names of k accelerations.
         wheels: names of the p plates.
         frequency: lines [Hz], (m,).
-
-    Returns:
-        FRFs [m/s2 per m], (k, p, m).
     """
     s = np.asarray(2j * np.pi * np.asarray(frequency), dtype=np.complex128)
     inputs = [model.matrices.system.inputs.index(wheel) for wheel in wheels]

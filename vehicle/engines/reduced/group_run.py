@@ -26,7 +26,6 @@ from vehicle.engines.reduced.table_layout import (
     PAST,
     SINGLE,
     TILE,
-    OutputTiles,
     aligned_table,
 )
 from vehicle.engines.reduced.validity import Validity, check_stride, rotating_bodies, tyre_outputs
@@ -82,14 +81,14 @@ def packed_cars(
     return cars, feedback_at_rest(dampers[0], owners, sides[0].dampers, tyres, factors[0].plate_inputs, timestep)
 
 
-def march_fields(cars: CarTable, feedback: Feedback, reading: OutputTiles) -> dict[str, Any]:
+def march_fields(cars: CarTable, feedback: Feedback, reading: Mapping[str, Any]) -> dict[str, Any]:
     """Return the fields of the record March that stay in a run, without its memory.
 
     Args:
         cars, feedback: cars and their feedback, see `packed_cars`.
-        reading: their outputs.
+        reading: fields of their outputs; levels begin with the tyre loads.
     """
-    fields = reading._asdict() | feedback._asdict()
+    fields = dict(reading) | feedback._asdict()
     fields |= {"rows": cars.rows, "table": cars.table, "poles": cars.poles, "laws": cars.laws, "pieces": cars.pieces}
     return fields | {"inputs": cars.inputs, "sums": cars.sums, "plates": cars.plates, "dampers": cars.dampers}
 
@@ -134,16 +133,13 @@ class GroupRun:
         self.cars, self.feedback = packed_cars(models, factors, dampers, loads_of_tyres, start, self.timestep, element)
 
     def fill(self, table: Vector, rows_of_cars: Sequence[int], channels: Sequence[str]) -> list[Validity]:
-        """Simulate the cars and fill their rows of the table.
+        """Simulate the cars, fill their rows of the table, and return the validity of the motion of each car.
 
         Args:
             table: time histories; (channels, all cars, samples).
             rows_of_cars: rows of the cars of this group.
             channels: names of the channels; `friction_<index>` is the mean nonlinear force of a damper,
                 `law_<index>` the force g of a law over displacement.
-
-        Returns:
-            Validity of the motion of each car.
         """
         matrices = self.models[0].matrices
         system, laws, bodies = matrices.system, self.models[0].laws, rotating_bodies(matrices)
@@ -189,21 +185,20 @@ class GroupRun:
             positions.append(at @ shape)
             rotations.append(np.concatenate([car_rows.body_rows[body][3:] for body in bodies]) @ shape)
         linear = [self._levels(model, watched) for model in self.models]
-        reading = OutputTiles(
-            positions=self.cars.tiles(positions),
-            levels=self.cars.tiles(
-                [car.weights_of(outputs) for car, outputs in zip(self.factors, linear, strict=True)]
-            ),
-            rotations=self.cars.tiles(rotations),
-            loads=len(tyre_wheels),
-            tyre_of=np.array([law.plate for law in laws], dtype=np.int64),
-            watched=watched,
-            check_every=check_stride(self.interval),
-            always=any(name in tyre_wheels or name in load_names for name in channels),
-            wanted=np.array([rows.get(name, -1) for name in channels], dtype=np.int64),
-            offset=static_values,
-            weights=(np.cumsum(WEIGHTS[::-1])[None, ::-1][:, 1:] / self.interval**2).astype(self.element),
-        )
+        levels_of_cars = [car.weights_of(outputs) for car, outputs in zip(self.factors, linear, strict=True)]
+        reading = {
+            "positions": self.cars.tiles(positions),
+            "levels": self.cars.tiles(levels_of_cars),
+            "rotations": self.cars.tiles(rotations),
+            "loads": len(tyre_wheels),
+            "tyre_of": np.array([law.plate for law in laws], dtype=np.int64),
+            "watched": watched,
+            "check_every": check_stride(self.interval),
+            "always": any(name in tyre_wheels or name in load_names for name in channels),
+            "wanted": np.array([rows.get(name, -1) for name in channels], dtype=np.int64),
+            "offset": static_values,
+            "weights": (np.cumsum(WEIGHTS[::-1])[None, ::-1][:, 1:] / self.interval**2).astype(self.element),
+        }
         width = curves + len(laws)
         y = aligned_table((PAST + INNER_BLOCK) * width, self.element)
         first_sample = y[(PAST - 1) * width :][:width]
@@ -241,13 +236,13 @@ class GroupRun:
         return outputs if self.loads is None else outputs + load_outputs(model, self.loads)
 
     def _step_blocks(
-        self, reading: OutputTiles, y: Vector, peaks: Vector, table: Vector, rows_of_cars: Sequence[int]
+        self, reading: Mapping[str, Any], y: Vector, peaks: Vector, table: Vector, rows_of_cars: Sequence[int]
     ) -> None:
         """Advance the cars block by block: fill the record March of the core, and call it, for each block."""
         cars, every, m = self.cars, self.every, self.cars.plates
         x = aligned_table((INNER_BLOCK + 1) * cars.states + BLOCK, self.element)
         kept = self.element == SINGLE and self.models[0].slope.shape[1] > 0
-        changes = aligned_table(((INNER_BLOCK + 1) * cars.rows.states + BLOCK) * kept, self.element)
+        changes = aligned_table(((INNER_BLOCK + 1) * cars.rows["states"] + BLOCK) * kept, self.element)
         x[: len(cars.initial)] = cars.initial
         constant = march_fields(cars, self.feedback, reading)
         constant |= {"every": every, "x": x, "changes": changes, "y": y, "peaks": peaks, "out": table}

@@ -21,12 +21,7 @@ Vector = npt.NDArray[np.float64]
 
 
 def load_outputs(model: PoleModel, loads: LoadRows) -> Outputs:
-    """Return the rows of loads over the poles and the plates, without static values and `direct_forces`.
-
-    Args:
-        model: pole model of the car.
-        loads: rows of the loads over the motion.
-    """
+    """Return the rows of loads over the poles and the plates, without static values and `direct_forces`."""
     rate = model.modal * model.poles
     return Outputs(
         poles=loads.displacement @ model.modal

@@ -90,9 +90,6 @@ def plate_samples(signal: Signal, step: float, steps: int, beyond: int) -> Vecto
         step: time step [s].
         steps: number of steps.
         beyond: number of further steps after the end, with the last acceleration.
-
-    Returns:
-        The table, or an object that computes its slices if the table would be larger than `LARGEST_TABLE`.
     """
     long = 24 * (steps + 1 + beyond) * len(signal.wheels) > LARGEST_TABLE
     return (LongPlateSamples if long else _table)(signal, step, steps, beyond)

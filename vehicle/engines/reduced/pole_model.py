@@ -113,11 +113,7 @@ class PoleModel:
         return replace(self, applied=self.applied[:, :0], matrices=self.matrices.without_forces())
 
     def outputs(self, channels: Sequence[str]) -> Outputs:
-        """Return the rows of acceleration channels, as displacements, and of dynamic tyre force channels.
-
-        Args:
-            channels: names of `vehicle.names`.
-        """
+        """Return the rows of acceleration channels, as displacements, and of dynamic tyre force channels."""
         m, wheels = self.matrices, self.matrices.system.inputs
         poles = np.zeros((len(channels), len(self.poles)), dtype=np.complex128)
         height, velocity = np.zeros((2, len(channels), len(wheels)))

@@ -62,12 +62,7 @@ class QuadraticForms:
 
 
 def quadratic_forms(car: CarModel, model: PoleModel) -> QuadraticForms:
-    """Return the second order of the equations of motion of a car over the patterns of its linear motion.
-
-    Args:
-        car: assembled car.
-        model: its pole model.
-    """
+    """Return the second order of the equations of motion of a car over the patterns of its linear motion."""
     rows, system, matrices = motion_rows(model), model.matrices.system, model.matrices
     whole, sums = np.vstack(rows), _state_products(model)
     # What must be right in a pattern, over the state: rotations, their rates, inertia and joint forces.
@@ -119,10 +114,6 @@ def _components(rows: Vector, sums: Vector) -> tuple[Vector, Vector]:
 
     The coordinates are the principal components of the rows: c = V' rows S with rows E(S S') rows' = V diag(w) V'. In
     as many dimensions as there are states, with E(S S') = F F': F' rows' rows F = U diag(w) U', V = rows F U / sqrt(w).
-
-    Args:
-        rows: what must be right, over the state; (n, states).
-        sums: means of the products of states E(S S'); (states, states).
     """
     levels = np.sqrt(np.maximum(np.diag(sums), 1e-300))
     shares, turn = np.linalg.eigh(sums / np.outer(levels, levels))

@@ -42,7 +42,7 @@ def simulate_reduced(
     step: float | None = None,
     forms: QuadraticForms | None = None,
 ) -> Recording:
-    """Simulate a car on its plates with the reduced engine, in double precision.
+    """Simulate a car on its plates in double precision; the recording has neither poses nor an energy balance.
 
     Args:
         model: pole model of the car.
@@ -55,9 +55,6 @@ def simulate_reduced(
         present_load: slope forces of rolling tyres by their current load; if False, by their static load and z'.
         step: maximum time step [s]; `LONGEST_STEP` by default.
         forms: second order of the equations of the car, for the errors of its channels; without it they stay unknown.
-
-    Returns:
-        The recording, without poses and energy balance.
     """
     inputs, road = model.matrices.system.inputs, signal
     signal = with_run_out(road, model.matrices.run_out)

@@ -201,15 +201,10 @@ def rms_errors_of(
 
 
 def _faded(coordinates: Vector, count: int, interval: float) -> Vector:
-    """Return the coordinates of a record, which fade to those of its start after its end; (P, samples).
+    """Return the coordinates of a record, (P, samples), which fade to those of its start after its `count` samples.
 
     After the end the friction of a damper that stuck no longer meets the motion that it stopped, and moves the car on
     its springs: further than a weak motion in the record.
-
-    Args:
-        coordinates: coordinates over a period; (P, samples).
-        count: samples of the record.
-        interval: sampling interval [s].
     """
     fade = np.clip(np.arange(coordinates.shape[1] - count) * interval / FADE, 0.0, 1.0)
     weight = np.concatenate([np.ones(count), 0.5 * (1.0 + np.cos(np.pi * fade))])
@@ -217,11 +212,7 @@ def _faded(coordinates: Vector, count: int, interval: float) -> Vector:
 
 
 def error_sentence(errors: Mapping[str, float]) -> tuple[str, ...]:
-    """Return a warning about the channels whose RMS is off by more than `NAMED_ERROR`; empty if all are closer.
-
-    Args:
-        errors: relative error of the RMS by channel.
-    """
+    """Return a warning about the channels whose RMS is off by more than `NAMED_ERROR`; empty if all are closer."""
     off = sorted((name for name in errors if abs(errors[name]) > NAMED_ERROR), key=lambda name: -abs(errors[name]))
     if not off:
         return ()

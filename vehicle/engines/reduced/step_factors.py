@@ -191,13 +191,10 @@ class CarFactors:
         return pairs, self.step[p:].real, np.stack([sums[:p].real, -sums[:p].imag], axis=1), sums[p:].real
 
     def weights(self, rows: Complex) -> Vector:
-        """Return the weights of states and direct terms, in the order of `direct`, in sums Re(rows xi).
+        """Return the weights of states and `direct` terms, in that order, in Re(rows xi); (k, 2p + q + 2d + g + 2m).
 
         Args:
             rows: rows over the poles; (k, n).
-
-        Returns:
-            Weights; (k, 2 p + q + 2 d + g + 2 m).
         """
         integrated_rows, p = rows[:, self.integrated].conj(), self.pairs
         pairs = np.ascontiguousarray(integrated_rows[:, :p]).view(np.float64)
@@ -303,12 +300,7 @@ def _steepness(model: PoleModel) -> Vector:
 
 
 class _Inputs:
-    """Inputs of the poles of a car, and the set of integrated poles.
-
-    Args:
-        model: pole model of the car.
-        columns: indices of the driven plates.
-        timestep: time step [s]; None to integrate all poles.
+    """Inputs of the poles of a car, and the set of integrated poles: all without a time step.
 
     Attributes:
         poles: poles s; (n,).

@@ -35,126 +35,70 @@ PAST = 2 * AHEAD
 """Samples before a block that are needed for the accelerations in the block."""
 
 
-class TableRows(NamedTuple):
-    """First rows of the sections of a table of cars, and their sizes: the record Sections of the core.
+class Counts(NamedTuple):
+    """Numbers of elements that fix the sections of a table.
 
     Attributes:
-        pairs: number of states of pole pairs in a column, a multiple of BLOCK; states: of all poles.
-        iterations: Gauss-Seidel iterations over the forces.
-        groups: number of groups of Jenkins elements. elements: number of elements of a group.
-        curves: number of laws over displacement. corners: number of breakpoints of a law.
-        rubbers: number of the laws that are rubber friction, which come last.
-        layers: number of elements of a rubber friction in a column.
-        slip: contribution of z' at the end of a step to the damper velocities and to the displacements of groups and
-            laws, by plates. level: contribution of z to the latter.
-        gain, ramp: contributions of the mean forces of dampers, groups and laws, and of the slopes of damper forces.
-        law: `pieces` + 1 breakpoints (x, F_c/2, friction over its limit) of each damper.
-        pieces: number of segments of the laws.
-        limit, full: friction limits; velocities of full friction.
-        inputs: damper forces, their slopes, forces of groups and laws, z' and mean z' of a step, slope forces of
-            rolling tyres, and z of the plates of slow poles.
-        viscous: damping constants in the poles.
-        velocity, earlier: current velocities and those of the last step.
-        hold, stuck, stick: current halves of F_c, 1 if the damper was stuck at the end of the last step, 1 if stuck
-            during the whole step.
-        inverse: effect of its force on the velocity of each damper and its limit, for which the work space has its
-            inverse law.
-        sensors, past: sensors of `vehicle.engines.reduced.feedback` at the beginning of a step and of the last step.
-        direct: contributions of the inputs up to z', and of z, to each sensor.
-        spring, give, share: stiffness k of the Jenkins elements, 1/k (0 without), and their shares of the limit.
-        slider: forces of the elements at the beginning of the step.
-        place: displacements of the groups there.
-        rest: side forces at rest.
-        corner: `corners` numbers (side, breakpoint, slope change) of each law, over the displacement without its force
-            at the end of the step.
-        own: halves of the effects of the forces of the laws on their displacements.
-        excess: forces g of the laws. heard: contributions of these to each sensor.
-        stiff, stroke: stiffness k and stroke x of the elements of rubber friction.
-        part, weight, reach: shares, weights and half widths of these over the displacement without their own force, see
-            `scalar_elements.h` of the core.
-        anchor, middle: positions of their sliders, and the middles over that displacement. ahead: further part of the
-            middles in a column, by the elements of the columns before.
-        work: work space for the solution of a step.
+        dampers, plates: dampers; driven plates and histories of applied forces.
+        inputs: numbers of a step: damper forces, their slopes, forces of groups and laws, z' and mean z', slope forces
+            of rolling tyres, and z of the plates of slow poles.
+        sensors, sides: sensors of `vehicle.engines.reduced.feedback`; side forces.
+        pieces: segments of a damper law.
+        groups, elements: groups of Jenkins elements; elements of a group.
+        curves, corners: laws over displacement; breakpoints of a law.
+        rubbers, layers: those laws that are rubber friction, which come last; elements of one of them in a column.
     """
 
-    pairs: int
-    states: int
-    iterations: int
+    dampers: int
+    plates: int
+    inputs: int
+    sensors: int
+    sides: int
+    pieces: int
     groups: int
     elements: int
     curves: int
     corners: int
     rubbers: int
     layers: int
-    slip: int
-    level: int
-    gain: int
-    ramp: int
-    law: int
-    pieces: int
-    limit: int
-    full: int
-    inputs: int
-    viscous: int
-    velocity: int
-    earlier: int
-    hold: int
-    stuck: int
-    stick: int
-    inverse: int
-    sensors: int
-    past: int
-    direct: int
-    spring: int
-    give: int
-    share: int
-    slider: int
-    place: int
-    rest: int
-    corner: int
-    own: int
-    excess: int
-    heard: int
-    stiff: int
-    stroke: int
-    part: int
-    weight: int
-    reach: int
-    anchor: int
-    middle: int
-    ahead: int
-    work: int
 
 
-class OutputTiles(NamedTuple):
-    """Weights of the outputs of a sample, in tiles, and their use.
-
-    Its arrays are those of the record March of the core.
-
-    Attributes:
-        positions, levels: tiles of the positions of acceleration channels, and of forces and displacements.
-        rotations: one tile of rotations for each body.
-        loads: number of the levels that are tyre loads, which come first.
-        tyre_of: level of the tyre of each law over displacement; -1 for a law that is no tyre.
-        watched: number of the levels whose extremes are kept, a multiple of TILE.
-        check_every: samples from one check of rotations and tyre loads to the next.
-        always: compute levels at every sample; otherwise only at the checks.
-        wanted: row of a sample for each channel, positions first; -1 for channels that are not computed here.
-        offset: static value of each channel; (channels, columns).
-        weights: weights of the differences of positions in an acceleration; (1, 2 AHEAD).
-    """
-
-    positions: Any
-    levels: Any
-    rotations: Any
-    loads: int
-    tyre_of: Any
-    watched: int
-    check_every: int
-    always: bool
-    wanted: Any
-    offset: Any
-    weights: Any
+def section_sizes(n: Counts) -> dict[str, int]:
+    """Return the number of rows of each section of a table, in their order; Sections of the core has the first rows."""
+    d, m, scalars = n.dampers, n.plates, n.groups + n.curves
+    sliders, rubber = n.groups * n.elements, n.rubbers * n.layers
+    # What acts on damper velocities and displacements of groups and laws: z' at the end of a step, by plates, and z on
+    # the latter; mean forces of dampers, groups and laws, and slopes of damper forces.
+    sizes = {"slip": (d + scalars) * m, "level": scalars * m, "gain": (d + scalars) ** 2, "ramp": (d + scalars) * d}
+    # Velocities of full friction; damping constants in the poles.
+    sizes |= {"full": d, "viscous": d}
+    # Contributions of the inputs up to z', and of z, to each sensor; side forces at rest.
+    sizes |= {"direct": n.sensors * (2 * (d + m) + scalars), "rest": n.sides}
+    # Jenkins elements: stiffness k, 1/k (0 without), shares of the limit.
+    sizes |= dict.fromkeys(("spring", "give", "share"), sliders)
+    # Laws: side, breakpoint and slope change of each corner, over the displacement without the force of the law at the
+    # end of the step; halves of the effects of the forces on their displacements, and contributions to each sensor.
+    sizes |= {"corner": 3 * (n.curves - n.rubbers) * n.corners, "own": n.curves, "heard": n.sensors * n.curves}
+    # Rubber friction: stiffness k and stroke x of the elements; shares, weights and half widths over the displacement
+    # without their own force, see `scalar_elements.h` of the core.
+    sizes |= dict.fromkeys(("stiff", "stroke", "part", "weight", "reach"), rubber)
+    # The sections from here on change during a run: the state of a car without its poles.
+    # Breakpoints (x, F_c/2, friction over its limit) of each damper; inputs of a step.
+    sizes |= {"law": 3 * d * (n.pieces + 1), "inputs": n.inputs}
+    # Dampers: friction limits, velocities now and in the last step, halves of F_c, 1 if stuck at the end of the last
+    # step, 1 if stuck during the whole step.
+    sizes |= dict.fromkeys(("limit", "velocity", "earlier", "hold", "stuck", "stick"), d)
+    # Effect of its force on the velocity of each damper, and its limit, for which the work space has its inverse law.
+    sizes |= {"inverse": 2 * d}
+    # Sensors at the beginning of a step and of the last step; displacements of groups and forces of their elements at
+    # the beginning of the step; forces g of the laws.
+    sizes |= {"sensors": n.sensors, "past": n.sensors, "place": n.groups, "slider": sliders, "excess": n.curves}
+    # Rubber friction: positions of the sliders, and middles over the displacement without their own force; further part
+    # of the middles in a column, by the elements of the columns before.
+    sizes |= {"anchor": rubber, "middle": rubber, "ahead": n.rubbers}
+    # Work space for the solution of a step.
+    sums = d + scalars + n.sensors
+    return sizes | {"work": d * (2 + 4 * (n.pieces + 1)) + n.groups * (2 + 4 * n.elements) + sums}
 
 
 def aligned_table(rows: int, element: np.dtype[Any]) -> npt.NDArray[Any]:

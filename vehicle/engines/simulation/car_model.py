@@ -48,10 +48,6 @@ class CarModel:
 def build_model(vehicle: Vehicle, trimmed_body: Superelement) -> CarModel:
     """Assemble and compile a car, and compute its static equilibrium.
 
-    Args:
-        vehicle: parameters.
-        trimmed_body: superelement of the body.
-
     Raises:
         ConfigurationError: the car is physically impossible; the message names the parameter.
         SimulationError: MuJoCo rejects the model, or the car can move without resistance.

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import ctypes
+from typing import Any
 
 import mujoco
 
 from vehicle.core.records import Packed, packed
 from vehicle.engines.simulation.rows import Rows
-from vehicle.engines.simulation.sampling import Loop
 from vehicle.engines.simulation.simulation_record import functions, packed_simulation
 from vehicle.engines.simulation.sparse_rows import Pattern
 from vehicle.engines.simulation.structures import offsets
@@ -75,16 +75,10 @@ class CompiledRows:
 
 
 class SteppingLoop:
-    """Plates, steps and samples of a run in the core.
+    """Plates, steps and samples of a run in the core."""
 
-    Args:
-        loop: records of the run; the addresses in its order are set here.
-    """
-
-    def __init__(self, loop: Loop) -> None:
-        located = offsets()
-        order = loop.order._replace(step=located.step, force_offset=located.pointers["efc_force"])
-        self.record = packed("Loop", loop._replace(order=order))
+    def __init__(self, **loop: Any) -> None:
+        self.record = packed("Loop", loop)
         self.library = functions()
 
     def move_plates(self, index: int) -> None:

@@ -6,6 +6,7 @@ Friction rows follow the equality rows: those of joints in their order, then tho
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -16,7 +17,9 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.laws.damper import unpack
 
 
-def damper_rows(model: mujoco.MjModel, rows_of: Callable[[Sequence[str]], Index], first: int) -> Dampers:
+def damper_rows(
+    model: mujoco.MjModel, rows_of: Callable[[Sequence[str]], Index], first: int, laws: Mapping[str, Any]
+) -> Dampers:
     """Return the record of the dampers: user actuators on joints, with equality rows of the same names."""
     actuators = _damper_actuators(model)
     joints = [int(model.actuator_trnid[index, 0]) for index in actuators]
@@ -27,13 +30,12 @@ def damper_rows(model: mujoco.MjModel, rows_of: Callable[[Sequence[str]], Index]
         for tendon in friction_tendons(model, presliding=False)
     ]
     return Dampers(
-        laws=unpack([]),
         rows=rows_of([str(model.actuator(index).name) for index in actuators]),
         frictions=first + np.argsort(np.argsort(dofs)),
         dofs=dofs,
         places=whole_numbers([model.jnt_qposadr[joint] for joint in joints]),
         valves=whole_numbers(valves, 2),
-        pieces=np.zeros((0, 3)),
+        **laws,
     )
 
 
@@ -42,7 +44,9 @@ def _tendon_rows(model: mujoco.MjModel, first: int) -> dict[int, int]:
     return {int(tendon): first + n for n, tendon in enumerate(np.flatnonzero(model.tendon_frictionloss > 0.0))}
 
 
-def presliding_rows(model: mujoco.MjModel, law: LawNames, dampers: Dampers, first: int) -> Presliding:
+def presliding_rows(
+    model: mujoco.MjModel, law: LawNames, dampers: Dampers, first: int, numbers: Mapping[str, Any]
+) -> Presliding:
     """Return the record of the Jenkins elements.
 
     The first element of a damper has the friction row of its joint, the others have those of tendons.
@@ -57,8 +61,7 @@ def presliding_rows(model: mujoco.MjModel, law: LawNames, dampers: Dampers, firs
     return Presliding(
         rows=whole_numbers([row for row, _ in indices]),
         dampers=whole_numbers([index for _, index in indices]),
-        stiffness=np.zeros(0),
-        share=np.zeros(0),
+        **numbers,
     )
 
 

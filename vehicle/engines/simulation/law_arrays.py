@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.simulation.element_records import Index, Layout, OwnDampers, RubberFriction, Tables, Vector
+from vehicle.engines.simulation.element_records import Index, Layout, Tables, Vector
 from vehicle.engines.simulation.force_curves import tables_through
 from vehicle.model.assembly.element_numbers import AVERAGED, DECOUPLER, FLUID, TURNING
 from vehicle.model.laws.control_laws import NUMBERS, in_steps
@@ -76,16 +76,18 @@ def laws_of(names: LawNames, numbers: Numbers) -> Vector:
 
 
 def with_numbers(layout: Layout, names: LawNames, numbers: Numbers, timestep: float) -> Layout:
-    """Return a layout with other law parameters, for the same elements in the same rows.
+    """Return a layout with other law parameters, for the same elements in the same rows; see `law_fields`."""
+    records = law_fields(names, numbers, timestep)
+    return layout._replace(**{name: getattr(layout, name)._replace(**fields) for name, fields in records.items()})
+
+
+def law_fields(names: LawNames, numbers: Numbers, timestep: float) -> dict[str, dict[str, Any]]:
+    """Return the fields of the records of a layout that follow from laws, with curves at zero displacement, by record.
 
     Args:
-        layout: layout of the elements.
         names: names of the elements.
         numbers: parameters of all laws, by the names of their fields.
         timestep: time step of controlled dampers [s].
-
-    Returns:
-        Layout, with operating points of curves at zero displacement.
 
     Raises:
         ConfigurationError: a law by address is not registered in this process.
@@ -98,58 +100,49 @@ def with_numbers(layout: Layout, names: LawNames, numbers: Numbers, timestep: fl
 
     laws = laws_of(names, numbers)
     stiffness, rubber, branched = laws[:, 0:3].copy(), _rubber(names, numbers), laws[:, 6:9] > 0.0
-    np.add.at(stiffness, (rubber.elements, rubber.axes), rubber.stiffness)
+    np.add.at(stiffness, (rubber["elements"], rubber["axes"]), rubber["stiffness"])
     rolling = fields("rolling", names.bushings, 5)
     user_laws = [(index, law_by_address(law)) for index, law in _words(names, numbers, "function")]
     presliding = fields("presliding", tuple(dict.fromkeys(names.presliding)), 2)
-    return layout._replace(
-        bushings=layout.bushings._replace(
-            stiffness=stiffness,
-            damping=laws[:, 3:6].copy(),
-            branch_stiffness=laws[:, 6:9].copy(),
-            branch_time=np.divide(laws[:, 9:12], laws[:, 6:9], out=np.zeros((len(laws), 3)), where=branched),
-            further=laws[:, AVERAGED + 1 :].copy(),
-            averaged=whole_numbers(laws[:, AVERAGED] > 0.0),
-            one_sided=_true_indices(f"one_sided/{name}" in numbers for name in names.bushings),
-            oblique=_true_indices(f"directions/{name}" in numbers for name in names.bushings),
-            directions=fields("directions", names.bushings, 9),
-        ),
-        rubber=rubber,
-        rotations=layout.rotations._replace(stiffness=laws[laws[:, TURNING] > 0.0, TURNING].copy()),
-        springs=layout.springs._replace(
-            stiffness=np.array([float(numbers[f"law/{name}"][0]) for name in names.springs])
-        ),
-        dampers=layout.dampers._replace(
-            laws=_damper_records(names, numbers),
-            pieces=np.reshape([numbers[f"law/{name}"] for name in names.valves], (-1, 3)).astype(float),
-        ),
-        presliding=layout.presliding._replace(stiffness=presliding[:, 0].copy(), share=presliding[:, 1].copy()),
-        controls=layout.controls._replace(
-            dampers=_true_indices(f"control/{name}" in numbers for name in names.dampers),
-            laws=in_steps(fields("control", names.dampers, NUMBERS), timestep),
-        ),
-        own=OwnDampers(
-            dampers=whole_numbers([index for index, _ in user_laws]),
-            laws=np.array([law.record(timestep) for _, law in user_laws], dtype=RECORD),
-        ),
-        tables=_tables(names, numbers),
-        rolling=layout.rolling._replace(
-            speeds=rolling[:, 0].copy(),
-            trails=rolling[:, 1].copy(),
-            arms=rolling[:, 2:].copy(),
-            hold=np.array(numbers.get("hold/body", np.zeros(0))),
-        ),
-        fluids=layout.fluids._replace(
-            factors=np.array(
-                [
-                    factor
-                    for name in fluid_coordinates(names, numbers)
-                    for factor in (-1.0, float(numbers[f"inertia/{name}"][1]))
-                ]
-            ),
-        ),
-        round=layout.round._replace(radii=fields("round", names.bushings, 1)[:, 0].copy()),
-    )
+    shares = [numbers[f"inertia/{name}"][1] for name in fluid_coordinates(names, numbers)]
+    return {
+        "bushings": {
+            "stiffness": stiffness,
+            "damping": laws[:, 3:6].copy(),
+            "branch_stiffness": laws[:, 6:9].copy(),
+            "branch_time": np.divide(laws[:, 9:12], laws[:, 6:9], out=np.zeros((len(laws), 3)), where=branched),
+            "further": laws[:, AVERAGED + 1 :].copy(),
+            "averaged": whole_numbers(laws[:, AVERAGED] > 0.0),
+            "one_sided": _true_indices(f"one_sided/{name}" in numbers for name in names.bushings),
+            "oblique": _true_indices(f"directions/{name}" in numbers for name in names.bushings),
+            "directions": fields("directions", names.bushings, 9),
+        },
+        "rubber": rubber,
+        "rotations": {"stiffness": laws[laws[:, TURNING] > 0.0, TURNING].copy()},
+        "springs": {"stiffness": np.array([float(numbers[f"law/{name}"][0]) for name in names.springs])},
+        "dampers": {
+            "laws": _damper_records(names, numbers),
+            "pieces": np.reshape([numbers[f"law/{name}"] for name in names.valves], (-1, 3)).astype(float),
+        },
+        "presliding": {"stiffness": presliding[:, 0].copy(), "share": presliding[:, 1].copy()},
+        "controls": {
+            "dampers": _true_indices(f"control/{name}" in numbers for name in names.dampers),
+            "laws": in_steps(fields("control", names.dampers, NUMBERS), timestep),
+        },
+        "own": {
+            "dampers": whole_numbers([index for index, _ in user_laws]),
+            "laws": np.array([law.record(timestep) for _, law in user_laws], dtype=RECORD),
+        },
+        "tables": _tables(names, numbers)._asdict(),
+        "rolling": {
+            "speeds": rolling[:, 0].copy(),
+            "trails": rolling[:, 1].copy(),
+            "arms": rolling[:, 2:].copy(),
+            "hold": np.array(numbers.get("hold/body", np.zeros(0))),
+        },
+        "round": {"radii": fields("round", names.bushings, 1)[:, 0].copy()},
+        "fluids": {"factors": np.array([factor for share in shares for factor in (-1.0, float(share))])},
+    }
 
 
 def _words(names: LawNames, numbers: Numbers, kind: str) -> list[tuple[int, str]]:
@@ -168,7 +161,7 @@ def _damper_records(names: LawNames, numbers: Numbers) -> npt.NDArray[Any]:
     return records
 
 
-def _rubber(names: LawNames, numbers: Numbers) -> RubberFriction:
+def _rubber(names: LawNames, numbers: Numbers) -> dict[str, Any]:
     """Return the Jenkins elements of all bushings with rubber friction."""
     indices, elements_of_axes = list[tuple[int, int]](), [np.zeros((0, 2))]
     for index, name in enumerate(names.bushings):
@@ -179,7 +172,7 @@ def _rubber(names: LawNames, numbers: Numbers) -> RubberFriction:
                 indices += [(index, column)] * len(elements_of_axes[-1])
     elements, axes = (np.ascontiguousarray(column) for column in whole_numbers(indices, 2).T)
     stiffness, limit = (column.copy() for column in np.concatenate(elements_of_axes).T)
-    return RubberFriction(elements=elements, axes=axes, stiffness=stiffness, limit=limit)
+    return {"elements": elements, "axes": axes, "stiffness": stiffness, "limit": limit}
 
 
 def fluid_coordinates(names: LawNames, numbers: Numbers) -> list[str]:

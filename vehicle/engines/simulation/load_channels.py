@@ -79,7 +79,7 @@ class LoadPlaces:
     def channels(
         self, total: Vector, frames: Vector, springs: Vector, stops: Mapping[str, Vector], slopes: Mapping[str, Vector]
     ) -> dict[str, Vector]:
-        """Compute the load channels of samples.
+        """Compute the requested load channels of samples, by name; (samples,) each.
 
         Args:
             total: forces of all rows [N]; (samples, rows).
@@ -87,9 +87,6 @@ class LoadPlaces:
             springs: position and velocity of the joints with a spring; (samples, 2 j).
             stops: force of the stop of each damper [N] by the name of the damper; (samples,) each.
             slopes: force of each rolling tyre on the slope of the road [N] by wheel; (samples,) each.
-
-        Returns:
-            Requested channels by name; (samples,) each.
         """
         frames_by_body = dict(zip(self.bodies, np.split(frames, len(self.bodies), axis=1), strict=True))
         channels: dict[str, Vector] = {}

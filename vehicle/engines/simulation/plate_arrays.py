@@ -83,10 +83,8 @@ class PlateArrays:
                 acceleration[edge] = [motion.acceleration[wheel][edge] for wheel in wheels]
         further_rows = end - count - 1
         if further_rows > 0:
-            after, ends = (
-                step * np.arange(1.0, further_rows + 1.0),
-                zip(displacement[-1], velocity[-1], acceleration[-1], strict=True),
-            )
+            after = step * np.arange(1.0, further_rows + 1.0)
+            ends = zip(displacement[-1], velocity[-1], acceleration[-1], strict=True)
             further = np.stack([continued(*end, after) for end in ends], axis=1)
             displacement = np.vstack([displacement, further])
             velocity = np.vstack([velocity, velocity[-1] + acceleration[-1] * after[:, None]])

@@ -18,7 +18,8 @@ from vehicle.engines.simulation.recorded_acceleration import AHEAD, acceleration
 from vehicle.engines.simulation.recording import Energies, Recording, Statistics
 from vehicle.engines.simulation.row_layout import numeric
 from vehicle.engines.simulation.rows import Rows, joint_dampers
-from vehicle.engines.simulation.sampling import Order, Samples, Sources, empty_samples
+from vehicle.engines.simulation.sampling import Samples, empty_samples
+from vehicle.engines.simulation.structures import offsets
 from vehicle.names import AXES, channel_units
 from vehicle.signals.excitation.signal import Signal, uniform_time
 
@@ -73,43 +74,41 @@ class Recorder:
         joints = spring_coordinates(car, model)
         strokes = np.column_stack([e.dampers.places, e.dampers.dofs])[: len(self.dampers) * has_stops(e)]
         self.sites = np.array([model.site(f"place/{point}").id for point in self.places], dtype=np.int64)
-        self.sources = Sources(
-            position=data.qpos,
-            velocity=data.qvel,
-            acceleration=data.qacc,
-            orientation=data.xmat,
-            site_positions=data.site_xpos,
-            coefficient=rows.state.coefficient,
-            actuator=data.actuator_force,
-            explicit=rows.state.explicit,
-            rate=rows.state.rate,
-            branch=rows.state.branch_past,
-            modal=rows.state.modal,
-            modal_force=rows.state.modal_force,
-            sites=self.sites,
-            dampers=e.dampers.dofs,
-            origins=data.xpos,
-            spring_rates=np.concatenate([joints[:, 1], np.unique(e.fluids.dofs)]),
-            load_bodies=joints[:0, 0].copy() if self.loads is None else self.loads.bodies,
-            load_springs=np.concatenate([strokes, joints[: len(joints) * bool(loads)]]),
-            contact=rows.state.contact,
-            rubber=rows.state.rubber,
-            heading=rows.state.heading,
-            push=rows.state.push,
-            space=e.space,
-        )
+        # Joints with a spring, and fluids: their velocities are needed for the energy.
+        self.spring_dofs = np.concatenate([joints[:, 1], np.unique(e.fluids.dofs)])
+        # Views of mjData and of the state of the rows, and indices into them, from which a sample is copied.
+        self.sources = {
+            "position": data.qpos,
+            "velocity": data.qvel,
+            "acceleration": data.qacc,
+            "orientation": data.xmat,
+            "origins": data.xpos,
+            "site_positions": data.site_xpos,
+            "sites": self.sites,
+            "actuator": data.actuator_force,
+            "dampers": e.dampers.dofs,
+            "branch": rows.state.branch_past,
+            "spring_rates": self.spring_dofs,
+            # Bodies whose frames the loads need; coordinates of dampers with stops, then of springs that loads need.
+            "load_bodies": joints[:0, 0].copy() if self.loads is None else self.loads.bodies,
+            "load_springs": np.concatenate([strokes, joints[: len(joints) * bool(loads)]]),
+            "space": e.space,
+        }
+        of_state = ("coefficient", "explicit", "rate", "modal", "modal_force", "contact", "rubber", "heading", "push")
+        self.sources |= {name: getattr(rows.state, name) for name in of_state}
         self.buffers = empty_samples(CHUNK, self.sources)
-        self.order = Order(
-            step=0,
-            model=model._address,
-            data=data._address,
-            force_offset=0,
-            every=every,
-            pose_every=pose_every,
-            body=modes.body,
-            first_velocity=modes.first_velocity,
-            half=-0.5 * self.step,
-        )
+        located = offsets()
+        self.order = {
+            "step": located.step,
+            "model": model._address,
+            "data": data._address,
+            "force_offset": located.pointers["efc_force"],
+            "every": every,
+            "pose_every": pose_every,
+            "body": modes.body,
+            "first_velocity": modes.first_velocity,
+            "half": -0.5 * self.step,
+        }
         self.channels = {name: np.zeros(samples) for name in car.vehicle.channels}
         self.channels |= {name: np.zeros(samples) for name in requested}
         # Positions during the run; differentiated twice at the end.
@@ -136,7 +135,7 @@ class Recorder:
 
     def after_step(self, loop: SteppingLoop, *, moved: bool) -> None:
         """Store the sample of the present time; `moved` is True after a step, False after an evaluation."""
-        half = self.order.half if moved else -self.order.half
+        half = -0.5 * self.step if moved else 0.5 * self.step
         loop.keep_sample(self.filled, half)
         self.filled += 1
         if self.energy_at_start is None or not moved:
@@ -292,20 +291,13 @@ class Recorder:
         loss = loss + np.sum(damper_force * b.damper_velocity, axis=1)
         modal_damping = e.space.damping if e.space.damping.size else joint_dampers(self.model)[e.modes.velocities]
         loss = loss + np.sum(modal_damping * b.modal_velocity**2, axis=1)
-        loss = loss + b.spring_rates**2 @ joint_dampers(self.model)[self.sources.spring_rates]
+        loss = loss + b.spring_rates**2 @ joint_dampers(self.model)[self.spring_dofs]
         self._add_work(power_in, loss, every)
         self.done += count
         self.filled = 0
 
     def _keep_positions(self, chunk: slice, positions: Vector, turn: Vector, modal: Vector) -> None:
-        """Store the positions of all output points with their modal displacement.
-
-        Args:
-            chunk: range of samples.
-            positions: positions of the sites [m]; (chunk, 3 points).
-            turn: frame of the body, row by row; (chunk, 9).
-            modal: modal coordinates; (chunk, modes).
-        """
+        """Store positions (chunk, 3 points) with modal displacement, by frames (chunk, 9) and modes of the body."""
         for point, value in zip(self.places, np.split(positions, len(self.sites), axis=1), strict=True):
             if point in self.shapes:
                 value = value + np.einsum("nij,nj->ni", turn.reshape(-1, 3, 3), modal @ self.shapes[point].T)

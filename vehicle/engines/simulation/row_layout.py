@@ -28,20 +28,18 @@ from vehicle.engines.simulation.element_records import (
     RubberFriction,
     Springs,
     Table,
+    Tables,
     Vector,
 )
-from vehicle.engines.simulation.force_curves import tables_through
 from vehicle.engines.simulation.law_arrays import (
     fluid_coordinates,
+    law_fields,
     law_names,
     laws_of,
     model_numbers,
     whole_numbers,
-    with_numbers,
 )
 from vehicle.model.assembly.element_numbers import FLUID, TURNING
-from vehicle.model.laws.control_laws import NUMBERS, in_steps
-from vehicle.model.laws.law_by_address import RECORD
 
 
 def numeric(model: mujoco.MjModel, name: str) -> Vector | None:
@@ -54,13 +52,10 @@ def numeric(model: mujoco.MjModel, name: str) -> Vector | None:
 
 
 def read_layout(model: mujoco.MjModel) -> Layout:
-    """Read the elements of a compiled car from its custom fields.
+    """Read the elements of a compiled car from its custom fields, in the order of the constraint rows.
 
     Args:
         model: model from `vehicle.model.assembly`, or from its MJCF file.
-
-    Returns:
-        Records of the elements, in the order of the constraint rows.
     """
     kinds, law, numbers = mujoco.mjtEq, law_names(model), model_numbers(model)
     names, springs, laws = law.bushings, law.springs, laws_of(law, numbers)
@@ -105,62 +100,52 @@ def read_layout(model: mujoco.MjModel) -> Layout:
     balls = [name for name in ends if name not in springs]
     carriers = whole_numbers([model.site_bodyid[ends[name][1]] for name in names])
     rotational = [name for name, law_numbers in zip(names, laws, strict=True) if law_numbers[TURNING] > 0.0]
-    none = np.zeros(0)
     plates = {index: model.body_mocapid[carrier] for index, carrier in enumerate(carriers)}
-    empty, dampers = np.zeros((0, 3)), damper_rows(model, rows_of, int(first_rows[-1]))
-    layout = Layout(
-        bushings=Bushings(
-            rows=_triples(rows_of(names)),
-            carriers=carriers,
-            stiffness=empty,
-            damping=empty,
-            branch_stiffness=empty,
-            branch_time=empty,
-            further=empty,
-            averaged=whole_numbers([]),
-            one_sided=whole_numbers([]),
-            oblique=whole_numbers([]),
-            directions=np.zeros((0, 9)),
-        ),
-        rubber=RubberFriction(whole_numbers([]), whole_numbers([]), none, none),
+    of, none, first_friction = law_fields(law, numbers, float(model.opt.timestep)), np.zeros(0), int(first_rows[-1])
+    dampers = damper_rows(model, rows_of, first_friction, of["dampers"])
+    controlled = [name for name in law.dampers if f"control/{name}" in numbers]
+    rolling_tyres = [(names.index(name), ends[name], spins[name][0]) for name in rolling]
+    round_tyres = [(names.index(name), ends[name]) for name in names if f"round/{name}" in numbers]
+    return Layout(
+        bushings=Bushings(rows=_triples(rows_of(names)), carriers=carriers, **of["bushings"]),
+        rubber=RubberFriction(**of["rubber"]),
         rotations=Rotations(
             sites=whole_numbers([ends[name] for name in rotational], 2),
-            stiffness=np.zeros(0),
             turning=_turning(model, [ends[name] for name in rotational]),
             **_node_rotations(model, rotational, ends, modes),
+            **of["rotations"],
         ),
         springs=Springs(
             rows=rows_of(springs),
-            stiffness=np.zeros(0),
             lengths=np.array([model.tendon_length0[model.eq_obj1id[equalities[name]]] for name in springs]),
             sites=whole_numbers([ends[name] for name in springs], 2),
             shapes=_shapes(model, springs, modes),
             dofs=_spring_dofs(model, [ends[name] for name in springs]),
+            **of["springs"],
         ),
         dampers=dampers,
-        presliding=presliding_rows(model, law, dampers, int(first_rows[-1])),
+        presliding=presliding_rows(model, law, dampers, first_friction, of["presliding"]),
         sides=side_forces(model, law, numbers, ends),
-        controls=_controls(model, [name for name in law.dampers if f"control/{name}" in numbers], modes),
-        own=OwnDampers(whole_numbers([]), np.zeros(0, dtype=RECORD)),
-        tables=tables_through([]),
+        controls=Controls(**_sensors(model, controlled, modes), **of["controls"]),
+        own=OwnDampers(**of["own"]),
+        tables=Tables(**of["tables"]),
         modes=_modes(model, [name for name in balls if f"shape/{name}" in numbers], ends, rows_of, modal),
         space=ModalSpace(none, none, none, none, spread=np.zeros((0, 0))),
-        rolling=_rolling(model, [(names.index(name), ends[name], spins[name][0]) for name in rolling], plates),
-        round=_round_tyres(model, [(names.index(name), ends[name]) for name in names if f"round/{name}" in numbers]),
+        rolling=Rolling(**_rolling(model, rolling_tyres, plates), **of["rolling"]),
+        round=RoundTyres(**_round_tyres(model, round_tyres), **of["round"]),
         fluids=Fluids(
             elements=whole_numbers([names.index(row) for row, _ in moved]),
             dofs=whole_numbers([model.joint(name).dofadr[0] for _, name in moved]),
             places=whole_numbers([model.joint(name).qposadr[0] for _, name in moved]),
-            factors=np.zeros(0),
+            **of["fluids"],
         ),
         applied=applied_record(model, [_above(model, body) for body in range(model.nbody)], modes),
         joints=_triples(rows_of([name for name in balls if name not in names])),
         tyres=whole_numbers(sorted((index for index in plates if plates[index] >= 0), key=lambda index: plates[index])),
         reach=whole_numbers(nonzero, 4),
-        row_count=int(first_rows[-1]) + len(law.dampers) + int(np.count_nonzero(model.tendon_frictionloss > 0.0)),
+        row_count=first_friction + len(law.dampers) + int(np.count_nonzero(model.tendon_frictionloss > 0.0)),
         velocity_count=int(model.nv),
     )
-    return with_numbers(layout, law, numbers, float(model.opt.timestep))
 
 
 def wheels_of(model: mujoco.MjModel) -> tuple[str, ...]:
@@ -221,17 +206,12 @@ def _modes(
     )
 
 
-def _controls(model: mujoco.MjModel, chosen: Sequence[str], modes: int) -> Controls:
-    """Return the record of the controlled dampers with the sites of their sensors."""
+def _sensors(model: mujoco.MjModel, chosen: Sequence[str], modes: int) -> dict[str, Any]:
+    """Return the sites, shapes and coordinates of the sensors of controlled dampers."""
     site_names = [(f"sensor/{name}/lower", f"sensor/{name}/upper") for name in chosen]
     sites = [(int(model.site(lower).id), int(model.site(upper).id)) for lower, upper in site_names]
-    return Controls(
-        dampers=whole_numbers([]),
-        laws=in_steps(np.zeros((0, NUMBERS)), 1.0),
-        sites=whole_numbers(sites, 2),
-        shapes=_shapes(model, [site for both in site_names for site in both], modes),
-        dofs=_spring_dofs(model, sites),
-    )
+    shapes = _shapes(model, [site for both in site_names for site in both], modes)
+    return {"sites": whole_numbers(sites, 2), "shapes": shapes, "dofs": _spring_dofs(model, sites)}
 
 
 def _turning(model: mujoco.MjModel, sites: Sequence[tuple[int, int]]) -> Indices:
@@ -292,13 +272,10 @@ def _above(model: mujoco.MjModel, number: Any) -> list[int]:
 
 def _rolling(
     model: mujoco.MjModel, wheels: Sequence[tuple[int, tuple[int, int], int]], plates: dict[int, Any]
-) -> Rolling:
-    """Return the record of the rolling tyres, with law parameters of zero.
+) -> dict[str, Any]:
+    """Return the fields of the record of the rolling tyres that do not follow from their laws.
 
-    Args:
-        model: compiled car.
-        wheels: index among the bushings, sites and spin coordinate of each rolling tyre.
-        plates: index of the plate by index among the bushings.
+    `wheels` has index among the bushings, sites and spin coordinate of each tyre, `plates` the index of each plate.
     """
     order = sorted(int(position) for position in plates.values() if position >= 0)
     hubs = [int(model.site_bodyid[sites[0]]) for _, sites, _ in wheels]
@@ -309,39 +286,32 @@ def _rolling(
         for frame, body in zip(frames, rotating, strict=True):
             mujoco.mju_quat2Mat(frame, model.body_iquat[body])
         inertias.append(float(np.sum(frames.reshape(-1, 3, 3)[:, 1] ** 2 * model.body_inertia[rotating])))
-    count, course, start = len(wheels), np.zeros(0), np.zeros(0)
-    if count:
+    course, start = np.zeros(0), np.zeros(0)
+    if wheels:
         joint = model.joint("body")
         first, position = int(joint.dofadr[0]), int(joint.qposadr[0])
-        course, start = (
-            np.array([first, first + 1, first + 5, position, position + 1]),
-            model.qpos0[position : position + 2].copy(),
-        )
-    return Rolling(
-        tyres=whole_numbers([index for index, _, _ in wheels]),
-        plates=whole_numbers([order.index(int(plates[index])) for index, _, _ in wheels]),
-        sites=whole_numbers([sites[0] for _, sites, _ in wheels]),
-        hubs=whole_numbers(hubs),
-        spins=whole_numbers([spin for _, _, spin in wheels]),
-        arms=np.zeros((count, 3)),
-        speeds=np.zeros(count),
-        trails=np.zeros(count),
-        inertias=np.array(inertias),
-        dofs=whole_numbers(
-            [(n, dof, int(model.body_rootid[hub])) for n, hub in enumerate(hubs) for dof in _above(model, hub)], 3
-        ),
-        course=whole_numbers(course),
-        rest=start,
-        hold=np.zeros(0),
-    )
+        course = np.array([first, first + 1, first + 5, position, position + 1])
+        start = model.qpos0[position : position + 2].copy()
+    dofs = [(n, dof, int(model.body_rootid[hub])) for n, hub in enumerate(hubs) for dof in _above(model, hub)]
+    return {
+        "tyres": whole_numbers([index for index, _, _ in wheels]),
+        "plates": whole_numbers([order.index(int(plates[index])) for index, _, _ in wheels]),
+        "sites": whole_numbers([sites[0] for _, sites, _ in wheels]),
+        "hubs": whole_numbers(hubs),
+        "spins": whole_numbers([spin for _, _, spin in wheels]),
+        "inertias": np.array(inertias),
+        "dofs": whole_numbers(dofs, 3),
+        "course": whole_numbers(course),
+        "rest": start,
+    }
 
 
-def _round_tyres(model: mujoco.MjModel, tyres: Sequence[tuple[int, tuple[int, int]]]) -> RoundTyres:
-    """Return the record of the round tyres at rest, with radii of zero, from index among the bushings and sites."""
+def _round_tyres(model: mujoco.MjModel, tyres: Sequence[tuple[int, tuple[int, int]]]) -> dict[str, Any]:
+    """Return the same of the round tyres at rest, from index among the bushings and sites."""
     hubs = [int(model.site_bodyid[sites[0]]) for _, sites in tyres]
-    return RoundTyres(
-        tyres=whole_numbers([index for index, _ in tyres]),
-        hubs=whole_numbers(hubs),
-        radii=np.zeros(len(tyres)),
-        dofs=whole_numbers([(n, dof) for n, hub in enumerate(hubs) for dof in _above(model, hub)], 2),
-    )
+    dofs = [(n, dof) for n, hub in enumerate(hubs) for dof in _above(model, hub)]
+    return {
+        "tyres": whole_numbers([index for index, _ in tyres]),
+        "hubs": whole_numbers(hubs),
+        "dofs": whole_numbers(dofs, 2),
+    }

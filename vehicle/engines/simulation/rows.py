@@ -158,9 +158,6 @@ class Rows:
         Args:
             held: positions (nq,) or velocities (nv,) of the compiled model, which holds some of the modes.
             modal: all modal coordinates [kg^1/2 m], or their rates; (modes,).
-
-        Returns:
-            Coordinates with the modal range replaced by `modal`.
         """
         modes = self.layout.modes
         modal_range = modes.positions if held.size == self.model.nq else modes.velocities

@@ -21,14 +21,7 @@ SEEN = 1e-10
 
 
 def run_model(car: CarModel) -> tuple[mujoco.MjModel, ModalSpace | None]:
-    """Build the model of a run.
-
-    Args:
-        car: compiled car in static equilibrium.
-
-    Returns:
-        Prepared model; modal parameters for the callbacks if they integrate the modes, else None.
-    """
+    """Build the prepared model of a run, and modal parameters if the callbacks integrate the modes, else None."""
     model = prepared(car.spec, car.model.qpos_spring)
     modes = read_layout(model).modes
     if not modes.size:

@@ -1,70 +1,13 @@
-"""Records of the stepping loop (`vehicle/core/source/stepping.h`): plate motion before a step, samples after it."""
+"""Buffers of the stepping loop (`vehicle/core/source/stepping.h`) for the samples of a run."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from vehicle.engines.simulation.element_records import Index, Indices, ModalSpace, Table, Tables3, Vector
-
-
-class Plates(NamedTuple):
-    """Motion of the plates over the steps (steps, t), applied forces (steps, f), and their destination arrays.
-
-    `tread` and `tread_change` are (steps, 0) if no rolling radius varies.
-    """
-
-    height: Table
-    velocity: Table
-    acceleration: Table
-    slope: Table
-    tread: Table
-    tread_change: Table
-    mocap: Index
-    mocap_position: Table
-    row_velocity: Table
-    row_acceleration: Table
-    row_slope: Vector
-    force: Table
-    applied: Vector
-
-
-class Sources(NamedTuple):
-    """Arrays that a sample is copied from: views of mjData and of the state of the rows, and indices into them.
-
-    Attributes:
-        sites: ids of the sites of the measurement points; (p,).
-        dampers: velocity coordinates of the dampers; (w,).
-        spring_rates: velocity coordinates of the joints with a spring and of fluids, for the energy; (j,).
-        load_bodies: ids of the bodies whose frames the loads need; none in a run without loads; (b,).
-        load_springs: position and velocity coordinates of the dampers if one has a stop, then, in a run with loads, of
-            the joints with a spring; (j, 2).
-    """
-
-    position: Vector
-    velocity: Vector
-    acceleration: Vector
-    orientation: Table
-    site_positions: Table
-    coefficient: Vector
-    actuator: Vector
-    explicit: Vector
-    rate: Table
-    branch: Table
-    modal: Table
-    modal_force: Vector
-    sites: Index
-    dampers: Index
-    origins: Table
-    spring_rates: Index
-    load_bodies: Index
-    load_springs: Indices
-    contact: Table
-    rubber: Table
-    heading: Table
-    push: Vector
-    space: ModalSpace
+from vehicle.engines.simulation.element_records import Table, Tables3, Vector
 
 
 class Samples(NamedTuple):
@@ -95,59 +38,29 @@ class Samples(NamedTuple):
     pushed: Vector
 
 
-def empty_samples(count: int, s: Sources) -> Samples:
-    """Return buffers for a number of samples from these sources, filled with zeros."""
+def empty_samples(count: int, sources: Mapping[str, Any]) -> Samples:
+    """Return buffers for a number of samples from the arrays of the record Sources, filled with zeros."""
+    shapes = {name: array.shape for name, array in sources.items() if isinstance(array, np.ndarray)}
     widths: dict[str, tuple[int, ...]] = {
-        "places": (3 * len(s.sites),),
-        "turn": s.orientation.shape[1:],
-        "modal_position": s.modal.shape[1:],
-        "modal_velocity": s.modal.shape[1:],
-        "damper_velocity": s.dampers.shape,
-        "coefficient": s.coefficient.shape,
-        "actuator": s.actuator.shape,
-        "solved": s.explicit.shape,
-        "explicit": s.explicit.shape,
-        "rate": s.rate.shape,
-        "branch": s.branch.shape,
-        "poses": s.position.shape,
-        "spring_rates": s.spring_rates.shape,
-        "load_frames": (12 * len(s.load_bodies),),
-        "load_springs": (2 * len(s.load_springs),),
-        "contact": s.contact.shape[1:],
-        "rubber": s.rubber.shape[1:],
-        "heading": s.heading.shape[1:],
+        "places": (3 * shapes["sites"][0],),
+        "turn": shapes["orientation"][1:],
+        "modal_position": shapes["modal"][1:],
+        "modal_velocity": shapes["modal"][1:],
+        "damper_velocity": shapes["dampers"],
+        "coefficient": shapes["coefficient"],
+        "actuator": shapes["actuator"],
+        "solved": shapes["explicit"],
+        "explicit": shapes["explicit"],
+        "rate": shapes["rate"],
+        "branch": shapes["branch"],
+        "poses": shapes["position"],
+        "spring_rates": shapes["spring_rates"],
+        "load_frames": (12 * shapes["load_bodies"][0],),
+        "load_springs": (2 * shapes["load_springs"][0],),
+        "contact": shapes["contact"][1:],
+        "rubber": shapes["rubber"][1:],
+        "heading": shapes["heading"][1:],
         "pushed": (),
     }
     buffers = {name: np.zeros((count, *width)) for name, width in widths.items()}
-    return Samples(modal_pull=np.zeros_like(s.modal_force), **buffers)
-
-
-class Order(NamedTuple):
-    """Constants of the loop.
-
-    Attributes:
-        step, model, data: addresses of `mj_step`, mjModel and mjData.
-        force_offset: byte offset of the constraint forces in mjData.
-        every, pose_every: steps between two samples, samples between two poses.
-        body, first_velocity: id of the flexible body, first velocity coordinate of its modes.
-        half: minus half a time step [s].
-    """
-
-    step: int
-    model: int
-    data: int
-    force_offset: int
-    every: int
-    pose_every: int
-    body: int
-    first_velocity: int
-    half: float
-
-
-class Loop(NamedTuple):
-    """Records of the loop."""
-
-    order: Order
-    plates: Plates
-    sources: Sources
-    samples: Samples
+    return Samples(modal_pull=np.zeros(shapes["modal_force"]), **buffers)

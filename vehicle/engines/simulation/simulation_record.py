@@ -11,7 +11,6 @@ import numpy as np
 from vehicle.core.library import core
 from vehicle.core.records import Packed, checked, packed
 from vehicle.engines.simulation.sparse_rows import Pattern, solution_of, sparse_rows
-from vehicle.engines.simulation.step_records import Fields, Simulation, Ticket
 from vehicle.engines.simulation.structures import ROW_FIELDS, offsets
 
 if TYPE_CHECKING:
@@ -59,16 +58,17 @@ def packed_simulation(rows: Rows, data: mujoco.MjData, pattern: Pattern | None =
     """
     located = offsets()
     record, arrays = sparse_rows(pattern, located)
-    ticket = Ticket(
-        model=rows.model._address,
-        rows=rows.layout.row_count,
-        row_count=located.row_count,
-        time=located.time,
-        efc=np.array([located.pointers[f"efc_{name}"] for name in ROW_FIELDS], dtype=np.int64),
-        sparse=record,
-    )
-    fields = Fields(**{name: getattr(data, name) for name in Fields._fields})
-    solution = solution_of(rows.model, rows.layout, pattern)
-    memory, kept = packed("Simulation", Simulation(ticket, fields, rows.layout, rows.weights, rows.state, solution))
+    # With the ticket a callback finds and checks its state: rows of the records, byte offsets in mjData.
+    ticket = {
+        "model": rows.model._address,
+        "rows": rows.layout.row_count,
+        "row_count": located.row_count,
+        "time": located.time,
+        "efc": np.array([located.pointers[f"efc_{name}"] for name in ROW_FIELDS], dtype=np.int64),
+        "sparse": record,
+    }
+    parts = {"ticket": ticket, "fields": data, "layout": rows.layout, "weights": rows.weights, "state": rows.state}
+    parts["solution"] = solution_of(rows.model, rows.layout, pattern)
+    memory, kept = packed("Simulation", parts)
     model = rows.model
     return checked("Simulation", Packed(memory, (*kept, arrays, data)), model.nq, model.nbody, model.nsite)

@@ -19,7 +19,6 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.simulation.element_records import Layout
-from vehicle.engines.simulation.step_records import Solution, SparseRows
 from vehicle.engines.simulation.structures import SPARSE, Offsets
 
 Mask = npt.NDArray[np.bool_]
@@ -53,7 +52,7 @@ class Pattern(NamedTuple):
         return cls(nonzero, rows, columns)
 
 
-def sparse_rows(pattern: Pattern | None, offsets: Offsets) -> tuple[SparseRows, tuple[object, ...]]:
+def sparse_rows(pattern: Pattern | None, offsets: Offsets) -> tuple[dict[str, Any], tuple[object, ...]]:
     """Return the sparse Jacobian of a run.
 
     Args:
@@ -61,11 +60,11 @@ def sparse_rows(pattern: Pattern | None, offsets: Offsets) -> tuple[SparseRows, 
         offsets: offsets in MuJoCo's structures.
 
     Returns:
-        The record, and the arrays of the pattern, to which it contains only addresses.
+        The record SparseRows, and the arrays of the pattern, to which it contains only addresses.
     """
+    none: dict[str, Any] = dict.fromkeys(("places", "own", "offsets", "addresses", "replaced"), np.zeros(0, dtype=int))
     if pattern is None:
-        none = np.zeros(0, dtype=np.int64)
-        return SparseRows(np.zeros((0, 0)), np.zeros(0), none, none, none, none, none, 0), ()
+        return none | {"jacobian": np.zeros((0, 0)), "values": np.zeros(0), "size": 0}, ()
     nonzero = pattern.nonzero
     counts = np.count_nonzero(nonzero, axis=1).astype(np.int32)
     starts = np.cumsum([0, *counts[:-1]], dtype=np.int32)
@@ -76,21 +75,24 @@ def sparse_rows(pattern: Pattern | None, offsets: Offsets) -> tuple[SparseRows, 
     rows, columns = np.nonzero(nonzero)
     jacobian, values = np.zeros((len(nonzero), TILE * -(-nonzero.shape[1] // TILE))), np.zeros(rows.size)
     arrays = (counts, starts, following, columns.astype(np.int32), values)
-    record = SparseRows(
-        jacobian=jacobian,
-        values=values,
-        places=rows * jacobian.shape[1] + columns,
-        own=np.asarray(pattern.rows * jacobian.shape[1] + pattern.columns, dtype=np.int64),
-        offsets=np.array([offsets.pointers[name] for name in SPARSE], dtype=np.int64),
-        addresses=np.array([array.ctypes.data for array in arrays], dtype=np.int64),
-        replaced=np.zeros(len(SPARSE) + 1, dtype=np.int64),
-        size=offsets.nonzeros,
-    )
+    record = {
+        "jacobian": jacobian,  # all columns of the rows, as the laws write them; (rows, nv)
+        "values": values,  # nonzero values, row by row; (nJ,)
+        # Index in the flat `jacobian` of each value, and of each of MuJoCo's own, without columns of the body modes.
+        "places": rows * jacobian.shape[1] + columns,
+        "own": np.asarray(pattern.rows * jacobian.shape[1] + pattern.columns, dtype=np.int64),
+        # Byte offsets in mjData of the pointers to counts, starts, supernodes, columns and values, and the addresses of
+        # the arrays of this car in that order; MuJoCo's own addresses of the present step and its `nJ`; offset of `nJ`.
+        "offsets": np.array([offsets.pointers[name] for name in SPARSE], dtype=np.int64),
+        "addresses": np.array([array.ctypes.data for array in arrays], dtype=np.int64),
+        "replaced": np.zeros(len(SPARSE) + 1, dtype=np.int64),
+        "size": offsets.nonzeros,
+    }
     return record, arrays
 
 
-def solution_of(model: mujoco.MjModel, layout: Layout, pattern_of_rows: Pattern | None) -> Solution:
-    """Return the record of the equations of a step, with the pattern of H = M + J' D J and of its factor.
+def solution_of(model: mujoco.MjModel, layout: Layout, pattern_of_rows: Pattern | None) -> dict[str, Any]:
+    """Return the record Solution, the equations of a step, with the pattern of H = M + J' D J and of its factor.
 
     Args:
         model: model of the run.
@@ -101,7 +103,7 @@ def solution_of(model: mujoco.MjModel, layout: Layout, pattern_of_rows: Pattern 
         empty: dict[str, Any] = dict.fromkeys(("inertia", "singles", "frictions"), np.zeros((0, 2), dtype=np.int64))
         empty |= dict.fromkeys(("columns", "starts", "tiles"), np.zeros(0, dtype=np.int64))
         empty |= dict.fromkeys(("right", "acceleration", "weight", "limited"), np.zeros(0))
-        return Solution(size=0, groups=np.zeros((0, 4), dtype=np.int64), matrix=np.zeros((0, 0)), **empty)
+        return empty | {"size": 0, "groups": np.zeros((0, 4), dtype=np.int64), "matrix": np.zeros((0, 0))}
     nonzero, count = pattern_of_rows.nonzero, -(-model.nv // TILE)
     inertia = np.column_stack([np.repeat(np.arange(model.nv), model.M_rownnz), model.M_colind]).astype(np.int64)
     pattern = np.eye(count, dtype=np.bool_)
@@ -121,18 +123,21 @@ def solution_of(model: mujoco.MjModel, layout: Layout, pattern_of_rows: Pattern 
     single = [(row, int(np.argmax(nonzero[row]))) for row in range(len(nonzero)) if row not in grouped]
     singles = np.array(single, dtype=np.int64).reshape(-1, 2)
     frictions = singles[singles[:, 0] >= np.min(layout.dampers.frictions, initial=len(nonzero))]
-    return Solution(
-        size=int(model.nv),
-        inertia=inertia,
-        groups=np.array(groups, dtype=np.int64).reshape(-1, 4),
-        columns=np.array(columns, dtype=np.int64),
-        singles=singles,
-        frictions=frictions,
-        starts=np.cumsum([0, *map(len, rows_of_tiles)], dtype=np.int64),
-        tiles=np.concatenate(rows_of_tiles).astype(np.int64),
-        matrix=np.zeros((TILE * count, TILE * count)),
-        right=np.zeros(TILE * count),
-        acceleration=np.zeros(TILE * count),
-        weight=np.zeros(len(nonzero)),
-        limited=np.zeros(len(frictions)),
-    )
+    return {
+        "size": int(model.nv),  # nv; the tiles of 4 x 4 fill it up to n
+        "inertia": inertia,  # row and column of each number of the mass matrix; (m, 2)
+        # Rows with the same columns: first row, number of rows (3 or 1), first and end index in the tile columns.
+        "groups": np.array(groups, dtype=np.int64).reshape(-1, 4),
+        "columns": np.array(columns, dtype=np.int64),
+        # Rows with a single column, and that column; the friction rows among them.
+        "singles": singles,
+        "frictions": frictions,
+        # Tile columns of each row of tiles, ascending, the last on the diagonal.
+        "starts": np.cumsum([0, *map(len, rows_of_tiles)], dtype=np.int64),
+        "tiles": np.concatenate(rows_of_tiles).astype(np.int64),
+        "matrix": np.zeros((TILE * count, TILE * count)),  # H, factorised after the solution
+        "right": np.zeros(TILE * count),  # right-hand side without friction rows
+        "acceleration": np.zeros(TILE * count),
+        "weight": np.zeros(len(nonzero)),  # D of the rows within their limits, else zero
+        "limited": np.zeros(len(frictions)),  # sign of the force of each friction row at its limit, else zero
+    }

@@ -59,11 +59,6 @@ def require_body_modes(vehicle: Vehicle, body: Superelement) -> None:
 def require_standing(vehicle: Vehicle, rows: Rows, static: StaticTrim) -> None:
     """Reject a car with a support without load, or with a static deflection above `LARGEST_SAG`.
 
-    Args:
-        vehicle: parameters.
-        rows: rows of the car.
-        static: static loads of the car.
-
     Raises:
         ConfigurationError: the message contains the parameters.
     """

@@ -97,9 +97,6 @@ def trim(rows: Rows) -> StaticTrim:
         rows: rows of a compiled car, without static forces; the operating points of its curves and `qpos_spring` of its
             model are set in place.
 
-    Returns:
-        Preloads of the rows and static loads.
-
     Raises:
         SimulationError: the car can move without resistance.
         ConfigurationError: a static force is outside the range of the curve of its element.

@@ -1,28 +1,10 @@
-"""Records of a time step: fields of mjData, weights of the rows, state of the laws."""
+"""Records of a time step: weights of the rows, state of the laws."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
-from vehicle.engines.simulation.element_records import Index, Indices, Layout, Table, Vector
-
-
-class Fields(NamedTuple):
-    """Fields of mjData with constant addresses, under their names in mjData."""
-
-    qpos: Vector
-    qvel: Vector
-    xmat: Table
-    site_xpos: Table
-    site_xmat: Table
-    subtree_com: Table
-    cdof: Table
-    qfrc_applied: Vector
-    actuator_velocity: Vector
-    qfrc_passive: Vector
-    qfrc_bias: Vector
-    qacc_warmstart: Vector
-    M: Vector
+from vehicle.engines.simulation.element_records import Table, Vector
 
 
 class Weights(NamedTuple):
@@ -119,88 +101,3 @@ class State(NamedTuple):
     steps: Vector
     speeds: Table
     applied: Vector
-
-
-class SparseRows(NamedTuple):
-    """Constraint Jacobian of a run in MuJoCo's sparse format; see `vehicle.engines.simulation.sparse_rows`.
-
-    Attributes:
-        jacobian: all columns of the rows, as the laws write them; (rows, nv), or (0, nv) where MuJoCo's are dense.
-        values: nonzero values, row by row; (nJ,).
-        places: index of each value in the flat `jacobian`; (nJ,).
-        own: likewise of MuJoCo's own values, without the columns of the body modes.
-        offsets: byte offsets in mjData of the pointers to counts, starts, supernodes, columns and values; (5,).
-        addresses: addresses of the arrays of this car in that order; (5,).
-        replaced: MuJoCo's own addresses of the present step and its `nJ`; (6,).
-        size: byte offset of `nJ` in mjData.
-    """
-
-    jacobian: Table
-    values: Vector
-    places: Index
-    own: Index
-    offsets: Index
-    addresses: Index
-    replaced: Index
-    size: int
-
-
-class Ticket(NamedTuple):
-    """Addresses with which a callback finds and checks its state.
-
-    Attributes:
-        model: address of mjModel.
-        rows: number of constraint rows in the records.
-        row_count, time: byte offsets of `nefc` and `time` in mjData.
-        efc: byte offsets of the pointers to the fields over the rows, in the order of `structures.ROW_FIELDS`; (8,).
-        sparse: Jacobian in MuJoCo's sparse format.
-    """
-
-    model: int
-    rows: int
-    row_count: int
-    time: int
-    efc: Index
-    sparse: SparseRows
-
-
-class Solution(NamedTuple):
-    """Equations of a step in tiles of 4 x 4; see `vehicle/core/source/prediction.h`.
-
-    Attributes:
-        size: number of velocity coordinates nv; n is the next multiple of 4.
-        inertia: row and column of each number of the mass matrix; (m, 2).
-        groups: rows with the same columns: first row, number of rows (3 or 1), first and end index in `columns`.
-        columns: tile columns of the groups.
-        singles: rows with a single column, and that column; (k, 2). frictions: the friction rows among them; (f, 2).
-        starts, tiles: tile columns of each row of tiles, ascending, the last on the diagonal; (n / 4 + 1,).
-        matrix: H, factorised after the solution; (n, n).
-        right, acceleration: right-hand side without friction rows, solution; (n,).
-        weight: D of the rows within their limits, else zero; (rows,).
-        limited: sign of the force of each friction row at its limit, else zero; (f,).
-    """
-
-    size: int
-    inertia: Indices
-    groups: Indices
-    columns: Index
-    singles: Indices
-    frictions: Indices
-    starts: Index
-    tiles: Index
-    matrix: Table
-    right: Vector
-    acceleration: Vector
-    weight: Vector
-    limited: Vector
-
-
-class Simulation(NamedTuple):
-    """Records of a callback."""
-
-    ticket: Ticket
-    fields: Fields
-    layout: Layout
-    weights: Weights
-    state: State
-    solution: Solution

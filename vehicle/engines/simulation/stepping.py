@@ -21,7 +21,6 @@ from vehicle.engines.simulation.recorder import CHUNK, Recorder
 from vehicle.engines.simulation.recording import Recording, Statistics
 from vehicle.engines.simulation.rows import Rows
 from vehicle.engines.simulation.run_model import run_model
-from vehicle.engines.simulation.sampling import Loop, Plates
 from vehicle.engines.simulation.tyre_variation import run_out, with_run_out
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.laws.controller_fmu import controllers
@@ -46,16 +45,13 @@ def simulate(
     progress: Progress | None = None,
     requested: Sequence[str] = (),
 ) -> Recording:
-    """Run a car on its shaker plates.
+    """Run a car on its shaker plates; the recording is sampled at `solver.record_rate`.
 
     Args:
         car: compiled car in static equilibrium.
         signal: displacement of the plates.
         progress: function that is called with the finished fraction [-] about every `CHUNK` samples.
         requested: names of additional channels: loads and damper settings.
-
-    Returns:
-        Recording, sampled at `solver.record_rate`.
 
     Raises:
         ConfigurationError: the recording rate is not an integer fraction of the step rate, the core lacks a friction
@@ -88,27 +84,22 @@ def simulate(
         minimum=(CHUNK + 1) * every + unit,
         forces=partial(averaged_forces, forces, step),
     )
-    plates = Plates(
-        height=block.height,
-        velocity=block.velocity,
-        acceleration=block.acceleration,
-        slope=block.slope,
-        tread=block.tread,
-        tread_change=block.tread_change,
-        mocap=np.array(mocap, dtype=np.int64),
-        mocap_position=data.mocap_pos,
-        row_velocity=rows.state.plate_velocity,
-        row_acceleration=rows.state.plate_acceleration,
-        row_slope=rows.state.slope_velocity,
-        force=block.force,
-        applied=rows.state.applied,
-    )
+    state = rows.state
+    plates = {
+        **vars(block),
+        "mocap": np.array(mocap, dtype=np.int64),
+        "mocap_position": data.mocap_pos,
+        "row_velocity": state.plate_velocity,
+        "row_acceleration": state.plate_acceleration,
+        "row_slope": state.slope_velocity,
+        "applied": state.applied,
+    }
     compiled = CompiledRows(rows)
     recorder = Recorder(
         car, model, data, rows, samples=count // every + 1, every=every, pose_every=pose_every, requested=requested
     )
     compiled.attach(data, sparse=True)
-    loop = SteppingLoop(Loop(recorder.order, plates, recorder.sources, recorder.buffers))
+    loop = SteppingLoop(order=recorder.order, plates=plates, sources=recorder.sources, samples=recorder.buffers)
     laws = {damper.name: damper.law.controlled for damper in car.vehicle.composition.dampers}
     names = [rows.laws.dampers[index] for index in rows.layout.controls.dampers]
     controls = [(name, control) for name in names if (control := laws[name]) is not None]

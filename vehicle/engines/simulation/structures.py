@@ -35,7 +35,7 @@ SPARSE = ("efc_J_rownnz", "efc_J_rowadr", "efc_J_rowsuper", "efc_J_colind", "efc
 
 ROW_FIELDS = ("J", "KBIP", "pos", "vel", "aref", "D", "R", "frictionloss")
 """Fields of mjData over the constraint rows, whose addresses change between steps, without `efc_`; the order of
-`Ticket.efc`."""
+`efc` in the ticket of a simulation."""
 
 POINTERS = (*(f"efc_{name}" for name in ROW_FIELDS), *SPARSE[:-1], "efc_force", "userdata")
 """Array pointers of mjData that compiled code follows."""
@@ -70,9 +70,6 @@ def layout(name: str, last: str = "") -> Layout:
     Args:
         name: name of the structure, like "mjData".
         last: last field of the class; all fields by default.
-
-    Returns:
-        Structure class; only its layout is used.
 
     Raises:
         LookupError: the declarations contain an unsupported type.
@@ -111,14 +108,11 @@ def _ctype(declared: Any) -> Any:
 
 
 def pointer_offsets(data: mujoco.MjData, names: Iterable[str]) -> dict[str, int]:
-    """Return the byte offsets of array pointers in mjData.
+    """Return the byte offsets of array pointers in mjData, by name.
 
     Args:
         data: state after a forward evaluation, so that the arrays exist.
         names: names of the arrays.
-
-    Returns:
-        Offset [bytes] by name.
 
     Raises:
         LookupError: a pointer has another offset than declared.

@@ -52,10 +52,6 @@ def with_plates(signal: Signal, wheels: Iterable[str]) -> Signal:
 def with_run_out(signal: Signal, run_outs: RunOut) -> Signal:
     """Return the motion of the road as the tyres take it: with their run-out, and with the slope of the road alone.
 
-    Args:
-        signal: motion of the plates.
-        run_outs: run-outs, see `run_out`.
-
     Raises:
         ConfigurationError: the samples of the signal are too far apart for the run-out.
     """
@@ -78,18 +74,16 @@ def with_run_out(signal: Signal, run_outs: RunOut) -> Signal:
 def tread_motion(
     forces: Sequence[PlacedForce], wheels: Sequence[str], step: float, first: int, count: int
 ) -> tuple[Vector, Vector]:
-    """Return the velocities of the treads in some steps [m/s], and their changes over the step [m/s2].
+    """Return velocities of the treads in some steps [m/s], and their changes over it [m/s2]; (count, w) each.
 
     Both are those of MuJoCo's velocities: the mean over the past step, and the difference of the means of two steps.
+    They have no columns if no rolling radius varies.
 
     Args:
         forces: applied forces.
         wheels: names of the wheels.
         step: time step [s].
         first, count: first of the steps, and their number.
-
-    Returns:
-        Two arrays (count, w); (count, 0) if no rolling radius varies.
     """
     treads = [force for force in forces if force.unit == "m/s" and force.harmonics]
     if not treads:

@@ -16,11 +16,11 @@ import numpy.typing as npt
 
 from vehicle.core.records import dtype, stored
 from vehicle.engines.reduced.car_table import CarTable, damper_nodes
-from vehicle.engines.reduced.feedback import sensor_outputs
+from vehicle.engines.reduced.feedback import Feedback, sensor_outputs
 from vehicle.engines.reduced.group_run import march_fields, packed_cars
 from vehicle.engines.reduced.pole_model import PoleModel, pole_model
 from vehicle.engines.reduced.step_factors import CarFactors, car_factors
-from vehicle.engines.reduced.table_layout import DOUBLE, TILE, OutputTiles, aligned_table
+from vehicle.engines.reduced.table_layout import DOUBLE, TILE, aligned_table
 from vehicle.errors import ConfigurationError
 from vehicle.handover.fmu.output_rows import (
     Output,
@@ -147,7 +147,7 @@ def numbers_with(
     groups, names = model.groups, [*wheels, *(damper.name for damper in composition)]
     beside = ((0, 0), (0, len(forces)))  # a force has no direct part in velocities, nor one of slopes
     record = {
-        "march": _march(cars, march_fields(cars, feedback, _no_outputs(len(model.laws)))),
+        "march": _march(cars, feedback),
         "step": step,
         "dampers": np.array([damper_nodes(law)[0] for law in laws], dtype=dtype("DamperLaw")),
         "inner": np.array([_inner_nodes(law) for law in laws], dtype=np.int64),
@@ -187,30 +187,14 @@ def numbers_with(
     )
 
 
-def _no_outputs(laws: int) -> OutputTiles:
-    """Return no outputs of the march: the runtime reads its own rows."""
-    nothing, none = aligned_table(0, DOUBLE), np.zeros(0, dtype=np.int64)
-    return OutputTiles(
-        positions=nothing,
-        levels=nothing,
-        rotations=nothing,
-        loads=0,
-        tyre_of=np.full(laws, -1, dtype=np.int64),
-        watched=0,
-        check_every=1,
-        always=False,
-        wanted=none,
-        offset=np.zeros((0, 0)),
-        weights=np.zeros((0, 0)),
-    )
-
-
-def _march(cars: CarTable, fields: dict[str, Any]) -> dict[str, Any]:
-    """Return the record March without the memory of a run, which the runtime adds."""
-    nothing, blank = aligned_table(0, DOUBLE), np.zeros((0, 0))
-    fields |= dict.fromkeys(("x", "changes", "y", "peaks"), nothing) | {"every": 1, "step": 0, "first": 1}
-    fields |= {"rates": blank, "plate_z": blank, "cars": np.zeros(0, dtype=np.int64), "out": np.zeros((0, 0, 0))}
-    return fields
+def _march(cars: CarTable, feedback: Feedback) -> dict[str, Any]:
+    """Return the record March without outputs, which the runtime reads itself, and memory of a run, which it adds."""
+    nothing, blank, none = aligned_table(0, DOUBLE), np.zeros((0, 0)), np.zeros(0, dtype=np.int64)
+    fields = dict.fromkeys(("x", "changes", "y", "peaks", "positions", "levels", "rotations"), nothing)
+    fields |= dict.fromkeys(("rates", "plate_z", "offset", "weights"), blank)
+    fields |= {"tyre_of": np.full(cars.rows["curves"], -1, dtype=np.int64), "wanted": none, "cars": none}
+    fields |= {"every": 1, "step": 0, "first": 1, "loads": 0, "watched": 0, "check_every": 1, "always": False}
+    return march_fields(cars, feedback, fields | {"out": np.zeros((0, 0, 0))})
 
 
 def _joined(tables: Sequence[npt.NDArray[Any]]) -> npt.NDArray[Any]:

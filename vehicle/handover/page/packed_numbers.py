@@ -78,7 +78,7 @@ def byte_runs(numbers: CarNumbers, coarse_outputs: int, *, exact: bool) -> list[
     poles[:] = short
     poles[:, 1 + before :][:, : cars.plates] = cancelling
     table, rows = of("march.table").reshape(-1, PARTS), cars.rows
-    table[rows.slip : rows.full] = table[rows.direct : rows.rest] = short
+    table[rows["slip"] : rows["full"]] = table[rows["direct"] : rows["rest"]] = short
     outputs = of("rows").reshape(-1, cars.states * PARTS)
     outputs[: len(numbers.outputs)] = cancelling
     outputs[len(numbers.outputs) - coarse_outputs :] = COARSE[short]

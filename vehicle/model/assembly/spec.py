@@ -40,10 +40,6 @@ def assemble(vehicle: Vehicle, trimmed_body: Superelement) -> Assembly:
 
     Every body frame is parallel to the vehicle frame in the design position, with its origin at the centre of gravity.
 
-    Args:
-        vehicle: parameters.
-        trimmed_body: modal model of the trimmed body.
-
     Raises:
         DataError: the superelement lacks a node at a point where a force acts.
     """

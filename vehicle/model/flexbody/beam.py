@@ -105,15 +105,12 @@ def _cross(first: FloatArray, second: FloatArray) -> FloatArray:
 
 
 def beam_stiffness(start: ArrayLike, end: ArrayLike, section: BeamSection) -> FloatArray:
-    """Return the stiffness matrix of a beam in global axes: T^T k T with T = diag(R, R, R, R).
+    """Return the stiffness of a beam in global axes [N/m, N, N m], (12, 12): T^T k T with T = diag(R, R, R, R).
 
     Args:
         start: position of the first node [m], shape (3,).
         end: position of the second node [m], shape (3,).
         section: cross-section stiffnesses.
-
-    Returns:
-        Stiffness [N/m, N, N m], shape (12, 12).
     """
     rotation = np.zeros((12, 12))
     axes = local_axes(start, end)

@@ -120,13 +120,10 @@ class BodyDesign:
         return tuple(name for name, group in self.members.items() if group.factor is not None)
 
     def placed(self, points: Mapping[str, Point]) -> dict[str, dict[str, Point]]:
-        """Return the node positions of every entry for a car: a single node, or a right and a left node.
+        """Return the positions [m] of the node, or right and left node, of every entry for a car, by entry and node.
 
         Args:
             points: hardpoints of the car in the vehicle frame [m], by name.
-
-        Returns:
-            Name of the entry -> name of the node -> position in the vehicle frame [m].
 
         Raises:
             ConfigurationError: the car lacks a hardpoint, or two entries define the same node name.

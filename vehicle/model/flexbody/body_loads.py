@@ -95,10 +95,6 @@ def loaded_properties(rigid: MassProperties, loads: Sequence[BodyLoad]) -> MassP
 def with_loads(body: Superelement, loads: Sequence[BodyLoad]) -> Superelement:
     """Add loads to a body model, within the space of its rigid motions and its modes.
 
-    Args:
-        body: the body model.
-        loads: loads on the body.
-
     Returns:
         Body with the mass properties and modes including the loads; exact if `body` contains all its elastic modes.
     """

@@ -45,14 +45,11 @@ def condense_rotations(stiffness: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def rigid_shapes(positions: FloatArray, center: FloatArray) -> FloatArray:
-    """Return the displacement of every node in the six rigid motions: unit translations, unit rotations about a centre.
+    """Return unit translations and unit rotations about a centre at every node [1 and m], shape (6, n, 3).
 
     Args:
         positions: node positions [m], shape (n, 3).
         center: centre of the rotations [m], shape (3,).
-
-    Returns:
-        Shapes [1 and m], shape (6, n, 3).
     """
     shapes = np.zeros((6, len(positions), 3))
     for axis in range(3):
@@ -111,9 +108,6 @@ def fix_signs(shapes: FloatArray) -> FloatArray:
 
     Args:
         shapes: mode shapes, shape (modes, n, 3).
-
-    Returns:
-        Shapes, each multiplied by 1 or -1.
     """
     flat = shapes.reshape(len(shapes), -1)
     largest = flat[np.arange(len(flat)), np.argmax(np.abs(flat), axis=1)]

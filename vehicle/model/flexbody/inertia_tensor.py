@@ -34,15 +34,12 @@ def inertia_tensor(*, ixx: float, iyy: float, izz: float, ixy: float, izx: float
 
 
 def about_cog(inertia_about_origin: ArrayLike, mass: float, cog: ArrayLike) -> FloatArray:
-    """Return the inertia tensor about the CoG by the parallel-axis theorem: I_c = I_0 - m (|c|^2 1 - c c^T).
+    """Return the tensor about the CoG [kg m2], (3, 3), by the parallel-axis theorem: I_c = I_0 - m (|c|^2 1 - c c^T).
 
     Args:
         inertia_about_origin: I_0 [kg m2], shape (3, 3).
         mass: mass [kg].
         cog: centre of gravity [m], shape (3,).
-
-    Returns:
-        Tensor about the CoG [kg m2], shape (3, 3).
     """
     c = np.asarray(cog, dtype=float)
     square = np.sum(c * c)  # not c @ c: BLAS rounds it differently on different processors
@@ -96,9 +93,6 @@ def nearest_physical(inertia: ArrayLike) -> PhysicalInertia:
 
     Args:
         inertia: tensor about the CoG [kg m2], shape (3, 3), symmetric.
-
-    Returns:
-        The physical tensor, the change and the shortfall.
 
     Raises:
         ConfigurationError: the tensor is not finite and symmetric of shape (3, 3), or has no positive second moment.

@@ -63,9 +63,6 @@ def mass_difference(model: Superelement, body: TrimmedBody, loads: Sequence[Body
         model: body model without attached masses.
         body: body of the vehicle file.
         loads: loads on the body that the model includes.
-
-    Returns:
-        One notice, or an empty list.
     """
     if not (body.flexible and len(model.frequencies)):
         return []

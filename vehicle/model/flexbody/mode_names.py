@@ -18,7 +18,7 @@ _DIRECTION = ("fore-aft", "lateral", "vertical")
 
 
 def global_patterns(positions: FloatArray, node_mass: FloatArray) -> dict[str, FloatArray]:
-    """Return mass-normalised global deformation patterns, orthogonal to the rigid-body modes.
+    """Return global deformation patterns, mass-normalised, orthogonal to rigid motions [kg^-1/2], (n, 3) by name.
 
     Torsion is a twist about x that grows with x, bending a parabola over x with plane sections, lozenging a uniform
     shear of the cross-sections, racking a shear of the cross-sections that grows with x.
@@ -26,9 +26,6 @@ def global_patterns(positions: FloatArray, node_mass: FloatArray) -> dict[str, F
     Args:
         positions: node positions [m], shape (n, 3).
         node_mass: lumped masses [kg], shape (n,).
-
-    Returns:
-        Name -> shape [kg^-1/2], shape (n, 3).
     """
     center = node_mass @ positions / node_mass.sum()
     x, y, z = (positions - center).T
@@ -72,7 +69,7 @@ def _region(position: FloatArray) -> str:
 def mode_names(
     shapes: FloatArray, nodes: tuple[str, ...], positions: FloatArray, node_mass: FloatArray
 ) -> tuple[str, ...]:
-    """Return a name for every mode.
+    """Return a name for every mode; equal names get a number.
 
     A mode is named after the global pattern with the highest modal assurance, if at least 0.3; else after a node with
     more than half of the kinetic energy; else after the region with the highest energy, with the parity. The direction
@@ -83,9 +80,6 @@ def mode_names(
         nodes: node names.
         positions: node positions [m], shape (n, 3).
         node_mass: lumped masses [kg], shape (n,).
-
-    Returns:
-        Names; equal names get a number.
     """
     patterns = global_patterns(positions, node_mass)
     regions = [_region(position) for position in positions]

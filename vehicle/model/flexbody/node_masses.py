@@ -41,7 +41,7 @@ def matched_masses(
     cog: FloatArray,
     inertia_about_cog: FloatArray,
 ) -> FloatArray:
-    """Return the positive masses nearest to an estimate that have a given total mass, centre of gravity and inertia.
+    """Return the positive masses [kg], (n,), nearest to an estimate that have a given mass, CoG and inertia.
 
     Minimise sum (m ln(m/g) - m + g) / r subject to A m = b (ten rows: mass, first and second moments about the CoG).
     The solution is m = g exp(r A^T l); Newton's method on the convex dual finds the ten multipliers l.
@@ -53,9 +53,6 @@ def matched_masses(
         mass: required total mass [kg].
         cog: required centre of gravity [m], shape (3,).
         inertia_about_cog: required tensor [kg m2], shape (3, 3).
-
-    Returns:
-        Masses [kg], shape (n,).
 
     Raises:
         ConfigurationError: no positive masses at these positions have the required properties.
@@ -122,15 +119,12 @@ class NodeProperties(NamedTuple):
         return cls(mass=model.mass, cog=model.cog, ixx=max(xx, least_ixx), iyy=yy, izz=zz, izx=-zx)
 
     def masses(self, guess: FloatArray, freedom: FloatArray, positions: FloatArray) -> FloatArray:
-        """Return the node masses nearest to an estimate that have these mass properties.
+        """Return the node masses nearest to an estimate that have these mass properties [kg], shape (n,).
 
         Args:
             guess: estimated masses [kg], shape (n,).
             freedom: weight of the relative change of each node [1], shape (n,).
             positions: node positions [m], shape (n, 3).
-
-        Returns:
-            Masses [kg], shape (n,).
 
         Raises:
             ConfigurationError: see `matched_masses`; the message names the parameters of the vehicle.

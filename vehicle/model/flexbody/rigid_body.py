@@ -47,9 +47,6 @@ def cog_inertia(body: TrimmedBody) -> Vector:
 def rigid_body(body: TrimmedBody) -> RigidBody:
     """Return the mass properties of a body about its CoG; replace a non-physical tensor by the nearest physical one.
 
-    Args:
-        body: parameters of the body.
-
     Returns:
         Mass properties accepted by MuJoCo, with a summary of the repair.
 

@@ -116,15 +116,12 @@ def _excess_motion(body: Superelement, node_mass: FloatArray, shapes: FloatArray
 
 
 def fit_factors(frame: BodyFrame, start: Mapping[str, float], weights: tuple[float, ...]) -> dict[str, float]:
-    """Fit the section factors that minimise `residuals`, in stages of growing weight of the three frequencies.
+    """Fit the factors [1] of member groups that minimise `residuals`, in stages of growing weight of the frequencies.
 
     Args:
         frame: the body frame.
         start: initial value of every factor [1].
         weights: weight of the three frequencies in each stage [1/Hz].
-
-    Returns:
-        Factor of every member group [1].
 
     Raises:
         ConfigurationError: the fit from this start misses a frequency by more than 0.1 Hz.

@@ -338,9 +338,6 @@ def controllers(
 def require_controllers(controls: Iterable[SemiActiveDamper | None]) -> None:
     """Check the FMUs of controllers before a run.
 
-    Args:
-        controls: controls of the dampers; None for a passive damper.
-
     Raises:
         ConfigurationError, DataError, MissingPartError: see `read_controller`.
     """

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from vehicle.model.parameters.hardpoints import Point
+from vehicle.model.parameters.hardpoints import Point, cross, unit
 
 Axes = tuple[Point, Point, Point]
 """Directions of x, y and z of an element in the vehicle frame."""
@@ -19,13 +19,8 @@ def axes_along(start: Point, end: Point) -> Axes:
     Args:
         start, end: two different points [m].
     """
-    x = _unit((end[0] - start[0], end[1] - start[1], end[2] - start[2]))
+    x = unit((end[0] - start[0], end[1] - start[1], end[2] - start[2]))
     level = math.hypot(x[0], x[1])
     y = (0.0, 1.0, 0.0) if level < 1e-6 else (-x[1] / level, x[0] / level, 0.0)
-    z = _unit((x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]))
+    z = unit(cross(x, y))
     return x, y, z
-
-
-def _unit(vector: Point) -> Point:
-    length = math.hypot(*vector)
-    return (vector[0] / length, vector[1] / length, vector[2] / length)

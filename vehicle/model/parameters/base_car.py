@@ -39,9 +39,6 @@ def vehicle_table(path: Path, above: tuple[Path, ...] = ()) -> dict[str, Any]:
 def base_file(file: Path) -> Path | None:
     """Return the vehicle file of the base of a vehicle file; None if it has no base.
 
-    Args:
-        file: path of the file.
-
     Raises:
         ConfigurationError: the file cannot be read, or its base is no vehicle file.
     """

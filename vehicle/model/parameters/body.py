@@ -143,9 +143,6 @@ class TrimmedBody:
 def require_inertia_table(body: Mapping[str, Any]) -> None:
     """Raise an error for the moments of earlier vehicle files, which were keys of [body].
 
-    Args:
-        body: table [body] of a vehicle file.
-
     Raises:
         ConfigurationError: earlier keys are present; the message gives the table to write instead.
     """

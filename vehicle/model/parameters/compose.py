@@ -110,12 +110,7 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
 
 
 def parameter_kinds(car: Mapping[str, Instance], table: Mapping[str, Any]) -> dict[str, type]:
-    """Return the parameter class of each table of numbers, by its path in the vehicle file.
-
-    Args:
-        car: instances by name.
-        table: vehicle file.
-    """
+    """Return the parameter class of each table of numbers, by its path in the vehicle file."""
     kinds: dict[str, type] = {
         f"connection.{name}": law_kind(entry) for name, entry in table.get("connection", {}).items()
     }

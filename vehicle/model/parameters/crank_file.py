@@ -17,14 +17,11 @@ UNITS = ("1/min", "rpm", "RPM", "min-1", "r/min")
 
 
 def measured_speed(file: str, channel: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Return the speed of a crankshaft of a file; its time begins at 0.
+    """Return times [s] and speeds [rad/s] of a crankshaft of a file; its time begins at 0.
 
     Args:
         file: measurement file of any format of `vehicle.signals.formats`.
         channel: number or name of the channel; empty for the only one in 1/min or rpm.
-
-    Returns:
-        Times [s] and speeds [rad/s].
 
     Raises:
         ConfigurationError: the file does not exist.

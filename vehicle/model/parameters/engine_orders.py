@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.hardpoints import Point
+from vehicle.model.parameters.hardpoints import Point, cross, unit
 from vehicle.model.parameters.quantity import quantity, validate
 
 ENGINE, ORDERS = "engine", "orders"
@@ -86,7 +86,7 @@ class EngineOrders:
             )
         if self.rod <= 0.5 * self.stroke:
             raise ConfigurationError(f"EngineOrders.rod: found {self.rod:g} m, must be above half the stroke")
-        across = math.hypot(*_cross(self.crank_axis, self.cylinder_axis))
+        across = math.hypot(*cross(self.crank_axis, self.cylinder_axis))
         if not across > 0.1 * math.hypot(*self.crank_axis) * math.hypot(*self.cylinder_axis):
             raise ConfigurationError(
                 f"EngineOrders.cylinder_axis: found {list(self.cylinder_axis)}, must be across the crankshaft, "
@@ -96,15 +96,5 @@ class EngineOrders:
     @property
     def axes(self) -> tuple[Point, Point, Point]:
         """Unit vectors of the crankshaft, of the cylinders, and across both: crankshaft x cylinders."""
-        shaft, across = _unit(self.crank_axis), _unit(_cross(self.crank_axis, self.cylinder_axis))
-        return shaft, _cross(across, shaft), across
-
-
-def _cross(a: Point, b: Point) -> Point:
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
-
-
-def _unit(vector: Point) -> Point:
-    length = math.hypot(*vector)
-    x, y, z = (value / length for value in vector)
-    return (x, y, z)
+        shaft, across = unit(self.crank_axis), unit(cross(self.crank_axis, self.cylinder_axis))
+        return shaft, cross(across, shaft), across

@@ -101,11 +101,6 @@ def new_tables(overrides: Iterable[str]) -> list[str]:
 def further_force(name: str, value: Any, targets: ForceTargets) -> PlacedForce:
     """Return a force that the vehicle file adds.
 
-    Args:
-        name: name of the force.
-        value: its table.
-        targets: what it can refer to.
-
     Raises:
         ConfigurationError: a name that does not exist, or a wrong value.
     """
@@ -221,10 +216,6 @@ def engine_forces(car: Mapping[str, Instance], targets: ForceTargets) -> list[Pl
     The order 1 of the pistons is half a vector that turns with the crankshaft and half a vector that turns backward.
     Counterweights at the share k of the pistons leave 1/2 - k of the first, a balance shaft at the share s leaves
     (1 - s)/2 of the second: 1 - k - s/2 along the cylinders, and k - s/2 a quarter turn later across them.
-
-    Args:
-        car: instances by name.
-        targets: names that a force can use.
 
     Raises:
         ConfigurationError: a value is wrong, or the engine does not give its torque.

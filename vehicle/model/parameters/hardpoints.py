@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 from vehicle.errors import ConfigurationError
 
@@ -23,6 +23,17 @@ SMALLEST_SINE = 0.02
 def mirrored(point: Point, sign: float) -> Point:
     """Return a point of the right side (sign 1) or its mirror image on the left side (sign -1)."""
     return (point[0], sign * point[1], point[2])
+
+
+def cross(a: Point, b: Point) -> Point:
+    """Return the vector product."""
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def unit(vector: Point) -> Point:
+    """Return a vector of length one with this direction."""
+    length = math.hypot(*vector)
+    return (vector[0] / length, vector[1] / length, vector[2] / length)
 
 
 def require_point(path: str, point: Point, *, right: bool) -> None:
@@ -70,15 +81,8 @@ def require_triangle(points: Mapping[str, Point]) -> None:
         ConfigurationError: the points are collinear.
     """
     corner, first, second = list(points.values())[:3]
-    if _sine(corner, first, second) < SMALLEST_SINE:
+    u, v = ((end[0] - corner[0], end[1] - corner[1], end[2] - corner[2]) for end in (first, second))
+    if math.hypot(*cross(u, v)) / (math.hypot(*u) * math.hypot(*v)) < SMALLEST_SINE:
         raise ConfigurationError(
             f"{', '.join(points)}: lie on one line; an A-arm needs three points that span a triangle"
         )
-
-
-def _sine(corner: Sequence[float], first: Sequence[float], second: Sequence[float]) -> float:
-    """Return the sine of the angle at `corner` of a triangle."""
-    u = [b - a for a, b in zip(corner, first, strict=True)]
-    v = [b - a for a, b in zip(corner, second, strict=True)]
-    cross = (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
-    return math.hypot(*cross) / (math.hypot(*u) * math.hypot(*v))

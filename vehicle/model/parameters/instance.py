@@ -262,13 +262,7 @@ def instances(
 
 
 def _instance_tables(table: Mapping[str, Any], prefix: str, instance: str) -> Iterator[tuple[str, Mapping[str, Any]]]:
-    """Yield the tables with a template, with their paths; outside an instance, every table contains an instance.
-
-    Args:
-        table: table to search.
-        prefix: path of the table, with a final dot.
-        instance: path of the instance that the table is or belongs to; empty elsewhere.
-    """
+    """Yield the tables with a template, with their paths; outside an instance, every table contains an instance."""
     for key, value in table.items():
         path = f"{prefix}{key}"
         if not prefix and key in VEHICLE_KEYS:

@@ -39,18 +39,11 @@ def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
         ConfigurationError: its templates or their keys are wrong.
     """
     car = instances(table, (folder, folder / "templates"))
-    paths, kinds = (
-        [
-            "shaker_wheel",
-            "shaker_wheel_in_source",
-            "apply_forces",
-            "solver.timestep",
-            *(f"crank.{key}" for key in Crank.__dataclass_fields__),
-            *(f"driving.{key}" for key in _keys(Driving, everything=False)),
-            *(f"body.{key}" for key in _keys(TrimmedBody, everything=False) if key != "modes"),
-        ],
-        parameter_kinds(car, table),
-    )
+    kinds = parameter_kinds(car, table)
+    paths = ["shaker_wheel", "shaker_wheel_in_source", "apply_forces", "solver.timestep"]
+    paths += [f"crank.{key}" for key in Crank.__dataclass_fields__]
+    paths += [f"driving.{key}" for key in _keys(Driving, everything=False)]
+    paths += [f"body.{key}" for key in _keys(TrimmedBody, everything=False) if key != "modes"]
     paths += [f"body.inertia.{key}" for key in _keys(BodyInertia, everything=False)]
     # An ideal joint becomes a bushing by numbers.
     bushings = [f"{i.name}.bushings.{link.name}" for i in car.values() for link in i.template.connection]

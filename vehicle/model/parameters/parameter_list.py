@@ -193,11 +193,7 @@ def _parameter(vehicle: Vehicle, path: str, value: Any, source: str) -> Paramete
 
 
 def range_text(declared: Mapping[str, Any]) -> str:
-    """Return the permitted values of a parameter, as "0 to 0.9", "> 0" or "coulomb, stribeck"; empty without a limit.
-
-    Args:
-        declared: declaration of the parameter, see `quantity`.
-    """
+    """Return the permitted values of a parameter, as "0 to 0.9", "> 0" or "coulomb, stribeck"; empty if all are."""
     if declared.get("choices"):
         return ", ".join(declared["choices"])
     low, above, high = (declared.get(key) for key in ("at_least", "above", "at_most"))

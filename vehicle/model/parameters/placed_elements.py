@@ -33,11 +33,7 @@ from vehicle.names import SIDE_SIGN
 
 
 def element_kinds(car: Mapping[str, Instance]) -> dict[str, type]:
-    """Return the parameter class of each table of numbers of the instances, by its path in the vehicle file.
-
-    Args:
-        car: instances by name.
-    """
+    """Return the parameter class of each table of numbers of the instances, by its path in the vehicle file."""
     kinds: dict[str, type] = {}
     for i in car.values():
         kinds |= {f"{i.name}.parts.{name}": Part for name in i.template.parts}
@@ -148,11 +144,8 @@ def placed_springs(car: Mapping[str, Instance]) -> tuple[list[PlacedSpring], lis
     """
     between, on_joints = list[PlacedSpring](), list[JointSpring]()
     for i, e, side in elements(car, "spring"):
-        law, path, tables = (
-            i.get(spring_kind(i.template, e), side, e.name),
-            f"{i.name}.{e.name}",
-            i.table_paths(side, e.name),
-        )
+        law, tables = i.get(spring_kind(i.template, e), side, e.name), i.table_paths(side, e.name)
+        path = f"{i.name}.{e.name}"
         if isinstance(law, MainSpring):
             between.append(
                 PlacedSpring(

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.composition import PlacedJoint, PlacedPart
-from vehicle.model.parameters.hardpoints import Point, mirrored
+from vehicle.model.parameters.hardpoints import Point, cross, mirrored
 from vehicle.model.parameters.instance import Instance, elements
 from vehicle.model.parameters.rigid_part import Part
 from vehicle.model.parameters.toml_file import nearest
@@ -30,9 +30,6 @@ class _Held:
 
 def placed_parts(car: Mapping[str, Instance]) -> list[PlacedPart]:
     """Return the parts of all instances; a parent comes before its children.
-
-    Args:
-        car: instances by name.
 
     Raises:
         ConfigurationError: a part without a joint, with two parents or in a loop of joints; a joint that would ignore
@@ -148,12 +145,6 @@ def _placed_joints(i: Instance, joint: Joint, side: str | None, label: str) -> I
     """Yield the joints of the model for a joint of a template: none for a fixed joint, two hinges for a Cardan joint.
 
     The axis of a slide is a vector. The axis of a hinge is a pseudovector: equal coordinates are mirrored motions.
-
-    Args:
-        i: instance of the joint.
-        joint: joint of the template.
-        side: "right" or "left"; None for a joint that exists once, whose axis is not mirrored.
-        label: name of the child in the model.
     """
     if joint.kind in ("free", "fixed"):
         if joint.kind == "free":
@@ -177,9 +168,9 @@ def _placed_joints(i: Instance, joint: Joint, side: str | None, label: str) -> I
         yield PlacedJoint(name=name, kind="hinge", at=at, axis=_times(sign, axis))
     else:
         # Cardan: two hinges perpendicular to the rod and to each other, so the rod cannot turn about its own axis.
-        first = _unit(_cross(axis, (1.0, 0.0, 0.0) if abs(axis[0]) < 0.9 else (0.0, 0.0, 1.0)))
+        first = _unit(cross(axis, (1.0, 0.0, 0.0) if abs(axis[0]) < 0.9 else (0.0, 0.0, 1.0)))
         yield PlacedJoint(name=f"{name}_cardan_1", kind="hinge", at=at, axis=first)
-        yield PlacedJoint(name=f"{name}_cardan_2", kind="hinge", at=at, axis=_times(sign, _cross(axis, first)))
+        yield PlacedJoint(name=f"{name}_cardan_2", kind="hinge", at=at, axis=_times(sign, cross(axis, first)))
 
 
 def _unit(vector: Point) -> Point:
@@ -189,7 +180,3 @@ def _unit(vector: Point) -> Point:
 
 def _times(factor: float, vector: Point) -> Point:
     return (factor * vector[0], factor * vector[1], factor * vector[2])
-
-
-def _cross(a: Point, b: Point) -> Point:
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])

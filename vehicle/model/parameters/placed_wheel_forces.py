@@ -30,11 +30,6 @@ def wheel_forces(
     An imbalance exerts m r (V/R)^2 from the axle to the mass, along x and along z. A non-uniform tyre and a varying
     brake need a wheel that turns: at rest they are left out.
 
-    Args:
-        car: instances by name.
-        wheels, parts, connections: elements of the car.
-        targets: what a force can refer to.
-
     Raises:
         ConfigurationError: a value is wrong.
     """

@@ -44,9 +44,6 @@ def quantity(
         choices: allowed values of a text field.
         is_file: True for a text field that may be the path of a file; by default texts are names.
         default: value if a file leaves the field out; by default the field is required.
-
-    Returns:
-        A dataclass field with the description in its metadata.
     """
     metadata = {
         "unit": unit,

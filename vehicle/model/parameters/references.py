@@ -22,10 +22,6 @@ GROUPS = ("hardpoints", "parts", "bushings", "ports")
 def require_ports(car: Mapping[str, Instance], names: set[str]) -> None:
     """Check that every port is bound to a part.
 
-    Args:
-        car: instances by name.
-        names: names of all parts.
-
     Raises:
         ConfigurationError: a port is bound to an unknown part.
     """
@@ -41,9 +37,6 @@ def require_ports(car: Mapping[str, Instance], names: set[str]) -> None:
 
 def require_geometry(car: Mapping[str, Instance]) -> None:
     """Check the geometry of all instances: pairs of points above each other, distinct points, triangles of arms.
-
-    Args:
-        car: instances by name.
 
     Raises:
         ConfigurationError: naming the points.
@@ -137,9 +130,9 @@ def require_points(table: Mapping[str, Any], car: Mapping[str, Instance]) -> Non
     """
     if "superelement" in table["body"]:
         return
-    users = [entry for key in ("outputs", "connection", "load") for entry in table.get(key, {}).values()]
+    users = [entry for key in ("outputs", "connection", "load", "force") for entry in table.get(key, {}).values()]
     used = {entry.get("at") for entry in users if isinstance(entry.get("at"), str)}
-    used |= {name for entry in users for name in entry.get("axes", ())}
+    used |= {name for entry in table.get("connection", {}).values() for name in entry.get("axes", ())}
     tables = [side for i in car.values() for side in (i.numbers, *(i.numbers.get(word, {}) for word in SIDE_SIGN))]
     used |= {value for entry in tables for value in entry.get("hardpoints", {}).values() if isinstance(value, str)}
     for name in table.get("hardpoints", {}):

@@ -10,7 +10,7 @@ side, and an element with such a name exists once.
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -25,10 +25,8 @@ SHIPPED = Path(str(resources.files("vehicle.model"))) / "templates"
 FREE_PORTS = ("body", "world", "plate")
 """Names that every template may use: the trimmed body, the ground, the plate under the tyre of this side."""
 
-_POINTS, _PARTS = (
-    {"at", "along", "axes", "points", "center", "patch"},
-    {"child", "parent", "moving", "carrier", "part", "on"},
-)
+_POINTS = {"at", "along", "axes", "points", "center", "patch"}
+_PARTS = {"child", "parent", "moving", "carrier", "part", "on"}
 SINGLE = {"wheel": Wheel, "steering_axis": SteeringAxis}
 """Elements that a template has at most once, and their classes."""
 _ON = {"damper": ("slide",), "spring": ("slide", "hinge")}
@@ -195,21 +193,15 @@ def _check(template: Template, raw: Mapping[str, Any]) -> None:
                     f"port_defaults.{port}: found {word!r}, unknown name; the nearest is {nearest(word, allowed)}"
                 )
     used: set[str] = set()
+    known: dict[str, Collection[str]] = {"joint": joints, **dict.fromkeys(_PARTS, parts)}
+    known |= dict.fromkeys(_POINTS, template.hardpoints)
 
     def look(where: str, table: Mapping[str, Any]) -> None:
         for key, value in table.items():
             if isinstance(value, Mapping):
                 look(f"{where}.{key}", value)
                 continue
-            allowed = (
-                parts
-                if key in _PARTS
-                else template.hardpoints
-                if key in _POINTS
-                else joints
-                if key == "joint"
-                else None
-            )
+            allowed = known.get(key)
             for word in value if isinstance(value, list) else [value]:
                 head, _, side = str(word).partition(":")
                 if key == "name" and not NAME_PATTERN.fullmatch(head):

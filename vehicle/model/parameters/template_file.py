@@ -31,9 +31,6 @@ USE_KEYS: dict[str, Any] = {"template": str, "prefix": str, "with": Mapping[str,
 def read_template_file(path: Path) -> dict[str, Any]:
     """Read a template file without included templates.
 
-    Args:
-        path: the file.
-
     Returns:
         Tables and lists; missing tables and lists are empty, a missing wheel or steering axis is None.
 

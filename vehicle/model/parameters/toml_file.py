@@ -24,9 +24,6 @@ LARGEST_FILE = 10_000_000
 def read_table(path: Path) -> dict[str, Any]:
     """Read a TOML file into nested dictionaries.
 
-    Args:
-        path: the file.
-
     Raises:
         ConfigurationError: the file is missing, not a file, too large, not UTF-8 or not TOML.
     """

@@ -145,9 +145,6 @@ class Vehicle:
     def require_wheels(self, wheels: Iterable[str]) -> None:
         """Check that the car has some wheels.
 
-        Args:
-            wheels: names of the wheels.
-
         Raises:
             ConfigurationError: the first wheel that does not exist.
         """
@@ -159,10 +156,6 @@ class Vehicle:
 
     def require_channels(self, channels: Iterable[str], existing: Sequence[str]) -> None:
         """Check that channels exist.
-
-        Args:
-            channels: names to check.
-            existing: names of the existing channels.
 
         Raises:
             ConfigurationError: the first channel that does not exist.

@@ -65,7 +65,7 @@ class Outline:
         return float(self.x_knots[1 + axle]), float(self.z_knots[1])
 
     def side(self, station: Array, height: Array, lift: float = 0.0) -> Array:
-        """Return points of the right lower body surface.
+        """Return vehicle points of the right lower body surface, shape (..., 3).
 
         The plan curve is moved inward by inset(H), which blends between side and ends by the direction of the normal,
         and outward by a flare around the wheel arches.
@@ -74,9 +74,6 @@ class Outline:
             station: parameter of the plan curve, 0 at the front middle, 1 at the rear middle
             height: reference height H [m], same shape
             lift: additional distance outward [m]
-
-        Returns:
-            vehicle points, shape (..., 3)
         """
         X, Y = (np.interp(station, STATION, PLAN[:, k]) for k in (0, 1))
         nx, ny = (np.interp(station, STATION, NORMAL[:, k]) for k in (0, 1))

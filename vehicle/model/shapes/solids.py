@@ -101,7 +101,7 @@ def ball(radius: float, *, sections: int = 14) -> trimesh.Trimesh:
 
 
 def frames(path: Array, up: ArrayLike | None, *, closed: bool) -> tuple[Array, Array]:
-    """Return two normals at each point of a path, transported without twist by double reflection.
+    """Return two unit normals at each point of a path, (n, 3) each, transported without twist by double reflection.
 
     The frame is mirrored at the middle plane of each chord, then at the plane that maps its tangent to the next.
 
@@ -109,9 +109,6 @@ def frames(path: Array, up: ArrayLike | None, *, closed: bool) -> tuple[Array, A
         path: points [m], shape (n, 3)
         up: preferred direction of the first normal; if set, EVERY first normal is the projection of this direction
         closed: the path returns to its first point (not repeated); it must be planar, or the end sections differ
-
-    Returns:
-        first and second normal, unit length, each shape (n, 3)
 
     Source: W. Wang, B. Juettler, D. Zheng, Y. Liu, Computation of rotation minimizing frames, ACM TOG 27 (2008), 2.
     """
@@ -148,7 +145,7 @@ def tube(
     width: ArrayLike | None = None,
     up: ArrayLike | None = None,
 ) -> trimesh.Trimesh:
-    """Sweep a polygon along a path: a closed body with flat ends, or a ring.
+    """Sweep a polygon along a path: a closed body with flat ends, or a ring, with outward normals.
 
     For a straight path the volume is that of the prism, sides/2 sin(2 pi / sides) radius^2 length; for a closed
     planar path it converges to the area of the polygon times the length of the path (Pappus).
@@ -160,9 +157,6 @@ def tube(
         closed: the path returns to its first point (which is not repeated)
         width: distance of the corners along the second normal [m]; `radius` by default
         up: direction of the first normal, for flat bars; by default without twist
-
-    Returns:
-        mesh with outward normals
     """
     centre = np.asarray(path, dtype=float)
     first, second = frames(centre, up, closed=closed)
@@ -181,14 +175,11 @@ def tube(
 
 
 def swept(rings: Array, *, closed: bool = False) -> trimesh.Trimesh:
-    """Build a body from its sections: with flat ends, or closed to a ring.
+    """Build a body from its sections: with flat ends, or closed to a ring, with outward normals.
 
     Args:
         rings: corners of each section [m], shape (n, sides, 3)
         closed: join the last section to the first
-
-    Returns:
-        mesh with outward normals
     """
     n, sides = rings.shape[:2]
     index = np.arange(n * sides).reshape(n, sides)
@@ -212,15 +203,12 @@ def rod(start: ArrayLike, end: ArrayLike, radius: float, *, sides: int = 8) -> t
 
 
 def axis_rotation(direction: ArrayLike) -> Array:
-    """Return the rotation by the smallest angle that maps z to a direction.
+    """Return the rotation by the smallest angle that maps z to a direction, shape (3, 3).
 
     R = 1 + [v] + [v]^2 / (1 + c), v = z x d, c = z . d (Rodrigues)
 
     Args:
         direction: direction of the new z axis, any length, shape (3,)
-
-    Returns:
-        rotation matrix, shape (3, 3)
     """
     d = np.asarray(direction, dtype=float)
     d = d / np.linalg.norm(d)

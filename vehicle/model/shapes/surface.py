@@ -13,16 +13,13 @@ from vehicle.model.shapes.solids import quads
 
 
 def spline(points: ArrayLike, count: int) -> Array:
-    """Interpolate points by a smooth curve (centripetal Catmull-Rom), evenly spaced in the curve parameter.
+    """Interpolate points by a smooth curve (centripetal Catmull-Rom), even in its parameter; shape (count, d).
 
     Cubic Hermite segments; the tangent at a point is the slope of the parabola through the point and its neighbours.
 
     Args:
         points: points on the curve, shape (n, d), n >= 2
         count: number of points of the result
-
-    Returns:
-        points, shape (count, d)
     """
     p = np.asarray(points, dtype=float)
     knots = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(p, axis=0), axis=1) ** 0.5)])
@@ -64,7 +61,7 @@ def rounded(points: ArrayLike, radius: float, *, steps: int = 5) -> Array:
 
 
 def helix(radius: float | Callable[[Array], Array], low: float, high: float, turns: float, *, steps: int = 20) -> Array:
-    """Return a helix about z: (r cos(phi), r sin(phi), z), phi from 0 to 2 pi turns, z linear from low to high.
+    """Return a helix about z, (n, 3) [m]: (r cos(phi), r sin(phi), z), phi from 0 to 2 pi turns, z linear.
 
     With a constant radius the length is sqrt((2 pi r turns)^2 + (high - low)^2).
 
@@ -74,9 +71,6 @@ def helix(radius: float | Callable[[Array], Array], low: float, high: float, tur
         high: height of the end [m]
         turns: number of turns
         steps: number of points per turn
-
-    Returns:
-        points [m], shape (n, 3)
     """
     share = np.linspace(0, 1, round(turns * steps) + 1)
     r = radius(share) if callable(radius) else np.full_like(share, radius)

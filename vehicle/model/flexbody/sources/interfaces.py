@@ -110,10 +110,7 @@ def interfaces(
 
 
 def read_map(path: Path) -> dict[str, str]:
-    """Read the nodes chosen by a user for points of the car, a table "point,node".
-
-    Returns:
-        Point name -> node name.
+    """Read the nodes chosen by a user for points of the car, a table "point,node": node by point.
 
     Raises:
         DataError: the file is unreadable, a line is invalid, or a point occurs twice.

@@ -22,14 +22,11 @@ UNITS = {"m/N": (1.0, 1), "mm/N": (1e-3, 1), "N/m": (1.0, -1), "N/mm": (1e3, -1)
 
 
 def read_residuals(path: Path, points: Collection[str]) -> dict[str, FloatArray]:
-    """Read the residual flexibility of attachments along the axes of the car.
+    """Read the residual flexibility of attachments along the axes of the car [m/N], shape (3, 3) by point.
 
     Args:
         path: table with the header `point,x [N/m],y [N/m],z [N/m]`, or other units of `UNITS`.
         points: names of the points of the car.
-
-    Returns:
-        Point name -> flexibility [m/N], shape (3, 3).
 
     Raises:
         DataError: the file is unreadable, the header invalid, a point unknown or repeated, or a value not positive.
