@@ -11,11 +11,7 @@ from vehicle.names import CORNERS
 
 
 def refusal(arguments: Sequence[str]) -> str:
-    """Return the error message of a command for its files; empty if the files are accepted.
-
-    Args:
-        arguments: name of the command (comfort, shaker or compare), and its options.
-    """
+    """Return the error message of a command (comfort, shaker or compare) for its files; empty if they are accepted."""
     checks: dict[str, Callable[[Sequence[str]], None]] = {"comfort": _comfort, "shaker": _shaker, "compare": _compare}
     try:
         checks[arguments[0]](arguments[1:])

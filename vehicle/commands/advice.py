@@ -42,7 +42,6 @@ def command_for(measurement: Measurement, file: str, databases: Sequence[Path] =
     """Return the command for a file with its purpose, or the reason for the lack of a command.
 
     Args:
-        measurement: the file.
         file: name of the file as typed.
         databases: DBC files that decoded the log of a CAN bus.
     """
@@ -111,8 +110,6 @@ def comparison_for(measurement: Measurement, file: str, command: str) -> str:
     """Return the command that compares the accelerations of a file with a run of its plate; empty without both.
 
     Args:
-        measurement: the file.
-        file: name of the file as typed.
         command: command from `command_for`; the comparison uses its run.
     """
     from vehicle.model.parameters.vehicle import load_vehicle

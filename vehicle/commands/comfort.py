@@ -93,11 +93,7 @@ def parser() -> Parser:
 
 
 def _picked(options: argparse.Namespace, picks: Sequence[str]) -> tuple[str | None, Choice | None]:
-    """Return the point of a run, or the choice of channels, that the texts of an option name.
-
-    Raises:
-        ConfigurationError: both a point and channels of axes.
-    """
+    """Return the point of a run, or the choice of channels, that the texts of an option name."""
     points = [text for text in picks if "=" not in text]
     if len(points) > 1 or (points and len(picks) > 1):
         raise ConfigurationError("--channel: set one PLACE, or x=NAME, y=NAME and z=NAME")
@@ -106,10 +102,7 @@ def _picked(options: argparse.Namespace, picks: Sequence[str]) -> tuple[str | No
 
 
 def evaluated(options: argparse.Namespace) -> RecordComfort:
-    """Evaluate the file of the options.
-
-    Args:
-        options: parsed options of the command; `input` is the file.
+    """Evaluate the file `input` of the options.
 
     Raises:
         ConfigurationError: `--rail` names another axis than z.

@@ -95,8 +95,6 @@ def measured_options(parser: Parser, *, required: bool = False, several: bool = 
     """Add --measured, --map and --turn, which choose a measurement and its channels.
 
     Args:
-        parser: parser of the command.
-        required: True if the command needs a measurement.
         several: True if --measured accepts several files or a folder; its value is then a list.
     """
     several_files: dict[str, Any] = {"nargs": "+", "action": "extend"} if several else {}
@@ -149,7 +147,6 @@ def measured_choice(options: argparse.Namespace, input_names: Container[str] = (
     """Return the choice of channels and units of the measurement.
 
     Args:
-        options: parsed options of the command.
         input_names: names of --unit that belong to the input.
 
     Raises:
@@ -217,12 +214,7 @@ def _overview(results: list[dict[str, Any]]) -> str:
 
 
 def _compared(options: argparse.Namespace, output: Path) -> tuple[dict[str, Any], str]:
-    """Compare one measurement, write the results, and return the summary and its text.
-
-    Args:
-        options: parsed options of the command; `measured` is the file.
-        output: folder of the results.
-    """
+    """Compare the measurement `measured` of the options, write the results, and return the summary and its text."""
     from vehicle.runs.comparison.compared_run import compare
     from vehicle.runs.comparison.frf_comparison import edges_of
     from vehicle.runs.output.comparison_files import save_comparison
@@ -266,13 +258,7 @@ def _measured(
 def measured_beside(
     options: argparse.Namespace, channels: tuple[str, ...], input_names: Container[str] = ()
 ) -> Measured | None:
-    """Read the measurement of --measured before the run; return None without --measured.
-
-    Args:
-        options: parsed options, with those of `measured_options`.
-        channels: names of the channels of the run.
-        input_names: names of --unit that belong to the input.
-    """
+    """Read the measurement of --measured before the run, see `measured_choice`; return None without --measured."""
     if options.measured is None:
         return None
     return _measured(options, channels, measured_choice(options, input_names))

@@ -63,11 +63,7 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def overview(results: list[dict[str, Any]]) -> str:
-    """Return the table of several files and the command for each.
-
-    Args:
-        results: contents of each file, or its error.
-    """
+    """Return the table of several files and the command for each."""
     rows: list[tuple[str, ...]] = []
     for result in results:
         if "error" in result:
@@ -159,11 +155,7 @@ def _channel(number: int, channel: Channel) -> dict[str, Any]:
 
 
 def report(content: dict[str, Any]) -> str:
-    """Return the table of channels as text; levels in the units of the file.
-
-    Args:
-        content: of `contents`, with the command.
-    """
+    """Return the table of channels as text; levels in the units of the file."""
     from vehicle.signals.formats.units import find_ratio
 
     lines = [

@@ -208,7 +208,6 @@ def recorded_channels(text: str, vehicle: Vehicle) -> tuple[str, ...]:
 
     Args:
         text: "loads", "all", or names separated by commas.
-        vehicle: the car.
 
     Raises:
         ConfigurationError: the car has no channel of this name.

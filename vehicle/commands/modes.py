@@ -107,11 +107,7 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def _decoupling(options: argparse.Namespace, car: Any) -> str:
-    """Return the decoupling of a part as a table or as JSON.
-
-    Raises:
-        ConfigurationError: no free part has this name, or an option is wrong.
-    """
+    """Return the decoupling of a part as a table or as JSON."""
     from vehicle.engines.linear.decoupling import decoupling
     from vehicle.runs.car.decoupling_text import decoupling_json, decoupling_table
 
@@ -132,12 +128,7 @@ def _decoupling(options: argparse.Namespace, car: Any) -> str:
 
 
 def _check_film_options(options: argparse.Namespace) -> None:
-    """Check the film options before the computation, and choose the OpenGL library before MuJoCo is imported.
-
-    Raises:
-        ConfigurationError: only one of --animate and --video, no frequency, or an existing film.
-        MissingPartError: OpenGL or ffmpeg is missing.
-    """
+    """Check the film options before the computation, and choose the OpenGL library before MuJoCo is imported."""
     if options.animate is None:
         if options.video is not None:
             raise ConfigurationError("--video: of which mode? Give its frequency too, as --animate 28")
@@ -212,12 +203,7 @@ def modes_table(car: Any, damper: str, figures: Sequence[MotionFigure]) -> dict[
 
 
 def report(table: dict[str, Any], figures: Sequence[MotionFigure]) -> str:
-    """Return the modes as the printed table: frequency, damping ratio, motion, share of the kinetic energy.
-
-    Args:
-        table: content of `--json`: modes of the car, unstable modes, notices, modes of the free body.
-        figures: headline figures of the car, printed below its modes.
-    """
+    """Return the modes as the printed table: frequency, damping ratio, motion, share of the kinetic energy."""
     from vehicle.runs.car.car_text import figures_table
 
     width = max((len(mode["description"]) for mode in table["modes"]), default=0)

@@ -14,9 +14,6 @@ Row = tuple[str, ...]
 def expanded(names: Sequence[str]) -> tuple[list[str], bool]:
     """Return the files of names and folders, and True for several; files of a folder in alphabetical order.
 
-    Args:
-        names: paths of files or folders, or names of shipped inputs.
-
     Raises:
         ConfigurationError: a folder without files.
     """
@@ -38,12 +35,7 @@ def expanded(names: Sequence[str]) -> tuple[list[str], bool]:
 def each_file(
     names: Sequence[str], work: Callable[[str], dict[str, Any]]
 ) -> tuple[list[dict[str, Any]], list[VehicleError]]:
-    """Return the result of every file; a failed file has its error message as a result, and the others continue.
-
-    Args:
-        names: files.
-        work: function that returns the result of a file as plain data.
-    """
+    """Return the result of every file; a failed file has its error message as a result, and the others continue."""
     results, errors = [], []
     for name in names:
         try:
@@ -58,7 +50,6 @@ def table_of(heads: Row, rows: Sequence[Row]) -> str:
     """Return rows as text; the first column is aligned left, the others right.
 
     Args:
-        heads: names of the columns.
         rows: cells; a row of two cells holds a file and a message.
     """
     full = [heads, *(row for row in rows if len(row) == len(heads))]
@@ -75,15 +66,7 @@ def table_of(heads: Row, rows: Sequence[Row]) -> str:
 
 
 def raise_worst(errors: Sequence[VehicleError], files: int) -> None:
-    """Raise one error for all failed files; call it after printing the results.
-
-    Args:
-        errors: errors of the failed files.
-        files: number of all files.
-
-    Raises:
-        VehicleError: with the class of the first error.
-    """
+    """Raise one error for all failed files, of the class of the first; call it after printing the results."""
     if errors:
         count = len(errors)
         raise type(errors[0])(f"{count} of {files} files {'has' if count == 1 else 'have'} no result, see the table")

@@ -265,13 +265,7 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def plate_signal(options: argparse.Namespace, wheel: str, choice: Choice | None) -> Signal:
-    """Return the plate signals of --input; reject plates whose FRFs cannot be estimated.
-
-    Args:
-        options: parsed options of the command.
-        wheel: wheel of a displacement that names none.
-        choice: channels and preprocessing of the options.
-    """
+    """Return the plate signals of --input, by default at `wheel`; reject plates whose FRFs cannot be estimated."""
     from vehicle.runs.output.run_files import require_plates
     from vehicle.signals.excitation.input_files import find_input
     from vehicle.signals.excitation.signal_file import read_signal
@@ -304,11 +298,7 @@ def _check_signal(options: argparse.Namespace, signal: Signal) -> None:
 
 
 def _controller_overrides(options: argparse.Namespace) -> list[str]:
-    """Return the overrides of --controller, for all semi-active dampers, and of --trust, for all controllers in FMUs.
-
-    Raises:
-        ConfigurationError: no damper of the car has limits of its coefficient, or there is nothing to trust.
-    """
+    """Return the overrides of --controller for all semi-active dampers, and of --trust for all FMUs."""
     from vehicle.model.parameters.vehicle import load_vehicle
     from vehicle.signals.formats.file_digest import digest
 

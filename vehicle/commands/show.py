@@ -65,11 +65,7 @@ def _note_idle(car: Any, options: argparse.Namespace) -> None:
 
 
 def _print_parameters(car: Any, options: argparse.Namespace) -> None:
-    """Print the parameters that match the words of --search.
-
-    Raises:
-        ConfigurationError: no parameter matches.
-    """
+    """Print the parameters that match the words of --search."""
     from vehicle.runs.car.car_text import parameter_table
 
     parameters = car.search(options.search)

@@ -159,10 +159,6 @@ def _add_model_options(parser: Parser) -> None:
 def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     """Read the source, write the body model, and print its properties and the node of each point of the car.
 
-    Args:
-        options: parsed options of the command; `output` is the written file.
-        vehicle: car whose attachments the model serves, and whose mass, CoG and inertia it is compared with.
-
     Raises:
         ConfigurationError: an option is out of range, without effect on this source, or missing.
         DataError: the source, or its size, mass or first mode in the units of the options, is wrong.

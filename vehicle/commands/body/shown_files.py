@@ -16,9 +16,6 @@ def write_files(folder: Path, force: bool, model: Superelement, levels: Mapping[
     """Write the files.
 
     Args:
-        folder: folder of the files; it is made.
-        force: replace files of an earlier run.
-        model: the body model.
         levels: normalised mode shapes at attachments and output points [-]: name to (modes, 3).
     """
     import numpy as np

@@ -14,8 +14,6 @@ def numbers(model: Superelement, vehicle: Vehicle, levels: Mapping[str, Any], ba
     """Return the content of the printed tables, unrounded.
 
     Args:
-        model: the body model.
-        vehicle: the car, with the mass properties for comparison.
         levels: normalised mode shapes at attachments and output points [-]: name to (modes, 3).
         bare: attachments without residual flexibility; None if the model does not fit this car.
 

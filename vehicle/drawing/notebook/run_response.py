@@ -83,11 +83,7 @@ def named(response: FrequencyResponse, names: tuple[str, ...], plate: str) -> Ru
 
 
 def require_moving(recording: Recording, wheel: str | None) -> None:
-    """Raise an error if the plate of a wheel does not move.
-
-    Raises:
-        DataError: the plate does not move.
-    """
+    """Raise a DataError if the plate of a wheel does not move."""
     moving = recording.excited
     if moving and wheel is not None and wheel not in moving:
         raise DataError(
@@ -114,7 +110,6 @@ def responses(
 
     Args:
         recording, signal: recording and signal of the run.
-        names: acceleration channels.
         band: lowest and highest frequency [Hz].
         window: see `vehicle.runs.car.Run.frf`.
 

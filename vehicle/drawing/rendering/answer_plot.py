@@ -41,7 +41,6 @@ def plot_changes(path: Path, changes: Mapping[str, Sequence[Change]], title: str
     """Plot the changes of numbers as bars, a panel for each run, one below the other.
 
     Args:
-        path, title, caption: see `saved_figure`.
         changes: name of the run to its changes against the first run; equal labels in all runs are not needed.
     """
     highest = max(len(of_run) for of_run in changes.values())
@@ -74,7 +73,6 @@ def plot_bands(
     """Plot the share of each third octave in the weighted acceleration, stacked by axis.
 
     Args:
-        path, caption: see `saved_figure`.
         edges: edges of the bands [Hz]; (b + 1,).
         powers: axis to the mean square in each band [(m/s2)^2]; (b,).
         modes: short names of natural modes to their frequencies [Hz], marked above the bars.

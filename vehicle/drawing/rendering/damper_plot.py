@@ -30,12 +30,7 @@ class DamperLoop(NamedTuple):
 
 
 def plot_damper(path: Path, loops: Sequence[DamperLoop], title: str = "", caption: str = "") -> None:
-    """Write the picture of a fitted damper, a row for each test.
-
-    Args:
-        path, title, caption: see `saved_figure`.
-        loops: measured and fitted forces of all tests.
-    """
+    """Write the picture of a fitted damper, a row for each test."""
     with saved_figure(path, (9.0, 1.0 + 3.0 * len(loops)), title, caption) as figure:
         grid = figure.subplots(len(loops), 2, squeeze=False, sharey="row")
         for (left, right), loop in zip(grid, loops, strict=True):
@@ -71,7 +66,6 @@ def plot_settings(
     """Write the picture of a damper over its conditions: force over velocity, damping and friction.
 
     Args:
-        path, title: see `saved_figure`.
         curves: words of the condition, velocities [m/s] and forces [N] of each condition.
         settings: damping and friction at each condition.
     """

@@ -38,7 +38,6 @@ def plot_replication(
     """Plot target and response of each channel and the drive signal below: a time window, and the spectrum.
 
     Args:
-        path, caption: see `saved_figure`.
         time: sample times [s], (n,).
         responses: channel to target and response [m/s2], (n,) each.
         drive: wheel to its plate displacement [m], (n,).
@@ -95,7 +94,6 @@ def plot_convergence(path: Path, errors: Mapping[str, Vector], kept: npt.NDArray
     """Plot the error of each channel over the runs.
 
     Args:
-        path, caption: see `saved_figure`.
         errors: channel to RMS of target minus response over RMS of target, in the band [-], (runs,).
         kept: True for runs better than all previous runs, (runs,).
     """

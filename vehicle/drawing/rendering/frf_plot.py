@@ -45,8 +45,6 @@ def plot_frfs(
     """Plot the FRFs of a run.
 
     Args:
-        path, caption, size: see `saved_figure`.
-        run: the run.
         responses: responses to each motion of the plates, with rows of all acceleration channels.
     """
     if len(responses) > 1:

@@ -36,14 +36,11 @@ def plot_participation(
     """Write the picture of modal participation.
 
     Args:
-        path: PNG file.
-        channel: name of the acceleration channel.
         frequency: lines [Hz], (m,).
         parts: contributions in phase with their sum [m/s2 per m], (m,) each; they add up to its magnitude.
         at: frequency of the bars [Hz].
         shares: shares of the contributions at that frequency [-].
         driven: name of a mode, and the shares of the attachments in its modal force at that frequency [-].
-        description: description of car, channel and input.
     """
     total = np.sum(list(parts.values()), axis=0)
     # Colour the contributions that are largest where the response is large.

@@ -22,7 +22,6 @@ def draw_response(axes: Axes, response: FrequencyResponse, names: Sequence[str])
     Args:
         axes: axes of magnitude, phase and coherence, (3, 1); or of the magnitude alone, (1, 1).
         response: FRFs to the plate displacement [m/s2 per m].
-        names: names of the rows.
     """
     drawn = len(axes[0, 0].lines)
     looks = islice(cycle(zip(COLOURS, LINES, strict=True)), drawn, None)

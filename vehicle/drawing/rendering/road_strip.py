@@ -43,7 +43,6 @@ class RoadStrip:
     """Road strips under the tracks of a car.
 
     Args:
-        wheels: wheels of the car.
         recording: recording with the displacement of every plate.
         speed: speed of the car [m/s].
         interval: time between two frames [s], which determines the length of a stripe.
@@ -93,7 +92,6 @@ class RoadStrip:
         """Append the strips to a scene, with heights exaggerated like all motion.
 
         Args:
-            scene: updated scene with space for the geoms.
             time: time [s].
             exposure: exposure time of the frame [s].
             factor: exaggeration.

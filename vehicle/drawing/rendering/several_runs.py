@@ -33,7 +33,6 @@ def plot_responses(
     """Plot FRFs of several runs over each other, with a column for each channel.
 
     Args:
-        path, title, caption, size: see `saved_figure`.
         runs: name to run and FRFs of all its acceleration channels.
         channels: channel recorded in all runs to the title of its column.
     """
@@ -55,10 +54,5 @@ def plot_responses(
 
 
 def shared_channels(runs: Sequence[RecordedRun], wanted: Mapping[str, str]) -> dict[str, str]:
-    """Return the requested channels common to all runs.
-
-    Args:
-        runs: the runs.
-        wanted: channel to its label.
-    """
+    """Return the requested channels common to all runs."""
     return {name: label for name, label in wanted.items() if all(name in run.recording.channels for run in runs)}

@@ -42,7 +42,6 @@ def plot_spectra(
     All columns have the same scale, so that channels and runs can be compared.
 
     Args:
-        path, title, caption: see `saved_figure`.
         runs: name to the spectra of a run.
         channels: channel that is in all runs to the title of its column.
         max_width: maximum width [inch].
@@ -62,7 +61,6 @@ def draw_spectra(
 
     Args:
         axes: axes, (3, channels), with shared scales.
-        runs, channels: see `plot_spectra`.
     """
     largest = 0.0
     for column, (channel, heading) in zip(axes.T, channels.items(), strict=True):
@@ -95,12 +93,7 @@ def draw_spectra(
 
 
 def draw_densities(axis: Any, spectra: Sequence[ChannelSpectrum]) -> None:
-    """Draw the densities of several channels on the same axes; curves that the axes already have stay.
-
-    Args:
-        axis: the axes.
-        spectra: spectra of the channels, weighted and not.
-    """
+    """Draw the densities of several channels on the same axes; curves that the axes already have stay."""
     looks = cycle(zip(COLOURS, LINES, strict=True))
     for spectrum, (colour, line) in zip(spectra, islice(looks, len(axis.lines), None), strict=False):
         axis.plot(spectrum.frequency, spectrum.density, color=colour, linestyle=line, label=spectrum.label)
@@ -123,7 +116,6 @@ def plot_road_levels(path: Path, levels: Mapping[str, RoadLevel], title: str = "
     """Plot the density of road heights over the wavenumber, with the limits of the classes of ISO 8608.
 
     Args:
-        path, title, caption: see `saved_figure`.
         levels: name of the run and wheel to the level of its road.
     """
     with saved_figure(path, (7.6, 6.0), title, caption) as figure:

@@ -56,9 +56,6 @@ def unit_factor(displacement: Complex) -> complex:
 
     Args:
         displacement: displacement of the points, (n, 3), not all zero.
-
-    Returns:
-        The complex factor.
     """
     size = np.linalg.norm(displacement, axis=1)
     farthest = displacement[int(np.argmax(size))]
@@ -68,9 +65,6 @@ def unit_factor(displacement: Complex) -> complex:
 
 def car_wireframe(car: CarModel) -> CarWireframe:
     """Draw a car: the frame of its body, its links, springs and wheels, boxes for heavy parts, plates and stands.
-
-    Args:
-        car: compiled car.
 
     Returns:
         Points and lines of the car, and J of u_point = J u, which is zero for plates and stands.

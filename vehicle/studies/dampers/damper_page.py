@@ -23,13 +23,7 @@ PAGE_POINTS = 600
 
 
 def damper_page(fits: Sequence[FittedDamper], command: str, *, author: str = "", project: str = "") -> str:
-    """Return the report of fitted dampers as one HTML document.
-
-    Args:
-        fits: fits in the order of their conditions.
-        command: command line of the fit.
-        author, project: names in the head of the page; may be empty.
-    """
+    """Return the report of fitted dampers as one HTML document."""
     parts = []
     if len(fits) > 1:
         parts.append(("Over the conditions", "conditions", _conditions(fits)))

@@ -166,7 +166,6 @@ def read_test(path: Path, choice: Choice | None = None, *, compression: bool = F
     """Read the record of a test.
 
     Args:
-        path: measurement file of any format.
         choice: channels of the roles "displacement", "force", "velocity" and "time", units and excerpt; a role without
             a channel is the channel with its name, or the only channel of its quantity.
         compression: displacement, velocity and force of the file are positive in compression.
@@ -205,11 +204,7 @@ def read_test(path: Path, choice: Choice | None = None, *, compression: bool = F
 
 
 def _headless(measurement: Measurement, choice: Choice, notices: list[str]) -> Choice:
-    """Return the choice with the columns of a file without a header, and with the units of columns by role.
-
-    Raises:
-        DataError: the file has no units, and a displacement that may be in metres.
-    """
+    """Return the choice with the columns of a file without a header, and with the units of columns by role."""
     columns = measurement.channels
     channels, units = dict(choice.channels), dict(choice.units)
     bare = all(each.name == f"column {i + 1}" and not each.unit for i, each in enumerate(columns))

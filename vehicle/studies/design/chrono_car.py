@@ -62,13 +62,7 @@ PREFIX = "chrono:"
 
 @one_blas_thread()
 def new_chrono_car(name: str, path: Path, tyre_file: Path | None, stated: StatedNumbers) -> NewCar:
-    """Make a car from files of Chrono, and change it by stated numbers.
-
-    Args:
-        name: name of the new car.
-        path: JSON file, see `chrono_car`.
-        tyre_file: JSON file of a tyre, see `chrono_car`.
-        stated: numbers of the new car; all others are those of the files.
+    """Make a car from files of Chrono, see `chrono_car`, and change it by stated numbers.
 
     Raises:
         ConfigurationError, DataError: see `chrono_car`.
@@ -91,7 +85,6 @@ def chrono_car(name: str, path: Path, tyre_file: Path | None = None) -> NewCar:
     """Read a car of Chrono.
 
     Args:
-        name: name of the car.
         path: JSON file of a wheeled vehicle, or the file of a whole model that names it and its tyre.
         tyre_file: JSON file of the tyre of all wheels; by default that of the model.
 

@@ -35,7 +35,7 @@ _COMMENT = re.compile(r'"(?:[^"\\]|\\.)*"|(//[^\n]*|/\*.*?\*/)', re.DOTALL)
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ChronoFile:
-    """Table of a JSON file of Chrono, or a table inside it.
+    """Table of a JSON file of Chrono, or a table inside it; a value that is missing or of another type is a DataError.
 
     Attributes:
         path: path of the file.
@@ -62,22 +62,14 @@ class ChronoFile:
         return self.table[name]
 
     def section(self, name: str) -> ChronoFile:
-        """Return an inner table.
-
-        Raises:
-            DataError: it is missing, or no table.
-        """
+        """Return an inner table."""
         value = self._value(name)
         if not isinstance(value, Mapping):
             raise DataError(f"{self.path}: {' / '.join((*self.inside, name))} has {value!r}, must be a table")
         return ChronoFile(path=self.path, table=value, inside=(*self.inside, name))
 
     def sections(self, name: str) -> list[ChronoFile]:
-        """Return a list of inner tables; empty if it is missing.
-
-        Raises:
-            DataError: it is no list of tables.
-        """
+        """Return a list of inner tables; empty if it is missing."""
         values = self.table.get(name, [])
         if not isinstance(values, list) or not all(isinstance(value, Mapping) for value in values):
             raise DataError(f"{self.path}: {' / '.join((*self.inside, name))} must be a list of tables")
@@ -88,36 +80,20 @@ class ChronoFile:
         ]
 
     def text(self, name: str) -> str:
-        """Return a text.
-
-        Raises:
-            DataError: it is missing, or no text.
-        """
+        """Return a text."""
         if not isinstance(value := self._value(name), str):
             raise DataError(f"{self.path}: {' / '.join((*self.inside, name))} has {value!r}, must be a text")
         return value
 
     def number(self, name: str) -> float:
-        """Return a number, in the unit of the file: Chrono has SI units.
-
-        Raises:
-            DataError: it is missing, or no finite number.
-        """
+        """Return a number, in the unit of the file: Chrono has SI units."""
         value = self._value(name)
         if isinstance(value, bool) or not isinstance(value, int | float) or not np.isfinite(value):
             raise DataError(f"{self.path}: {' / '.join((*self.inside, name))} has {value!r}, must be a finite number")
         return float(value)
 
     def array(self, name: str, *shape: int) -> Vector:
-        """Return a list of numbers as an array.
-
-        Args:
-            name: name of the list.
-            shape: its shape; -1 for any length.
-
-        Raises:
-            DataError: it is missing, has another shape, or holds something else than finite numbers.
-        """
+        """Return a list of numbers as an array of a shape, with -1 for any length."""
         value = self._value(name)
         try:
             array = np.array(value, dtype=float)
@@ -149,9 +125,6 @@ class ChronoFile:
 
 def read_chrono_file(path: Path) -> ChronoFile:
     """Read a JSON file of Chrono, which may contain comments.
-
-    Args:
-        path: path of the file.
 
     Raises:
         ConfigurationError: the file is missing or too large.

@@ -89,7 +89,6 @@ def imported_axle(file: ChronoFile, to_vehicle: Callable[[Vector], Vector]) -> I
     """Return the axle of a suspension file.
 
     Args:
-        file: JSON file of a suspension.
         to_vehicle: function from a point of the left side in the frame of the suspension to the right side here.
 
     Raises:

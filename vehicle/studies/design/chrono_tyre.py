@@ -86,10 +86,6 @@ class ChronoTyre:
         """Return the slope of a horizontal force over slip at a static load [N or N/rad].
 
         Quadratic in the load, with the slopes of `slip` at the nominal load and at twice that load, as in TMeasy.
-
-        Args:
-            name: direction, a key of `slip`.
-            load: static load of the tyre [N].
         """
         low, high = self.slip[name]
         if math.isinf(self.nominal):
@@ -100,9 +96,6 @@ class ChronoTyre:
 
 def chrono_tyre(file: ChronoFile) -> ChronoTyre:
     """Return the tyre of a JSON file.
-
-    Args:
-        file: JSON file of a tyre.
 
     Raises:
         DataError: a tyre without a vertical stiffness, or a wrong or missing value.

@@ -49,12 +49,7 @@ def axle_loads(car: CarModel, template: TemplateCar) -> dict[str, float]:
 
 
 def balanced(table: dict[str, Any], template: TemplateCar, stated: StatedNumbers) -> tuple[dict[str, Any], Sources]:
-    """Return the vehicle table with the body of the stated masses, and the sources of its numbers.
-
-    Args:
-        table: vehicle table with the lengths of the new car.
-        template: the template car.
-        stated: numbers of the new car.
+    """Return a vehicle table with the body of the stated masses in place of its own, and the sources of its numbers.
 
     Raises:
         ConfigurationError: a car that cannot be: lighter than its parts, centre of gravity outside the wheelbase,
@@ -135,11 +130,7 @@ def _inertia(template: TemplateCar, stated: StatedNumbers, before: MassPropertie
 
 
 def _body_numbers(body: MassProperties) -> dict[str, Any]:
-    """Return the parameters of the body by path.
-
-    Raises:
-        ConfigurationError: a moment of inertia is not physical.
-    """
+    """Return the parameters of the body by path."""
     moments = np.diag(body.inertia)
     for axis, (name, moment) in enumerate(zip(("roll", "pitch", "yaw"), moments, strict=True)):
         others = moments.sum() - moment

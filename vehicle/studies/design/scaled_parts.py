@@ -46,8 +46,6 @@ def scaled_parts(
     """Return the vehicle table with scaled axles and powertrain, and the sources of the scaled values.
 
     Args:
-        table: vehicle table of the new car, with the parts of the template.
-        template: the template car.
         ratio: kerb mass of the new car over that of the template.
         powertrain: False for a powertrain that is not that of the template.
 

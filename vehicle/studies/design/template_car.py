@@ -67,9 +67,6 @@ class TemplateCar:
     def with_powertrain(self, engine: Mapping[str, Any] | None) -> TemplateCar:
         """Return the template with another powertrain; itself for None.
 
-        Args:
-            engine: table of the powertrain.
-
         Raises:
             ConfigurationError: the template has no table `engine`.
         """

@@ -44,12 +44,7 @@ class Emulator:
 
 
 def legendre_terms(points: Vector, powers: npt.NDArray[np.int64]) -> Vector:
-    """Return products of Legendre polynomials, (points, terms).
-
-    Args:
-        points: points in [-1, 1], (points, parameters).
-        powers: degrees, (terms, parameters).
-    """
+    """Return products of Legendre polynomials of degrees (terms, parameters) at points in [-1, 1], (points, terms)."""
     table = np.polynomial.legendre.legvander(points, int(powers.max(initial=0)))
     terms = table[:, 0, powers[:, 0]].copy()
     for index in range(1, points.shape[1]):

@@ -140,13 +140,10 @@ class TuningResult:
         return (self.solution[path] - value) / self.standard_errors[path]
 
     def shift(self, residuals: Vector) -> dict[str, float]:
-        """Return the Gauss-Newton step of the free unknowns for given residuals.
+        """Return path to Gauss-Newton step of u of the free unknowns.
 
         Args:
             residuals: unweighted residuals in the order of the targets and their rows, (residuals,).
-
-        Returns:
-            Path to step of u.
         """
         step = self.sensitivity @ (residuals * self.weights)
         return {path: float(component) for path, component in zip(self.free, step, strict=True)}
@@ -160,7 +157,6 @@ def target_statistics(names: Sequence[str], rows: Sequence[Vector], freedom: flo
     the rho of a single short row would scatter, and so would the weights.
 
     Args:
-        names: names of the rows.
         rows: residuals, zero where a value is excluded; (n,) each.
         freedom: degrees of freedom of all residuals over their number [-].
 

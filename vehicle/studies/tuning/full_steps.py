@@ -55,14 +55,9 @@ def full_steps(
     errors of the fast models do not enter the values. The last step is the remaining error.
 
     Args:
-        result: result of `fit`.
         targets: targets of the fit, in the same order.
         simulate: function of {path: value} that returns a run of that car on the signal of each target, or that car
             for a target without a signal.
-        most_rounds: maximum number of full simulations.
-
-    Returns:
-        The fit with the values of the full simulation.
 
     Source: Bandler et al., Space mapping: the state of the art, IEEE Transactions on Microwave Theory and Techniques
     52, 2004: a coarse model for the derivatives, the fine one for the residuals.

@@ -126,14 +126,7 @@ def _open_directions(jacobian: Vector, parameters: list[Unknown]) -> list[Uniden
 
 
 class _Problem:
-    """Residuals and Jacobian over u = ln(value / start), with a count of the evaluations.
-
-    Args:
-        unknowns: parameters of the model with bounds and start values, then delays.
-        targets: measurements.
-        build: function of {path: value} of the parameters that returns a model.
-        progress: callback, see `fit`.
-    """
+    """Residuals and Jacobian over u = ln(value / start), with a count of the evaluations."""
 
     def __init__(
         self,
@@ -235,14 +228,10 @@ class _Problem:
         return table
 
     def information(self, jacobian: Vector, weighted: Vector) -> Vector:
-        """Return sum over i, j of rho_ij J_i' J_j over the rows of each target, (columns, columns).
+        """Return sum over i, j of rho_ij J_i' J_j over the rows of each target, (p, p), of J, (n, p), and residuals.
 
         Noise in one signal of a measurement, for example the input, appears in all rows of the measurement. rho_ij is
         the correlation of the residuals of two rows, sample by sample. For uncorrelated rows the sum is J' J.
-
-        Args:
-            jacobian: Jacobian of the weighted residuals, (n, columns).
-            weighted: weighted residuals, (n,).
         """
         weighted_sum = np.zeros((jacobian.shape[1], jacobian.shape[1]))
         ends = np.cumsum(self.lengths)

@@ -166,17 +166,9 @@ class LevelTarget:
         return self.delays.of(self.outputs, groups, lags) - reference
 
     def misfit(self, response: Complex, groups: Mapping[str, float], lags: Mapping[str, float] | None = None) -> Vector:
-        """Return Re and Im of ln(H exp(-2 pi i f d) / Hm) over its standard deviation; 0 where undefined.
+        """Return the residuals of FRFs, see `FrfTarget.misfit`, in rows of `lines_per_row`, (rows, lines of a row).
 
         The windows are not moved: a delay of 1 % of their length lowers |H| by less than 0.1 %.
-
-        Args:
-            response: result of `response`, H.
-            groups: group to delay d [s].
-            lags: channel to a further delay [s].
-
-        Returns:
-            Residuals, (rows, lines of a row).
         """
         turned = late(response, self.data.frequency, self._delays(groups, lags or {}))
         logarithm, deviation = log_ratio(self.data.response, turned), self.deviation
@@ -217,8 +209,6 @@ def level_target(
     """Return the FRFs of a record in classes of the input level.
 
     Args:
-        histories: the record.
-        reference: name of the input channel.
         excitation: values of the reference at the times of the record, (n,).
         plates: displacements of the plates of the axle of the reference, (plates, n).
         levels: number of classes; each has the same number of windows.

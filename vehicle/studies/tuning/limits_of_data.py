@@ -23,9 +23,6 @@ def what_data_leave_open(result: TuningResult) -> tuple[str, ...]:
 
     For values a and b with relative standard errors s_a, s_b and correlation rho, the relative standard error of a / b
     (rho > 0) or a b (rho < 0) is sqrt(s_a^2 + s_b^2 - 2 |rho| s_a s_b).
-
-    Args:
-        result: result of a fit.
     """
     sentences = [held.message() for held in result.unidentified]
     for path in result.at_bound:

@@ -110,8 +110,6 @@ class RecordTarget:
         """Return the run of a car on the signal, on a road with turning wheels.
 
         Args:
-            car: variant of the car of the fit.
-            engine: engine of the run.
             channels: recorded channels; those of the record by default.
         """
         return self._driven(car).run(self.signal, engine=engine, channels=tuple(channels) or self.recorded)
@@ -140,13 +138,7 @@ class RecordTarget:
         return self._filtered(np.array([run[name] for name in names]))
 
     def misfit(self, response: Vector, groups: Mapping[str, float], lags: Mapping[str, float] | None = None) -> Vector:
-        """Return (ym - y(t - d)) over the RMS of ym, (channels, samples); 0 where the run has no value.
-
-        Args:
-            response: result of `response`.
-            groups: group to delay d [s].
-            lags: channel to a further delay [s].
-        """
+        """Return (ym - y(t - d)) over the RMS of ym, (channels, samples); 0 where the run has no value."""
         measured = self.measured()
         delays = self.delays.of(self.recorded, groups, lags or {})
         residuals = measured - self._delayed(response, delays)

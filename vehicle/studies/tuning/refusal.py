@@ -17,7 +17,6 @@ def refusal(result: TuningResult, errors: Sequence[tuple[str, float]]) -> str:
     """Return the reason why the values of a fit are unusable; empty if they are usable.
 
     Args:
-        result: result of a fit.
         errors: name of each channel, and its RMS error after the fit over the RMS of the measurement [%].
     """
     for unknown in result.unknowns:

@@ -62,10 +62,7 @@ class ResponseCells:
 
 
 def response_cells(targets: Sequence[FrfTarget]) -> ResponseCells:
-    """Return the means of measured FRFs in third-octave bands.
-
-    Args:
-        targets: measured FRFs with a coherence or a random error.
+    """Return the means of measured FRFs with coherence or random error in third-octave bands.
 
     Raises:
         DataError: no FRF, or FRFs without coherence and random error.
@@ -111,12 +108,7 @@ def response_cells(targets: Sequence[FrfTarget]) -> ResponseCells:
 def evaluated_cars(
     cars: Sequence[Car], cells: ResponseCells, progress: Callable[[float], None] | None = None
 ) -> tuple[Vector, Vector]:
-    """Return the cells of cars, and the comfort values of each signal, by the reduced engine in batches.
-
-    Args:
-        cars: cars of one topology.
-        cells: cells of the data.
-        progress: called with the finished fraction.
+    """Return the cells of cars of one topology, and their comfort on each signal, by the reduced engine in batches.
 
     Returns:
         Means of ln|H|, (cars, cells), and comfort values [m/s2]: unweighted RMS of the seat rail, all axes, 2 to 50 Hz,

@@ -201,8 +201,6 @@ def tuned_car(
     """Fit parameters of a car with the fast models, then finish the fit with an engine.
 
     Args:
-        car: the car at the start.
-        parameters: parameters with bounds and start values.
         measurements: results of `measured_responses` and `measured_histories`.
         engine: engine of the last steps, see `full_steps`; "reduced" ends after the fit with the fast models.
         progress: see `tune`.

@@ -49,13 +49,6 @@ def write_tuning(
 ) -> tuple[str, ...]:
     """Write the files of a fit.
 
-    Args:
-        folder: folder of the files.
-        tuned: fitted car.
-        command: command line of the fit.
-        posteriors: see `posterior_lines`; empty without a posterior.
-        author, project: names in the head of the report; may be empty.
-
     Returns:
         Names of the files, the vehicle file first.
 

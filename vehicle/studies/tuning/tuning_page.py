@@ -43,15 +43,7 @@ def tuning_page(
     author: str = "",
     project: str = "",
 ) -> str:
-    """Return the report of a fit as one HTML document.
-
-    Args:
-        tuned: fitted car.
-        figures: name of each picture and the function that writes it.
-        command: command line of the fit.
-        posteriors: see `posterior_lines`; empty without a posterior.
-        author, project: names in the head of the page; may be empty.
-    """
+    """Return the report of a fit as one HTML document."""
     names = ", ".join(each.target.name for each in tuned.measurements)
     vehicle = tuned.start.vehicle
     parts = [
