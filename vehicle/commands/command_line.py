@@ -6,6 +6,7 @@ import argparse
 import atexit
 import gc
 import io
+import json
 import math
 import os
 import signal
@@ -17,6 +18,7 @@ from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from types import FrameType
+from typing import Any
 
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError, OutputError, VehicleError
@@ -179,6 +181,14 @@ def _put_in_order(arguments: Sequence[str]) -> None:
 def command(parser: Callable[[], Parser], job: Callable[[argparse.Namespace], None]) -> Callable[..., int]:
     """Return the `main` function of a command: from its arguments to its exit code, see `parse_and_run`."""
     return lambda arguments=None: parse_and_run(parser(), job, arguments)
+
+
+def print_result(options: argparse.Namespace, content: Any, text: object) -> None:
+    """Print the content as JSON with --json, else the text, which --quiet leaves out."""
+    if options.json:
+        print(json.dumps(content, indent=2, allow_nan=False), flush=True)
+    elif not getattr(options, "quiet", False):
+        print(text, flush=True)
 
 
 FAULT = "a fault of the program"

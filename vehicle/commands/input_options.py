@@ -80,15 +80,6 @@ def signal_options(parser: Parser, *, several: bool = False) -> argparse._Argume
     return group
 
 
-def record_group(parser: Parser) -> argparse._ArgumentGroup:
-    """Add the group of the options that act on a file of signals or on a road that was recorded over time."""
-    return parser.scoped_group(
-        "a file of signals or a recorded road",
-        needs=RECORD_NEEDS,
-        active=lambda options: bool(options.input) or recorded_over_time(options),
-    )
-
-
 def road_options(
     parser: Parser, on_road: Condition, is_class: Condition, *, several: bool = False, rate_note: str = ""
 ) -> argparse._ArgumentGroup:

@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 import argparse
-import json
 import math
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vehicle.commands.command_line import ProgressLine, command
+from vehicle.commands.command_line import ProgressLine, command, print_result
 from vehicle.commands.destination import output_file_of
-from vehicle.commands.options import FORCE_HELP, command_parser, film_name, message_options, vehicle_options
+from vehicle.commands.options import (
+    FORCE_HELP,
+    command_parser,
+    film_name,
+    finite_numbers,
+    message_options,
+    vehicle_options,
+)
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError, SimulationError
 
@@ -103,7 +109,7 @@ def _job(options: argparse.Namespace) -> None:
         write_whole(options.uff, lambda path: write_modes(path, car, options.damper))
     if options.animate is not None:
         table["film"] = _film(options, car)
-    print(json.dumps(table, indent=2, allow_nan=False) if options.json else report(table, figures))
+    print_result(options, table, report(table, figures))
 
 
 def _decoupling(options: argparse.Namespace, car: Any) -> str:
@@ -113,10 +119,10 @@ def _decoupling(options: argparse.Namespace, car: Any) -> str:
 
     if options.aim is not None and not 0.0 < options.aim <= 100.0:
         raise ConfigurationError(f"--aim {options.aim:g}: must be above 0 and at most 100 percent")
-    try:
-        x, y, z = map(float, options.crankshaft.split(","))
-    except ValueError:
-        raise ConfigurationError(f"--crankshaft {options.crankshaft}: must be three numbers, as 0,1,0") from None
+    crankshaft = finite_numbers(options.crankshaft, ",")
+    if len(crankshaft) != 3:
+        raise ConfigurationError(f"--crankshaft {options.crankshaft}: must be three numbers, as 0,1,0")
+    x, y, z = crankshaft
     engine_modes = decoupling(
         car.matrices,
         options.decoupling,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from pathlib import Path
 from typing import Any
 
@@ -128,6 +129,15 @@ def report_option(parser: Parser, content: str, folder: str) -> None:
         help=f"write a report too: {content}; report.html in the folder of {folder} by default",
     )
     head_options(parser.scoped_group("a report", needs="--report", active=lambda options: options.report is not None))
+
+
+def finite_numbers(text: str, separator: str) -> list[float]:
+    """Return the numbers of the parts of a text; none if a part is no finite number."""
+    try:
+        numbers = [float(part) for part in text.split(separator)]
+    except ValueError:
+        return []
+    return numbers if all(map(math.isfinite, numbers)) else []
 
 
 def film_name(value: str, default: str) -> Path:

@@ -46,12 +46,13 @@ def each_file(
     return results, errors
 
 
-def table_of(heads: Row, rows: Sequence[Row]) -> str:
-    """Return rows as text; the first column is aligned left, the others right.
-
-    Args:
-        rows: cells; a row of two cells holds a file and a message.
-    """
+def table_of(heads: Row, results: Sequence[dict[str, Any]], rows_of: Callable[[dict[str, Any]], Sequence[Row]]) -> str:
+    """Return results of `each_file` as text: the rows of each, or its error; first column to the left, others right."""
+    rows = [
+        row
+        for result in results
+        for row in ([(result["input"], result["error"])] if "error" in result else rows_of(result))
+    ]
     full = [heads, *(row for row in rows if len(row) == len(heads))]
     names = max(len(row[0]) for row in [heads, *rows])
     widths = [max(len(row[column]) for row in full) for column in range(len(heads))]

@@ -31,6 +31,11 @@ def table_frame(text: str) -> Any:
     return _library("pandas", "to_dataframe").read_csv(io.StringIO(text))
 
 
+def plain_frame(table: Any) -> Any:
+    """Return a pandas table of columns by name, or of rows as mappings."""
+    return _library("pandas", "to_dataframe").DataFrame(table)
+
+
 def recording_frame(recording: Recording) -> Any:
     """Return a pandas table with channels as columns over the time [s], and their units in `attrs["units"]`."""
     pandas = _library("pandas", "to_dataframe")

@@ -59,8 +59,8 @@ class RunResponse(FrequencyResponse):
         Returns:
             The axes: one, or an array of three.
         """
+        from vehicle.drawing.rendering.curves import draw_response
         from vehicle.drawing.rendering.open_axes import open_axes, plain
-        from vehicle.drawing.rendering.response_plot import draw_response
 
         rows = 3 if ax is None else len(np.ravel(np.array(ax, dtype=object)))
         look: dict[str, Any] = {"sharex": True, "height_ratios": (2.2, 1.0, 0.9)}

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.drawing.rendering.figure import COLOURS, LINES, saved_figure
+from vehicle.drawing.rendering.figure import COLOURS, LINES, looks, saved_figure
 from vehicle.drawing.rendering.recorded_run import liveliest
 from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.spectra import power_spectral_density
@@ -100,10 +100,10 @@ def plot_convergence(path: Path, errors: Mapping[str, Vector], kept: npt.NDArray
     runs = np.arange(1, kept.size + 1)
     with saved_figure(path, (8.0, 4.8), "Error over the iteration", caption) as figure:
         axis = figure.subplots()
-        for (name, values), colour, line in zip(errors.items(), cycle(COLOURS), cycle(LINES), strict=False):
-            axis.plot(runs, 100.0 * values, linestyle=line, color=colour, label=name)
-            axis.plot(runs[kept], 100.0 * values[kept], "o", color=colour)
-            axis.plot(runs[~kept], 100.0 * values[~kept], "o", color=colour, markerfacecolor="white")
+        for (name, values), look in zip(errors.items(), looks(), strict=False):
+            axis.plot(runs, 100.0 * values, label=name, **look)
+            axis.plot(runs[kept], 100.0 * values[kept], "o", color=look["color"])
+            axis.plot(runs[~kept], 100.0 * values[~kept], "o", color=look["color"], markerfacecolor="white")
         if not kept.all():
             axis.plot([], [], "o", color=ERROR, markerfacecolor="white", label="taken back")
         axis.set(yscale="log", xlabel="run", ylabel="RMS error over RMS of target,\nin the band [%]; lower is better")

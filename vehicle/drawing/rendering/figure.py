@@ -5,6 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from itertools import cycle
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -58,6 +59,9 @@ SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 FRF_BAND = (1.0, 50.0)
 FRF_TICKS = (1, 2, 3, 5, 10, 20, 30, 50)
 """Frequency axis of an FRF [Hz]."""
+
+COMFORT_TICKS = (0.5, 1, 2, 5, 10, 20, 50)
+"""Frequency axis of a spectrum of comfort [Hz]."""
 
 FULL_LABEL = 7.0
 """Height of a figure [inch] with space for the whole label of the magnitude of an FRF."""
@@ -160,9 +164,20 @@ def frf_axes(figure: Figure, axes: npt.NDArray[Any], coherence_ticks: tuple[floa
     upper.yaxis.set_major_formatter(power_of_ten)
     for axis in axes[2]:
         axis.set_xlabel("frequency [Hz]")
-        axis.set_xticks(FRF_TICKS, [str(tick) for tick in FRF_TICKS])
-        axis.set_xticks([], minor=True)
+        frequency_ticks(axis, FRF_TICKS)
     figure.align_ylabels(axes[:, 0])
+
+
+def frequency_ticks(axis: Axes, ticks: Sequence[float]) -> None:
+    """Label a logarithmic frequency axis at some frequencies [Hz], without any other ticks."""
+    axis.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    axis.set_xticks([], minor=True)
+
+
+def looks() -> Iterator[dict[str, Any]]:
+    """Yield colour and line style of one curve after another, without an end."""
+    for colour, line in cycle(zip(COLOURS, LINES, strict=True)):
+        yield {"color": colour, "linestyle": line}
 
 
 def wrapped_phase(response: Complex) -> Vector:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vehicle.drawing.rendering.figure import COLOURS, FRF_TICKS, INK, name_bars, saved_figure
+from vehicle.drawing.rendering.figure import COLOURS, FRF_TICKS, INK, frequency_ticks, name_bars, saved_figure
 from vehicle.signals.analysis.samples import Vector
 
 if TYPE_CHECKING:
@@ -76,8 +76,7 @@ def plot_participation(
         upper.axvline(at, color="black", linestyle="--", linewidth=0.8, label=f"{at:g} Hz")
         upper.set(xscale="log", xlim=(frequency[0], frequency[-1]), xlabel="frequency [Hz]")
         upper.set(ylabel="contribution in phase with the sum [(m/s²)/m]")
-        upper.set_xticks(FRF_TICKS, [str(tick) for tick in FRF_TICKS])
-        upper.set_xticks([], minor=True)
+        frequency_ticks(upper, FRF_TICKS)
         upper.legend(loc="upper left")
         _bars(left, shares, colours, f"share in the sum at {at:g} Hz [%]")
         mode, forces = driven

@@ -78,7 +78,8 @@ class RoadStrip:
     def height(self, track: int, x: Vector, time: float, exposure: float) -> Vector:
         """Return the true height of the road [m] at positions x [m], averaged over an exposure [s] about a time [s]."""
         height, integral = self.integrals[track]
-        at = time + (self.leaders[track].patch[0] - x) / self.speed
+        away = self.leaders[track].patch[0] - x
+        at = time + (away / self.speed if self.speed else np.zeros_like(away))  # at rest all see the same height
 
         def total(when: Vector) -> Vector:
             inside = np.clip(when, self.time[0], self.time[-1])

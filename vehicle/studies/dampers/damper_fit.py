@@ -177,7 +177,7 @@ def fit_law(tests: Sequence[DamperTest], law: DamperLaw, starts: Sequence[Vector
         return last[key]
 
     results = []
-    bounds = internal(np.where(linear, low, low)), internal(high)
+    bounds = internal(low), internal(high)
     for start in starts:
         begin = np.clip(internal(np.clip(start, low, high)), bounds[0] + 1e-6, bounds[1] - 1e-6)
         results.append(

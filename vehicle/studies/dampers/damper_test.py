@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from vehicle.digits import number
+from vehicle.digits import number, rounded
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.formats.channel import Measurement
 from vehicle.signals.formats.reader import read_record
@@ -297,7 +297,7 @@ def _conditions(path: Path, measurement: Measurement, typed: Mapping[str, str], 
     for name, text in typed.items():
         if text.startswith("channel:"):
             chosen = choose(measurement, Choice(channels={name: text.removeprefix("channel:")}))
-            values[name] = float(f"{np.mean(chosen.values[name]):.3g}")
+            values[name] = rounded(float(np.mean(chosen.values[name])), 3)
         else:
             values[name] = _number(text, f"--condition {name}={text}")
     if pattern:

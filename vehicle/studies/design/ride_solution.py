@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.digits import rounded
 from vehicle.engines.kinematics.axle_ride import axle_rides
 from vehicle.engines.kinematics.ride_figures import ride_figures
 from vehicle.errors import ConfigurationError, SimulationError
@@ -350,14 +351,9 @@ def _multiply(table: dict[str, Any], path: str, factor: float) -> None:
     """Multiply a number, a list of numbers or the component z of a vector in a vehicle table."""
     if path.endswith(".z"):
         vector = list(value_at(table, path.removesuffix(".z")))
-        vector[2] = _rounded(factor * vector[2])
+        vector[2] = rounded(factor * vector[2], 9)
         put(table, {path.removesuffix(".z"): vector})  # type: ignore[dict-item]
         return
     value = value_at(table, path)
-    numbers = [_rounded(factor * item) for item in (value if isinstance(value, list | tuple) else [value])]
+    numbers = [rounded(factor * item, 9) for item in (value if isinstance(value, list | tuple) else [value])]
     put(table, {path: numbers if isinstance(value, list | tuple) else numbers[0]})  # type: ignore[dict-item]
-
-
-def _rounded(value: float) -> float:
-    """Return a number of nine digits: below the tolerance of the solution, and legible in a file."""
-    return float(f"{value:.9g}")

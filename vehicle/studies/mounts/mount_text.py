@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from vehicle.digits import number
+from vehicle.digits import number, rounded
 from vehicle.studies.mounts.measured_stiffness import MeasuredStiffness
 from vehicle.studies.mounts.mount_fit import MountFit
 
@@ -55,7 +55,7 @@ def vehicle_lines(fit: MountFit, caption: str) -> str:
     for (name, unit), value, error, determined in zip(
         fit.law.parameters.items(), fit.values.tolist(), fit.errors.tolist(), fit.determined, strict=True
     ):
-        text = f"{float(f'{value:.5g}')!r}"
+        text = repr(rounded(value, 5))
         shown = f"[{text}, {text}, {text}]" if name in VECTORS else text
         spread = f"standard error {number(error, 2)}" if determined else "not determined by these points"
         lines.append(f"{name} = {shown}  # [{unit}] fitted to {source}, {spread}")

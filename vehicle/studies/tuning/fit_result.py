@@ -20,6 +20,12 @@ Vector = npt.NDArray[np.float64]
 Unknown = Range | DelayRange
 """Unknown of a fit: a parameter of the model, or the delay of a group of channels."""
 
+
+def known(value: float | None) -> float | None:
+    """Return a number; None for one that is missing or not finite."""
+    return value if value is not None and np.isfinite(value) else None
+
+
 SURE = 2.0
 """Minimum significant correlation of neighbours, in standard errors 1/sqrt(n) of the correlation, n values of all rows.
 """
@@ -149,7 +155,7 @@ class TuningResult:
         return {path: float(component) for path, component in zip(self.free, step, strict=True)}
 
 
-def target_statistics(names: Sequence[str], rows: Sequence[Vector], freedom: float) -> tuple[RowStatistics, ...]:
+def target_statistics(names: Sequence[str], rows: Vector, freedom: float) -> tuple[RowStatistics, ...]:
     """Return the statistics of the rows of one target.
 
     The residuals are modelled as a first-order autoregression, whose mean over n values varies like the mean of
@@ -157,7 +163,7 @@ def target_statistics(names: Sequence[str], rows: Sequence[Vector], freedom: flo
     the rho of a single short row would scatter, and so would the weights.
 
     Args:
-        rows: residuals, zero where a value is excluded; (n,) each.
+        rows: residuals, zero where a value is excluded; (rows, n).
         freedom: degrees of freedom of all residuals over their number [-].
 
     Returns:

@@ -171,11 +171,7 @@ class FrfTarget:
     def misfit(self, response: Complex, groups: Mapping[str, float], lags: Mapping[str, float] | None = None) -> Vector:
         """Return Re, Im of ln(H exp(-2 pi i f d) / Hm) over the deviation, (2 channels, m); 0 where undefined."""
         delays = self.delays.of(self.data.channels, groups, lags or {})
-        logarithm = log_ratio(self.data.response, late(response, self.data.frequency, delays))
-        included = np.isfinite(logarithm) & np.isfinite(self.deviation) & (self.deviation > 0.0)
-        scaled = np.divide(logarithm, self.deviation, out=np.full(included.shape, np.nan + 0j), where=included)
-        rows = np.stack([scaled.real, scaled.imag], axis=1).reshape(-1, self.data.frequency.size)
-        return np.where(np.isfinite(rows), rows, 0.0)
+        return scaled_ratio(self.data.response, late(response, self.data.frequency, delays), self.deviation)
 
     def settled(self, groups: Mapping[str, float]) -> Self:
         """Return the target with known delays of all groups [s]."""
@@ -188,6 +184,14 @@ class FrfTarget:
     def lags(self, model: Car) -> dict[str, PhaseDelay]:
         """Return the lag of best agreement with a car for each channel; only channels with the same motion."""
         return response_lags(self.data, self.response(model), self.deviation)
+
+
+def scaled_ratio(measured: Complex, model: Complex, deviation: Vector) -> Vector:
+    """Return Re and Im of ln(model / measured), (k, m), over its standard deviation, (2 k, m); 0 where undefined."""
+    logarithm = log_ratio(measured, model)
+    included = np.isfinite(logarithm) & np.isfinite(deviation)
+    scaled = np.divide(logarithm, deviation, out=np.zeros(included.shape, dtype=complex), where=included)
+    return np.stack([scaled.real, scaled.imag], axis=1).reshape(-1, scaled.shape[1])
 
 
 def response_lags(data: FrfData, response: Complex, deviation: Vector) -> dict[str, PhaseDelay]:

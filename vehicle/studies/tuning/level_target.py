@@ -12,15 +12,13 @@ import scipy
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.runs.car import Car, Run
-from vehicle.signals.analysis.frf_agreement import log_ratio
 from vehicle.signals.analysis.phase_delay import PhaseDelay
 from vehicle.signals.analysis.response_name import ResponseName
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.formats.frf_file import FrfData
-from vehicle.studies.tuning.frf_target import FLOOR, LEAST_COHERENCE, Complex, Vector, late, response_lags
-from vehicle.studies.tuning.record_target import RecordTarget
+from vehicle.studies.tuning.frf_target import FLOOR, LEAST_COHERENCE, Complex, Vector, late, response_lags, scaled_ratio
+from vehicle.studies.tuning.record_target import RecordTarget, RoadCar
 from vehicle.studies.tuning.response_delays import ResponseDelays
-from vehicle.studies.tuning.road_car import RoadCar
 
 Indices = npt.NDArray[np.int64]
 
@@ -171,10 +169,7 @@ class LevelTarget:
         The windows are not moved: a delay of 1 % of their length lowers |H| by less than 0.1 %.
         """
         turned = late(response, self.data.frequency, self._delays(groups, lags or {}))
-        logarithm, deviation = log_ratio(self.data.response, turned), self.deviation
-        included = np.isfinite(logarithm) & np.isfinite(deviation)
-        scaled = np.divide(logarithm, deviation, out=np.zeros(included.shape, dtype=complex), where=included)
-        rows = np.stack([scaled.real, scaled.imag], axis=1).reshape(-1, self.lines.size)
+        rows = scaled_ratio(self.data.response, turned, self.deviation)
         parts = -(-self.lines.size // self.lines_per_row)
         whole = np.zeros((rows.shape[0], parts * self.lines_per_row))
         whole[:, : self.lines.size] = rows

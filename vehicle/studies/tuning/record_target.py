@@ -20,12 +20,31 @@ from vehicle.signals.formats.table import Record
 from vehicle.signals.records.counterpart import SAME_MOTION
 from vehicle.studies.tuning.fast_run import fast_run
 from vehicle.studies.tuning.response_delays import ResponseDelays
-from vehicle.studies.tuning.road_car import RoadCar
 
 Vector = npt.NDArray[np.float64]
 
 KEPT = 2.0
 """Samples per period of the low-pass frequency after decimation: white noise then stays nearly white."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class RoadCar:
+    """Car of a fit on a road, and its variants with other parameters.
+
+    A variant is made from the car on the road: the terms of its matrices are computed once for all variants
+    (`Car.varied`).
+
+    Attributes:
+        start: car at the start of the fit, with standing tyres or the speed of its file.
+        rolling: the same car with the parameters that the road sets, as driving.speed.
+    """
+
+    start: Car
+    rolling: Car
+
+    def variant(self, car: Car) -> Car:
+        """Return a variant, from `start.varied`, on the road."""
+        return self.rolling.with_(car.overrides[len(self.start.overrides) :])
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

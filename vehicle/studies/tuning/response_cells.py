@@ -32,14 +32,12 @@ class ResponseCells:
 
     Attributes:
         targets: measured FRFs.
-        names: name of each cell: target, channel and centre frequency.
         weights: for each target the normalised weights, (channels, bands, lines).
         data: measured means, (cells,).
         noise: standard deviations of the means from the coherence, (cells,).
     """
 
     targets: tuple[FrfTarget, ...]
-    names: tuple[str, ...]
     weights: tuple[Vector, ...]
     data: Vector
     noise: Vector
@@ -69,7 +67,6 @@ def response_cells(targets: Sequence[FrfTarget]) -> ResponseCells:
     """
     if not targets:
         raise DataError("--posterior: no FRFs; add --frf FILE, the posterior is that of FRFs in third-octave bands")
-    names: list[str] = []
     all_weights, data, noise = [], [], []
     for target in targets:
         frequency = target.data.frequency
@@ -89,16 +86,12 @@ def response_cells(targets: Sequence[FrfTarget]) -> ResponseCells:
         sums = weights.sum(axis=2, keepdims=True)
         weights = np.divide(weights, sums, out=np.zeros_like(weights), where=sums > 0.0)
         size = np.where(usable, np.abs(target.data.response), 1.0)
-        for row, channel in enumerate(target.data.labels):
-            for column, number in enumerate(bands):
-                if sums[row, column, 0] > 0.0:
-                    names.append(f"{target.name}, {channel}, {10.0 ** (0.1 * number):.3g} Hz")
-                    data.append(float(weights[row, column] @ np.log(size[row])))
-                    noise.append(float(1.0 / np.sqrt(sums[row, column, 0])))
+        for row, column in zip(*np.nonzero(sums[:, :, 0] > 0.0), strict=True):
+            data.append(float(weights[row, column] @ np.log(size[row])))
+            noise.append(float(1.0 / np.sqrt(sums[row, column, 0])))
         all_weights.append(weights)
     return ResponseCells(
         targets=tuple(targets),
-        names=tuple(names),
         weights=tuple(all_weights),
         data=np.array(data),
         noise=np.array(noise),
