@@ -243,7 +243,8 @@ class MeasuredNoise:
         noise = scipy.signal.lfilter([np.sqrt(1.0 - rho**2)], [1.0, -rho], white, axis=2)[:, :, 50:]
         self.target = MeasuredMasses(sigma=0.0)
         self.target.data = self.target.data * np.exp(SIGMA * (noise[0] + 1j * noise[1]))
-        self.residuals = self.target.residuals
+        self.recorded, self.half_sample = (), 0.0
+        self.response, self.misfit = self.target.response, self.target.misfit
 
 
 def tuning(repetitions: int) -> Rows:

@@ -102,7 +102,7 @@ def coverage(cars: int, discrepancy: float) -> list[dict[str, Any]]:
     left_out, noise = 100.0 * emulated.emulator.left_out, 100.0 * np.median(emulated.cells.noise)
     print(
         f"emulator: {time.process_time() - began:.0f} s processor, {time.perf_counter() - wall:.0f} s; "
-        f"{emulated.emulator.powers.shape[0]} terms, {len(emulated.cells.names)} cells, left-out error median "
+        f"{emulated.emulator.powers.shape[0]} terms, {emulated.cells.data.size} cells, left-out error median "
         f"{np.median(left_out):.2f} %, largest {left_out.max():.1f} %, noise of a cell {noise:.2f} %",
         flush=True,
     )

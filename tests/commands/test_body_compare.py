@@ -40,9 +40,9 @@ def test_crossed_modes_are_found_by_their_shape(files, tmp_path, capsys, monkeyp
     drawn = []
     draw = pictures.plot_mac
 
-    def keep(path, *rest):
-        drawn.append(rest)
-        draw(path, *rest)
+    def keep(path, tables, caption):
+        drawn.append((tables, caption))
+        draw(path, tables, caption)
 
     monkeypatch.setattr(pictures, "plot_mac", keep)
     folder = tmp_path / "out"

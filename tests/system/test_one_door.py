@@ -29,7 +29,6 @@ APPENDS = "appends finished rows; half a row is left out when they are read agai
 PRIVATE = "a private folder, or a cache, which holds no results"
 
 ELSEWHERE = {
-    "commands/new.py": GIVEN,
     "commands/shaker.py": GIVEN,
     "drawing/rendering/figure.py": GIVEN,
     "drawing/rendering/film.py": GIVEN,

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import argparse
 import shlex
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehicle.commands.accepted import refusal
 from vehicle.errors import VehicleError
+from vehicle.names import CORNERS
 from vehicle.signals.formats.channel import NOT_OVER_TIME, ROAD_PROFILE
 from vehicle.signals.formats.text import LARGEST
 from vehicle.signals.records.channel_words import (
@@ -42,7 +43,6 @@ def command_for(measurement: Measurement, file: str, databases: Sequence[Path] =
     """Return the command for a file with its purpose, or the reason for the lack of a command.
 
     Args:
-        measurement: the file.
         file: name of the file as typed.
         databases: DBC files that decoded the log of a CAN bus.
     """
@@ -111,8 +111,6 @@ def comparison_for(measurement: Measurement, file: str, command: str) -> str:
     """Return the command that compares the accelerations of a file with a run of its plate; empty without both.
 
     Args:
-        measurement: the file.
-        file: name of the file as typed.
         command: command from `command_for`; the comparison uses its run.
     """
     from vehicle.model.parameters.vehicle import load_vehicle
@@ -131,7 +129,7 @@ def comparison_for(measurement: Measurement, file: str, command: str) -> str:
     arguments = ["compare", "RUN", "--measured", file, *databases, *_clock(*mapped_channels)]
     mapped = map_options(suggested)
     checked = [*arguments, *shlex.split(mapped), *(("--vehicle", str(car)) if car else ())]
-    return "" if _is_checked(measurement) and refusal(checked) else f"{_line(*arguments)} {mapped}"
+    return "" if _is_checked(measurement) and _refusal(checked) else f"{_line(*arguments)} {mapped}"
 
 
 def _line(*arguments: str) -> str:
@@ -148,7 +146,7 @@ def _first(measurement: Measurement, candidates: Sequence[list[str]]) -> tuple[s
         return _line(*candidates[0]), ""
     reasons = []
     for arguments in candidates:
-        reason = refusal(arguments)
+        reason = _refusal(arguments)
         if not reason:
             return _line(*arguments), ""
         reasons.append(reason)
@@ -296,3 +294,57 @@ def _accelerations(measurement: Measurement, files: list[str], those: list[Numbe
     if not command:
         return "", f"an acceleration, but: {why}"
     return command, f"gives the comfort of {which} in {', '.join(sorted(axes))}{more}"
+
+
+def _refusal(arguments: Sequence[str]) -> str:
+    """Return the error message of a command (comfort, shaker or compare) for its files; empty if they are accepted."""
+    checks: dict[str, Callable[[Sequence[str]], None]] = {"comfort": _comfort, "shaker": _shaker, "compare": _compare}
+    try:
+        checks[arguments[0]](arguments[1:])
+    except VehicleError as error:
+        return str(error)
+    return ""
+
+
+def _comfort(options_text: Sequence[str]) -> None:
+    from vehicle.commands.comfort import evaluated, parser
+
+    options = parser().parse_args(options_text)
+    evaluated(argparse.Namespace(**{**vars(options), "input": options.inputs[0]}))
+
+
+def _shaker(options_text: Sequence[str]) -> None:
+    from vehicle.commands.input_options import record_choice
+    from vehicle.commands.road import class_or_profile, road_drive
+    from vehicle.commands.shaker import parser, plate_signal
+    from vehicle.model.parameters.vehicle import load_vehicle
+    from vehicle.signals.excitation.evaluation_start import evaluation_start
+
+    options = parser().parse_args(options_text)
+    vehicle = load_vehicle(options.vehicle, options.overrides)
+    if options.road is not None:
+        drive = road_drive(class_or_profile(options.road), options, vehicle)
+        evaluation_start({options.road: drive.signal().duration}, None, drive.skip)
+        return
+    wheel = CORNERS[options.wheel] if options.wheel else vehicle.shaker_wheel
+    plate_signal(options, wheel, record_choice(options, wheel))
+
+
+def _compare(options_text: Sequence[str]) -> None:
+    from vehicle.commands.compare import measured_choice, parser
+    from vehicle.model.parameters.vehicle import load_vehicle
+    from vehicle.signals.formats.reader import read_record
+    from vehicle.signals.records.measured import read_measured
+
+    options = parser().parse_args(options_text)
+    (name,) = options.measured
+    choice = measured_choice(options)
+    measurement = read_record(Path(name), choice.databases)
+    if measurement.shapes and not measurement.channels:
+        from vehicle.runs.car import Car
+        from vehicle.runs.comparison.mode_comparison import compare_modes
+
+        compare_modes(Car.load(options.vehicle, options.overrides), measurement, dict(choice.channels), options.damper)
+        return
+    channels = load_vehicle(options.vehicle, options.overrides).channels
+    read_measured(Path(name), channels, choice, inverted=options.turned, measurement=measurement)

@@ -18,10 +18,6 @@ if TYPE_CHECKING:
 def chosen_inputs(options: argparse.Namespace, vehicle: Vehicle) -> list[Road] | list[SignalFile]:
     """Return the inputs of the options --input or --road.
 
-    Args:
-        options: parsed options of `signal_options` with several=True.
-        vehicle: the car; its shaker wheel is the default of --wheel.
-
     Raises:
         ConfigurationError: no input, a file that does not exist, or a speed without a road.
     """

@@ -12,12 +12,7 @@ DELAY = (
 
 
 def delay_option(parser: argparse._ActionsContainer, more: str = "") -> None:
-    """Add --delay, the start of a measurement after the run and the delays of groups of channels.
-
-    Args:
-        parser: parser of the command, or the group of the options that act on the measurement.
-        more: further text of the help.
-    """
+    """Add --delay, the start of a measurement after the run and the delays of groups of channels."""
     parser.add_argument("--delay", action="append", default=[], metavar="[GROUP=]TIME", help=DELAY + more)
 
 
@@ -35,9 +30,6 @@ def drift_option(parser: argparse._ActionsContainer) -> None:
 
 def clock_of(options: argparse.Namespace) -> tuple[float, float]:
     """Return the number of --delay [s] and --drift [-].
-
-    Args:
-        options: parsed options of a command with both.
 
     Raises:
         ConfigurationError: a value is not finite, or the drift exceeds 0.1.

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vehicle.commands.command_line import command
+from vehicle.commands.command_line import command, print_result
 from vehicle.commands.input_options import record_choice, record_options
 from vehicle.commands.options import command_parser, message_options
 from vehicle.commands.parser import Parser
@@ -93,11 +92,7 @@ def parser() -> Parser:
 
 
 def _picked(options: argparse.Namespace, picks: Sequence[str]) -> tuple[str | None, Choice | None]:
-    """Return the point of a run, or the choice of channels, that the texts of an option name.
-
-    Raises:
-        ConfigurationError: both a point and channels of axes.
-    """
+    """Return the point of a run, or the choice of channels, that the texts of an option name."""
     points = [text for text in picks if "=" not in text]
     if len(points) > 1 or (points and len(picks) > 1):
         raise ConfigurationError("--channel: set one PLACE, or x=NAME, y=NAME and z=NAME")
@@ -106,10 +101,7 @@ def _picked(options: argparse.Namespace, picks: Sequence[str]) -> tuple[str | No
 
 
 def evaluated(options: argparse.Namespace) -> RecordComfort:
-    """Evaluate the file of the options.
-
-    Args:
-        options: parsed options of the command; `input` is the file.
+    """Evaluate the file `input` of the options.
 
     Raises:
         ConfigurationError: `--rail` names another axis than z.
@@ -157,11 +149,8 @@ def _about_the_seat(file: Path) -> list[str]:
 
 def _overview(results: list[dict[str, Any]]) -> str:
     """Return the table of several files: weighted RMS of each axis, vector sum, further values of axis z."""
-    rows: list[tuple[str, ...]] = []
-    for result in results:
-        if "error" in result:
-            rows.append((result["input"], result["error"]))
-            continue
+
+    def row(result: dict[str, Any]) -> list[tuple[str, ...]]:
         sums, z = result["vector_sum"], result["z"]
         numbers = [
             *(None if result[axis] is None else result[axis]["weighted_rms"] for axis in ("x", "y", "z")),
@@ -169,10 +158,11 @@ def _overview(results: list[dict[str, Any]]) -> str:
             *(None if z is None else z[key] for key in ("mtvv", "crest_factor", "vdv")),
         ]
         cells = ["-" if number is None else f"{number:.4g}" for number in numbers]
-        rows.append((result["input"], f"{result['duration_s']:.4g}", f"{result['sampling_rate_hz']:.6g}", *cells))
+        return [(result["input"], f"{result['duration_s']:.4g}", f"{result['sampling_rate_hz']:.6g}", *cells)]
+
     heads = ("file", "length [s]", "rate [Hz]", "x", "y", "z", "sum", "MTVV z", "crest z", "VDV z")
     caption = "weighted RMS of each axis, their vector sum and MTVV [m/s2], crest factor, VDV [m/s^1.75]"
-    return f"{caption}\n{table_of(heads, rows)}"
+    return f"{caption}\n{table_of(heads, results, row)}"
 
 
 def _job(options: argparse.Namespace) -> None:
@@ -184,11 +174,11 @@ def _job(options: argparse.Namespace) -> None:
     names, several = expanded(options.inputs)
     if several:
         results, errors = each_file(names, one)
-        print(json.dumps(results, indent=2, allow_nan=False) if options.json else _overview(results), flush=True)
+        print_result(options, results, _overview(results))
         raise_worst(errors, len(results))
         return
     result = evaluated(argparse.Namespace(**{**vars(options), "input": names[0]}))
-    print(json.dumps(result.summary, indent=2, allow_nan=False) if options.json else result.text(), flush=True)
+    print_result(options, result.summary, result.text())
     for remark in result.notices:
         print(f"notice: {remark}", file=sys.stderr)
 

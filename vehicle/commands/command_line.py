@@ -6,6 +6,7 @@ import argparse
 import atexit
 import gc
 import io
+import json
 import math
 import os
 import signal
@@ -17,6 +18,7 @@ from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from types import FrameType
+from typing import Any
 
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError, OutputError, VehicleError
@@ -41,10 +43,6 @@ FIRST_COLLECTED = 600_000
 
 def run_command(job: Callable[[], None], *, debug: bool = False) -> int:
     """Run the job of a command, and convert a failure to one message and an exit code.
-
-    Args:
-        job: the whole work of the command.
-        debug: print the traceback too.
 
     Returns:
         0, or the code of the failure: 2 usage, 3 data, 4 simulation, 5 missing part, 6 output, 130 interrupted.
@@ -181,13 +179,16 @@ def _put_in_order(arguments: Sequence[str]) -> None:
 
 
 def command(parser: Callable[[], Parser], job: Callable[[argparse.Namespace], None]) -> Callable[..., int]:
-    """Return the `main` function of a command, which takes the arguments and returns the exit code.
-
-    Args:
-        parser: function that returns the parser.
-        job: work of the command, see `parse_and_run`.
-    """
+    """Return the `main` function of a command: from its arguments to its exit code, see `parse_and_run`."""
     return lambda arguments=None: parse_and_run(parser(), job, arguments)
+
+
+def print_result(options: argparse.Namespace, content: Any, text: object) -> None:
+    """Print the content as JSON with --json, else the text, which --quiet leaves out."""
+    if options.json:
+        print(json.dumps(content, indent=2, allow_nan=False), flush=True)
+    elif not getattr(options, "quiet", False):
+        print(text, flush=True)
 
 
 FAULT = "a fault of the program"
@@ -213,8 +214,6 @@ class ProgressLine:
     estimate the time so far counts up.
 
     Args:
-        work: name of the computation.
-        enabled: False prints nothing.
         runs: number of runs of the computation; the line then has the number of finished runs too.
     """
 

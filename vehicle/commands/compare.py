@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import json
 from collections.abc import Container
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.clock_options import clock_of, delay_option, drift_option
-from vehicle.commands.command_line import ProgressLine, command
+from vehicle.commands.command_line import ProgressLine, command, print_result
 from vehicle.commands.destination import output_folder_of
 from vehicle.commands.input_options import record_options
 from vehicle.commands.options import (
@@ -95,8 +94,6 @@ def measured_options(parser: Parser, *, required: bool = False, several: bool = 
     """Add --measured, --map and --turn, which choose a measurement and its channels.
 
     Args:
-        parser: parser of the command.
-        required: True if the command needs a measurement.
         several: True if --measured accepts several files or a folder; its value is then a list.
     """
     several_files: dict[str, Any] = {"nargs": "+", "action": "extend"} if several else {}
@@ -149,7 +146,6 @@ def measured_choice(options: argparse.Namespace, input_names: Container[str] = (
     """Return the choice of channels and units of the measurement.
 
     Args:
-        options: parsed options of the command.
         input_names: names of --unit that belong to the input.
 
     Raises:
@@ -183,28 +179,19 @@ def _job(options: argparse.Namespace) -> None:
 
     if not several:
         result = one(names[0])
-        if options.json:
-            print(json.dumps(result["summary"], indent=2, allow_nan=False))
-        elif not options.quiet:
-            print(result["text"])
+        print_result(options, result["summary"], result["text"])
         return
     results, errors = each_file(names, one)
-    if options.json:
-        plain = [{"input": each["input"], **each.get("summary", {"error": each.get("error")})} for each in results]
-        print(json.dumps(plain, indent=2, allow_nan=False), flush=True)
-    elif not options.quiet:
-        print(_overview(results), flush=True)
+    plain = [{"input": each["input"], **each.get("summary", {"error": each.get("error")})} for each in results]
+    print_result(options, plain, _overview(results))
     raise_worst(errors, len(results))
 
 
 def _overview(results: list[dict[str, Any]]) -> str:
     """Return the table of several files, a line for each channel: FRAC; RMS ratio and correlation."""
-    rows: list[tuple[str, ...]] = []
-    for result in results:
-        if "error" in result:
-            rows.append((result["input"], result["error"]))
-            continue
-        summary = result["summary"]
+
+    def rows_of(result: dict[str, Any]) -> list[tuple[str, ...]]:
+        summary, rows = result["summary"], list[tuple[str, ...]]()
         keys = (("responses", "frac", ""), ("records", "rms_ratio", "correlation"))
         several = len({response.get("plate") for response in summary.get("responses", ())}) > 1
         for section, first, second in keys:
@@ -213,16 +200,13 @@ def _overview(results: list[dict[str, Any]]) -> str:
                 cells = ["-" if value is None else f"{value:.4g}" for value in values]
                 plate = f"/{channel['plate']}" if several and channel.get("plate") else ""
                 rows.append((result["input"], channel["channel"] + plate, section[:-1], *cells))
-    return table_of(("file", "channel", "of", "FRAC or RMS ratio", "correlation"), rows)
+        return rows
+
+    return table_of(("file", "channel", "of", "FRAC or RMS ratio", "correlation"), results, rows_of)
 
 
 def _compared(options: argparse.Namespace, output: Path) -> tuple[dict[str, Any], str]:
-    """Compare one measurement, write the results, and return the summary and its text.
-
-    Args:
-        options: parsed options of the command; `measured` is the file.
-        output: folder of the results.
-    """
+    """Compare the measurement `measured` of the options, write the results, and return the summary and its text."""
     from vehicle.runs.comparison.compared_run import compare
     from vehicle.runs.comparison.frf_comparison import edges_of
     from vehicle.runs.output.comparison_files import save_comparison
@@ -266,13 +250,7 @@ def _measured(
 def measured_beside(
     options: argparse.Namespace, channels: tuple[str, ...], input_names: Container[str] = ()
 ) -> Measured | None:
-    """Read the measurement of --measured before the run; return None without --measured.
-
-    Args:
-        options: parsed options, with those of `measured_options`.
-        channels: names of the channels of the run.
-        input_names: names of --unit that belong to the input.
-    """
+    """Read the measurement of --measured before the run, see `measured_choice`; return None without --measured."""
     if options.measured is None:
         return None
     return _measured(options, channels, measured_choice(options, input_names))

@@ -57,10 +57,7 @@ where it prints none."""
 
 
 def completion_script(shell: str) -> str:
-    """Return the completion script of a shell.
-
-    Args:
-        shell: "bash" or "zsh".
+    """Return the completion script of a shell, "bash" or "zsh".
 
     Raises:
         ConfigurationError: another shell.
@@ -77,10 +74,6 @@ def _rows(name: str, parser: argparse.ArgumentParser) -> Iterator[tuple[str, str
     """Yield the words allowed after a command, and its options with a value.
 
     Values that contain a blank are left out.
-
-    Args:
-        name: command, as "body import".
-        parser: its parser.
     """
     tasks: dict[str, argparse.ArgumentParser] = {}
     for action in parser._actions:

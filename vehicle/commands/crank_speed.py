@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import argparse
-import math
 
 from vehicle.commands.destination import is_named
+from vehicle.commands.options import finite_numbers
 from vehicle.errors import ConfigurationError
 
 
@@ -38,11 +38,8 @@ def crank_overrides(options: argparse.Namespace) -> list[str]:
         return _measured(options, measured)
     if options.rpm is None:
         return []
-    try:
-        speeds = [float(part) for part in options.rpm.split(":")]
-    except ValueError:
-        speeds = []
-    if len(speeds) not in (1, 2) or not all(map(math.isfinite, speeds)):
+    speeds = finite_numbers(options.rpm, ":")
+    if len(speeds) not in (1, 2):
         raise ConfigurationError(f"--rpm {options.rpm!r}: needed is a speed, as 750, or a run-up, as 700:3000 [1/min]")
     if len(speeds) == 1:
         return [f"crank.rpm={speeds[0]!r}"]

@@ -17,7 +17,6 @@ def output_folder_of(options: argparse.Namespace, default: Path, *, protect: tup
     """Choose the folder of the results.
 
     Args:
-        options: parsed options of `output_options`.
         default: folder without --output; if it exists, the next free name is taken, with a notice.
         protect: input files; a folder that holds one of them is never replaced.
 
@@ -41,7 +40,6 @@ def study_folder_of(options: argparse.Namespace, default: Path, *, rows: Sequenc
     """Choose the folder of a study, a sweep or a search; its files are made in `study_folder`.
 
     Args:
-        options: parsed options of `output_options`, and of `resume_options` if the command has them.
         default: folder without --output, see `output_folder_of`.
         rows: names of the files of finished rows, see `study_folder`.
 
@@ -68,7 +66,6 @@ def output_files_of(options: argparse.Namespace, folder: Path, names: Sequence[s
     """Choose the files that a command adds to a folder with other files.
 
     Args:
-        options: parsed options of `output_options`.
         folder: folder without --output; if one of the files exists, all get the next free number, with a notice.
         names: of the files.
 
@@ -99,7 +96,6 @@ def output_file_of(
     """Choose the file of the results; return value and errors are those of `output_folder_of`.
 
     Args:
-        options: parsed options of `output_options`.
         default: file without --output; if it exists, the next free name is taken, with a notice.
         ending: required ending of the name.
         protect: input files; they are never replaced.

@@ -89,11 +89,7 @@ def _say(step: Step, iterations: int) -> None:
 
 
 def _channels(options: argparse.Namespace) -> tuple[dict[str, str], Choice]:
-    """Return the channels, name in the car to name in the file, and the further choice of the file.
-
-    Raises:
-        ConfigurationError: no channel, or a channel twice.
-    """
+    """Return the channels, name in the car to name in the file, and the further choice of the file."""
     from vehicle.signals.records.choice import Choice
     from vehicle.studies.replication.drive_search import named_channels
 

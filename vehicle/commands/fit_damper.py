@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import json
 import shlex
 from functools import partial
 from pathlib import Path
 
-from vehicle.commands.command_line import command
+from vehicle.commands.command_line import command, print_result
 from vehicle.commands.destination import output_files_of
 from vehicle.commands.input_options import record_choice, record_options
 from vehicle.commands.options import command_parser, head_options, message_options, output_options
@@ -48,7 +47,7 @@ def parser() -> Parser:
 
 def _job(options: argparse.Namespace) -> None:
     from vehicle.drawing.rendering.damper_plot import plot_damper, plot_settings
-    from vehicle.runs.output.folder import whole_files, write_text, write_whole
+    from vehicle.runs.output.folder import Content, write_together
     from vehicle.signals.records.choice import pairs
     from vehicle.studies.dampers.damper_page import damper_page, loops_of
     from vehicle.studies.dampers.damper_text import caption_of, fit_json, summary_lines, tests_text, vehicle_lines
@@ -63,31 +62,28 @@ def _job(options: argparse.Namespace) -> None:
         conditions=pairs("--condition", options.condition, ""),
         pattern=options.pattern,
     )
-    names = [TABLE, REPORT, *(f"damper{each.name}.{ending}" for each in fits for ending in ("toml", "png"))]
-    names += CONTROL if len(fits) > 1 else ()
-    paths = dict(zip(names, output_files_of(options, Path("runs/damper"), names), strict=True))
     command_line = f"python -m vehicle fit-damper {shlex.join(options.words)}"
-    with whole_files(list(paths.values())) as temporary:
-        new = dict(zip(names, temporary, strict=True))
-        write_text(new[TABLE], tests_text(fits))
-        write_text(new[REPORT], damper_page(fits, command_line, author=options.author, project=options.project))
-        for fitted in fits:
-            write_text(new[f"damper{fitted.name}.toml"], vehicle_lines(fitted))
-            title = fitted.fit.law.title[:1].upper() + fitted.fit.law.title[1:]
-            plot = partial(plot_damper, loops=loops_of(fitted), title=title, caption=caption_of(fitted))
-            write_whole(new[f"damper{fitted.name}.png"], plot)
-        if len(fits) > 1:
-            lines, picture = CONTROL
-            write_text(new[lines], control_lines(fits))
-            plot = partial(plot_settings, curves=curve_lines(fits), settings=settings_of(fits))
-            write_whole(new[picture], plot)
-    if options.json:
-        texts = [fit_json(fitted) for fitted in fits]
-        print(json.dumps(texts[0] if len(texts) == 1 else {"dampers": texts}, indent=2, allow_nan=False))
-    elif not options.quiet:
-        for fitted in fits:
-            print("\n".join(summary_lines(fitted)))
-        print(f"files: {paths[TABLE].parent}: {', '.join(path.name for path in paths.values())}")
+    contents: dict[str, Content] = {
+        TABLE: tests_text(fits),
+        REPORT: damper_page(fits, command_line, author=options.author, project=options.project),
+    }
+    for fitted in fits:
+        title = fitted.fit.law.title[:1].upper() + fitted.fit.law.title[1:]
+        contents[f"damper{fitted.name}.toml"] = vehicle_lines(fitted)
+        contents[f"damper{fitted.name}.png"] = partial(
+            plot_damper, loops=loops_of(fitted), title=title, caption=caption_of(fitted)
+        )
+    if len(fits) > 1:
+        lines, picture = CONTROL
+        contents[lines] = control_lines(fits)
+        settings = {each.words: (each.damping, each.friction) for each in settings_of(fits)}
+        contents[picture] = partial(plot_settings, curves=curve_lines(fits), settings=settings)
+    paths = output_files_of(options, Path("runs/damper"), list(contents))
+    write_together(paths, contents.values())
+    texts = [fit_json(fitted) for fitted in fits]
+    summary = [line for fitted in fits for line in summary_lines(fitted)]
+    summary.append(f"files: {paths[0].parent}: {', '.join(path.name for path in paths)}")
+    print_result(options, texts[0] if len(texts) == 1 else {"dampers": texts}, "\n".join(summary))
 
 
 main = command(parser, _job)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import json
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehicle.commands.command_line import command
+from vehicle.commands.command_line import command, print_result
 from vehicle.commands.destination import output_files_of
 from vehicle.commands.options import command_parser, message_options, output_options
 from vehicle.commands.parser import Parser
@@ -46,7 +46,7 @@ def parser() -> Parser:
 
 def _job(options: argparse.Namespace) -> None:
     from vehicle.drawing.rendering.mount_plot import plot_mount
-    from vehicle.runs.output.folder import whole_files, write_text, write_whole
+    from vehicle.runs.output.folder import write_together
     from vehicle.studies.mounts.measured_stiffness import read_stiffness
     from vehicle.studies.mounts.mount_fit import fit_mount
     from vehicle.studies.mounts.mount_text import (
@@ -59,20 +59,14 @@ def _job(options: argparse.Namespace) -> None:
     )
 
     data = read_stiffness(options.file)
-    lines, table, picture = output_files_of(options, Path("runs/mount"), FILES)
+    paths = output_files_of(options, Path("runs/mount"), FILES)
     fits = fit_mount(data, None if options.law == "auto" else (options.law,))
     best, caption = fits[0], caption_of(data, options.file.name)
-    paths = (lines, table, picture)
     title = f"{TITLES[best.law.name].capitalize()}: points and fitted curves"
-    with whole_files(paths) as (new_lines, new_table, new_picture):
-        write_text(new_lines, vehicle_lines(best, caption))
-        write_text(new_table, points_text(best, data))
-        write_whole(new_picture, lambda path: plot_mount(path, _curves(best, data), title, caption))
-    if options.json:
-        print(json.dumps(fit_json(fits, caption), indent=2, allow_nan=False))
-    elif not options.quiet:
-        print("\n".join(summary_lines(fits, caption)))
-        print(f"files: {lines.parent}: {', '.join(path.name for path in paths)}")
+    picture = partial(plot_mount, curves=_curves(best, data), title=title, caption=caption)
+    write_together(paths, (vehicle_lines(best, caption), points_text(best, data), picture))
+    files = f"files: {paths[0].parent}: {', '.join(path.name for path in paths)}"
+    print_result(options, fit_json(fits, caption), "\n".join([*summary_lines(fits, caption), files]))
 
 
 def _curves(fit: MountFit, data: MeasuredStiffness) -> list[MountCurve]:

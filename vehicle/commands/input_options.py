@@ -26,7 +26,6 @@ def signal_options(parser: Parser, *, several: bool = False) -> argparse._Argume
     """Add --input, --road and the options of each.
 
     Args:
-        parser: parser of the command.
         several: --input, --road and --speed may be repeated; then their values are lists.
 
     Returns:
@@ -81,29 +80,12 @@ def signal_options(parser: Parser, *, several: bool = False) -> argparse._Argume
     return group
 
 
-def record_group(parser: Parser) -> argparse._ArgumentGroup:
-    """Add the group of the options that act on a file of signals or on a road that was recorded over time.
-
-    Args:
-        parser: of the command, with `signal_options`.
-
-    Returns:
-        The group, without options.
-    """
-    return parser.scoped_group(
-        "a file of signals or a recorded road",
-        needs=RECORD_NEEDS,
-        active=lambda options: bool(options.input) or recorded_over_time(options),
-    )
-
-
 def road_options(
     parser: Parser, on_road: Condition, is_class: Condition, *, several: bool = False, rate_note: str = ""
 ) -> argparse._ArgumentGroup:
     """Add the numeric options of a road; the default of each is None.
 
     Args:
-        parser: parser of the command.
         on_road: True if the options contain a road.
         is_class: True if a road is a class of ISO 8608.
         several: --speed may be repeated, once for each road, and --seed; then their values are lists.
@@ -139,9 +121,6 @@ def _listed(value: str | list[str] | None) -> list[str]:
 def speed_value(text: str) -> float | str:
     """Return a speed [km/h], or the text channel:NAME.
 
-    Args:
-        text: of the option.
-
     Raises:
         argparse.ArgumentTypeError: neither of them.
     """
@@ -154,29 +133,18 @@ def speed_value(text: str) -> float | str:
 
 
 def recorded_over_time(options: argparse.Namespace) -> bool:
-    """Return True if a road was recorded over time, with its speed.
-
-    Args:
-        options: of `road_options`.
-    """
+    """Return True if a road was recorded over time, with its speed."""
     return any(isinstance(speed, str) for speed in speeds_of(options))
 
 
 def speeds_of(options: argparse.Namespace) -> list[float | str]:
-    """Return the values of --speed: none, one, or several.
-
-    Args:
-        options: of `road_options`.
-    """
+    """Return the values of --speed: none, one, or several."""
     speed = options.speed
     return speed if isinstance(speed, list) else [] if speed is None else [speed]
 
 
 def drives_on_road(options: argparse.Namespace) -> bool:
     """Return True if a road moves the plates, and False for a file of signals.
-
-    Args:
-        options: parsed options of `signal_options`.
 
     Raises:
         ConfigurationError: neither or both are set.
@@ -202,7 +170,6 @@ def record_options(
     """Add the options that choose channels, units and times in a measurement file.
 
     Args:
-        parser: of the command, or the group of the options that act on the file.
         roles: purpose of a channel in words with an example, for the help.
         channel, rate, unit, highpass: False leaves out the option of this name.
     """
@@ -269,7 +236,6 @@ def record_choice(options: argparse.Namespace, role: str, known: tuple[str, ...]
     """Return the choice of the options of `record_options`; None if none of them is set.
 
     Args:
-        options: parsed options of the command.
         role: role of a channel without ROLE=.
         known: further roles that --unit may name.
 

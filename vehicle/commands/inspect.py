@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import json
 from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.advice import command_for, comparison_for
-from vehicle.commands.command_line import command
+from vehicle.commands.command_line import command, print_result
 from vehicle.commands.input_options import database_option
 from vehicle.commands.options import command_parser, message_options
 from vehicle.commands.parser import Parser
@@ -54,42 +53,29 @@ def _job(options: argparse.Namespace) -> None:
     names, several = expanded(options.files)
     if not several:
         result = one(names[0])
-        print(json.dumps(result, indent=2, allow_nan=False) if options.json else report(result))
+        print_result(options, result, report(result))
         return
     results, errors = each_file(names, one)
-    print(json.dumps(results, indent=2, allow_nan=False) if options.json else overview(results), flush=True)
+    print_result(options, results, overview(results))
     # Files that a folder happens to hold may be of any kind; a file that was named must be read.
     raise_worst(errors if len(errors) == len(results) or len(names) == len(options.files) else (), len(results))
 
 
 def overview(results: list[dict[str, Any]]) -> str:
-    """Return the table of several files and the command for each.
+    """Return the table of several files and the command for each."""
 
-    Args:
-        results: contents of each file, or its error.
-    """
-    rows: list[tuple[str, ...]] = []
-    for result in results:
-        if "error" in result:
-            rows.append((result["input"], result["error"]))
-            continue
+    def row(result: dict[str, Any]) -> list[tuple[str, ...]]:
         channels = result["channels"]
         rates = list(dict.fromkeys(f"{channel['rate_hz']:.6g}" for channel in channels if channel.get("rate_hz")))
         lengths = [channel["samples"] / channel["rate_hz"] for channel in channels if channel.get("rate_hz")]
         quantities = list(dict.fromkeys(channel["quantity"] or "?" for channel in channels))
-        rows.append(
-            (
-                result["input"],
-                result["format"],
-                str(len(channels)),
-                ", ".join(rates[:3]) or "-",
-                f"{max(lengths):.4g}" if lengths else "-",
-                ", ".join(quantities[:4]) + (", ..." if len(quantities) > 4 else ""),
-            )
-        )
+        named = ", ".join(quantities[:4]) + (", ..." if len(quantities) > 4 else "")
+        length = f"{max(lengths):.4g}" if lengths else "-"
+        return [(result["input"], result["format"], str(len(channels)), ", ".join(rates[:3]) or "-", length, named)]
+
     commands = [result["command"] for result in results if result.get("command")]
     heads = ("file", "format", "channels", "rate [Hz]", "length [s]", "quantities")
-    return "\n".join([table_of(heads, rows), *commands])
+    return "\n".join([table_of(heads, results, row), *commands])
 
 
 def contents(measurement: Measurement) -> dict[str, Any]:
@@ -159,11 +145,7 @@ def _channel(number: int, channel: Channel) -> dict[str, Any]:
 
 
 def report(content: dict[str, Any]) -> str:
-    """Return the table of channels as text; levels in the units of the file.
-
-    Args:
-        content: of `contents`, with the command.
-    """
+    """Return the table of channels as text; levels in the units of the file."""
     from vehicle.signals.formats.units import find_ratio
 
     lines = [

@@ -4,16 +4,22 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
-import json
 import math
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vehicle.commands.command_line import parse_and_run
+from vehicle.commands.command_line import command, print_result
 from vehicle.commands.destination import output_folder_of
-from vehicle.commands.options import command_parser, extra_output_options, message_options, vehicle_options
+from vehicle.commands.options import (
+    command_parser,
+    extra_output_options,
+    finite_numbers,
+    message_options,
+    vehicle_options,
+)
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 
@@ -74,11 +80,6 @@ def parser() -> Parser:
     return parser
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Run the command and return its exit code."""
-    return parse_and_run(parser(), _job, arguments)
-
-
 def _job(options: argparse.Namespace) -> None:
     from vehicle.engines.kinematics.axle_curves import design_slopes, geometry_curve, travel_curve
     from vehicle.runs.car import Car
@@ -95,25 +96,19 @@ def _job(options: argparse.Namespace) -> None:
     geometry = geometry_curve(statics, travels, towards=towards, opposite=options.opposite, load=load)
     if folder is not None:
         _write(options, folder, car.vehicle.name, poses, geometry)
-    if options.json:
-        both = zip(poses, geometry, strict=True)
-        rows = [
-            {k: None if math.isnan(v) else v for entry in pair for k, v in dataclasses.asdict(entry).items()}
-            for pair in both
-        ]
-        print(json.dumps({"axle": options.axle, "rates": rates, "rows": rows}, indent=2, allow_nan=False))
-    else:
-        print(_report(options, poses, geometry, rates))
+    rows = [
+        {k: None if math.isnan(v) else v for entry in pair for k, v in dataclasses.asdict(entry).items()}
+        for pair in zip(poses, geometry, strict=True)
+    ]
+    content = {"axle": options.axle, "rates": rates, "rows": rows}
+    print_result(options, content, _report(options, poses, geometry, rates))
 
 
 def _travels(text: str) -> list[float]:
     """Return the wheel travels [m] of the text A:B[:STEP] in mm."""
-    parts = text.split(":")
-    try:
-        first, last, step = (float(part) for part in (*parts, "5")[:3])
-    except ValueError:
-        first = last = step = math.nan
-    if len(parts) not in (2, 3) or not (math.isfinite(first) and math.isfinite(last) and first < last and step > 0.0):
+    numbers = finite_numbers(text, ":")
+    first, last, step = (*numbers, 5.0)[:3] if len(numbers) in (2, 3) else (0.0, 0.0, 0.0)
+    if not (first < last and step > 0.0):
         raise ConfigurationError(f"--travel {text!r}: needed is A:B or A:B:STEP in mm with A below B, as -50:50:5")
     count = math.floor((last - first) / step + 1e-9) + 1
     if count > MOST_POSITIONS:
@@ -126,13 +121,10 @@ def _vector(option: str, entries: list[str]) -> list[float]:
     vector = dict.fromkeys("xyz", 0.0)
     for entry in entries:
         axis, _, text = entry.partition("=")
-        try:
-            value = float(text)
-        except ValueError:
-            value = math.nan
-        if axis not in vector or not math.isfinite(value):
+        value = finite_numbers(text, ",")
+        if axis not in vector or len(value) != 1:
             raise ConfigurationError(f"{option} {entry!r}: needed is AXIS=VALUE with x, y or z and a number, as x=1000")
-        vector[axis] = value
+        (vector[axis],) = value
     return list(vector.values())
 
 
@@ -214,7 +206,7 @@ def _write(
     options: argparse.Namespace, output: Path, name: str, poses: list[WheelPose], geometry: list[WheelGeometry]
 ) -> None:
     from vehicle.drawing.rendering.kinematics_plot import plot_kinematics
-    from vehicle.runs.output.folder import output_folder, write_whole
+    from vehicle.runs.output.folder import output_folder, write_files
     from vehicle.signals.formats.text_format import write_table
 
     units = {"m": "m", "deg": "deg", "n": "N"}
@@ -227,15 +219,15 @@ def _write(
         f"{name}, {options.axle} axle, wheel on the right, against its design position",
         "camber: top outwards +, toe: front inwards +, lateral: outwards +, longitudinal: to the rear +",
     ]
+    parts = ["opposite travel" if options.opposite else "equal travel"]
+    parts.append("ideal joints" if options.ideal else "compliant bushings")
+    parts += [f"force {entry} N" for entry in options.contact_force]
+    parts += [f"moment {entry} N m" for entry in options.moment]
+    title = f"{name}: {options.axle} axle, wheel on the right"
+    picture = partial(plot_kinematics, poses=poses, geometry=geometry, title=title, caption="; ".join(parts))
+    table = partial(write_table, cells=heads, columns=columns, comments=comments)
     with output_folder(output, force=options.force) as folder:
-        write_whole(folder / "kinematics.csv", lambda file: write_table(file, heads, columns, comments))
-        caption = "; ".join(
-            [
-                "opposite travel" if options.opposite else "equal travel",
-                "ideal joints" if options.ideal else "compliant bushings",
-                *(f"force {entry} N" for entry in options.contact_force),
-                *(f"moment {entry} N m" for entry in options.moment),
-            ]
-        )
-        title = f"{name}: {options.axle} axle, wheel on the right"
-        write_whole(folder / "kinematics.png", lambda file: plot_kinematics(file, poses, geometry, title, caption))
+        write_files(folder, {"kinematics.csv": table, "kinematics.png": picture})
+
+
+main = command(parser, _job)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Mapping
 from difflib import get_close_matches
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -64,7 +65,7 @@ def parser() -> Parser:
 
 def _job(options: argparse.Namespace) -> None:
     from vehicle.drawing.rendering.load_plot import plot_loads
-    from vehicle.runs.output.folder import whole_files, write_text, write_whole
+    from vehicle.runs.output.folder import write_together
     from vehicle.signals.analysis.load_spectrum import load_spectrum
     from vehicle.signals.formats.reader import read_columns, time_file
     from vehicle.signals.records.run_summary import available_summary
@@ -77,7 +78,7 @@ def _job(options: argparse.Namespace) -> None:
         return
     record = read_columns(source)
     names = _chosen(options.channels, record.units, source)
-    table, spectra, picture = output_files_of(options, source.parent, FILES)
+    paths = output_files_of(options, source.parent, FILES)
     duration = float(record.time[-1] - record.time[0])
     spectra_of_channels = [
         load_spectrum(name, record.units[name], record.channels[name], slope=options.slope, duration=duration)
@@ -89,14 +90,11 @@ def _job(options: argparse.Namespace) -> None:
         f"{source.name}, {duration:g} s{f'; tyres {tyres}' if tyres else ''}; rainflow counts of ASTM E1049; "
         f"equivalent amplitude: one cycle a second of equal damage, slope {options.slope:g}"
     )
-    paths = (table, spectra, picture)
-    with whole_files(paths) as (new_table, new_spectra, new_picture):
-        write_text(new_table, _table(spectra_of_channels, caption))
-        write_text(new_spectra, _spectra(spectra_of_channels, caption, options.classes))
-        write_whole(new_picture, lambda path: plot_loads(path, spectra_of_channels, caption))
+    texts = _table(spectra_of_channels, caption), _spectra(spectra_of_channels, caption, options.classes)
+    write_together(paths, (*texts, partial(plot_loads, loads=spectra_of_channels, caption=caption)))
     if not options.quiet:
         print(_report(spectra_of_channels, caption))
-        print(f"files: {table.parent}: {', '.join(path.name for path in paths)}")
+        print(f"files: {paths[0].parent}: {', '.join(path.name for path in paths)}")
 
 
 SCHEDULE = "schedule.csv"
@@ -208,7 +206,6 @@ def recorded_channels(text: str, vehicle: Vehicle) -> tuple[str, ...]:
 
     Args:
         text: "loads", "all", or names separated by commas.
-        vehicle: the car.
 
     Raises:
         ConfigurationError: the car has no channel of this name.

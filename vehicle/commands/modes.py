@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 import argparse
-import json
 import math
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vehicle.commands.command_line import ProgressLine, command
+from vehicle.commands.command_line import ProgressLine, command, print_result
 from vehicle.commands.destination import output_file_of
-from vehicle.commands.options import FORCE_HELP, command_parser, film_name, message_options, vehicle_options
+from vehicle.commands.options import (
+    FORCE_HELP,
+    command_parser,
+    film_name,
+    finite_numbers,
+    message_options,
+    vehicle_options,
+)
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError, SimulationError
 
@@ -103,24 +109,20 @@ def _job(options: argparse.Namespace) -> None:
         write_whole(options.uff, lambda path: write_modes(path, car, options.damper))
     if options.animate is not None:
         table["film"] = _film(options, car)
-    print(json.dumps(table, indent=2, allow_nan=False) if options.json else report(table, figures))
+    print_result(options, table, report(table, figures))
 
 
 def _decoupling(options: argparse.Namespace, car: Any) -> str:
-    """Return the decoupling of a part as a table or as JSON.
-
-    Raises:
-        ConfigurationError: no free part has this name, or an option is wrong.
-    """
+    """Return the decoupling of a part as a table or as JSON."""
     from vehicle.engines.linear.decoupling import decoupling
     from vehicle.runs.car.decoupling_text import decoupling_json, decoupling_table
 
     if options.aim is not None and not 0.0 < options.aim <= 100.0:
         raise ConfigurationError(f"--aim {options.aim:g}: must be above 0 and at most 100 percent")
-    try:
-        x, y, z = map(float, options.crankshaft.split(","))
-    except ValueError:
-        raise ConfigurationError(f"--crankshaft {options.crankshaft}: must be three numbers, as 0,1,0") from None
+    crankshaft = finite_numbers(options.crankshaft, ",")
+    if len(crankshaft) != 3:
+        raise ConfigurationError(f"--crankshaft {options.crankshaft}: must be three numbers, as 0,1,0")
+    x, y, z = crankshaft
     engine_modes = decoupling(
         car.matrices,
         options.decoupling,
@@ -132,12 +134,7 @@ def _decoupling(options: argparse.Namespace, car: Any) -> str:
 
 
 def _check_film_options(options: argparse.Namespace) -> None:
-    """Check the film options before the computation, and choose the OpenGL library before MuJoCo is imported.
-
-    Raises:
-        ConfigurationError: only one of --animate and --video, no frequency, or an existing film.
-        MissingPartError: OpenGL or ffmpeg is missing.
-    """
+    """Check the film options before the computation, and choose the OpenGL library before MuJoCo is imported."""
     if options.animate is None:
         if options.video is not None:
             raise ConfigurationError("--video: of which mode? Give its frequency too, as --animate 28")
@@ -212,12 +209,7 @@ def modes_table(car: Any, damper: str, figures: Sequence[MotionFigure]) -> dict[
 
 
 def report(table: dict[str, Any], figures: Sequence[MotionFigure]) -> str:
-    """Return the modes as the printed table: frequency, damping ratio, motion, share of the kinetic energy.
-
-    Args:
-        table: content of `--json`: modes of the car, unstable modes, notices, modes of the free body.
-        figures: headline figures of the car, printed below its modes.
-    """
+    """Return the modes as the printed table: frequency, damping ratio, motion, share of the kinetic energy."""
     from vehicle.runs.car.car_text import figures_table
 
     width = max((len(mode["description"]) for mode in table["modes"]), default=0)

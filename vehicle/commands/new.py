@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import json
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vehicle.commands.command_line import command
+from vehicle.commands.command_line import command, print_result
 from vehicle.commands.options import FORCE_HELP, command_parser, message_options
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
@@ -89,7 +88,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.model.parameters.quantity import NAME_PATTERN
     from vehicle.model.parameters.shipped import vehicle_file
     from vehicle.runs.car.motion_figures import motion_figures
-    from vehicle.runs.output.folder import output_folder, write_whole
+    from vehicle.runs.output.folder import output_folder, write_files, write_text
     from vehicle.runs.output.free_names import named
     from vehicle.studies.design.chrono_car import PREFIX, new_chrono_car
     from vehicle.studies.design.new_car import new_car, template_files
@@ -119,14 +118,13 @@ def _job(options: argparse.Namespace) -> None:
         result = new_car(name, options.source, stated)
     else:
         result = new_chrono_car(name, foreign, options.chrono_tyre, stated)
+    templates = template_files(source, result.car) if foreign is None else ()
     with output_folder(folder, force=options.force) as temporary:
-        write_whole(temporary / "vehicle.toml", lambda file: file.write_text(result.text, encoding="utf-8"))
-        for file in template_files(source, result.car) if foreign is None else ():
-            content = file.read_bytes()
-            write_whole(temporary / file.name, lambda path, content=content: path.write_bytes(content))  # type: ignore[misc]
+        write_text(temporary / "vehicle.toml", result.text)
+        write_files(temporary, {file.name: file.read_bytes() for file in templates})
     file = folder / "vehicle.toml"
     figures = motion_figures(result.car)
-    print(json.dumps(_checks(result, file, figures), indent=2) if options.json else _report(result, file, figures))
+    print_result(options, _checks(result, file, figures), _report(result, file, figures))
 
 
 def _report(result: NewCar, file: Path, figures: Sequence[MotionFigure]) -> str:

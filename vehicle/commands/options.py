@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from pathlib import Path
 from typing import Any
 
@@ -20,12 +21,7 @@ FORCE_HELP = "replace files of an earlier run; stop if the folder contains other
 
 
 def command_parser(name: str, description: str) -> Parser:
-    """Return the parser of a command, with --help and --version.
-
-    Args:
-        name: name of the command.
-        description: one line, also printed in the list of commands.
-    """
+    """Return the parser of a command, with --help and --version."""
     parser = Parser(prog=f"python -m vehicle {name}", description=description, epilog=EXIT_CODES, allow_abbrev=False)
     parser.add_version()
     return parser
@@ -41,11 +37,7 @@ def setting_options(
     """Add the options of declared settings.
 
     Args:
-        parser: of the command, or a group of options.
-        settings: class of the settings.
         names: settings; by default all that have an option.
-        note: addition to the help.
-        more: further arguments of `add_argument`.
     """
     all_declared = settings.declared()
     for name in names or [name for name, each in all_declared.items() if each["option"]]:
@@ -65,14 +57,7 @@ def setting_options(
 
 
 def vehicle_options(parser: argparse._ActionsContainer) -> argparse._ActionsContainer:
-    """Add --vehicle and --set, which choose the car, as a group with the title "the car".
-
-    Args:
-        parser: parser of the command; or an existing group, which gets the options instead.
-
-    Returns:
-        The group.
-    """
+    """Add --vehicle and --set, which choose the car, to a group, or to a new one "the car"; return the group."""
     group = parser.add_argument_group("the car") if isinstance(parser, argparse.ArgumentParser) else parser
     group.add_argument(
         "--vehicle",
@@ -85,11 +70,7 @@ def vehicle_options(parser: argparse._ActionsContainer) -> argparse._ActionsCont
 
 
 def set_option(parser: argparse._ActionsContainer) -> None:
-    """Add --set, which changes the car.
-
-    Args:
-        parser: parser of the command, or a group of it.
-    """
+    """Add --set, which changes the car."""
     parser.add_argument(
         "--set",
         dest="overrides",
@@ -105,7 +86,6 @@ def output_options(parser: Parser, path: Path | None, *, default: str = "", meta
     """Add --output and --force, see `vehicle.commands.destination`.
 
     Args:
-        parser: parser of the command.
         path: folder or file without --output; None if the job chooses it.
         default: default path for the help, if `path` is None.
         metavar: DIR, or FILE with its ending.
@@ -117,12 +97,7 @@ def output_options(parser: Parser, path: Path | None, *, default: str = "", meta
 
 
 def extra_output_options(parser: Parser, files: str) -> None:
-    """Add --output and --force of a command that prints, and writes files only with --output.
-
-    Args:
-        parser: parser of the command.
-        files: names of the files, for the help.
-    """
+    """Add --output and --force of a command that prints, and writes files only with --output."""
     parser.add_argument("--output", type=Path, metavar="DIR", help=f"write {files} there")
     group = parser.scoped_group("files", needs="--output DIR", active=lambda options: options.output is not None)
     group.add_argument("--force", action="store_true", help=FORCE_HELP)
@@ -145,13 +120,7 @@ def head_options(parser: argparse._ActionsContainer) -> None:
 
 
 def report_option(parser: Parser, content: str, folder: str) -> None:
-    """Add --report, a report beside the results, with --author and --project of its head.
-
-    Args:
-        parser: parser of the command.
-        content: content of the report, for the help.
-        folder: name of the folder of the results, for the help.
-    """
+    """Add --report, a report beside the results, with --author and --project of its head."""
     parser.add_argument(
         "--report",
         nargs="?",
@@ -162,12 +131,17 @@ def report_option(parser: Parser, content: str, folder: str) -> None:
     head_options(parser.scoped_group("a report", needs="--report", active=lambda options: options.report is not None))
 
 
-def film_name(value: str, default: str) -> Path:
-    """Return the path of a film.
+def finite_numbers(text: str, separator: str) -> list[float]:
+    """Return the numbers of the parts of a text; none if a part is no finite number."""
+    try:
+        numbers = [float(part) for part in text.split(separator)]
+    except ValueError:
+        return []
+    return numbers if all(map(math.isfinite, numbers)) else []
 
-    Args:
-        value: value of --video; empty for the default.
-        default: default path.
+
+def film_name(value: str, default: str) -> Path:
+    """Return the path of a film, the value of --video or, if that is empty, a default.
 
     Raises:
         ConfigurationError: it does not end in .mp4.

@@ -72,11 +72,7 @@ class Parser(argparse.ArgumentParser):
         self.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
 
     def advise(self, advice: str) -> None:
-        """Add advice to the help and to each message about usage.
-
-        Args:
-            advice: names the command for a task that this command does not do; no full stop.
-        """
+        """Add advice, the command for a task that this one does not do, to the help and to each message about usage."""
         self.advice = advice
         self.epilog = f"{advice[0].upper()}{advice[1:]}. {self.epilog or ''}"
 
@@ -149,10 +145,6 @@ class Parser(argparse.ArgumentParser):
 
 def refuse_idle(options: argparse.Namespace, title: str) -> None:
     """Reject the options of a group that the command found to be without effect.
-
-    Args:
-        options: parsed options.
-        title: title of the group.
 
     Raises:
         ConfigurationError: an option of the group is on the command line.

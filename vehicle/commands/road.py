@@ -155,12 +155,7 @@ def class_or_profile(text: str) -> str | Path:
 
 
 def road_drive(road: str | Path, options: argparse.Namespace, vehicle: Vehicle) -> Drive:
-    """Return the drive of a car over the road of the options.
-
-    Args:
-        road: class of ISO 8608, or the file of a profile.
-        options: parsed options of `road_options` or `signal_options`.
-        vehicle: the car.
+    """Return the drive of a car over a road, a class of ISO 8608 or the file of a profile, with its options.
 
     Raises:
         ConfigurationError: no speed, a car that cannot roll, or a value out of range.

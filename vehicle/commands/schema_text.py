@@ -9,10 +9,7 @@ from vehicle.errors import ConfigurationError
 
 
 def schema_text(names: Sequence[str]) -> str:
-    """Return a JSON Schema as text.
-
-    Args:
-        names: arguments behind the option: "vehicle", the default, or "template".
+    """Return the JSON Schema "vehicle", the default, or "template" as text.
 
     Raises:
         ConfigurationError: another name, or more than one.

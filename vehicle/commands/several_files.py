@@ -14,9 +14,6 @@ Row = tuple[str, ...]
 def expanded(names: Sequence[str]) -> tuple[list[str], bool]:
     """Return the files of names and folders, and True for several; files of a folder in alphabetical order.
 
-    Args:
-        names: paths of files or folders, or names of shipped inputs.
-
     Raises:
         ConfigurationError: a folder without files.
     """
@@ -38,12 +35,7 @@ def expanded(names: Sequence[str]) -> tuple[list[str], bool]:
 def each_file(
     names: Sequence[str], work: Callable[[str], dict[str, Any]]
 ) -> tuple[list[dict[str, Any]], list[VehicleError]]:
-    """Return the result of every file; a failed file has its error message as a result, and the others continue.
-
-    Args:
-        names: files.
-        work: function that returns the result of a file as plain data.
-    """
+    """Return the result of every file; a failed file has its error message as a result, and the others continue."""
     results, errors = [], []
     for name in names:
         try:
@@ -54,13 +46,13 @@ def each_file(
     return results, errors
 
 
-def table_of(heads: Row, rows: Sequence[Row]) -> str:
-    """Return rows as text; the first column is aligned left, the others right.
-
-    Args:
-        heads: names of the columns.
-        rows: cells; a row of two cells holds a file and a message.
-    """
+def table_of(heads: Row, results: Sequence[dict[str, Any]], rows_of: Callable[[dict[str, Any]], Sequence[Row]]) -> str:
+    """Return results of `each_file` as text: the rows of each, or its error; first column to the left, others right."""
+    rows = [
+        row
+        for result in results
+        for row in ([(result["input"], result["error"])] if "error" in result else rows_of(result))
+    ]
     full = [heads, *(row for row in rows if len(row) == len(heads))]
     names = max(len(row[0]) for row in [heads, *rows])
     widths = [max(len(row[column]) for row in full) for column in range(len(heads))]
@@ -75,15 +67,7 @@ def table_of(heads: Row, rows: Sequence[Row]) -> str:
 
 
 def raise_worst(errors: Sequence[VehicleError], files: int) -> None:
-    """Raise one error for all failed files; call it after printing the results.
-
-    Args:
-        errors: errors of the failed files.
-        files: number of all files.
-
-    Raises:
-        VehicleError: with the class of the first error.
-    """
+    """Raise one error for all failed files, of the class of the first; call it after printing the results."""
     if errors:
         count = len(errors)
         raise type(errors[0])(f"{count} of {files} files {'has' if count == 1 else 'have'} no result, see the table")

@@ -14,9 +14,9 @@ from vehicle.commands.compare import measured_beside, measured_options
 from vehicle.commands.crank_speed import crank_overrides, steady_points
 from vehicle.commands.destination import output_folder_of, path_beside, report_path
 from vehicle.commands.input_options import (
+    RECORD_NEEDS,
     drives_on_road,
     record_choice,
-    record_group,
     record_options,
     recorded_over_time,
     signal_options,
@@ -52,7 +52,12 @@ def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser("shaker", "Put shaker signals or a road under the wheels of the complete car.")
     file = signal_options(parser)
-    record_options(record_group(parser), 'a plate, as fr="Shaker FR", or rpm of the crankshaft', rate=False, unit=False)
+    recorded = parser.scoped_group(
+        "a file of signals or a recorded road",
+        needs=RECORD_NEEDS,
+        active=lambda options: bool(options.input) or recorded_over_time(options),
+    )
+    record_options(recorded, 'a plate, as fr="Shaker FR", or rpm of the crankshaft', rate=False, unit=False)
     parser.add_argument(
         "--rpm",
         metavar="N|A:B|A:B:STEP",
@@ -179,7 +184,7 @@ def _job(options: argparse.Namespace) -> None:
     if options.video is not None:
         from vehicle.drawing.rendering.backend import require_film
 
-        video_name = _film_path(options, stem, output)
+        video_name = path_beside(film_name(options.video, f"{stem}.mp4"), "--video", output, options)
         require_film()
     report_name = None if options.report is None else report_path(options, output)
     if options.timestep is not None:
@@ -265,13 +270,7 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def plate_signal(options: argparse.Namespace, wheel: str, choice: Choice | None) -> Signal:
-    """Return the plate signals of --input; reject plates whose FRFs cannot be estimated.
-
-    Args:
-        options: parsed options of the command.
-        wheel: wheel of a displacement that names none.
-        choice: channels and preprocessing of the options.
-    """
+    """Return the plate signals of --input, by default at `wheel`; reject plates whose FRFs cannot be estimated."""
     from vehicle.runs.output.run_files import require_plates
     from vehicle.signals.excitation.input_files import find_input
     from vehicle.signals.excitation.signal_file import read_signal
@@ -304,11 +303,7 @@ def _check_signal(options: argparse.Namespace, signal: Signal) -> None:
 
 
 def _controller_overrides(options: argparse.Namespace) -> list[str]:
-    """Return the overrides of --controller, for all semi-active dampers, and of --trust, for all controllers in FMUs.
-
-    Raises:
-        ConfigurationError: no damper of the car has limits of its coefficient, or there is nothing to trust.
-    """
+    """Return the overrides of --controller for all semi-active dampers, and of --trust for all FMUs."""
     from vehicle.model.parameters.vehicle import load_vehicle
     from vehicle.signals.formats.file_digest import digest
 
@@ -342,7 +337,7 @@ def _controller_overrides(options: argparse.Namespace) -> list[str]:
 
 
 def _check_numbers(options: argparse.Namespace) -> None:
-    """Check the numeric options of the film and the time step before the simulation."""
+    """Check the numeric options of the film before the simulation."""
     wanted = (
         ("--slow-motion", options.slow_motion, 1.0, "at least 1"),
         ("--video-duration", options.video_duration, 0.1, "at least 0.1 s"),
@@ -365,11 +360,6 @@ def _engine(options: argparse.Namespace) -> tuple[str, str]:
     if options.engine == "reduced":
         raise ConfigurationError(f"{why}; leave --engine reduced out, or {needs}")
     return "mujoco", why
-
-
-def _film_path(options: argparse.Namespace, stem: str, output: Path) -> Path:
-    """Return the path of the film; a plain name is in the folder of the run."""
-    return path_beside(film_name(options.video, f"{stem}.mp4"), "--video", output, options)
 
 
 main = command(parser, _job)

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
-import json
 import sys
 from typing import Any
 
-from vehicle.commands.command_line import command
+from vehicle.commands.command_line import command, print_result
 from vehicle.commands.destination import output_folder_of
 from vehicle.commands.options import VEHICLE_HELP, command_parser, extra_output_options, message_options, set_option
 from vehicle.commands.parser import Parser
@@ -52,7 +51,7 @@ def _job(options: argparse.Namespace) -> None:
         from vehicle.runs.output.car_files import write_car
 
         write_car(folder, car, data, force=options.force)
-    print(json.dumps(data.summary(), indent=2, allow_nan=False) if options.json else data)
+    print_result(options, data.summary(), data)
     _note_idle(car, options)
 
 
@@ -65,11 +64,7 @@ def _note_idle(car: Any, options: argparse.Namespace) -> None:
 
 
 def _print_parameters(car: Any, options: argparse.Namespace) -> None:
-    """Print the parameters that match the words of --search.
-
-    Raises:
-        ConfigurationError: no parameter matches.
-    """
+    """Print the parameters that match the words of --search."""
     from vehicle.runs.car.car_text import parameter_table
 
     parameters = car.search(options.search)
@@ -81,10 +76,7 @@ def _print_parameters(car: Any, options: argparse.Namespace) -> None:
             f"--search {options.search!r}: no parameter of {car.vehicle.name} has {shown} in its path or meaning; "
             "use other words, as bushings, damper, mass, or --search alone for all"
         )
-    if options.json:
-        print(json.dumps([dataclasses.asdict(parameter) for parameter in parameters], indent=2, allow_nan=False))
-    else:
-        print(parameter_table(parameters))
+    print_result(options, [dataclasses.asdict(parameter) for parameter in parameters], parameter_table(parameters))
 
 
 main = command(parser, _job)

@@ -19,8 +19,6 @@ from vehicle.errors import ConfigurationError
 if TYPE_CHECKING:
     from vehicle.signals.records.record_spectra import RecordSpectra
 
-TABLES = ("spectra.csv", "third_octaves.csv")
-
 
 def parser() -> Parser:
     """Return the parser of the options."""
@@ -54,7 +52,7 @@ def parser() -> Parser:
 
 def _job(options: argparse.Namespace) -> None:
     from vehicle.drawing.rendering.spectra_plot import plot_road_levels, plot_spectra
-    from vehicle.runs.output.folder import whole_files, write_text, write_whole
+    from vehicle.runs.output.folder import Content, write_together
     from vehicle.runs.output.spectra_files import picture_columns, spectra_text, third_octaves_text
     from vehicle.signals.formats.reader import time_file
     from vehicle.signals.records.record_spectra import record_spectra
@@ -75,27 +73,26 @@ def _job(options: argparse.Namespace) -> None:
         for name, run in by_name.items()
         for wheel, level in run.road_levels.items()
     }
-    files = [*TABLES, *pictures, *(["spectra_road.png"] if levels else [])]
     folder = time_file(options.runs[0]).parent if len(runs) == 1 else Path("runs/spectra")
-    paths = dict(zip(files, output_files_of(options, folder, files), strict=True))
     caption = "; ".join(f"{name}: {run.caption}" if len(runs) > 1 else run.caption for name, run in by_name.items())
     spectra = {name: run.channels for name, run in by_name.items()}
-    with whole_files(list(paths.values())) as temporary:
-        new = dict(zip(files, temporary, strict=True))
-        write_text(new["spectra.csv"], spectra_text(by_name, caption))
-        write_text(new["third_octaves.csv"], third_octaves_text(by_name, caption))
-        for file, (title, columns) in pictures.items():
-            plot = partial(plot_spectra, runs=spectra, channels=columns, title=title, caption=caption)
-            write_whole(new[file], plot)
-        if levels:
-            title = "Roads against the classes of ISO 8608"
-            write_whole(new["spectra_road.png"], lambda path: plot_road_levels(path, levels, title, caption))
+    contents: dict[str, Content] = {
+        "spectra.csv": spectra_text(by_name, caption),
+        "third_octaves.csv": third_octaves_text(by_name, caption),
+    }
+    for file, (title, columns) in pictures.items():
+        contents[file] = partial(plot_spectra, runs=spectra, channels=columns, title=title, caption=caption)
+    if levels:
+        title = "Roads against the classes of ISO 8608"
+        contents["spectra_road.png"] = partial(plot_road_levels, levels=levels, title=title, caption=caption)
+    paths = output_files_of(options, folder, list(contents))
+    write_together(paths, contents.values())
     for name, run in by_name.items():
         for text in run.notices:
             print(f"notice: {name}: {text}", file=sys.stderr, flush=True)
     if not options.quiet:
         print("\n".join(_report(by_name)))
-        print(f"files: {paths['spectra.csv'].parent}: {', '.join(path.name for path in paths.values())}")
+        print(f"files: {paths[0].parent}: {', '.join(path.name for path in paths)}")
 
 
 def _unique(names: Sequence[str]) -> list[str]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import shlex
 import sys
 from collections.abc import Sequence
@@ -129,8 +128,7 @@ def _job(options: argparse.Namespace) -> None:
             project=options.project,
         )
     if options.json:
-        content = (folder / NUMBERS).read_text(encoding="utf-8")
-        print(json.dumps(json.loads(content), indent=2, allow_nan=False))
+        print((folder / NUMBERS).read_text(encoding="utf-8"), end="")
     elif not options.quiet:
         print(tuning_text(tuned))
         if posteriors:

@@ -59,11 +59,7 @@ class _OfMeasurement(argparse.Action):
 
 
 def measurement_options(parser: Parser) -> None:
-    """Add the options that name measurement files, and those that belong to the files before them.
-
-    Args:
-        parser: parser of the command.
-    """
+    """Add the options that name measurement files, and those that belong to the files before them."""
     parser.set_defaults(measurements=[], latest=[])
     files = parser.add_argument_group("measurements")
     files.add_argument(
@@ -126,15 +122,7 @@ def has_files(options: argparse.Namespace, content: str) -> bool:
 
 
 def _road_of(each: argparse.Namespace, choice: Choice) -> Road | None:
-    """Return the road of a measurement file, and None without --road.
-
-    Args:
-        each: file with its options.
-        choice: --map and --unit for the heights of a road over time.
-
-    Raises:
-        ConfigurationError: --speed or --contact without --road, --road beside --signal, or no speed.
-    """
+    """Return the road of a measurement file, and None without --road."""
     from vehicle.commands.road import class_or_profile
     from vehicle.runs.car.road import Road
 
@@ -151,12 +139,7 @@ def _road_of(each: argparse.Namespace, choice: Choice) -> Road | None:
 
 
 def measured_targets(options: argparse.Namespace, car: Car) -> list[MeasuredTarget]:
-    """Return the targets of all measurement files.
-
-    Args:
-        options: parsed options.
-        car: car at the start of the fit.
-    """
+    """Return the targets of all measurement files."""
     from vehicle.studies.tuning.measured_targets import measured_histories, measured_levels, measured_responses
 
     choice = replace(measured_choice(options), any_level=options.any_level)

@@ -11,9 +11,11 @@ from matplotlib import pyplot
 from matplotlib.axes import Axes
 
 from vehicle.drawing.notebook.picture import HEIGHT, WIDTH, line_drawing
+from vehicle.drawing.notebook.run_orders import named_orders
 from vehicle.errors import ConfigurationError, MissingPartError
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.signals.analysis.order_lines import OrderLines
 from vehicle.signals.analysis.seat_value import weighted_rms_of
 
 
@@ -102,6 +104,14 @@ def test_a_missing_library_is_one_sentence(library, call, run, monkeypatch):
     assert str(caught.value) == (
         f"{call}: needs {library}, which is not installed; pip install 'vehicle-on-shaker[notebook]'"
     )
+
+
+def test_tables_of_orders_need_the_same_library(monkeypatch):
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    one = np.ones((1, 1))
+    lines = OrderLines(orders=one[0], frequency=one[0], amplitude=one + 0j, error=one, segments=1)
+    with pytest.raises(MissingPartError, match="to_dataframe: needs pandas, which is not installed"):
+        named_orders(lines, ("seat_rail_acc_z",), ("m/s2",), "crank").to_dataframe()
 
 
 def test_a_drawn_line_keeps_its_extremes():

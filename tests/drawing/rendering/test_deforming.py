@@ -11,6 +11,7 @@ from vehicle.drawing.rendering.body_wireframe import Wireframe
 from vehicle.drawing.rendering.colour_scale import colours
 from vehicle.drawing.rendering.motion import Coil, RecordedMotion
 from vehicle.drawing.rendering.rounding import round_up
+from vehicle.drawing.rendering.wireframe import COIL_RADIUS, _coil
 
 
 @pytest.fixture(scope="module")
@@ -98,3 +99,12 @@ def test_the_coil_is_written_in_the_frame_of_its_mesh(car, stage, run, motion):
         np.testing.assert_allclose(shown, coil.rest + np.array([0.0, 0.0, 0.25]), atol=1e-6)  # single precision
     finally:
         stage.mesh_vert[coil.rows] = before
+
+
+def test_a_coil_lies_on_a_line_of_any_direction():
+    for direction in np.vstack([np.eye(3), -np.eye(3), [[0.9, 0.1, 0.3]]]):
+        coil = _coil(np.zeros(3), 0.4 * direction)
+        np.testing.assert_allclose(coil[[0, -1]], [np.zeros(3), 0.4 * direction], atol=1e-12)
+        unit = direction / np.linalg.norm(direction)
+        away = np.linalg.norm(coil - np.outer(coil @ unit, unit), axis=1)
+        assert away.max() == pytest.approx(COIL_RADIUS) and np.all(away[10:-10] > 0.99 * COIL_RADIUS)

@@ -82,6 +82,16 @@ def test_the_strip_is_the_road_itself_where_it_is_known(road_car, road_run):
     assert 8 <= len(short) <= 32 and all(abs(box.pos[0] - under[0]) < 0.1 for box in short)
 
 
+def test_the_road_under_a_car_at_rest_has_one_height(road_car, road_run):
+    strip = RoadStrip(road_car.vehicle.composition.wheels, road_run.recording, 0.0, 1.0 / 30.0)
+    plate = float(road_run.recording["plate_fr_displacement"][400])
+    heights = strip.height(1, np.array([-1.0, 0.85, 4.0]), float(road_run.recording.time[400]), 0.0)
+    np.testing.assert_allclose(heights, plate, atol=3.5e-5)  # as at a wheel of the moving car
+    scene = mujoco.MjvScene(road_car.model, maxgeom=2000)
+    strip.draw(scene, 0.4, 0.0, 1.0)
+    assert scene.ngeom > 0 and np.isfinite([geom.pos for geom in scene.geoms[: scene.ngeom]]).all()
+
+
 @pytest.mark.render
 @pytest.mark.usefixtures("film_machine")
 def test_the_road_passes_in_the_film(road_run):

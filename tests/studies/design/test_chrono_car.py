@@ -225,7 +225,26 @@ def _tensor(part):
     return np.array([[xx, -xy, -zx], [-xy, yy, -yz], [-zx, -yz, zz]])
 
 
+WEAK = {
+    "Vertical": {
+        "Nominal Vertical Force [N]": 3000.0, "Tire Vertical Damping [Ns/m]": 500.0,
+        "Tire Spring Curve Data": [[0.01, 1000.0], [0.02, 1500.0], [0.03, 1500.0]],
+    },
+    "Longitudinal": {"Initial Slopes dFx/dsx [N]": [55e3, 110e3]},
+    "Lateral": {"Initial Slopes dFy/dsy [N]": [48e3, 77e3]},
+}  # fmt: skip
+"""Parameters of a tyre with 125 N/mm z - 2500 N/mm2 z^2, which carries 1.56 kN at most."""
+
 BAD = {
+    "weak tyre": ({"tmeasy/Parameters": WEAK}, r"tmeasy.json: d1 z \+ d2 z\^2 .* reaches 1562 N, must carry \d+ N"),
+    "curve": (
+        {"wishbones/Spring/Spring Coefficient": None, "wishbones/Spring/Spring Curve Data": [[0.0, 0.0]]},
+        r"Spring / Spring Curve Data must have two points or more, whose first numbers rise",
+    ),
+    "falling curve": (
+        {"wishbones/Shock/Damping Curve Data": [[-1, -900], [1, 900], [0, 0]]},
+        r"Shock / Damping Curve Data must have two points or more, whose first numbers rise",
+    ),
     "no mass": ({"wishbones/Upright/Mass": None}, r"wishbones.json: Upright / Mass is missing; add it"),
     "text": ({"wishbones/Upright/Mass": "heavy"}, r"Upright / Mass has 'heavy', must be a finite number"),
     "point": ({"wishbones/Upright/COM": [0, 1]}, r"Upright / COM must be a list of 3 finite numbers"),

@@ -29,6 +29,7 @@ class MeasuredMasses:
     """The FRFs as a target; noise of a standard deviation SIGMA on ln|H| and on the phase."""
 
     rows = ("wheel, magnitude", "wheel, phase", "body, magnitude", "body, phase")
+    recorded, half_sample = (), 0.0
 
     def __init__(self, true=TRUE, *, seed=0, sigma=SIGMA, assumed=SIGMA):
         real, imaginary = np.random.default_rng(seed).standard_normal((2, 2, FREQUENCY.size))
@@ -38,3 +39,9 @@ class MeasuredMasses:
     def residuals(self, values):
         logarithm = log_ratio(self.data, response(values)) / self.assumed
         return np.stack([logarithm.real, logarithm.imag], axis=1).reshape(4, -1)
+
+    def response(self, values):
+        return self.residuals(values)
+
+    def misfit(self, residuals, groups, lags):
+        return residuals

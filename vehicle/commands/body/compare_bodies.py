@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -66,7 +67,7 @@ def _write_files(
 ) -> None:
     """Write the MAC matrix as a table, and a picture of its first modes."""
     from vehicle.runs.comparison.pictures import plot_mac
-    from vehicle.runs.output.folder import output_folder, write_text, write_whole
+    from vehicle.runs.output.folder import output_folder, write_files
 
     rows, columns = (model.frequencies for model in models)
     table = [f"# {title}; rows: {options.file.name}, columns: {options.other.name}"]
@@ -78,6 +79,6 @@ def _write_files(
     axes_title = f"down: {options.file.name}\nacross: {options.other.name}"
     note = f"; the first {MOST} modes" if max(likeness.shape) > MOST else ""
     shown = [(axes_title, likeness[:MOST, :MOST], rows[:MOST].tolist(), columns[:MOST].tolist())]
+    picture = partial(plot_mac, tables=shown, caption=f"{title}{note}")
     with output_folder(options.output, force=options.force) as folder:
-        write_text(folder / FILES[0], "\n".join(table) + "\n")
-        write_whole(folder / FILES[1], lambda file: plot_mac(file, shown, f"{title}{note}"))
+        write_files(folder, dict(zip(FILES, ("\n".join(table) + "\n", picture), strict=True)))

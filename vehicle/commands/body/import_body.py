@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.body.model_file import output_options, require_output, write
 from vehicle.commands.body.show_body import report
-from vehicle.commands.options import message_options, vehicle_options
+from vehicle.commands.options import finite_numbers, message_options, vehicle_options
 from vehicle.commands.parser import Parser, refuse_idle
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.flexbody.sources import FOLLOWING, LENGTHS, MASSES, METHODS
@@ -159,10 +159,6 @@ def _add_model_options(parser: Parser) -> None:
 def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     """Read the source, write the body model, and print its properties and the node of each point of the car.
 
-    Args:
-        options: parsed options of the command; `output` is the written file.
-        vehicle: car whose attachments the model serves, and whose mass, CoG and inertia it is compared with.
-
     Raises:
         ConfigurationError: an option is out of range, without effect on this source, or missing.
         DataError: the source, or its size, mass or first mode in the units of the options, is wrong.
@@ -180,7 +176,10 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
         "spread": 1e-3 * options.spread,
         "named": read_map(options.point_nodes) if options.point_nodes else {},
     }
-    origin = _origin(options.origin)
+    axes = finite_numbers(options.origin, ",")
+    if len(axes) != 3:
+        raise ConfigurationError(f"--origin {options.origin}: must be three numbers in metres, as 1.2,0,0.35")
+    origin = (axes[0], axes[1], axes[2])
     matrices = _matrices(options)
     idle: tuple[str, ...] = (MODES,) if matrices is not None else (MATRICES, FILES)
     if matrices is not None and options.file.suffix == ".sti":
@@ -262,16 +261,6 @@ def _vehicle_mass(vehicle: Vehicle) -> MassProperties:
 
     body = rigid_body(vehicle.body)
     return MassProperties(mass=body.mass, cog=body.cog, inertia=body.inertia)
-
-
-def _origin(text: str) -> tuple[float, float, float]:
-    try:
-        x, y, z = (float(word) for word in text.split(","))
-        if not all(map(math.isfinite, (x, y, z))):
-            raise ValueError
-    except ValueError:
-        raise ConfigurationError(f"--origin {text}: must be three numbers in metres, as 1.2,0,0.35") from None
-    return x, y, z
 
 
 def _check_numbers(options: argparse.Namespace) -> None:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import json
 import math
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from vehicle.commands.command_line import print_result
 from vehicle.commands.destination import output_folder_of
 from vehicle.commands.options import extra_output_options, message_options, vehicle_options
 from vehicle.errors import ConfigurationError
@@ -90,10 +91,7 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     caption += f", tyres {vehicle.driving.words}"
     if options.output is not None:
         _write(options, over, result, mode, caption)
-    if options.json:
-        print(json.dumps(_numbers(options, result, wheel), indent=2, allow_nan=False))
-    else:
-        print("\n".join(_report(result, mode, caption)))
+    print_result(options, _numbers(options, result, wheel), "\n".join(_report(result, mode, caption)))
 
 
 def _named(result: Participation) -> list[str]:
@@ -173,7 +171,7 @@ def _write(options: argparse.Namespace, over: Participation, result: Participati
 
     from vehicle.drawing.rendering.participation_plot import plot_participation
     from vehicle.engines.linear.mode_participation import in_phase
-    from vehicle.runs.output.folder import output_folder, write_text, write_whole
+    from vehicle.runs.output.folder import output_folder, write_files
     from vehicle.signals.formats.text_format import write_table
 
     at, keys = result.frequency[0], ["body_x", "body_y", "body_z", "body_rx", "body_ry", "body_rz"]
@@ -195,19 +193,16 @@ def _write(options: argparse.Namespace, over: Participation, result: Participati
         rows.append(",".join([f'"{name}"' if "," in name else name, *(f"{100.0 * share:.6g}" for share in shares)]))
     order = np.argsort(-np.abs(result.shares[:, 0]))
     drivers = result.attachment_shares[mode, :, 0]
+    picture = partial(
+        plot_participation,
+        channel=options.response,
+        frequency=over.frequency,
+        parts={names[i]: in_phase(over.contributions)[i] for i in order},
+        at=at,
+        shares={names[i]: float(result.shares[i, 0]) for i in order},
+        driven=(names[6 + mode], dict(zip(result.attachments, drivers.tolist(), strict=True))),
+        description=caption,
+    )
+    table = partial(write_table, cells=heads, columns=columns, comments=comments)
     with output_folder(options.output, force=options.force) as folder:
-        write_whole(folder / FILES[0], lambda file: write_table(file, heads, columns, comments))
-        write_text(folder / FILES[1], "\n".join(rows) + "\n")
-        write_whole(
-            folder / FILES[2],
-            lambda file: plot_participation(
-                file,
-                options.response,
-                over.frequency,
-                {names[i]: in_phase(over.contributions)[i] for i in order},
-                at,
-                {names[i]: float(result.shares[i, 0]) for i in order},
-                (names[6 + mode], dict(zip(result.attachments, drivers.tolist(), strict=True))),
-                caption,
-            ),
-        )
+        write_files(folder, dict(zip(FILES, (table, "\n".join(rows) + "\n", picture), strict=True)))

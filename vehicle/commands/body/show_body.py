@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import argparse
-import json
+from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.body.model_file import model_of
+from vehicle.commands.command_line import print_result
 from vehicle.commands.destination import output_folder_of
 from vehicle.commands.options import extra_output_options, message_options, vehicle_options
+from vehicle.digits import number
 from vehicle.errors import DataError
 
 if TYPE_CHECKING:
@@ -37,19 +40,12 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
         output_folder_of(options, options.output)
     model = model_of(options.file, options, vehicle)
     if options.output is not None:
-        from vehicle.commands.body.shown_files import write_files
-
-        write_files(options.output, options.force, model, levels(model, vehicle))
-    if not options.json:
-        print("\n".join(report(model, vehicle)))
-        return
-    from vehicle.commands.body.shown_numbers import numbers
-
+        _write(options, model, levels(model, vehicle))
     try:
-        content = numbers(model, vehicle, levels(model, vehicle), _bare(model, vehicle))
+        content = _numbers(model, vehicle, levels(model, vehicle), _bare(model, vehicle))
     except DataError:
-        content = numbers(model, vehicle, {}, None)
-    print(json.dumps(content, indent=2, allow_nan=False))
+        content = _numbers(model, vehicle, {}, None)
+    print_result(options, content, "\n".join(report(model, vehicle)))
 
 
 def report(model: Superelement, vehicle: Vehicle) -> list[str]:
@@ -187,3 +183,87 @@ def rotation_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
             "against torques there"
         )
     return lines
+
+
+def _numbers(
+    model: Superelement, vehicle: Vehicle, levels: Mapping[str, Any], bare: list[str] | None
+) -> dict[str, Any]:
+    """Return the content of the printed tables, unrounded, SI units; `bare` is None if the model does not fit the car.
+
+    Inertia is the tensor about the CoG, its elements off the diagonal minus the products; participation |shape| over
+    its mean in the body, (modes,) for each attachment and place; residual flexibility [m/N], (3, 3).
+    """
+    import numpy as np
+
+    from vehicle.model.flexbody.body_loads import body_loads
+    from vehicle.model.flexbody.mass_difference import mass_difference
+    from vehicle.model.flexbody.rigid_body import rigid_body
+
+    def mass_of(body: Any) -> dict[str, Any]:
+        tensor = np.asarray(body.inertia).tolist()
+        return {"mass_kg": float(body.mass), "cog_m": np.asarray(body.cog).tolist(), "inertia_kgm2": tensor}
+
+    modes = zip(model.frequencies, model.damping_ratio, model.mode_names, strict=True)
+    return {
+        "name": model.name,
+        "provenance": model.provenance,
+        "nodes": len(model.nodes),
+        **mass_of(model),
+        "vehicle": mass_of(rigid_body(vehicle.body)),
+        "notices": list(mass_difference(model, vehicle.body, body_loads(vehicle))),
+        "modes": [
+            {"frequency_hz": float(frequency), "damping_ratio": float(ratio), "name": name}
+            for frequency, ratio, name in modes
+        ],
+        "on_this_car": bare is not None,
+        "participation": {name: np.linalg.norm(shape, axis=1).tolist() for name, shape in levels.items()},
+        "residual_m_per_n": {name: np.asarray(flexibility).tolist() for name, flexibility in model.residual.items()},
+        "without_residual": bare,
+    }
+
+
+def _write(options: argparse.Namespace, model: Superelement, levels: Mapping[str, Any]) -> None:
+    """Write tables of modes, attachments and residuals, and a picture of the shapes."""
+    import numpy as np
+
+    from vehicle.drawing.rendering.body_plot import MOST, plot_body
+    from vehicle.runs.output.folder import Content, output_folder, write_files
+
+    count = len(model.frequencies)
+    modes = ["mode,frequency [Hz],damping ratio [-],name"]
+    for i, (frequency, ratio) in enumerate(zip(model.frequencies, model.damping_ratio, strict=True)):
+        modes.append(f'{i + 1},{frequency:.9g},{ratio:.6g},"{model.mode_names[i]}"')
+    taking = ["# shape at each attachment and place over its mean in the body, sqrt(m) Phi"]
+    taking.append("attachment,axis" + "".join(f",mode_{number + 1} [-]" for number in range(count)))
+    for name, values in levels.items():
+        taking += [
+            f"{name},{axis}," + ",".join(f"{value:.6g}" for value in values[:, i]) for i, axis in enumerate("xyz")
+        ]
+    pairs = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+    residuals = ["attachment" + "".join(f",{'xyz'[i]}{'xyz'[j]} [m/N]" for i, j in pairs)]
+    residuals += [name + "".join(f",{values[i, j]:.6g}" for i, j in pairs) for name, values in model.residual.items()]
+    # A place is a node of the picture where it is one of the model.
+    shown = [index for index, node in enumerate(model.nodes) if node in levels]
+    titles = [
+        f"mode {i + 1}: {frequency:.2f} Hz, {number(100 * ratio, 2)} %"
+        + ("" if model.mode_names[i] == f"mode {i + 1}" else f"\n{model.mode_names[i]}")
+        for i, (frequency, ratio) in enumerate(zip(model.frequencies, model.damping_ratio, strict=True))
+    ]
+    more = f"; the first {MOST} of {count} modes" if count > MOST else ""
+    caption = f"grey: at rest; colour: displacement, each mode at its own scale; dots: attachments and places{more}"
+    contents: dict[str, Content] = {
+        name: "\n".join(lines) + "\n" for name, lines in zip(FILES, (modes, taking, residuals), strict=False)
+    }
+    if count:
+        contents[FILES[3]] = partial(
+            plot_body,
+            positions=model.positions,
+            edges=np.asarray(model.edges, dtype=int),
+            shapes=model.shapes,
+            titles=titles,
+            attachments=np.array(shown, dtype=int),
+            title=f"Modes of the free body {model.name}",
+            caption=caption,
+        )
+    with output_folder(options.output, force=options.force) as folder:
+        write_files(folder, contents)

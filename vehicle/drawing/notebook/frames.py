@@ -1,4 +1,4 @@
-"""Conversion of time histories and FRFs to tables of pandas and xarray, if installed."""
+"""Tables of pandas and data sets of xarray with time histories and FRFs; a MissingPartError without the library."""
 
 from __future__ import annotations
 
@@ -27,20 +27,17 @@ def _library(name: str, purpose: str) -> Any:
 
 
 def table_frame(text: str) -> Any:
-    """Return a table of CSV text, header in the first line, as a pandas table.
-
-    Raises:
-        MissingPartError: pandas is not installed.
-    """
+    """Return a table of CSV text, header in the first line, as a pandas table."""
     return _library("pandas", "to_dataframe").read_csv(io.StringIO(text))
 
 
-def recording_frame(recording: Recording) -> Any:
-    """Return a pandas table with channels as columns over the time [s], and their units in `attrs["units"]`.
+def plain_frame(table: Any) -> Any:
+    """Return a pandas table of columns by name, or of rows as mappings."""
+    return _library("pandas", "to_dataframe").DataFrame(table)
 
-    Raises:
-        MissingPartError: pandas is not installed.
-    """
+
+def recording_frame(recording: Recording) -> Any:
+    """Return a pandas table with channels as columns over the time [s], and their units in `attrs["units"]`."""
     pandas = _library("pandas", "to_dataframe")
     frame = pandas.DataFrame(dict(recording.channels), index=pandas.Index(recording.time, name="time [s]"))
     frame.attrs["units"] = dict(recording.units)
@@ -48,11 +45,7 @@ def recording_frame(recording: Recording) -> Any:
 
 
 def recording_dataset(recording: Recording) -> Any:
-    """Return an xarray data set with channels as variables over the dimension `time`, each with its unit.
-
-    Raises:
-        MissingPartError: xarray is not installed.
-    """
+    """Return an xarray data set with channels as variables over the dimension `time`, each with its unit."""
     xarray = _library("xarray", "to_xarray")
     time = ("time", recording.time, {"units": "s"})
     variables = {
@@ -67,9 +60,6 @@ def response_frame(response: FrequencyResponse, names: tuple[str, ...]) -> Any:
     Args:
         response: FRFs over the plate displacement [unit of the channel per m]; (channels, frequencies).
         names: names of its channels, the first level of the columns; (channels,).
-
-    Raises:
-        MissingPartError: pandas is not installed.
     """
     columns = {}
     for row, name in enumerate(names):
@@ -82,14 +72,7 @@ def response_frame(response: FrequencyResponse, names: tuple[str, ...]) -> Any:
 
 
 def spectra_frame(spectra: Sequence[ChannelSpectrum]) -> Any:
-    """Return a pandas table of density and cumulative RMS of each channel over frequency [Hz].
-
-    Args:
-        spectra: spectra with equal lines.
-
-    Raises:
-        MissingPartError: pandas is not installed.
-    """
+    """Return a pandas table of density and cumulative RMS of each channel over the equal lines of all [Hz]."""
     columns = {}
     for spectrum in spectra:
         columns[spectrum.label, f"density [({spectrum.unit})^2/Hz]"] = spectrum.density

@@ -29,7 +29,6 @@ def line_drawing(along: Vector, values: Vector, label: str) -> str:
     Args:
         along: increasing horizontal coordinates, (n,).
         values: values, (n,); values that are not finite are left out.
-        label: text under the line.
     """
     finite = np.isfinite(values) & np.isfinite(along)
     along, values = along[finite], values[finite]
@@ -51,7 +50,6 @@ def frame_drawing(points: Vector, lines: npt.NDArray[np.intp], label: str) -> st
     Args:
         points: x to the rear, y right, z up [m], (n, 3).
         lines: pairs of points, (m, 2).
-        label: text under the lines.
     """
     side_view = points[:, [0, 2]]
     low, size = side_view.min(axis=0), np.ptp(side_view, axis=0)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.drawing.notebook.frames import plain_frame
 from vehicle.signals.analysis.order_cut import OrderCut
 from vehicle.signals.analysis.order_lines import OrderLines
 
@@ -35,10 +36,8 @@ class RunOrders(OrderLines):
 
     def to_dataframe(self) -> Any:
         """Return a pandas table: a row for each channel and order, with amplitude, phase [deg] and standard error."""
-        from pandas import DataFrame
-
         count = len(self.orders)
-        return DataFrame(
+        return plain_frame(
             {
                 "channel": np.repeat(self.names, count),
                 "unit": np.repeat(self.units, count),
@@ -80,10 +79,8 @@ class RunOrderCut(OrderCut):
 
     def to_dataframe(self) -> Any:
         """Return a pandas table: a row for each channel, order and speed, with amplitude and phase [deg]."""
-        from pandas import DataFrame
-
         shape = self.amplitude.shape
-        return DataFrame(
+        return plain_frame(
             {
                 "channel": np.repeat(self.names, shape[1] * shape[2]),
                 "unit": np.repeat(self.units, shape[1] * shape[2]),

@@ -59,8 +59,8 @@ class RunResponse(FrequencyResponse):
         Returns:
             The axes: one, or an array of three.
         """
+        from vehicle.drawing.rendering.curves import draw_response
         from vehicle.drawing.rendering.open_axes import open_axes, plain
-        from vehicle.drawing.rendering.response_plot import draw_response
 
         rows = 3 if ax is None else len(np.ravel(np.array(ax, dtype=object)))
         look: dict[str, Any] = {"sharex": True, "height_ratios": (2.2, 1.0, 0.9)}
@@ -83,11 +83,7 @@ def named(response: FrequencyResponse, names: tuple[str, ...], plate: str) -> Ru
 
 
 def require_moving(recording: Recording, wheel: str | None) -> None:
-    """Raise an error if the plate of a wheel does not move.
-
-    Raises:
-        DataError: the plate does not move.
-    """
+    """Raise a DataError if the plate of a wheel does not move."""
     moving = recording.excited
     if moving and wheel is not None and wheel not in moving:
         raise DataError(
@@ -114,7 +110,6 @@ def responses(
 
     Args:
         recording, signal: recording and signal of the run.
-        names: acceleration channels.
         band: lowest and highest frequency [Hz].
         window: see `vehicle.runs.car.Run.frf`.
 

@@ -19,18 +19,13 @@ def add_geom(
     colour: npt.NDArray[np.float32],
     frame: Vector = UPRIGHT,
 ) -> mujoco.MjvGeom:
-    """Append a shape to an updated scene, which must have space for it.
+    """Append a shape to an updated scene, which must have space for it, and return it.
 
     Args:
-        scene: the scene; changed in place.
-        geom_type: sphere, capsule, box or plane.
         size: half lengths or radii in the convention of MuJoCo [m], (3,).
         position: centre of the shape [m], (3,).
         colour: red, green, blue, opacity, (4,).
         frame: axes of the shape as the columns of a matrix, (9,).
-
-    Returns:
-        The shape in the scene.
     """
     geom = scene.geoms[scene.ngeom]
     mujoco.mjv_initGeom(geom, geom_type, size, position, frame, colour)

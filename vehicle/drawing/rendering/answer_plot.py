@@ -9,7 +9,16 @@ from typing import Any
 
 import numpy as np
 
-from vehicle.drawing.rendering.figure import COLOURS, INK, PAGE_WIDTH, name_bars, saved_figure, wrapped
+from vehicle.drawing.rendering.figure import (
+    COLOURS,
+    COMFORT_TICKS,
+    INK,
+    PAGE_WIDTH,
+    frequency_ticks,
+    name_bars,
+    saved_figure,
+    wrapped,
+)
 from vehicle.signals.analysis.samples import Vector
 
 BETTER, WORSE, NEUTRAL = COLOURS[2], COLOURS[1], "#9aa5b1"
@@ -17,9 +26,6 @@ BETTER, WORSE, NEUTRAL = COLOURS[2], COLOURS[1], "#9aa5b1"
 
 FULL_PANEL = 1.0
 """Smallest change [%] that fills a panel; a smaller change is a short bar."""
-
-TICKS = (0.5, 1, 2, 5, 10, 20, 50)
-"""Frequency axis [Hz]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +47,6 @@ def plot_changes(path: Path, changes: Mapping[str, Sequence[Change]], title: str
     """Plot the changes of numbers as bars, a panel for each run, one below the other.
 
     Args:
-        path, title, caption: see `saved_figure`.
         changes: name of the run to its changes against the first run; equal labels in all runs are not needed.
     """
     highest = max(len(of_run) for of_run in changes.values())
@@ -74,7 +79,6 @@ def plot_bands(
     """Plot the share of each third octave in the weighted acceleration, stacked by axis.
 
     Args:
-        path, caption: see `saved_figure`.
         edges: edges of the bands [Hz]; (b + 1,).
         powers: axis to the mean square in each band [(m/s2)^2]; (b,).
         modes: short names of natural modes to their frequencies [Hz], marked above the bars.
@@ -98,6 +102,5 @@ def plot_bands(
             )  # fmt: skip
         axis.set(xscale="log", xlim=(edges[0], edges[-1]), ylim=(0.0, 1.25 * highest if highest else 1.0))
         axis.set(xlabel="frequency [Hz]", ylabel="share of the weighted\nmean square [%]")
-        axis.set_xticks(TICKS, [f"{tick:g}" for tick in TICKS])
-        axis.set_xticks([], minor=True)
+        frequency_ticks(axis, COMFORT_TICKS)
         axis.legend(title="axis", loc="upper left")

@@ -49,9 +49,6 @@ def variables(backend: str) -> dict[str, str]:
 def probe(backend: str) -> str | None:
     """Render a picture of 16 x 16 pixels in a new process, since a missing library may end the process.
 
-    Args:
-        backend: value of MUJOCO_GL.
-
     Returns:
         None if the backend works, else the last line of the error output.
     """
@@ -71,16 +68,13 @@ def probe(backend: str) -> str | None:
 
 
 def choose_backend(probe: Callable[[str], str | None] = probe) -> str:
-    """Choose the OpenGL backend and set MUJOCO_GL and PYOPENGL_PLATFORM.
+    """Choose the OpenGL backend, set MUJOCO_GL and PYOPENGL_PLATFORM, and return it.
 
     A working choice of the user comes first, then OSMesa, EGL, GLFW. If PyOpenGL is loaded already, only its platform
     can be used.
 
     Args:
         probe: function that returns None for a backend that works, else the reason.
-
-    Returns:
-        "osmesa", "egl" or "glfw".
 
     Raises:
         MissingPartError: no backend works; the message names the package to install.

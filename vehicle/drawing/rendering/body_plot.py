@@ -40,11 +40,9 @@ def plot_body(
     """Write the picture of the first modes.
 
     Args:
-        path, title, caption: see `saved_figure`.
         positions: positions of the nodes in the vehicle frame [m], (n, 3).
         edges: pairs of nodes, (m, 2); if empty, nodes are drawn as dots.
         shapes: shapes of the modes, (modes, n, 3); the first `MOST` are drawn.
-        titles: titles of the modes.
         attachments: nodes at which the car is fixed to the body, shown as dots.
     """
     from matplotlib.collections import LineCollection

@@ -40,12 +40,7 @@ def members_of(car: CarModel) -> tuple[npt.NDArray[np.intp], float]:
 
 
 class Wireframe:
-    """Nodes and members of the superelement, coloured by displacement.
-
-    Args:
-        car: compiled car.
-        motion: motion of the car.
-    """
+    """Nodes and members of the superelement, coloured by displacement."""
 
     def __init__(self, car: CarModel, motion: Motion) -> None:
         element = car.superelement
@@ -70,7 +65,6 @@ class Wireframe:
         """Append spheres and capsules to a scene.
 
         Args:
-            scene: updated scene with space for the geoms.
             positions: node positions [m], (n, 3).
             colours: red, green, blue, opacity of the nodes, (n, 4); a member takes the mean of its ends.
         """

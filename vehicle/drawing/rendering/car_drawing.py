@@ -33,8 +33,6 @@ def plot_car(path: Path, wire: CarWireframe, data: Any, size: tuple[float, float
     """Write the drawing of a car.
 
     Args:
-        path, size: see `saved_figure`.
-        wire: lines of the car.
         data: a `vehicle.runs.car.car_data.CarData` of the same car.
     """
     count = max(1, len(data.axles))
@@ -55,15 +53,7 @@ def _ground(data: Any) -> float:
 
 
 def _lines(axes: Axes, wire: CarWireframe, across: tuple[int, int], chosen: npt.NDArray[np.bool_], left: float) -> None:
-    """Draw the chosen lines of a wireframe in the plane of two coordinates.
-
-    Args:
-        axes: axes of the view.
-        wire: lines of the car.
-        across: horizontal and vertical coordinate.
-        chosen: True for a line that is drawn, (lines,).
-        left: +1, or -1 to reverse the horizontal coordinate.
-    """
+    """Draw the chosen lines of a wireframe over two coordinates, the first with the factor `left`."""
     from matplotlib.collections import LineCollection
 
     flat = wire.points[:, across] * [left, 1.0]
@@ -147,14 +137,7 @@ def _cog(axes: Axes, x: float, z: float) -> None:
 
 
 def _arm(axes: Axes, start: Vector, centre: Vector, *, whole: bool = False) -> Vector:
-    """Draw the line from a contact point to a swing centre or to the roll centre, and return its end.
-
-    Args:
-        axes: axes of the view.
-        start: contact point.
-        centre: the centre.
-        whole: True to draw the whole line; otherwise it is shortened to `ARM`.
-    """
+    """Draw the line from a contact point to a centre, cut at `ARM` unless `whole`, and return its end."""
     away = centre - start
     length = float(np.linalg.norm(away))
     end = centre if whole or length < ARM else start + away * ARM / length

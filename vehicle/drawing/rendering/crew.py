@@ -37,7 +37,6 @@ def drawn_by(jobs: int, shot: Shot, backend: str) -> Iterator[Picture]:
 
     Args:
         jobs: maximum number of processes; a film of few frames is drawn in this process.
-        shot: shot to draw.
         backend: OpenGL backend, one of `BACKENDS`.
 
     Raises:

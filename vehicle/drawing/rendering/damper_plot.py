@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 from vehicle.drawing.rendering.figure import COLOURS, LINES, saved_figure
 from vehicle.signals.analysis.samples import Vector
@@ -30,12 +30,7 @@ class DamperLoop(NamedTuple):
 
 
 def plot_damper(path: Path, loops: Sequence[DamperLoop], title: str = "", caption: str = "") -> None:
-    """Write the picture of a fitted damper, a row for each test.
-
-    Args:
-        path, title, caption: see `saved_figure`.
-        loops: measured and fitted forces of all tests.
-    """
+    """Write the picture of a fitted damper, a row for each test."""
     with saved_figure(path, (9.0, 1.0 + 3.0 * len(loops)), title, caption) as figure:
         grid = figure.subplots(len(loops), 2, squeeze=False, sharey="row")
         for (left, right), loop in zip(grid, loops, strict=True):
@@ -49,41 +44,24 @@ def plot_damper(path: Path, loops: Sequence[DamperLoop], title: str = "", captio
         grid[0, 0].legend(loc="upper left")
 
 
-class ShownSetting(Protocol):
-    """Damping and friction at a condition."""
-
-    @property
-    def words(self) -> str:
-        """Condition, as "current 1"."""
-
-    @property
-    def damping(self) -> float:
-        """Damping constant [N s/m]."""
-
-    @property
-    def friction(self) -> float:
-        """Friction [N]."""
-
-
 def plot_settings(
-    path: Path, curves: Sequence[tuple[str, Vector, Vector]], settings: Sequence[ShownSetting], title: str = ""
+    path: Path, curves: Sequence[tuple[str, Vector, Vector]], settings: Mapping[str, tuple[float, float]]
 ) -> None:
     """Write the picture of a damper over its conditions: force over velocity, damping and friction.
 
     Args:
-        path, title: see `saved_figure`.
         curves: words of the condition, velocities [m/s] and forces [N] of each condition.
-        settings: damping and friction at each condition.
+        settings: words of the condition to damping [N s/m] and friction [N].
     """
-    with saved_figure(path, (9.0, 3.6), title) as figure:
+    with saved_figure(path, (9.0, 3.6)) as figure:
         left, middle, right = figure.subplots(1, 3, width_ratios=(2.0, 1.0, 1.0))
         for number, (condition, velocity, force) in enumerate(curves):
             style = {"color": COLOURS[number % len(COLOURS)], "linestyle": LINES[number // len(COLOURS) % len(LINES)]}
             left.plot(1e3 * velocity, force, label=condition, **style)
         left.set(xlabel="velocity [mm/s]", ylabel="force of curve and friction [N]")
         left.legend(loc="upper left")
-        conditions = [each.words for each in settings]
-        for axis, name, unit in ((middle, "damping", "N s/m"), (right, "friction", "N")):
-            axis.plot(conditions, [getattr(each, name) for each in settings], "o-", color=COLOURS[0])
-            axis.set(ylabel=f"{name} [{unit}]", ylim=(0.0, None))
+        labels = ("damping [N s/m]", "friction [N]")
+        for axis, label, values in zip((middle, right), labels, zip(*settings.values(), strict=True), strict=True):
+            axis.plot(list(settings), values, "o-", color=COLOURS[0])
+            axis.set(ylabel=label, ylim=(0.0, None))
             axis.tick_params(axis="x", labelrotation=30)

@@ -16,10 +16,6 @@ class Drawing:
     """Shapes, coils and coloured wireframe of a car.
 
     Args:
-        canvas: canvas to draw on.
-        motion: motion of the bodies in the model of the canvas.
-        wireframe: wireframe of the flexible body.
-        composition: composition of the car.
         scale_top: displacement at the top of the colour scale [m].
     """
 
@@ -37,7 +33,6 @@ class Drawing:
         """Set the exaggerated poses and colours of all shapes.
 
         Args:
-            state: positions of the car at the time of the frame.
             factor: factor on displacements and rotations from the static equilibrium [-].
         """
         self.data.geom_xpos[:], self.data.geom_xmat[:] = self.motion.geoms(state, factor)

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.drawing.rendering.figure import COLOURS, LINES, saved_figure
+from vehicle.drawing.rendering.figure import COLOURS, LINES, looks, saved_figure
 from vehicle.drawing.rendering.recorded_run import liveliest
 from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.spectra import power_spectral_density
@@ -38,7 +38,6 @@ def plot_replication(
     """Plot target and response of each channel and the drive signal below: a time window, and the spectrum.
 
     Args:
-        path, caption: see `saved_figure`.
         time: sample times [s], (n,).
         responses: channel to target and response [m/s2], (n,) each.
         drive: wheel to its plate displacement [m], (n,).
@@ -95,17 +94,16 @@ def plot_convergence(path: Path, errors: Mapping[str, Vector], kept: npt.NDArray
     """Plot the error of each channel over the runs.
 
     Args:
-        path, caption: see `saved_figure`.
         errors: channel to RMS of target minus response over RMS of target, in the band [-], (runs,).
         kept: True for runs better than all previous runs, (runs,).
     """
     runs = np.arange(1, kept.size + 1)
     with saved_figure(path, (8.0, 4.8), "Error over the iteration", caption) as figure:
         axis = figure.subplots()
-        for (name, values), colour, line in zip(errors.items(), cycle(COLOURS), cycle(LINES), strict=False):
-            axis.plot(runs, 100.0 * values, linestyle=line, color=colour, label=name)
-            axis.plot(runs[kept], 100.0 * values[kept], "o", color=colour)
-            axis.plot(runs[~kept], 100.0 * values[~kept], "o", color=colour, markerfacecolor="white")
+        for (name, values), look in zip(errors.items(), looks(), strict=False):
+            axis.plot(runs, 100.0 * values, label=name, **look)
+            axis.plot(runs[kept], 100.0 * values[kept], "o", color=look["color"])
+            axis.plot(runs[~kept], 100.0 * values[~kept], "o", color=look["color"], markerfacecolor="white")
         if not kept.all():
             axis.plot([], [], "o", color=ERROR, markerfacecolor="white", label="taken back")
         axis.set(yscale="log", xlabel="run", ylabel="RMS error over RMS of target,\nin the band [%]; lower is better")

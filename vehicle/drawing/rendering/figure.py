@@ -5,6 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from itertools import cycle
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -59,6 +60,9 @@ FRF_BAND = (1.0, 50.0)
 FRF_TICKS = (1, 2, 3, 5, 10, 20, 30, 50)
 """Frequency axis of an FRF [Hz]."""
 
+COMFORT_TICKS = (0.5, 1, 2, 5, 10, 20, 50)
+"""Frequency axis of a spectrum of comfort [Hz]."""
+
 FULL_LABEL = 7.0
 """Height of a figure [inch] with space for the whole label of the magnitude of an FRF."""
 
@@ -99,8 +103,6 @@ def saved_figure(
     Args:
         path: PNG or SVG file, by its extension.
         size: width and height [inch].
-        title: title above the figure; may be empty.
-        caption: caption below the figure; may be empty.
         placed: the axes come from `placed_axes`, so that no layout is computed.
 
     Yields:
@@ -138,22 +140,12 @@ def saved_figure(
 
 
 def wrapped(caption: str, width: float) -> str:
-    """Return a caption in lines that fit under a figure.
-
-    Args:
-        caption: one line of text.
-        width: of the figure [inch].
-    """
+    """Return a caption, one line of text, in lines that fit under a figure of a width [inch]."""
     return textwrap.fill(caption, int(LETTERS_PER_INCH * width))
 
 
 def power_of_ten(value: float, _: int | None = None) -> str:
-    """Return the label of a decade as plain text; the labels of matplotlib need its parser of formulas.
-
-    Args:
-        value: a power of ten.
-        _: index of the tick, an argument of every formatter.
-    """
+    """Return the label of a decade as plain text; the labels of matplotlib need its parser of formulas."""
     return "10" + str(round(np.log10(value))).translate(SUPERSCRIPTS)
 
 
@@ -161,9 +153,7 @@ def frf_axes(figure: Figure, axes: npt.NDArray[Any], coherence_ticks: tuple[floa
     """Set scales, limits and labels of magnitude, phase and coherence over one logarithmic frequency axis.
 
     Args:
-        figure: the figure.
         axes: axes of the figure, (3, columns), with y shared by rows.
-        coherence_ticks: ticks of the coherence axis.
     """
     upper, middle, lower = axes[:, 0]
     low = figure.get_size_inches()[1] < FULL_LABEL
@@ -174,16 +164,24 @@ def frf_axes(figure: Figure, axes: npt.NDArray[Any], coherence_ticks: tuple[floa
     upper.yaxis.set_major_formatter(power_of_ten)
     for axis in axes[2]:
         axis.set_xlabel("frequency [Hz]")
-        axis.set_xticks(FRF_TICKS, [str(tick) for tick in FRF_TICKS])
-        axis.set_xticks([], minor=True)
+        frequency_ticks(axis, FRF_TICKS)
     figure.align_ylabels(axes[:, 0])
+
+
+def frequency_ticks(axis: Axes, ticks: Sequence[float]) -> None:
+    """Label a logarithmic frequency axis at some frequencies [Hz], without any other ticks."""
+    axis.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    axis.set_xticks([], minor=True)
+
+
+def looks() -> Iterator[dict[str, Any]]:
+    """Yield colour and line style of one curve after another, without an end."""
+    for colour, line in cycle(zip(COLOURS, LINES, strict=True)):
+        yield {"color": colour, "linestyle": line}
 
 
 def wrapped_phase(response: Complex) -> Vector:
     """Return the phase [deg] between -180 and 180, with NaN after each jump so that no line crosses the picture.
-
-    Args:
-        response: complex values over frequency, (m,).
 
     Returns:
         Phase of a line to draw, (m,), with NaN at the first point after a jump.
@@ -204,12 +202,9 @@ def fading(
     """Draw a magnitude that is pale where its coherence is low.
 
     Args:
-        axis: the axis.
         frequency: [Hz], (m,).
         values: magnitude, (m,).
         coherence: gamma^2 [-], (m,); where it is unknown the line is not pale.
-        label: legend text, of the line that is not pale.
-        style: colour and line style.
     """
     finite = np.where(np.isfinite(coherence), coherence, 1.0)
     for lowest, highest, opacity in FADING:
@@ -232,10 +227,9 @@ def error_band(
     """Draw the band of the random error of a magnitude, not where the coherence is below `SHOWN_BAND`.
 
     Args:
-        axis, frequency, values: see `fading`.
+        frequency, values: see `fading`.
         half: half width of the band, (m,).
         coherence: gamma^2 [-], (m,); where it is unknown the band is drawn.
-        colour: of the curve.
     """
     low = np.maximum(values - half, 0.01 * values)
     where = ~(coherence < SHOWN_BAND)
@@ -248,11 +242,8 @@ def shade(
     """Colour the whole height of an axis where something holds.
 
     Args:
-        axis: the axis.
         along: places on its horizontal scale, (n,).
         where: whether it holds there, (n,).
-        colour: of the shade.
-        label: legend text.
     """
     if not where.any():
         return
@@ -264,9 +255,7 @@ def name_bars(axis: Axes, values: Sequence[float] | Vector, texts: Sequence[str]
     """Write a text at the end of each horizontal bar, outside of the bar.
 
     Args:
-        axis: axes with bars at 0, 1, 2, ...
         values: ends of the bars, (n,).
-        texts: their texts.
         distance: distance of the text from the end [point].
     """
     for row, (value, text) in enumerate(zip(values, texts, strict=True)):

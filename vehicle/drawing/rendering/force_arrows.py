@@ -63,9 +63,6 @@ class ForceArrows:
     """Arrows of the recorded forces of tyres and dampers.
 
     Args:
-        motion: motion of the bodies in the model of the film.
-        composition: composition of the car.
-        recording: the recording.
         start, end: shown times [s]; the largest force between them has the length `LENGTH`.
     """
 
@@ -111,8 +108,6 @@ class ForceArrows:
         """Append the arrows to a scene.
 
         Args:
-            scene: updated scene with space for the geoms.
-            state, factor: motion of the car and its exaggeration.
             time, exposure: time and exposure time of the frame [s].
         """
         if not self.top:

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from itertools import cycle
 from pathlib import Path
 
 import numpy as np
 
 from vehicle.drawing.rendering.figure import (
-    COLOURS,
     FADED,
     INK,
-    LINES,
     UNDRIVEN,
     error_band,
     fading,
     frf_axes,
+    looks,
     saved_figure,
     shade,
     wrapped,
@@ -45,8 +43,6 @@ def plot_frfs(
     """Plot the FRFs of a run.
 
     Args:
-        path, caption, size: see `saved_figure`.
-        run: the run.
         responses: responses to each motion of the plates, with rows of all acceleration channels.
     """
     if len(responses) > 1:
@@ -87,17 +83,15 @@ def _plot_separated(
     with saved_figure(path, size, title, wrapped(f"{caption}; {FADED}", size[0])) as figure:
         axes = figure.subplots(3, len(shown), sharex=True, sharey="row", height_ratios=(2.2, 1.0, 0.9), squeeze=False)
         for (magnitude, phase, coherence), (name, heading) in zip(axes.T, shown.items(), strict=True):
-            for colour, line, response in zip(cycle(COLOURS), cycle(LINES), responses, strict=False):
-                values, error = (
-                    response.response.response[rows[name]],
-                    REGION * response.response.random_error[rows[name]],
-                )
-                size, coherent = np.abs(values), responses[0].response.coherence[rows[name]]
-                error_band(magnitude, frequency, size, error, coherent, colour)
-                style = {"color": colour, "linestyle": line}
-                fading(magnitude, frequency, size, coherent, _plates(response.motion, vehicle.wheels), **style)
+            coherent = responses[0].response.coherence[rows[name]]
+            for style, response in zip(looks(), responses, strict=False):
+                each = response.response
+                values, error = each.response[rows[name]], each.random_error[rows[name]]
+                error_band(magnitude, frequency, np.abs(values), REGION * error, coherent, style["color"])
+                label = _plates(response.motion, vehicle.wheels)
+                fading(magnitude, frequency, np.abs(values), coherent, label, **style)
                 phase.plot(frequency, wrapped_phase(values), linewidth=0.8, **style)
-            coherence.plot(frequency, responses[0].response.coherence[rows[name]], color=INK)
+            coherence.plot(frequency, coherent, color=INK)
             magnitude.set_title(heading)
             for axis in (magnitude, phase, coherence):
                 shade(axis, frequency, ~inside, UNDRIVEN, None if inside.all() else "no FRF: no input")

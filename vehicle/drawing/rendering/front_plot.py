@@ -49,13 +49,7 @@ class FrontPicture:
 
 
 def plot_front(path: Path, picture: FrontPicture, caption: str) -> None:
-    """Write the picture.
-
-    Args:
-        path: PNG or SVG file.
-        picture: data of the picture.
-        caption: car, inputs, engine, number of cars.
-    """
+    """Write the picture."""
     pairs = list(combinations(range(len(picture.objectives)), 2))
     panels = len(pairs) + 1 if pairs else 2
     columns = math.ceil(math.sqrt(panels))
@@ -76,12 +70,7 @@ def plot_front(path: Path, picture: FrontPicture, caption: str) -> None:
 
 
 def draw_first(axis: Any, picture: FrontPicture) -> None:
-    """Draw the cars over the first two objectives, or the convergence of a single objective.
-
-    Args:
-        axis: the axes.
-        picture: data of the picture.
-    """
+    """Draw the cars over the first two objectives, or the convergence of a single objective."""
     if len(picture.objectives) > 1:
         _objectives(axis, picture, 0, 1)
         axis.legend(**BELOW, ncols=3)

@@ -63,7 +63,6 @@ def draw_grid(axes: Axes, grid: Mapping[str, Sequence[Group]]) -> None:
 
     Args:
         axes: axes with final position and size, which determine automatic ticks.
-        grid: "x" and "y" to groups of ticks.
     """
     from matplotlib import rcParams
     from matplotlib.collections import LineCollection

@@ -31,7 +31,6 @@ def plot_kinematics(
     """Write the picture of axle kinematics.
 
     Args:
-        path, title, caption: see `saved_figure`.
         poses: poses of the right wheel in the order of travel.
         geometry: geometry of the axle at these positions.
     """

@@ -25,7 +25,6 @@ def plot_loads(path: Path, loads: Sequence[LoadSpectrum], caption: str) -> None:
     """Write the picture of load spectra.
 
     Args:
-        path, caption: see `saved_figure`.
         loads: loads with their cycles; each panel shows as many of the largest as there are colours.
     """
     left = [load for load in loads if load.counted.ranges.size]

@@ -84,7 +84,6 @@ class RecordedMotion(Motion):
 
     Args:
         model: the model, or a model with the same joints.
-        recording: recording to replay.
         start, end: time window [s].
 
     Attributes:
@@ -123,9 +122,6 @@ class RecordedMotion(Motion):
         Args:
             time: time [s].
             exposure: exposure time [s]; 0 for the instant.
-
-        Returns:
-            The motion.
         """
         first, last = float(self.time[0]), float(self.time[-1])
         begin, end = (float(np.clip(time + half * exposure, first, last)) for half in (-0.5, 0.5))
@@ -155,11 +151,6 @@ class Coil:
 
     A vertex at the relative height s moves by (1 - s) times the motion of the lower seat plus s times that of the upper
     seat.
-
-    Args:
-        motion: motion of the bodies.
-        composition: composition of the car.
-        spring: a spring of the car.
     """
 
     def __init__(self, motion: Motion, composition: Composition, spring: PlacedSpring) -> None:

@@ -32,12 +32,7 @@ class MountCurve(NamedTuple):
 
 
 def plot_mount(path: Path, curves: Sequence[MountCurve], title: str, caption: str) -> None:
-    """Write the picture of a fitted mount.
-
-    Args:
-        path, title, caption: see `saved_figure`.
-        curves: points and curves of all amplitudes.
-    """
+    """Write the picture of a fitted mount."""
     with saved_figure(path, (9.0, 7.5), title, caption) as figure:
         upper, lower = figure.subplots(2, 1, sharex=True)
         for number, curve in enumerate(curves):

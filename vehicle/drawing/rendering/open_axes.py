@@ -23,7 +23,6 @@ def open_axes(
         ax: axes or an array of axes of the user; None for a new figure of `matplotlib.pyplot`, which a notebook shows.
         size: width and height of a new figure [inch].
         rows, columns: number of axes of the plot.
-        title: title of a new figure.
         options: options of `matplotlib.pyplot.subplots` for a new figure.
 
     Returns:

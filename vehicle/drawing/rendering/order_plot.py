@@ -35,13 +35,9 @@ def plot_order_cuts(
     """Write order cuts: amplitude over the speed, a panel for each order.
 
     Args:
-        path: PNG or SVG file.
         points: speeds; (k,).
         turns: turns per second [Hz]; (k,).
-        orders: the orders; (o,).
         curves: amplitudes of the runs, with locked dampers and with dampers without friction; (o, k) each.
-        labels: label of the speed, and of the amplitude.
-        title, caption: texts above and below.
     """
     names = (("run", "o-"), ("dampers stick", "--"), ("without friction", ":"))
     with saved_figure(path, (9.5, 1.4 + 2.4 * len(orders)), title, caption) as figure:
@@ -79,15 +75,11 @@ def plot_campbell(
     """Write a Campbell map: amplitude over speed and frequency, lines of the orders, modes by name.
 
     Args:
-        path: PNG or SVG file.
         points: speeds; (k,).
         turns: turns per second [Hz]; (k,).
-        orders: the orders; (o,).
         frequency: frequencies [Hz]; (f,).
         spectrum: amplitudes; (k, f).
         modes: frequency [Hz] and name of each mode.
-        labels: label of the speed, and of the amplitude.
-        title, caption: texts above and below.
     """
     top = float(np.max(spectrum[:, 1:]))
     decibel = 20.0 * np.log10(np.maximum(spectrum / top, 10.0 ** (-DEEPEST / 20.0)))

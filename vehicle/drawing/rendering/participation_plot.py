@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vehicle.drawing.rendering.figure import COLOURS, FRF_TICKS, INK, name_bars, saved_figure
+from vehicle.drawing.rendering.figure import COLOURS, FRF_TICKS, INK, frequency_ticks, name_bars, saved_figure
 from vehicle.signals.analysis.samples import Vector
 
 if TYPE_CHECKING:
@@ -36,14 +36,11 @@ def plot_participation(
     """Write the picture of modal participation.
 
     Args:
-        path: PNG file.
-        channel: name of the acceleration channel.
         frequency: lines [Hz], (m,).
         parts: contributions in phase with their sum [m/s2 per m], (m,) each; they add up to its magnitude.
         at: frequency of the bars [Hz].
         shares: shares of the contributions at that frequency [-].
         driven: name of a mode, and the shares of the attachments in its modal force at that frequency [-].
-        description: description of car, channel and input.
     """
     total = np.sum(list(parts.values()), axis=0)
     # Colour the contributions that are largest where the response is large.
@@ -79,8 +76,7 @@ def plot_participation(
         upper.axvline(at, color="black", linestyle="--", linewidth=0.8, label=f"{at:g} Hz")
         upper.set(xscale="log", xlim=(frequency[0], frequency[-1]), xlabel="frequency [Hz]")
         upper.set(ylabel="contribution in phase with the sum [(m/s²)/m]")
-        upper.set_xticks(FRF_TICKS, [str(tick) for tick in FRF_TICKS])
-        upper.set_xticks([], minor=True)
+        frequency_ticks(upper, FRF_TICKS)
         upper.legend(loc="upper left")
         _bars(left, shares, colours, f"share in the sum at {at:g} Hz [%]")
         mode, forces = driven

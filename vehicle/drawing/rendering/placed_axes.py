@@ -57,10 +57,6 @@ def placed_axes(
 
     Args:
         figure: figure from `saved_figure` with `placed`.
-        margins: margins around and between the axes.
-        widths: relative widths of the columns.
-        heights: relative heights of the rows.
-        sharex: share one horizontal scale.
         sharey: "row" for one vertical scale in each row.
 
     Returns:

@@ -83,8 +83,6 @@ def plot_frf(
     """Write the FRF picture: magnitudes with the 95 % band of their random error, grey outside the band of the input.
 
     Args:
-        path, caption, size: see `saved_figure`.
-        run: the run, with its excited wheel.
         response: FRFs to the plate displacement [m/s2 per m], one row for each acceleration channel.
         title: what the FRFs are to, where that is not one plate.
     """
@@ -138,8 +136,6 @@ def plot_time(path: Path, run: RecordedRun, *, page: bool = False, others: Seque
     """Write the main time histories: the whole record, its liveliest moment, and the characteristic of each damper.
 
     Args:
-        path: PNG file.
-        run: the run.
         page: draw for the width of a page.
         others: runs with which this one is compared; their figures have equal scales.
     """
@@ -257,13 +253,9 @@ def _range(runs: Sequence[RecordedRun], channels: Sequence[str], scale: float) -
 
 
 def envelope(time: Vector, values: Vector) -> tuple[Vector, ...]:
-    """Reduce a history to the minimum and maximum of `SEGMENTS` segments of equal length.
+    """Reduce a history (n,) at times [s] to the minimum and maximum of `SEGMENTS` segments of equal length.
 
     Neighbours share a sample, so that the area between minimum and maximum has no gaps.
-
-    Args:
-        time: sample times [s], (n,).
-        values: samples, (n,).
 
     Returns:
         Middle of each segment [s], minimum, maximum; each sample is a segment where there are fewer.
@@ -277,11 +269,7 @@ def envelope(time: Vector, values: Vector) -> tuple[Vector, ...]:
 
 
 def distinct(x: Vector, y: Vector) -> tuple[Vector, ...]:
-    """Remove dots of a scatter plot that lie on others, so that rare dots of a long record remain.
-
-    Args:
-        x: horizontal values, (n,).
-        y: vertical values, (n,).
+    """Remove dots (n,) of a scatter plot that lie on others, so that rare dots of a long record remain.
 
     Returns:
         One point of each occupied cell of the range, both (m,).

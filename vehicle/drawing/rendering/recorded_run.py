@@ -83,13 +83,7 @@ def hub_channel(composition: Composition, wheel: str) -> str:
 
 
 def level_words(recording: Recording, wheel: str, rms: float) -> str:
-    """Describe the size of a plate motion: the height of a bump, or the RMS of a continuous motion.
-
-    Args:
-        recording: recording of the run.
-        wheel: wheel of the plate.
-        rms: RMS of the plate displacement [m].
-    """
+    """Describe a plate motion of a given RMS [m]: the height of a bump, or the RMS of a continuous motion."""
     if rms == 0.0:
         return "at rest"
     if event_of(recording, [wheel]) is None:
@@ -98,12 +92,7 @@ def level_words(recording: Recording, wheel: str, rms: float) -> str:
 
 
 def event_of(recording: Recording, wheels: Sequence[str]) -> tuple[float, float] | None:
-    """Return begin and end of a single event of plates [s], as a bump; None if the motion is continuous or zero.
-
-    Args:
-        recording: recording of the run.
-        wheels: wheels of the plates.
-    """
+    """Return begin and end of a single event of plates [s], as a bump; None if the motion is continuous or zero."""
     plates = np.abs([recording[f"plate_{wheel}_displacement"] for wheel in wheels])
     moved = np.flatnonzero(np.any(plates > EVENT_LEVEL * plates.max(initial=0.0), axis=0))
     if not moved.size or moved[-1] - moved[0] > EVENT_SHARE * recording.time.size:
@@ -122,9 +111,6 @@ def liveliest(time: Vector, values: Vector, length: float) -> float:
         time: uniform sample times [s], (n,).
         values: channel, (n,).
         length: length of the window [s]; limited to the record.
-
-    Returns:
-        First time of the window [s].
     """
     count = min(round(length / (time[1] - time[0])) + 1, len(time))
     sums = np.zeros(len(time) + 1)

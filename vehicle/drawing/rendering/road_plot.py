@@ -28,7 +28,6 @@ def plot_road(path: Path, distance: Vector, tracks: Mapping[str, RoadTrack], tit
     """Plot a road, a column for each track.
 
     Args:
-        path, title, caption: see `saved_figure`.
         distance: distance of the wheels [m]; (n,).
         tracks: title of the column to the road.
     """

@@ -43,7 +43,6 @@ class RoadStrip:
     """Road strips under the tracks of a car.
 
     Args:
-        wheels: wheels of the car.
         recording: recording with the displacement of every plate.
         speed: speed of the car [m/s].
         interval: time between two frames [s], which determines the length of a stripe.
@@ -79,7 +78,8 @@ class RoadStrip:
     def height(self, track: int, x: Vector, time: float, exposure: float) -> Vector:
         """Return the true height of the road [m] at positions x [m], averaged over an exposure [s] about a time [s]."""
         height, integral = self.integrals[track]
-        at = time + (self.leaders[track].patch[0] - x) / self.speed
+        away = self.leaders[track].patch[0] - x
+        at = time + (away / self.speed if self.speed else np.zeros_like(away))  # at rest all see the same height
 
         def total(when: Vector) -> Vector:
             inside = np.clip(when, self.time[0], self.time[-1])
@@ -93,7 +93,6 @@ class RoadStrip:
         """Append the strips to a scene, with heights exaggerated like all motion.
 
         Args:
-            scene: updated scene with space for the geoms.
             time: time [s].
             exposure: exposure time of the frame [s].
             factor: exaggeration.

@@ -14,9 +14,6 @@ class RollingWheel:
     """Shapes of a wheel, positioned by its hub, because the spin of the wheel would rotate the flat of the tyre.
 
     Args:
-        motion: motion of the bodies.
-        wheel: the wheel.
-        hub: name of the part that carries it.
         speed: V [m/s]; 0 for standing tyres.
     """
 
@@ -34,14 +31,7 @@ class RollingWheel:
         self.frames = orientation @ motion.geom_orientation
 
     def turn(self, data: mujoco.MjData, state: State, factor: float, time: float) -> None:
-        """Set the poses of the shapes; the factor exaggerates the motion of the hub, not the rolling.
-
-        Args:
-            data: MuJoCo data; changed in place.
-            state: motion at the time.
-            factor: exaggeration of the poses.
-            time: time [s].
-        """
+        """Set the poses of the shapes; the factor exaggerates the motion of the hub, not the rolling."""
         (centre,) = self.motion.moved(state, factor, self.hub, self.centre)
         frame = Rotation.from_rotvec(factor * state.rotation[self.hub]).as_matrix()
         spin = frame @ Rotation.from_euler("y", self.rate * time).as_matrix()

@@ -3,21 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from itertools import cycle
 from pathlib import Path
 
 import numpy as np
 
-from vehicle.drawing.rendering.figure import (
-    COLOURS,
-    FADED,
-    LINES,
-    fading,
-    frf_axes,
-    saved_figure,
-    wrapped,
-    wrapped_phase,
-)
+from vehicle.drawing.rendering.figure import FADED, fading, frf_axes, looks, saved_figure, wrapped, wrapped_phase
 from vehicle.drawing.rendering.recorded_run import RecordedRun
 from vehicle.signals.analysis.frf import FrequencyResponse
 
@@ -33,7 +23,6 @@ def plot_responses(
     """Plot FRFs of several runs over each other, with a column for each channel.
 
     Args:
-        path, title, caption, size: see `saved_figure`.
         runs: name to run and FRFs of all its acceleration channels.
         channels: channel recorded in all runs to the title of its column.
     """
@@ -42,9 +31,8 @@ def plot_responses(
             3, len(channels), sharex=True, sharey="row", height_ratios=(2.2, 1.0, 0.9), squeeze=False
         )
         for (channel, title_of_column), column in zip(channels.items(), axes.T, strict=True):
-            for (name, (run, response)), colour, line in zip(runs.items(), cycle(COLOURS), cycle(LINES), strict=False):
+            for (name, (run, response)), style in zip(runs.items(), looks(), strict=False):
                 row = run.car.model.vehicle.acceleration_channels.index(channel)
-                style = {"color": colour, "linestyle": line}
                 magnitude = np.abs(response.response[row])
                 fading(column[0], response.frequency, magnitude, response.coherence[row], name, **style)
                 column[1].plot(response.frequency, wrapped_phase(response.response[row]), **style)
@@ -55,10 +43,5 @@ def plot_responses(
 
 
 def shared_channels(runs: Sequence[RecordedRun], wanted: Mapping[str, str]) -> dict[str, str]:
-    """Return the requested channels common to all runs.
-
-    Args:
-        runs: the runs.
-        wanted: channel to its label.
-    """
+    """Return the requested channels common to all runs."""
     return {name: label for name, label in wanted.items() if all(name in run.recording.channels for run in runs)}

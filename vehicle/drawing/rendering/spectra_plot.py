@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from itertools import cycle, islice
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.drawing.rendering.figure import COLOURS, INK, LINES, PAGE_WIDTH, power_of_ten, saved_figure, wrapped
+from vehicle.drawing.rendering.figure import (
+    COMFORT_TICKS,
+    INK,
+    PAGE_WIDTH,
+    frequency_ticks,
+    looks,
+    power_of_ten,
+    saved_figure,
+    wrapped,
+)
 from vehicle.signals.analysis.road_level import CLASS_WIDTH, CLASSES, REFERENCE, RoadLevel
 from vehicle.signals.analysis.vibration_spectra import ChannelSpectrum
-
-TICKS = (0.5, 1, 2, 5, 10, 20, 50)
-"""Frequency axis [Hz]."""
 
 WEIGHTED = {"alpha": 0.55, "linewidth": 2.2}
 """Style of weighted spectra, in the colour of the run."""
@@ -42,7 +48,6 @@ def plot_spectra(
     All columns have the same scale, so that channels and runs can be compared.
 
     Args:
-        path, title, caption: see `saved_figure`.
         runs: name to the spectra of a run.
         channels: channel that is in all runs to the title of its column.
         max_width: maximum width [inch].
@@ -62,14 +67,13 @@ def draw_spectra(
 
     Args:
         axes: axes, (3, channels), with shared scales.
-        runs, channels: see `plot_spectra`.
     """
     largest = 0.0
     for column, (channel, heading) in zip(axes.T, channels.items(), strict=True):
-        for (name, spectra), colour, line in zip(runs.items(), cycle(COLOURS), cycle(LINES), strict=False):
+        for (name, spectra), look in zip(runs.items(), looks(), strict=False):
             for spectrum in (spectrum for spectrum in spectra if spectrum.name == channel):
                 label = f"{name}, weighted" if spectrum.weighting else name
-                style = {"color": colour, "linestyle": line, **(WEIGHTED if spectrum.weighting else {})}
+                style = look | (WEIGHTED if spectrum.weighting else {})
                 bands = spectrum.third_octaves
                 column[0].plot(spectrum.frequency, spectrum.density, **style)
                 column[1].stairs(bands.rms, bands.edges, baseline=None, **style)
@@ -88,25 +92,17 @@ def draw_spectra(
     for row in axes[1:]:
         row[0].set_ylim(bottom=0.0)
     for axis in axes[2]:
-        axis.set_xticks(TICKS, [f"{tick:g}" for tick in TICKS])
-        axis.set_xticks([], minor=True)
+        frequency_ticks(axis, COMFORT_TICKS)
         axis.set_xlim(_limits(runs))
     axes[0, 0].figure.align_ylabels(axes[:, 0])
 
 
 def draw_densities(axis: Any, spectra: Sequence[ChannelSpectrum]) -> None:
-    """Draw the densities of several channels on the same axes; curves that the axes already have stay.
-
-    Args:
-        axis: the axes.
-        spectra: spectra of the channels, weighted and not.
-    """
-    looks = cycle(zip(COLOURS, LINES, strict=True))
-    for spectrum, (colour, line) in zip(spectra, islice(looks, len(axis.lines), None), strict=False):
-        axis.plot(spectrum.frequency, spectrum.density, color=colour, linestyle=line, label=spectrum.label)
+    """Draw the densities of several channels on the same axes; curves that the axes already have stay."""
+    for spectrum, look in zip(spectra, islice(looks(), len(axis.lines), None), strict=False):
+        axis.plot(spectrum.frequency, spectrum.density, label=spectrum.label, **look)
     axis.set(xscale="log", yscale="log", xlabel="frequency [Hz]", ylabel=ROWS[0], xlim=_limits({"": spectra}))
-    axis.set_xticks(TICKS, [f"{tick:g}" for tick in TICKS])
-    axis.set_xticks([], minor=True)
+    frequency_ticks(axis, COMFORT_TICKS)
     drawn = np.concatenate([line.get_ydata() for line in axis.lines])
     if drawn.size and drawn.max() > 0.0:
         axis.set_ylim(drawn.max() / DECADES, 2.0 * drawn.max())
@@ -123,14 +119,13 @@ def plot_road_levels(path: Path, levels: Mapping[str, RoadLevel], title: str = "
     """Plot the density of road heights over the wavenumber, with the limits of the classes of ISO 8608.
 
     Args:
-        path, title, caption: see `saved_figure`.
         levels: name of the run and wheel to the level of its road.
     """
     with saved_figure(path, (7.6, 6.0), title, caption) as figure:
         axis: Any = figure.subplots()
-        for (name, level), colour, line in zip(levels.items(), cycle(COLOURS), cycle(LINES), strict=False):
+        for (name, level), look in zip(levels.items(), looks(), strict=False):
             label = f"{name}: class {level.letter}, G(n₀) = {1e6 * level.reference_density:.3g}·10⁻⁶ m³"
-            axis.plot(level.wavenumber, level.density, color=colour, linestyle=line, label=label)
+            axis.plot(level.wavenumber, level.density, label=label, **look)
         shown = np.array(SHOWN)
         fitted = np.concatenate(
             [

@@ -44,12 +44,8 @@ def stage_model(car: CarModel, size: tuple[int, int], *, road: bool = False) -> 
     """Compile the visible car: the same bodies and joints as the simulated one, plus shapes, lights and floor.
 
     Args:
-        car: the simulated car.
         size: width and height of the largest picture [pixel].
         road: draw a driving car, without shakers and plates, and the floor below the road.
-
-    Returns:
-        The model, with the same generalised positions as the simulated model.
     """
     spec = car.spec.copy()
     shapes = {name: shape for name, shape in visible_shapes(car.vehicle, rig=not road).items() if name not in HIDDEN}

@@ -32,7 +32,6 @@ def plot_sweep(
     """Plot the comfort of the cars of a sweep; a star marks the most comfortable car, a circle the first.
 
     Args:
-        path, title, caption: see `saved_figure`.
         names: varied parameters with units; at least one.
         parameters: values of the parameters; (cars, names).
         weighted: weighted RMS [m/s2]; (cars,).
@@ -44,12 +43,7 @@ def plot_sweep(
 
 
 def draw_sweep(axis: Any, names: Sequence[str], parameters: Vector, weighted: Vector, unweighted: Vector) -> None:
-    """Draw the comfort of the cars of a sweep: a line, a map, or parallel axes; arguments as in `plot_sweep`.
-
-    Args:
-        axis: the axes.
-        names, parameters, weighted, unweighted: see `plot_sweep`.
-    """
+    """Draw the comfort of the cars of a sweep: a line, a map, or parallel axes; arguments as in `plot_sweep`."""
     if len(names) == 1:
         _line(axis, names[0], parameters[:, 0], weighted, unweighted)
     elif len(names) == 2:

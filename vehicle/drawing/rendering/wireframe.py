@@ -56,9 +56,6 @@ def unit_factor(displacement: Complex) -> complex:
 
     Args:
         displacement: displacement of the points, (n, 3), not all zero.
-
-    Returns:
-        The complex factor.
     """
     size = np.linalg.norm(displacement, axis=1)
     farthest = displacement[int(np.argmax(size))]
@@ -68,9 +65,6 @@ def unit_factor(displacement: Complex) -> complex:
 
 def car_wireframe(car: CarModel) -> CarWireframe:
     """Draw a car: the frame of its body, its links, springs and wheels, boxes for heavy parts, plates and stands.
-
-    Args:
-        car: compiled car.
 
     Returns:
         Points and lines of the car, and J of u_point = J u, which is zero for plates and stands.
@@ -216,7 +210,8 @@ def _stand(pen: _Pen, top: Vector, floor: float) -> None:
 def _coil(low: Vector, high: Vector) -> Vector:
     """Return a helix between two points [m], (n, 3), with straight ends."""
     axis = high - low
-    across = np.cross(axis, (1.0, 0.0, 0.0))
+    lying = abs(axis[0]) > 0.99 * np.linalg.norm(axis)  # along the car, as of a push rod
+    across = np.cross(axis, (0.0, 1.0, 0.0) if lying else (1.0, 0.0, 0.0))
     across /= np.linalg.norm(across)
     third = np.cross(axis, across) / np.linalg.norm(axis)
     share = np.linspace(0.0, 1.0, COIL_POINTS)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.drawing.notebook.frames import plain_frame
 from vehicle.engines.linear.car_modes import Mode
 from vehicle.engines.linear.forced_response import forced_response
 from vehicle.errors import ConfigurationError
@@ -135,9 +136,7 @@ class OrderPoints:
 
     def to_dataframe(self) -> Any:
         """Return a pandas table: a row for each order and point, with amplitude, phase [deg] and both limits."""
-        from pandas import DataFrame
-
-        return DataFrame(self.rows())
+        return plain_frame(self.rows())
 
 
 def order_points(

@@ -97,7 +97,7 @@ class Run:
         Returns:
             The axes: one, or an array.
         """
-        from vehicle.drawing.rendering.history_plot import draw_histories
+        from vehicle.drawing.rendering.curves import draw_histories
         from vehicle.drawing.rendering.open_axes import open_axes, plain
 
         names = self._named(channels) if channels is not None else self._main_channels()

@@ -15,6 +15,7 @@ from vehicle.drawing.rendering.figure import (
     FRF_BAND,
     FRF_TICKS,
     fading,
+    frequency_ticks,
     frf_axes,
     saved_figure,
     wrapped_phase,
@@ -116,8 +117,7 @@ def draw_signatures(axes: npt.NDArray[Any], signatures: Signatures) -> None:
     axis.plot(frequency, signatures.csf, color=COLOURS[3], linestyle="--", label="CSF: shape and amplitude")
     axis.set(xscale="log", ylim=(0.0, 1.03), xlim=(frequency[0], frequency[-1]), xlabel="frequency [Hz]",
              ylabel="1 is equal [-]")  # fmt: skip
-    axis.set_xticks(FRF_TICKS, [str(tick) for tick in FRF_TICKS])
-    axis.set_xticks([], minor=True)
+    frequency_ticks(axis, FRF_TICKS)
     axis.set_xlim(frequency[0], frequency[-1])
     axis.legend(loc="lower left")
 

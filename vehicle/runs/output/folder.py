@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,9 @@ from vehicle.replacement import is_being_made, replaced_file
 from vehicle.runs.output.locks import folder_lock
 from vehicle.runs.output.work_folder import new_files, new_folder, put_in_order, unfinished
 from vehicle.runs.output.written_files import MARKER, digest_of, note, refuse_foreign, refuse_foreign_file
+
+Content = str | bytes | Callable[[Path], object]
+"""Content of a file: a text, bytes, or a function that writes the file to a path."""
 
 
 @contextmanager
@@ -249,3 +253,21 @@ def write_text(path: Path, text: str) -> None:
 def write_json(path: Path, content: Any) -> None:
     """Write JSON with an indent of two blanks; NaN raises a ValueError."""
     write_text(path, json.dumps(content, indent=2, allow_nan=False) + "\n")
+
+
+def write_files(folder: Path, contents: Mapping[str, Content]) -> None:
+    """Write files of a folder by their names, each as `write_whole` does."""
+    for name, content in contents.items():
+        if isinstance(content, str):
+            write_text(folder / name, content)
+        else:
+            write_whole(
+                folder / name, partial(Path.write_bytes, data=content) if isinstance(content, bytes) else content
+            )
+
+
+def write_together(paths: Sequence[Path], contents: Iterable[Content]) -> None:
+    """Write several files of one folder, all or none, see `whole_files`."""
+    with whole_files(paths) as temporary:
+        for path, content in zip(temporary, contents, strict=True):
+            write_files(path.parent, {path.name: content})

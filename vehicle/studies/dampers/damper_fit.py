@@ -141,8 +141,6 @@ def fit_law(tests: Sequence[DamperTest], law: DamperLaw, starts: Sequence[Vector
     """Return the parameters of the least squares fit, the best of all starts; (p,).
 
     Args:
-        tests: tests of one condition.
-        law: parts of the law.
         starts: start values in the order of `law.parameters`.
         masks: samples of each test that are fitted; the settled ones by default.
         evaluations: maximum number of evaluations of a start.
@@ -179,7 +177,7 @@ def fit_law(tests: Sequence[DamperTest], law: DamperLaw, starts: Sequence[Vector
         return last[key]
 
     results = []
-    bounds = internal(np.where(linear, low, low)), internal(high)
+    bounds = internal(low), internal(high)
     for start in starts:
         begin = np.clip(internal(np.clip(start, low, high)), bounds[0] + 1e-6, bounds[1] - 1e-6)
         results.append(
@@ -192,13 +190,7 @@ def fit_law(tests: Sequence[DamperTest], law: DamperLaw, starts: Sequence[Vector
 
 
 def starts_of(law: DamperLaw, smaller: DamperFit, tests: Sequence[DamperTest]) -> list[Vector]:
-    """Return start values of a law from the fit of a law with one part less.
-
-    Args:
-        law: the larger law.
-        smaller: fit of the smaller law.
-        tests: tests of the fit, for sizes of force, velocity and stroke.
-    """
+    """Return start values of a law from the fit of a law with one part less."""
     force = max(test.scale for test in tests)
     speed = max(float(np.percentile(np.abs(test.velocity), 95.0)) for test in tests)
     previous = dict(zip(smaller.law.parameters, smaller.parameters.tolist(), strict=True))
@@ -295,9 +287,6 @@ def thinned(test: DamperTest) -> DamperTest:
 
 def choose_law(tests: Sequence[DamperTest]) -> tuple[DamperFit, list[DamperFit]]:
     """Return the chosen law fitted to all samples, with standard errors, and all laws that were compared.
-
-    Args:
-        tests: tests of one condition.
 
     Raises:
         DataError: no test.

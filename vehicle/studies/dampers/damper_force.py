@@ -67,9 +67,7 @@ def force_and_slopes(law: DamperLaw, parameters: Vector, motion: Motion) -> tupl
     """Return the force [N], (n,), and its derivatives over the parameters, (n, p).
 
     Args:
-        law: parts of the law.
         parameters: in the order of `law.parameters`, SI units; velocities are widths of segments; (p,).
-        motion: sampled motion.
     """
     values = values_of(law, parameters)
     if not law.series:

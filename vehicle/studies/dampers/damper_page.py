@@ -23,13 +23,7 @@ PAGE_POINTS = 600
 
 
 def damper_page(fits: Sequence[FittedDamper], command: str, *, author: str = "", project: str = "") -> str:
-    """Return the report of fitted dampers as one HTML document.
-
-    Args:
-        fits: fits in the order of their conditions.
-        command: command line of the fit.
-        author, project: names in the head of the page; may be empty.
-    """
+    """Return the report of fitted dampers as one HTML document."""
     parts = []
     if len(fits) > 1:
         parts.append(("Over the conditions", "conditions", _conditions(fits)))
@@ -60,7 +54,8 @@ def _conditions(fits: Sequence[FittedDamper]) -> Markup:
     settings = settings_of(fits)
     heads = ["condition", "damping [N s/m]", "friction [N]", "bend force [N]", "slope [N s/m]"]
     rows = [(each.words, *(number(value, 4) for value in each[1:])) for each in settings]
-    figure = drawing(partial(plot_settings, curves=curve_lines(fits), settings=settings), "Laws over the conditions")
+    shown = {each.words: (each.damping, each.friction) for each in settings}
+    figure = drawing(partial(plot_settings, curves=curve_lines(fits), settings=shown), "Laws over the conditions")
     return fill("settings", heads=heads, rows=rows, figure=figure, lines=control_lines(fits))
 
 

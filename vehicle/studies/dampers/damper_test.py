@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from vehicle.digits import number
+from vehicle.digits import number, rounded
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.formats.channel import Measurement
 from vehicle.signals.formats.reader import read_record
@@ -166,7 +166,6 @@ def read_test(path: Path, choice: Choice | None = None, *, compression: bool = F
     """Read the record of a test.
 
     Args:
-        path: measurement file of any format.
         choice: channels of the roles "displacement", "force", "velocity" and "time", units and excerpt; a role without
             a channel is the channel with its name, or the only channel of its quantity.
         compression: displacement, velocity and force of the file are positive in compression.
@@ -205,11 +204,7 @@ def read_test(path: Path, choice: Choice | None = None, *, compression: bool = F
 
 
 def _headless(measurement: Measurement, choice: Choice, notices: list[str]) -> Choice:
-    """Return the choice with the columns of a file without a header, and with the units of columns by role.
-
-    Raises:
-        DataError: the file has no units, and a displacement that may be in metres.
-    """
+    """Return the choice with the columns of a file without a header, and with the units of columns by role."""
     columns = measurement.channels
     channels, units = dict(choice.channels), dict(choice.units)
     bare = all(each.name == f"column {i + 1}" and not each.unit for i, each in enumerate(columns))
@@ -302,7 +297,7 @@ def _conditions(path: Path, measurement: Measurement, typed: Mapping[str, str], 
     for name, text in typed.items():
         if text.startswith("channel:"):
             chosen = choose(measurement, Choice(channels={name: text.removeprefix("channel:")}))
-            values[name] = float(f"{np.mean(chosen.values[name]):.3g}")
+            values[name] = rounded(float(np.mean(chosen.values[name])), 3)
         else:
             values[name] = _number(text, f"--condition {name}={text}")
     if pattern:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from vehicle.digits import number
+from vehicle.digits import number, rounded
 from vehicle.studies.dampers.damper_law import EXPONENT, SMOOTHING, values_of
 from vehicle.studies.dampers.fitted_damper import FittedDamper
 
@@ -112,7 +112,7 @@ def _curve_lines(fitted: FittedDamper, spread: dict[str, float]) -> list[str]:
 
 def _short(value: float) -> str:
     """Return a number with five digits, as TOML has it."""
-    return repr(float(f"{value:.5g}"))
+    return repr(rounded(value, 5))
 
 
 def _line(name: str, value: float, unit: str, error: float) -> str:

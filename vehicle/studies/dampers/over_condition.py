@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.digits import rounded
 from vehicle.studies.dampers.damper_law import values_of
 from vehicle.studies.dampers.fitted_damper import FittedDamper
 
@@ -78,7 +79,7 @@ def control_lines(fits: Sequence[FittedDamper]) -> str:
     lines += [
         "# for a table [AXLE.damper.control]: the coefficient replaces the curve; friction, gas and stop remain those",
         f"# of the table of the damper, as in damper{fits[0].name}.toml",
-        f"minimum_damping = {float(f'{min(dampings):.5g}')!r}  # [N s/m]",
-        f"maximum_damping = {float(f'{max(dampings):.5g}')!r}  # [N s/m]",
+        f"minimum_damping = {rounded(min(dampings), 5)!r}  # [N s/m]",
+        f"maximum_damping = {rounded(max(dampings), 5)!r}  # [N s/m]",
     ]
     return "\n".join(lines) + "\n"

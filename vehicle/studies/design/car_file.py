@@ -15,10 +15,8 @@ def vehicle_text(
     """Return the text of a vehicle file whose comments contain unit and source of each value.
 
     Args:
-        vehicle: the new car.
         header: first lines, without the comment sign.
         sources: source by path, of the values that are not the template's.
-        template: name of the template car.
         before: source by path in the file of the template, see `value_sources`.
     """
 

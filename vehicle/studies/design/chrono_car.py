@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.digits import rounded
 from vehicle.engines.kinematics.axle_parts import axle_parts
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.template import read_template
@@ -22,7 +23,7 @@ from vehicle.model.parameters.vehicle import vehicle_of
 from vehicle.runs.car import Car
 from vehicle.studies.design.car_file import vehicle_text
 from vehicle.studies.design.chrono_json import REFLECTION, ChronoFile, Vector, read_chrono_file, rotation, tensor
-from vehicle.studies.design.chrono_suspension import ImportedAxle, imported_axle, rounded, turning
+from vehicle.studies.design.chrono_suspension import ImportedAxle, imported_axle, turning
 from vehicle.studies.design.chrono_tyre import ChronoTyre, chrono_tyre
 from vehicle.studies.design.new_car import NewCar, checks_of, new_car
 from vehicle.studies.design.stated_numbers import AXLES, StatedNumbers
@@ -62,13 +63,7 @@ PREFIX = "chrono:"
 
 @one_blas_thread()
 def new_chrono_car(name: str, path: Path, tyre_file: Path | None, stated: StatedNumbers) -> NewCar:
-    """Make a car from files of Chrono, and change it by stated numbers.
-
-    Args:
-        name: name of the new car.
-        path: JSON file, see `chrono_car`.
-        tyre_file: JSON file of a tyre, see `chrono_car`.
-        stated: numbers of the new car; all others are those of the files.
+    """Make a car from files of Chrono, see `chrono_car`, and change it by stated numbers.
 
     Raises:
         ConfigurationError, DataError: see `chrono_car`.
@@ -91,7 +86,6 @@ def chrono_car(name: str, path: Path, tyre_file: Path | None = None) -> NewCar:
     """Read a car of Chrono.
 
     Args:
-        name: name of the car.
         path: JSON file of a wheeled vehicle, or the file of a whole model that names it and its tyre.
         tyre_file: JSON file of the tyre of all wheels; by default that of the model.
 
@@ -208,7 +202,7 @@ def _body(chassis: ChronoFile, origin: Vector) -> tuple[dict[str, Any], dict[str
     inertia = turn[:, None] * inertia * turn
     numbers = [inertia[0, 0], inertia[1, 1], inertia[2, 2], -inertia[0, 1], -inertia[0, 2], -inertia[1, 2]]
     names = ("ixx", "iyy", "izz", "ixy", "izx", "iyz")
-    values = {key: rounded(value) for key, value in zip(names, numbers, strict=True)}
+    values = {key: rounded(value, 9) for key, value in zip(names, numbers, strict=True)}
     body = {
         "mass": mass,
         "cog": coordinates(turn * (cog - origin)),
@@ -259,12 +253,12 @@ def _set_ground(axles: list[ImportedAxle], tyre: ChronoTyre, loads: list[float])
             f"{where}: unloaded radius {tyre.radius:g} m less {1e3 * deflection:.1f} mm under {load:.0f} N"
         )
         axle.tables["bushings.tyre"] = {
-            "stiffness": [rounded(share * stiffness) for share in (LONGITUDINAL, LATERAL, 1.0)],
-            "damping": [0.0, 0.0, rounded(tyre.damping)],
+            "stiffness": [rounded(share * stiffness, 9) for share in (LONGITUDINAL, LATERAL, 1.0)],
+            "damping": [0.0, 0.0, rounded(tyre.damping, 9)],
             "rotational_stiffness": 0.0,
-            **{name: rounded(tyre.slip_stiffness(name, load)) for name in tyre.slip},
-            "carcass_longitudinal": rounded(CARCASS_LONGITUDINAL * stiffness),
-            "carcass_lateral": rounded(CARCASS_LATERAL * stiffness),
+            **{name: rounded(tyre.slip_stiffness(name, load), 9) for name in tyre.slip},
+            "carcass_longitudinal": rounded(CARCASS_LONGITUDINAL * stiffness, 9),
+            "carcass_lateral": rounded(CARCASS_LATERAL * stiffness, 9),
         }
         axle.sources["bushings.tyre"] = f"{where}, at {load:.0f} N"
         axle.sources["bushings.tyre.stiffness"] = (
@@ -286,7 +280,7 @@ def _axle_table(axle: ImportedAxle) -> dict[str, Any]:
     parts: dict[str, Any] = {}
     for name, part in axle.parts.items():
         numbers = {key: value for key, value in part.items() if key != "cog"}
-        numbers["mass"] = rounded(numbers["mass"])
+        numbers["mass"] = rounded(numbers["mass"], 9)
         middle = np.mean([axle.points[point] for point in template.parts[name].points], axis=0)
         if np.max(np.abs(offset := part["cog"] - middle)) > 1e-9 and "inertia" in numbers:
             numbers["offset"] = coordinates(offset)

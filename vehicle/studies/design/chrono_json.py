@@ -35,7 +35,7 @@ _COMMENT = re.compile(r'"(?:[^"\\]|\\.)*"|(//[^\n]*|/\*.*?\*/)', re.DOTALL)
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ChronoFile:
-    """Table of a JSON file of Chrono, or a table inside it.
+    """Table of a JSON file of Chrono, or a table inside it; a value that is missing or of another type is a DataError.
 
     Attributes:
         path: path of the file.
@@ -56,31 +56,27 @@ class ChronoFile:
             ", ".join((self.path.name, " / ".join((*self.inside, *names)))) if self.inside or names else self.path.name
         )
 
+    def _wrong(self, name: str, text: str) -> DataError:
+        """Return the error of a value."""
+        return DataError(f"{self.path}: {' / '.join((*self.inside, name))} {text}")
+
     def _value(self, name: str) -> Any:
         if name not in self.table:
-            raise DataError(f"{self.path}: {' / '.join((*self.inside, name))} is missing; add it")
+            raise self._wrong(name, "is missing; add it")
         return self.table[name]
 
     def section(self, name: str) -> ChronoFile:
-        """Return an inner table.
-
-        Raises:
-            DataError: it is missing, or no table.
-        """
+        """Return an inner table."""
         value = self._value(name)
         if not isinstance(value, Mapping):
-            raise DataError(f"{self.path}: {' / '.join((*self.inside, name))} has {value!r}, must be a table")
+            raise self._wrong(name, f"has {value!r}, must be a table")
         return ChronoFile(path=self.path, table=value, inside=(*self.inside, name))
 
     def sections(self, name: str) -> list[ChronoFile]:
-        """Return a list of inner tables; empty if it is missing.
-
-        Raises:
-            DataError: it is no list of tables.
-        """
+        """Return a list of inner tables; empty if it is missing."""
         values = self.table.get(name, [])
         if not isinstance(values, list) or not all(isinstance(value, Mapping) for value in values):
-            raise DataError(f"{self.path}: {' / '.join((*self.inside, name))} must be a list of tables")
+            raise self._wrong(name, "must be a list of tables")
         inside = (*self.inside, name)
         return [
             ChronoFile(path=self.path, table=value, inside=(*inside[:-1], f"{name}[{index}]"))
@@ -88,36 +84,20 @@ class ChronoFile:
         ]
 
     def text(self, name: str) -> str:
-        """Return a text.
-
-        Raises:
-            DataError: it is missing, or no text.
-        """
+        """Return a text."""
         if not isinstance(value := self._value(name), str):
-            raise DataError(f"{self.path}: {' / '.join((*self.inside, name))} has {value!r}, must be a text")
+            raise self._wrong(name, f"has {value!r}, must be a text")
         return value
 
     def number(self, name: str) -> float:
-        """Return a number, in the unit of the file: Chrono has SI units.
-
-        Raises:
-            DataError: it is missing, or no finite number.
-        """
+        """Return a number, in the unit of the file: Chrono has SI units."""
         value = self._value(name)
         if isinstance(value, bool) or not isinstance(value, int | float) or not np.isfinite(value):
-            raise DataError(f"{self.path}: {' / '.join((*self.inside, name))} has {value!r}, must be a finite number")
+            raise self._wrong(name, f"has {value!r}, must be a finite number")
         return float(value)
 
     def array(self, name: str, *shape: int) -> Vector:
-        """Return a list of numbers as an array.
-
-        Args:
-            name: name of the list.
-            shape: its shape; -1 for any length.
-
-        Raises:
-            DataError: it is missing, has another shape, or holds something else than finite numbers.
-        """
+        """Return a list of numbers as an array of a shape, with -1 for any length."""
         value = self._value(name)
         try:
             array = np.array(value, dtype=float)
@@ -126,8 +106,15 @@ class ChronoFile:
         fits = array.ndim == len(shape) and all(n in (-1, m) for n, m in zip(shape, array.shape, strict=True))
         if not fits or not np.isfinite(array).all():
             size = " x ".join("n" if n < 0 else str(n) for n in shape)
-            raise DataError(f"{self.path}: {' / '.join((*self.inside, name))} must be a list of {size} finite numbers")
+            raise self._wrong(name, f"must be a list of {size} finite numbers")
         return array
+
+    def curve(self, name: str) -> Vector:
+        """Return the points of a curve, (n, 2): two or more, whose first numbers rise."""
+        points = self.array(name, -1, 2)
+        if len(points) < 2 or np.any(np.diff(points[:, 0]) <= 0.0):
+            raise self._wrong(name, "must have two points or more, whose first numbers rise")
+        return points
 
     def named_file(self, name: str) -> ChronoFile:
         """Read a file by a name in this file: relative to a parent folder (data/vehicle), or in the same folder.
@@ -149,9 +136,6 @@ class ChronoFile:
 
 def read_chrono_file(path: Path) -> ChronoFile:
     """Read a JSON file of Chrono, which may contain comments.
-
-    Args:
-        path: path of the file.
 
     Raises:
         ConfigurationError: the file is missing or too large.

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.digits import rounded
 from vehicle.errors import DataError
 from vehicle.studies.design.chrono_json import REFLECTION, ChronoFile, Vector, tensor
 
@@ -64,10 +65,10 @@ class ImportedAxle:
                 self.changed.append(f"{source.removeprefix('Chrono ')}: the largest moment of inertia exceeds "
                                     f"the sum of the two others; these are raised by {raised:.3g} kg m2")  # fmt: skip
             moments = np.diag(inertia)
-            part["inertia"] = [rounded(value) for value in moments]
+            part["inertia"] = [rounded(value, 9) for value in moments]
             products = -np.array([inertia[0, 1], inertia[0, 2], inertia[1, 2]])
             if np.max(np.abs(products)) > 1e-9 * moments.sum():
-                part["products"] = [rounded(value) + 0.0 for value in products]
+                part["products"] = [rounded(value, 9) + 0.0 for value in products]
         self.parts[name] = {**part, "cog": cog}
         self.sources[f"parts.{name}"] = source
 
@@ -80,16 +81,10 @@ class ImportedAxle:
         self.add_part(name, mass, at, inertia, source)
 
 
-def rounded(value: float) -> float:
-    """Return a number of nine digits, legible in a file."""
-    return float(f"{value:.9g}")
-
-
 def imported_axle(file: ChronoFile, to_vehicle: Callable[[Vector], Vector]) -> ImportedAxle:
     """Return the axle of a suspension file.
 
     Args:
-        file: JSON file of a suspension.
         to_vehicle: function from a point of the left side in the frame of the suspension to the right side here.
 
     Raises:
@@ -258,7 +253,7 @@ def _add_spring(axle: ImportedAxle, spring: ChronoFile, line: Vector) -> None:
     """Add the main spring; note its law and its extension at the hardpoints."""
     axle.stretch = float(np.linalg.norm(line)) - spring.number("Free Length")
     if "Spring Curve Data" in spring:
-        points = spring.array("Spring Curve Data", -1, 2)
+        points = spring.curve("Spring Curve Data")
         slope = float(
             np.interp(0.0, 0.5 * (points[1:, 0] + points[:-1, 0]), np.diff(points[:, 1]) / np.diff(points[:, 0]))
         )
@@ -283,7 +278,7 @@ def _add_spring(axle: ImportedAxle, spring: ChronoFile, line: Vector) -> None:
 def _add_damper(axle: ImportedAxle, shock: ChronoFile) -> None:
     """Add the damper."""
     if "Damping Curve Data" in shock:
-        key, points = "Damping Curve Data", shock.array("Damping Curve Data", -1, 2)
+        key, points = "Damping Curve Data", shock.curve("Damping Curve Data")
         law: dict[str, Any] = {
             "viscous_law": "table",
             "velocity": points[:, 0].tolist(),
@@ -297,7 +292,7 @@ def _add_damper(axle: ImportedAxle, shock: ChronoFile) -> None:
         v = np.array([*(-speed for speed in reversed(CURVE_SPEEDS)), *CURVE_SPEEDS])
         down, up = (shock.number(f"Degressivity {way}") for way in ("Compression", "Expansion"))
         force = c * v / (1.0 + np.where(v < 0.0, down, up) * np.abs(v))
-        law = {"viscous_law": "table", "velocity": v.tolist(), "force": [rounded(f) for f in force]}
+        law = {"viscous_law": "table", "velocity": v.tolist(), "force": [rounded(f, 9) for f in force]}
     else:
         key = "Damping Coefficient"
         law = {"viscous_law": "linear", "viscous": shock.number(key)}

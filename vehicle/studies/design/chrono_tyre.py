@@ -72,7 +72,12 @@ class ChronoTyre:
                 return float(z[-1] + (load - f[-1]) * (z[-1] - z[-2]) / (f[-1] - f[-2]))
             return float(np.interp(load, f, z))
         d1, d2 = self.force
-        return float(2.0 * load / (d1 + math.sqrt(d1 * d1 + 4.0 * d2 * load)))
+        if (square := d1 * d1 + 4.0 * d2 * load) < 0.0:
+            raise DataError(
+                f"{self.file.path}: d1 z + d2 z^2 through its vertical curve reaches {-0.25 * d1 * d1 / d2:.0f} N, "
+                f"must carry {load:.0f} N; mend the curve, or name another tyre with --chrono-tyre FILE.json"
+            )
+        return float(2.0 * load / (d1 + math.sqrt(square)))
 
     def stiffness(self, load: float) -> float:
         """Return dF/dz at a static load [N/m]."""
@@ -86,10 +91,6 @@ class ChronoTyre:
         """Return the slope of a horizontal force over slip at a static load [N or N/rad].
 
         Quadratic in the load, with the slopes of `slip` at the nominal load and at twice that load, as in TMeasy.
-
-        Args:
-            name: direction, a key of `slip`.
-            load: static load of the tyre [N].
         """
         low, high = self.slip[name]
         if math.isinf(self.nominal):
@@ -100,9 +101,6 @@ class ChronoTyre:
 
 def chrono_tyre(file: ChronoFile) -> ChronoTyre:
     """Return the tyre of a JSON file.
-
-    Args:
-        file: JSON file of a tyre.
 
     Raises:
         DataError: a tyre without a vertical stiffness, or a wrong or missing value.
@@ -120,9 +118,9 @@ def _fiala(file: ChronoFile) -> ChronoTyre:
     numbers = file.section("Fiala Parameters")
     force = np.array([numbers.number("Vertical Stiffness"), 0.0])
     if "Vertical Curve Data" in numbers:
-        force = numbers.array("Vertical Curve Data", -1, 2)
-        if len(force) < 2 or np.any(np.diff(force, axis=0) <= 0.0):
-            raise DataError(f"{file.path}: Fiala Parameters / Vertical Curve Data must rise, with two points or more")
+        force = numbers.curve("Vertical Curve Data")
+        if np.any(np.diff(force[:, 1]) <= 0.0):
+            raise DataError(f"{file.path}: Fiala Parameters / Vertical Curve Data: the forces must rise")
     slip, cornering = numbers.number("CSLIP"), numbers.number("CALPHA")
     return ChronoTyre(
         file=file,
@@ -151,7 +149,7 @@ def _tmeasy(file: ChronoFile, template: str) -> ChronoTyre:
         if "Vertical Tire Stiffness [N/m]" in vertical:
             force = np.array([vertical.number("Vertical Tire Stiffness [N/m]"), 0.0])
         else:
-            z, f = vertical.array("Tire Spring Curve Data", -1, 2).T
+            z, f = vertical.curve("Tire Spring Curve Data").T
             force = np.linalg.lstsq(np.column_stack([z, z * z]), f, rcond=None)[0]
         slip = {
             name: tuple(parameters.section(way).array(f"Initial Slopes dF{axis}/ds{axis} [N]", 2).tolist())

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.digits import rounded
 from vehicle.engines.simulation.car_masses import car_masses
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.errors import ConfigurationError
@@ -49,12 +50,7 @@ def axle_loads(car: CarModel, template: TemplateCar) -> dict[str, float]:
 
 
 def balanced(table: dict[str, Any], template: TemplateCar, stated: StatedNumbers) -> tuple[dict[str, Any], Sources]:
-    """Return the vehicle table with the body of the stated masses, and the sources of its numbers.
-
-    Args:
-        table: vehicle table with the lengths of the new car.
-        template: the template car.
-        stated: numbers of the new car.
+    """Return a vehicle table with the body of the stated masses in place of its own, and the sources of its numbers.
 
     Raises:
         ConfigurationError: a car that cannot be: lighter than its parts, centre of gravity outside the wheelbase,
@@ -135,11 +131,7 @@ def _inertia(template: TemplateCar, stated: StatedNumbers, before: MassPropertie
 
 
 def _body_numbers(body: MassProperties) -> dict[str, Any]:
-    """Return the parameters of the body by path.
-
-    Raises:
-        ConfigurationError: a moment of inertia is not physical.
-    """
+    """Return the parameters of the body by path."""
     moments = np.diag(body.inertia)
     for axis, (name, moment) in enumerate(zip(("roll", "pitch", "yaw"), moments, strict=True)):
         others = moments.sum() - moment
@@ -149,13 +141,13 @@ def _body_numbers(body: MassProperties) -> dict[str, Any]:
                 f"sum of the two others ({others:.0f} kg m2): check {option(f'{name}_inertia')} and the other moments, "
                 f"{option('cog_height')} and {option('kerb_mass')}"
             )
-    ixx, iyy, izz = (float(f"{value:.9g}") for value in moments)
+    ixx, iyy, izz = (rounded(float(value), 9) for value in moments)
     inertia = {"about": "cog", "ixx": ixx, "iyy": iyy, "izz": izz}
     for name, entry in (("ixy", (0, 1)), ("izx", (2, 0)), ("iyz", (1, 2))):
         if abs(body.inertia[entry]) > ROUND_OFF * moments.sum():
-            inertia[name] = -float(f"{body.inertia[entry]:.9g}")
+            inertia[name] = -rounded(float(body.inertia[entry]), 9)
     return {
-        "body.mass": float(f"{body.mass:.9g}"),
+        "body.mass": rounded(body.mass, 9),
         "body.cog": [round(float(value), 9) + 0.0 for value in body.cog],
         "body.inertia": inertia,
     }

@@ -26,10 +26,6 @@ DIGITS = 6
 def moved_points(template: TemplateCar, stated: StatedNumbers) -> tuple[dict[str, Any], Sources]:
     """Return the table of the template with the lengths of the new car, and the sources of what has moved.
 
-    Args:
-        template: the template car.
-        stated: numbers of the new car.
-
     Raises:
         ConfigurationError: a track so small that a point of one side reaches the middle of the car.
     """

@@ -119,12 +119,7 @@ def new_car(name: str, source: Path | str, stated: StatedNumbers, *, scale: bool
 
 
 def template_files(source: Path, car: Car) -> list[Path]:
-    """Return the templates of a user that a new car needs in its folder.
-
-    Args:
-        source: vehicle file of the template car.
-        car: the new car.
-    """
+    """Return the templates of a user that a new car needs in its folder."""
     folders = (source.parent, source.parent / "templates")
     names = [str(instance.numbers["template"]) for instance in instances(car.vehicle.table, folders).values()]
     return own_templates(names, folders)
@@ -162,13 +157,7 @@ def _sources_of_targets(targets: list[Target], stated: StatedNumbers, template: 
 
 
 def checks_of(car: Car, template: TemplateCar, stated: StatedNumbers) -> tuple[Check, ...]:
-    """Return all numbers of a car with their stated values.
-
-    Args:
-        car: the car.
-        template: the car that it was made from.
-        stated: stated numbers.
-    """
+    """Return all numbers of a car with their stated values."""
     kerb = kerb_model(car.vehicle.table, template)
     whole, loads = car_masses(kerb), axle_loads(kerb, template)
     wheels = {wheel.name: wheel for wheel in car.vehicle.composition.wheels}

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.digits import rounded
 from vehicle.engines.kinematics.axle_ride import axle_rides
 from vehicle.engines.kinematics.ride_figures import ride_figures
 from vehicle.errors import ConfigurationError, SimulationError
@@ -85,8 +86,6 @@ def quantities(car: Car, template: TemplateCar, *, roll: bool = True) -> dict[st
     """Return the quantities of a car by the names of `StatedNumbers`.
 
     Args:
-        car: car with the axles of the template.
-        template: the template car.
         roll: False leaves the roll stiffnesses nan, in a third of the time.
     """
     rides = axle_rides(car.model, roll=roll)
@@ -137,11 +136,7 @@ def targets_of(template: TemplateCar, stated: StatedNumbers) -> list[Target]:
 
 
 def _parameters(template: TemplateCar, word: str) -> dict[str, list[str]]:
-    """Return the parameters of each quantity of an axle; some may be absent from the vehicle file.
-
-    Raises:
-        ConfigurationError: a controlled damper, which has no fixed damping ratio.
-    """
+    """Return the parameters of each quantity of an axle; some may be absent from the vehicle file."""
     elements = template.element_paths(word)
     for damper in template.vehicle.composition.dampers:
         if damper.law.controlled is not None:
@@ -159,11 +154,6 @@ def _parameters(template: TemplateCar, word: str) -> dict[str, list[str]]:
 
 def solved(table: Mapping[str, Any], template: TemplateCar, targets: Sequence[Target]) -> dict[str, Any]:
     """Return the vehicle table whose quantities are those of the targets.
-
-    Args:
-        table: vehicle table with lengths, masses and loads of the new car.
-        template: the template car.
-        targets: quantities to be met.
 
     Raises:
         ConfigurationError: a target cannot be reached; the message has the interval that can be reached.
@@ -261,9 +251,6 @@ class RideProblem:
         """Return the interval that a target can reach, and the factors on its parameter at both ends.
 
         All other targets are met at both ends. If that is impossible at a bound, the last possible factor replaces it.
-
-        Args:
-            index: index of the target.
         """
         lower, upper = self.factor_bounds()
         ends = [self.last_end(index, float(bound[index])) for bound in (lower, upper)]
@@ -364,14 +351,9 @@ def _multiply(table: dict[str, Any], path: str, factor: float) -> None:
     """Multiply a number, a list of numbers or the component z of a vector in a vehicle table."""
     if path.endswith(".z"):
         vector = list(value_at(table, path.removesuffix(".z")))
-        vector[2] = _rounded(factor * vector[2])
+        vector[2] = rounded(factor * vector[2], 9)
         put(table, {path.removesuffix(".z"): vector})  # type: ignore[dict-item]
         return
     value = value_at(table, path)
-    numbers = [_rounded(factor * item) for item in (value if isinstance(value, list | tuple) else [value])]
+    numbers = [rounded(factor * item, 9) for item in (value if isinstance(value, list | tuple) else [value])]
     put(table, {path: numbers if isinstance(value, list | tuple) else numbers[0]})  # type: ignore[dict-item]
-
-
-def _rounded(value: float) -> float:
-    """Return a number of nine digits: below the tolerance of the solution, and legible in a file."""
-    return float(f"{value:.9g}")

@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from vehicle.digits import rounded
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.paths import paths, value_at
 from vehicle.model.parameters.toml_file import copy_table
@@ -46,8 +47,6 @@ def scaled_parts(
     """Return the vehicle table with scaled axles and powertrain, and the sources of the scaled values.
 
     Args:
-        table: vehicle table of the new car, with the parts of the template.
-        template: the template car.
         ratio: kerb mass of the new car over that of the template.
         powertrain: False for a powertrain that is not that of the template.
 
@@ -57,11 +56,11 @@ def scaled_parts(
     sources, table = Sources(), copy_table(table)
     for path, exponent in _exponents(template, powertrain=powertrain):
         # Four digits are legible in the file; the law is no more exact than that.
-        if (factor := float(f"{ratio**exponent:.4g}")) == 1.0:
+        if (factor := rounded(ratio**exponent, 4)) == 1.0:
             continue
         value = value_at(table, path)
         several = isinstance(value, list | tuple)
-        numbers = [float(f"{factor * number:.12g}") for number in (value if several else [value])]
+        numbers = [rounded(factor * number, 12) for number in (value if several else [value])]
         put(table, {path: numbers if several else numbers[0]})  # type: ignore[dict-item]
         sources[path] = f"template {template.name} times {factor:g}, scaled by the kerb mass"
     try:

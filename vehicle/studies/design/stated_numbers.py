@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,9 @@ BODY: dict[str, Any] = {
 }
 HOP: dict[str, Any] = {"at_least": 4.0, "at_most": 30.0, "why": "wheels of cars hop at 8 to 16 Hz"}
 
+optional = partial(quantity, default=None)
+"""Declaration of a number that need not be stated."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class StatedNumbers:
@@ -31,31 +35,27 @@ class StatedNumbers:
     `of_class` has the names of the numbers that are those of the class of the car.
     """
 
-    kerb_mass: float | None = quantity(
-        "kg", "mass of the car without the loads of [load]", above=0.0, at_most=2e4, default=None
+    kerb_mass: float | None = optional("kg", "mass of the car without the loads of [load]", above=0.0, at_most=2e4)
+    front_axle_load: float | None = optional(
+        "kg", "load of the front axle on the scales, without [load]", above=0.0, at_most=2e4
     )
-    front_axle_load: float | None = quantity(
-        "kg", "load of the front axle on the scales, without [load]", above=0.0, at_most=2e4, default=None
+    rear_axle_load: float | None = optional(
+        "kg", "load of the rear axle on the scales, without [load]", above=0.0, at_most=2e4
     )
-    rear_axle_load: float | None = quantity(
-        "kg", "load of the rear axle on the scales, without [load]", above=0.0, at_most=2e4, default=None
+    cog_x: float | None = optional("m", "centre of gravity behind the front axle, instead of an axle load", above=0.0)
+    cog_height: float | None = optional("m", "centre of gravity above the ground", above=0.0, at_most=3.0)
+    wheelbase: float | None = optional("m", "distance of the axles", above=0.0)
+    track_front: float | None = optional("m", "distance of the front wheels", above=0.0)
+    track_rear: float | None = optional("m", "distance of the rear wheels", above=0.0)
+    tyre_radius: float | None = optional("m", "loaded radius: wheel centre above the ground", above=0.0)
+    roll_inertia: float | None = optional(
+        "kg m2", "Ixx of the car about its centre of gravity, without [load]", above=0.0
     )
-    cog_x: float | None = quantity(
-        "m", "centre of gravity behind the front axle, instead of an axle load", above=0.0, default=None
+    pitch_inertia: float | None = optional(
+        "kg m2", "Iyy of the car about its centre of gravity, without [load]", above=0.0
     )
-    cog_height: float | None = quantity("m", "centre of gravity above the ground", above=0.0, at_most=3.0, default=None)
-    wheelbase: float | None = quantity("m", "distance of the axles", above=0.0, default=None)
-    track_front: float | None = quantity("m", "distance of the front wheels", above=0.0, default=None)
-    track_rear: float | None = quantity("m", "distance of the rear wheels", above=0.0, default=None)
-    tyre_radius: float | None = quantity("m", "loaded radius: wheel centre above the ground", above=0.0, default=None)
-    roll_inertia: float | None = quantity(
-        "kg m2", "Ixx of the car about its centre of gravity, without [load]", above=0.0, default=None
-    )
-    pitch_inertia: float | None = quantity(
-        "kg m2", "Iyy of the car about its centre of gravity, without [load]", above=0.0, default=None
-    )
-    yaw_inertia: float | None = quantity(
-        "kg m2", "Izz of the car about its centre of gravity, without [load]", above=0.0, default=None
+    yaw_inertia: float | None = optional(
+        "kg m2", "Izz of the car about its centre of gravity, without [load]", above=0.0
     )
     inertia: str = quantity(
         "-",
@@ -63,39 +63,38 @@ class StatedNumbers:
         choices=("template", "survey"),
         default="template",
     )
-    ride_frequency_front: float | None = quantity("Hz", "ride frequency of the front axle", default=None, **BODY)
-    ride_frequency_rear: float | None = quantity("Hz", "ride frequency of the rear axle", default=None, **BODY)
-    pitch_frequency: float | None = quantity(
-        "Hz", "pitch of the sprung mass on its ride rates; gives the pitch inertia", default=None, **BODY
+    ride_frequency_front: float | None = optional("Hz", "ride frequency of the front axle", **BODY)
+    ride_frequency_rear: float | None = optional("Hz", "ride frequency of the rear axle", **BODY)
+    pitch_frequency: float | None = optional(
+        "Hz", "pitch of the sprung mass on its ride rates; gives the pitch inertia", **BODY
     )
-    wheel_hop_front: float | None = quantity(
-        "Hz", "hop of the front wheels on suspension and tyres; gives the tyre stiffness", default=None, **HOP
+    wheel_hop_front: float | None = optional(
+        "Hz", "hop of the front wheels on suspension and tyres; gives the tyre stiffness", **HOP
     )
-    wheel_hop_rear: float | None = quantity(
-        "Hz", "hop of the rear wheels on suspension and tyres; gives the tyre stiffness", default=None, **HOP
+    wheel_hop_rear: float | None = optional(
+        "Hz", "hop of the rear wheels on suspension and tyres; gives the tyre stiffness", **HOP
     )
-    damping_ratio_front: float | None = quantity(
-        "-", "damping ratio of the front axle, dampers at 0.1 m/s", above=0.0, at_most=3.0, default=None
+    damping_ratio_front: float | None = optional(
+        "-", "damping ratio of the front axle, dampers at 0.1 m/s", above=0.0, at_most=3.0
     )
-    damping_ratio_rear: float | None = quantity(
-        "-", "damping ratio of the rear axle, dampers at 0.1 m/s", above=0.0, at_most=3.0, default=None
+    damping_ratio_rear: float | None = optional(
+        "-", "damping ratio of the rear axle, dampers at 0.1 m/s", above=0.0, at_most=3.0
     )
-    damper_curve_front: str | None = quantity(
-        "-", "damper test of the front axle: table of velocity and force", is_file=True, default=None
+    damper_curve_front: str | None = optional(
+        "-", "damper test of the front axle: table of velocity and force", is_file=True
     )
-    damper_curve_rear: str | None = quantity(
-        "-", "damper test of the rear axle: table of velocity and force", is_file=True, default=None
+    damper_curve_rear: str | None = optional(
+        "-", "damper test of the rear axle: table of velocity and force", is_file=True
     )
-    roll_stiffness_front: float | None = quantity(
-        "N m/deg", "roll stiffness of the front axle without the tyres; gives the stabilizer", above=0.0, default=None
+    roll_stiffness_front: float | None = optional(
+        "N m/deg", "roll stiffness of the front axle without the tyres; gives the stabilizer", above=0.0
     )
-    roll_stiffness_rear: float | None = quantity(
+    roll_stiffness_rear: float | None = optional(
         "N m/deg",
         "roll stiffness of the rear axle without the tyres; gives the stabilizer, or the torsion of the beam",
         above=0.0,
-        default=None,
     )
-    car_class: str | None = quantity("-", "class of the car, for default numbers", default=None)
+    car_class: str | None = optional("-", "class of the car, for default numbers")
     of_class: tuple[str, ...] = ()
     load: Mapping[str, dict] = field(default_factory=dict)  # type: ignore[type-arg]
 

@@ -67,9 +67,6 @@ class TemplateCar:
     def with_powertrain(self, engine: Mapping[str, Any] | None) -> TemplateCar:
         """Return the template with another powertrain; itself for None.
 
-        Args:
-            engine: table of the powertrain.
-
         Raises:
             ConfigurationError: the template has no table `engine`.
         """
@@ -157,9 +154,5 @@ def template_car(source: Path | str) -> TemplateCar:
 
 def _texts(table: Mapping[str, Any]) -> set[str]:
     """Return all texts in a vehicle file: the names of the points that something uses are among them."""
-    inner = (_texts(value) if isinstance(value, Mapping) else {value} for value in table.values() if _is_text(value))
-    return set().union(*inner)
-
-
-def _is_text(value: Any) -> bool:
-    return isinstance(value, Mapping | str)
+    texts = {value for value in table.values() if isinstance(value, str)}
+    return texts.union(*(_texts(value) for value in table.values() if isinstance(value, Mapping)))

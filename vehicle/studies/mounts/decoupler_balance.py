@@ -49,12 +49,7 @@ DOUBLINGS, BISECTIONS = 60, 40
 
 
 def describing_function(amplitude: npt.ArrayLike, gap: float) -> Vector:
-    """Return N(a) [-] of a spring beyond a gap; 0 within the gap.
-
-    Args:
-        amplitude: peak amplitudes a of its displacement [m].
-        gap: g [m].
-    """
+    """Return N(a) [-] of a spring beyond a gap g [m] at peak amplitudes a of its displacement [m]; 0 within the gap."""
     ratio = np.minimum(gap / np.maximum(amplitude, 1e-300), 1.0)
     return np.asarray(1.0 - 2.0 / np.pi * (np.arcsin(ratio) + ratio * np.sqrt(1.0 - ratio**2)))
 
@@ -155,11 +150,7 @@ class _Balance:
         self.closed = CLOSED * np.linalg.norm(self.load, axis=1)
 
     def solve(self, starts: Sequence[Vector]) -> Complex:
-        """Return the harmonics [m], (m, n); the last start where Newton's method does not converge.
-
-        Args:
-            starts: starts [m], in the order of their use; the first harmonic alone is the last.
-        """
+        """Return the harmonics [m], (m, n), by Newton's method from each start in turn, else the last start."""
         harmonics, size = np.array(starts[-1]), self.load.shape[1] // 2
         waiting = np.arange(len(harmonics))
         for start, raises in [*((each, 1) for each in starts), *((None, raises) for raises in RAISES)]:
@@ -183,13 +174,7 @@ class _Balance:
         return linear + pressed @ self.to_harmonics.T - self.load[points], y
 
     def _newton(self, q: Vector, points: npt.NDArray[np.intp], seat: float) -> npt.NDArray[np.bool_]:
-        """Improve q in place; return True for the points that converge, (p,).
-
-        Args:
-            q: harmonics [m]; (p, 2 n).
-            points: indices of the points; (p,).
-            seat: Ks [N/m].
-        """
+        """Improve the harmonics q of points, (p, 2 n) [m], in place; return True for the points that converge, (p,)."""
         live = np.arange(len(points))
         residual, y = self._residual(q, points, seat)
         for _ in range(ITERATIONS):

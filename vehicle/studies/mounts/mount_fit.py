@@ -106,7 +106,6 @@ def fit_law(data: MeasuredStiffness, law: MountLaw) -> MountFit:
 
     Args:
         data: measured points of the complex dynamic stiffness S [N/m].
-        law: law of the mount with start values for these points.
 
     Returns:
         Parameters with standard errors, BIC, and errors of stiffness and loss angle: best fit of all start values.

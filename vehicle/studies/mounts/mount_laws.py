@@ -85,13 +85,12 @@ def _rubber(values: Vector, omega: Vector, amplitude: Vector) -> Complex:
 def _rubber_starts(omega: Vector, amplitude: Vector, stiffness: Complex) -> Vector:
     low, high = float(np.min(np.abs(stiffness))), float(np.max(np.abs(stiffness)))
     middle = float(np.sqrt(np.min(omega) * np.max(omega)))
-    strokes = np.geomspace(np.min(amplitude), np.max(amplitude), 3)
+    strokes, spring = np.geomspace(np.min(amplitude), np.max(amplitude), 3), 0.3 * low
     return np.array(
         [
             [0.8 * low, spring, spring / (rate * middle), 0.7 * (high - low + 0.1 * low) * stroke, stroke]
             for stroke in strokes
             for rate in (0.3, 1.0, 3.0)
-            for spring in (0.3 * low,)
         ]
     )
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from vehicle.digits import number
+from vehicle.digits import number, rounded
 from vehicle.studies.mounts.measured_stiffness import MeasuredStiffness
 from vehicle.studies.mounts.mount_fit import MountFit
 
@@ -42,12 +42,7 @@ def caption_of(data: MeasuredStiffness, source: str) -> str:
 
 
 def vehicle_lines(fit: MountFit, caption: str) -> str:
-    """Return the parameters as lines for a table of a bushing in a vehicle file, with their standard errors.
-
-    Args:
-        fit: fitted law.
-        caption: description of the points, see `caption_of`.
-    """
+    """Return the parameters as lines for a table of a bushing in a vehicle file, with their standard errors."""
     source = caption.split(":")[0]
     lines = [
         f"# {TITLES[fit.law.name]}, fitted to {caption}",
@@ -60,7 +55,7 @@ def vehicle_lines(fit: MountFit, caption: str) -> str:
     for (name, unit), value, error, determined in zip(
         fit.law.parameters.items(), fit.values.tolist(), fit.errors.tolist(), fit.determined, strict=True
     ):
-        text = f"{float(f'{value:.5g}')!r}"
+        text = repr(rounded(value, 5))
         shown = f"[{text}, {text}, {text}]" if name in VECTORS else text
         spread = f"standard error {number(error, 2)}" if determined else "not determined by these points"
         lines.append(f"{name} = {shown}  # [{unit}] fitted to {source}, {spread}")
@@ -68,12 +63,7 @@ def vehicle_lines(fit: MountFit, caption: str) -> str:
 
 
 def fit_json(fits: Sequence[MountFit], caption: str) -> dict[str, Any]:
-    """Return the first fit for `--json`: law, parameters, lines for `--set`, errors, and the criteria of all laws.
-
-    Args:
-        fits: fits sorted by BIC.
-        caption: description of the points.
-    """
+    """Return the first fit for `--json`: law, parameters, lines for `--set`, errors, and the criteria of all laws."""
     best = fits[0]
     lines = (line.partition("#")[0].strip() for line in vehicle_lines(best, caption).splitlines())
     return {
@@ -113,12 +103,7 @@ def points_text(fit: MountFit, data: MeasuredStiffness) -> str:
 
 
 def summary_lines(fits: Sequence[MountFit], caption: str) -> list[str]:
-    """Return the printed summary: laws with their criteria and residuals, and the parameters of the first.
-
-    Args:
-        fits: fits sorted by BIC.
-        caption: description of the points.
-    """
+    """Return the printed summary: laws with their criteria and residuals, and the parameters of the first."""
     lines = [caption, f"{'law':<12}{'BIC':>9}   stiffness, RMS and max   loss angle, RMS and max"]
     for fit in fits:
         stiffness, angle = 100.0 * fit.stiffness_error, np.degrees(fit.angle_error)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from vehicle.drawing.rendering.drive_plot import plot_convergence, plot_replication
-from vehicle.runs.output.folder import output_folder, write_json, write_text, write_whole
+from vehicle.runs.output.folder import Content, output_folder, write_files, write_json
 from vehicle.runs.output.own_files import parameters_text, write_own_files
 from vehicle.signals.excitation.signal_file import write_signal
 from vehicle.signals.formats.formats import write_record
@@ -69,39 +70,32 @@ def write_drive(folder: Path, drive: FoundDrive, *, figures: bool = True) -> dic
         f"{100.0 * replication.error:.3g} % after {replication.steps[-1].number} runs"
     )
     header = [f"plate displacement replicated from {target.source.name}", f"{low:g} to {high:g} Hz"]
-    write_whole(folder / FILES["drive"], lambda path: write_signal(path, signal, header))
     channels: dict[str, np.ndarray] = {}
     for name, wanted, response in zip(target.channels, target.values, replication.response, strict=True):
         channels |= {f"target_{name}": wanted, name: response}
     record = Record(time=target.time, channels=channels, units=dict.fromkeys(channels, "m/s2"))
-    write_whole(folder / FILES["response"], lambda path: write_record(path, "csv", record, description))
-    write_text(folder / FILES["iterations"], _table(replication, target.channels, description))
+    contents: dict[str, Content] = {
+        "drive": partial(write_signal, signal=signal, comments=header),
+        "response": partial(write_record, name="csv", record=record, frame=description),
+        "iterations": _table(replication, target.channels, description),
+        "response_plot": partial(
+            plot_replication,
+            time=target.time,
+            responses={name: (channels[f"target_{name}"], channels[name]) for name in target.channels},
+            drive=dict(zip(plant.wheels, replication.drive, strict=True)),
+            band=target.band,
+            caption=description,
+        ),
+        "convergence_plot": partial(
+            plot_convergence,
+            errors=dict(zip(target.channels, np.array([step.errors for step in replication.steps]).T, strict=True)),
+            kept=np.array([step.kept for step in replication.steps]),
+            caption=f"{description}; {replication.outcome}",
+        ),
+        "vehicle": parameters_text(plant.car, "parameters of this drive, as used"),
+    }
     files = {name: file for name, file in FILES.items() if figures or not file.endswith(".png")}
-    if figures:
-        write_whole(
-            folder / FILES["response_plot"],
-            lambda path: plot_replication(
-                path,
-                target.time,
-                {name: (target.values[row], replication.response[row]) for row, name in enumerate(target.channels)},
-                dict(zip(plant.wheels, replication.drive, strict=True)),
-                target.band,
-                description,
-            ),
-        )
-        write_whole(
-            folder / FILES["convergence_plot"],
-            lambda path: plot_convergence(
-                path,
-                {
-                    name: np.array([step.errors[row] for step in replication.steps])
-                    for row, name in enumerate(target.channels)
-                },
-                np.array([step.kept for step in replication.steps]),
-                f"{description}; {replication.outcome}",
-            ),
-        )
-    write_text(folder / FILES["vehicle"], parameters_text(plant.car, "parameters of this drive, as used"))
+    write_files(folder, {files[name]: content for name, content in contents.items() if name in files})
     summary = {
         "target": {
             "file": target.source.name,

@@ -119,13 +119,7 @@ def replicate_drive(
 
 
 def named_channels(file: Path, names: Sequence[str], choice: Choice) -> dict[str, str]:
-    """Return channel of the car to channel of the file: of the same name, or the only channel of the file.
-
-    Args:
-        file: measurement file of any format.
-        names: channels of the car.
-        choice: databases to decode the log of a CAN bus.
-    """
+    """Return channel of the car to channel of the file: of the same name, or the only channel of the file."""
     if isinstance(names, str):
         names = (names,)
     if len(names) == 1 and len(read_record(file, choice.databases).channels) == 1:
@@ -138,8 +132,6 @@ def driven_wheels(asked: Sequence[str] | None, target: Target, shaker_wheel: str
 
     Args:
         asked: names of wheels; None for the wheels in the names of the channels, or else the wheel on the shaker.
-        target: accelerations to be replicated.
-        shaker_wheel: wheel on the shaker of the car.
 
     Raises:
         ConfigurationError: more plates than channels.

@@ -23,9 +23,7 @@ class DrivenCar(Plant):
     """Car on driven plates, the `Plant` of the iteration.
 
     Args:
-        car: the car.
         wheels: wheels on driven plates, (p,).
-        target: accelerations to be replicated.
         engine: simulation engine, see `Car.run`.
 
     Raises:
@@ -82,11 +80,7 @@ class DrivenCar(Plant):
         )
 
     def possible(self, drive: Vector) -> tuple[Vector, str]:
-        """Let a drive start from rest and check it against the limits of a shaker.
-
-        Returns:
-            Plate displacements (p, n); a message if a shaker cannot run them, else "".
-        """
+        """Return a drive that starts from rest, (p, n), and a message if a shaker cannot run it, else ""."""
         step = float(self.target.time[1])
         columns, self.ramp = start_from_rest(dict(zip(self.wheels, drive, strict=True)), timestep=step)
         for wheel, z in columns.items():

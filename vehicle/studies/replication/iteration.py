@@ -97,7 +97,6 @@ def replicate(plant: Plant, target: Vector, lines: Lines, settings: DriveSetting
         plant: driven system, at rest before its first run.
         target: target responses (k, n).
         lines: spectral lines of the record, with the band.
-        settings: number of iterations, gain G and error at which the iteration ends.
 
     Returns:
         The best drive; a drive at rest with an error of 1 if no run has a smaller error.

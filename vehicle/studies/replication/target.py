@@ -66,7 +66,6 @@ def read_target(path: Path, names: Mapping[str, str], choice: Choice, band: tupl
     """Read accelerations from a measurement file as a target.
 
     Args:
-        path: measurement file of any format.
         names: channel of the car to number, exact name, or pattern of the channel of the file.
         choice: units, rate, filters and excerpt of the file.
         band: lower and upper edge [Hz].
@@ -135,11 +134,7 @@ def _check_band(path: Path, band: tuple[float, float], step: float, count: int, 
 
 
 def _resampled(values: Vector, step: float, band: tuple[float, float], rate: float) -> tuple[Vector, list[str]]:
-    """Resample records to a rate: oversampled inverse FFT up to the end of the band, then cubic splines.
-
-    Returns:
-        Records at the rate; a notice if the rate differs from that of the records.
-    """
+    """Resample records by inverse FFT up to the end of the band, then cubic splines; with a notice of another rate."""
     if abs(rate * step - 1.0) < 1e-9:
         return values, []
     count = values.shape[1]

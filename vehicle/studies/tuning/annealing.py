@@ -51,8 +51,6 @@ def annealed(log_likelihood: Callable[[Vector], Vector], size: int, random: np.r
 
     Args:
         log_likelihood: function of points v, (points, size) -> (points,).
-        size: number of parameters.
-        random: random generator.
     """
     points = random.standard_normal((POINTS, size))
     level, power = log_likelihood(points), 0.0
@@ -76,12 +74,7 @@ def annealed(log_likelihood: Callable[[Vector], Vector], size: int, random: np.r
 
 
 def _step(level: Vector, maximum: float) -> float:
-    """Return the growth of the power at which the weights exp(step level) count as half of the points.
-
-    Args:
-        level: ln L less its maximum, (points,).
-        maximum: maximum growth.
-    """
+    """Return the growth of the power, up to a maximum, at which exp(step level) counts as half of the points."""
 
     def missing(step: float) -> float:
         weights = np.exp(step * level)
@@ -131,12 +124,7 @@ class Mixture:
 
 
 def fitted_mixture(points: Vector, seed: int = 1) -> Mixture:
-    """Return a mixture for points: a component for each cluster (k-means).
-
-    Args:
-        points: points, (n, p).
-        seed: seed of the clusters.
-    """
+    """Return a mixture for points (n, p): a component for each cluster (k-means), found with a seed."""
     size = points.shape[1]
     scale = np.std(points, axis=0) + 1e-9
     _, label = scipy.cluster.vq.kmeans2(points / scale, CLUSTERS, minit="++", rng=np.random.default_rng(seed))

@@ -60,13 +60,7 @@ def tune(
 
 
 def delays_of(target: FrfTarget | LevelTarget | RecordTarget, number: int, start: Car) -> list[DelayRange]:
-    """Return the unknown delays of a measurement; each begins at that of best agreement with the car before the fit.
-
-    Args:
-        target: the measurement.
-        number: index of the measurement in the fit.
-        start: car before the fit.
-    """
+    """Return the unknown delays of a measurement; each begins at that of best agreement with the car."""
     lags = target.lags(start) if target.delays.groups else {}
     delays = []
     for group in target.delays.groups:
@@ -78,11 +72,7 @@ def delays_of(target: FrfTarget | LevelTarget | RecordTarget, number: int, start
 
 
 def ranges_of(vehicle: Vehicle, parameters: Mapping[str, Bounds] | Sequence[Range]) -> tuple[Range, ...]:
-    """Return the fitted parameters with bounds and start values.
-
-    Args:
-        vehicle: vehicle with the default start values.
-        parameters: path to bounds, see `tune`.
+    """Return the fitted parameters with bounds, see `tune`, and start values, by default those of a vehicle.
 
     Raises:
         ConfigurationError: a path is not a numeric parameter of the vehicle, or bounds are out of order.
@@ -103,10 +93,6 @@ def ranges_of(vehicle: Vehicle, parameters: Mapping[str, Bounds] | Sequence[Rang
 
 def require_fittable(parameters: Sequence[Range], vehicle: Vehicle) -> None:
     """Check that every parameter has an effect and that static friction cannot fall below sliding friction.
-
-    Args:
-        parameters: parameters of the fit with bounds.
-        vehicle: the vehicle to be fitted.
 
     Raises:
         ConfigurationError: a parameter belongs to a law that is switched off, or the bounds of static and sliding

@@ -20,12 +20,9 @@ def rank_normalised(chains: Vector) -> Vector:
 
 
 def r_hat(chains: Vector) -> float:
-    """Return the larger of the rank-normalised split R-hat of the samples and of |sample - median|.
+    """Return the larger of the rank-normalised split R-hat of samples, (chains, n), and of |sample - median|.
 
     R-hat^2 = ((N - 1) / N W + B / N) / W with W the mean variance within a half chain and B the variance between them.
-
-    Args:
-        chains: samples, (chains, n).
 
     Returns:
         R-hat [-]; infinite for chains without variance.
@@ -35,11 +32,7 @@ def r_hat(chains: Vector) -> float:
 
 
 def effective_samples(chains: Vector) -> float:
-    """Return the bulk effective sample size S / (1 + 2 sum rho_t) [-] with Geyer's initial monotone sequence.
-
-    Args:
-        chains: samples, (chains, n).
-    """
+    """Return the bulk effective size S / (1 + 2 sum rho_t) [-] of samples, (chains, n)."""
     scores = rank_normalised(_halves(chains))
     count, length = scores.shape
     centred = scores - scores.mean(axis=1, keepdims=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations_with_replacement
-from math import comb
+from math import ceil, comb
 
 import numpy as np
 import numpy.typing as npt
@@ -44,12 +44,7 @@ class Emulator:
 
 
 def legendre_terms(points: Vector, powers: npt.NDArray[np.int64]) -> Vector:
-    """Return products of Legendre polynomials, (points, terms).
-
-    Args:
-        points: points in [-1, 1], (points, parameters).
-        powers: degrees, (terms, parameters).
-    """
+    """Return products of Legendre polynomials of degrees (terms, parameters) at points in [-1, 1], (points, terms)."""
     table = np.polynomial.legendre.legvander(points, int(powers.max(initial=0)))
     terms = table[:, 0, powers[:, 0]].copy()
     for index in range(1, points.shape[1]):
@@ -72,7 +67,7 @@ def fitted_emulator(points: Vector, outputs: Vector) -> Emulator:
     if not degrees:
         raise ConfigurationError(
             f"{cars} cars for {size} parameters: must be at least "
-            f"{int(CARS_PER_TERM * (size + 1)) + 1}; set more --cars"
+            f"{ceil(CARS_PER_TERM * (size + 1))}; set more --samples"
         )
     powers = np.array(_powers(size, degrees[-1]))
     terms = legendre_terms(points, powers)

@@ -30,21 +30,18 @@ STRETCHES = 20
 """Stretches of a measurement: with 20 a standard error is known to 1 / sqrt(40) = 16 %."""
 
 
-def misfit_errors(jacobian: Vector, weighted: Vector, shapes: Sequence[tuple[int, int]], inverse: Vector) -> Vector:
+def misfit_errors(jacobian: Sequence[Vector], weighted: Sequence[Vector], inverse: Vector) -> Vector:
     """Return the standard errors of u with the stretches of each measurement as observations, (p,).
 
     Args:
-        jacobian: Jacobian of the weighted residuals, (n, p).
-        weighted: weighted residuals, (n,).
-        shapes: rows and samples of each measurement, in the order of the residuals.
+        jacobian: Jacobian of the weighted residuals of each measurement, (rows, samples, p).
+        weighted: weighted residuals of each measurement, (rows, samples).
         inverse: (J'J)^-1, (p, p).
     """
-    scores, first = list[Vector](), 0
-    for rows, samples in shapes:
-        last = first + rows * samples
-        products = (jacobian[first:last] * weighted[first:last, None]).reshape(rows, samples, -1).sum(axis=0)
-        scores += [part.sum(axis=0) for part in np.array_split(products, min(STRETCHES, samples))]
-        first = last
+    scores = list[Vector]()
+    for columns, residuals in zip(jacobian, weighted, strict=True):
+        products = (columns * residuals[..., None]).sum(axis=0)
+        scores += [part.sum(axis=0) for part in np.array_split(products, min(STRETCHES, len(products)))]
     table = np.array(scores).reshape(len(scores), -1)
     factor = len(scores) / max(len(scores) - 1, 1)
     return np.asarray(np.sqrt(np.maximum(factor * np.diag(inverse @ (table.T @ table) @ inverse), 0.0)))

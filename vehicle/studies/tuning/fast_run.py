@@ -12,15 +12,6 @@ from vehicle.threads import one_blas_thread
 
 @one_blas_thread()
 def fast_run(car: Car, signal: Signal, channels: Sequence[str]) -> Run:
-    """Return a run with the reduced engine; the second order of the car, two thirds of its time, is not computed.
-
-    Args:
-        car: variant of the car of the fit.
-        signal: displacement of the plates.
-        channels: names of the recorded channels.
-
-    Raises:
-        VehicleError: see `Car.run`.
-    """
+    """Return a run, see `Car.run`, of the reduced engine without its second order, two thirds of the time."""
     simulated, recording, reason = simulated_run(car, signal, None, "reduced", channels, stated=False)
     return Run(car=simulated, signal=signal, recording=recording, engine_reason=reason)

@@ -20,6 +20,12 @@ Vector = npt.NDArray[np.float64]
 Unknown = Range | DelayRange
 """Unknown of a fit: a parameter of the model, or the delay of a group of channels."""
 
+
+def known(value: float | None) -> float | None:
+    """Return a number; None for one that is missing or not finite."""
+    return value if value is not None and np.isfinite(value) else None
+
+
 SURE = 2.0
 """Minimum significant correlation of neighbours, in standard errors 1/sqrt(n) of the correlation, n values of all rows.
 """
@@ -140,19 +146,16 @@ class TuningResult:
         return (self.solution[path] - value) / self.standard_errors[path]
 
     def shift(self, residuals: Vector) -> dict[str, float]:
-        """Return the Gauss-Newton step of the free unknowns for given residuals.
+        """Return path to Gauss-Newton step of u of the free unknowns.
 
         Args:
             residuals: unweighted residuals in the order of the targets and their rows, (residuals,).
-
-        Returns:
-            Path to step of u.
         """
         step = self.sensitivity @ (residuals * self.weights)
         return {path: float(component) for path, component in zip(self.free, step, strict=True)}
 
 
-def target_statistics(names: Sequence[str], rows: Sequence[Vector], freedom: float) -> tuple[RowStatistics, ...]:
+def target_statistics(names: Sequence[str], rows: Vector, freedom: float) -> tuple[RowStatistics, ...]:
     """Return the statistics of the rows of one target.
 
     The residuals are modelled as a first-order autoregression, whose mean over n values varies like the mean of
@@ -160,8 +163,7 @@ def target_statistics(names: Sequence[str], rows: Sequence[Vector], freedom: flo
     the rho of a single short row would scatter, and so would the weights.
 
     Args:
-        names: names of the rows.
-        rows: residuals, zero where a value is excluded; (n,) each.
+        rows: residuals, zero where a value is excluded; (rows, n).
         freedom: degrees of freedom of all residuals over their number [-].
 
     Returns:

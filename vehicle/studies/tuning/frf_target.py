@@ -138,10 +138,6 @@ class FrfTarget:
     def run(self, car: Car, engine: str = "reduced") -> Run:
         """Return the run of a car on the signal.
 
-        Args:
-            car: variant of the car of the fit.
-            engine: engine of the run.
-
         Raises:
             ConfigurationError: stuck dampers have no signal.
         """
@@ -173,22 +169,9 @@ class FrfTarget:
         return np.array([factor * np.interp(frequency, model.frequency, model.response[row]) for row, factor in pairs])
 
     def misfit(self, response: Complex, groups: Mapping[str, float], lags: Mapping[str, float] | None = None) -> Vector:
-        """Return Re and Im of ln(H exp(-2 pi i f d) / Hm) over its standard deviation; 0 where undefined.
-
-        Args:
-            response: result of `response`, H.
-            groups: group to delay d [s].
-            lags: channel to a further delay [s].
-
-        Returns:
-            Residuals, (2 channels, frequencies).
-        """
+        """Return Re, Im of ln(H exp(-2 pi i f d) / Hm) over the deviation, (2 channels, m); 0 where undefined."""
         delays = self.delays.of(self.data.channels, groups, lags or {})
-        logarithm = log_ratio(self.data.response, late(response, self.data.frequency, delays))
-        included = np.isfinite(logarithm) & np.isfinite(self.deviation) & (self.deviation > 0.0)
-        scaled = np.divide(logarithm, self.deviation, out=np.full(included.shape, np.nan + 0j), where=included)
-        rows = np.stack([scaled.real, scaled.imag], axis=1).reshape(-1, self.data.frequency.size)
-        return np.where(np.isfinite(rows), rows, 0.0)
+        return scaled_ratio(self.data.response, late(response, self.data.frequency, delays), self.deviation)
 
     def settled(self, groups: Mapping[str, float]) -> Self:
         """Return the target with known delays of all groups [s]."""
@@ -203,11 +186,18 @@ class FrfTarget:
         return response_lags(self.data, self.response(model), self.deviation)
 
 
+def scaled_ratio(measured: Complex, model: Complex, deviation: Vector) -> Vector:
+    """Return Re and Im of ln(model / measured), (k, m), over its standard deviation, (2 k, m); 0 where undefined."""
+    logarithm = log_ratio(measured, model)
+    included = np.isfinite(logarithm) & np.isfinite(deviation)
+    scaled = np.divide(logarithm, deviation, out=np.zeros(included.shape, dtype=complex), where=included)
+    return np.stack([scaled.real, scaled.imag], axis=1).reshape(-1, scaled.shape[1])
+
+
 def response_lags(data: FrfData, response: Complex, deviation: Vector) -> dict[str, PhaseDelay]:
     """Return the lags of measured FRFs against those of a model whose phases agree with them after the lag.
 
     Args:
-        data: measured FRFs.
         response: FRFs of the model, (k, m).
         deviation: standard deviation of ln H, (k, m); NaN where a point is excluded.
     """
@@ -243,11 +233,6 @@ def motions_of(signal: Signal) -> tuple[dict[str, float], ...]:
 
 def to_driven_plates(data: FrfData, motions: Sequence[Mapping[str, float]], where: str) -> FrfData:
     """Return FRFs of which every input is one of the motions of the plates; an unknown input is the only one.
-
-    Args:
-        data: measured FRFs.
-        motions: see `motions_of`.
-        where: file, for the message.
 
     Raises:
         DataError: an FRF names no plate and several move, or names a plate that does not move.

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from vehicle.runs.car import Car, Run
 from vehicle.studies.tuning.fit_result import TuningResult, target_statistics
-from vehicle.studies.tuning.target import DelayedTarget, Target
+from vehicle.studies.tuning.target import Target
 
 Vector = npt.NDArray[np.float64]
 
@@ -55,14 +55,9 @@ def full_steps(
     errors of the fast models do not enter the values. The last step is the remaining error.
 
     Args:
-        result: result of `fit`.
         targets: targets of the fit, in the same order.
         simulate: function of {path: value} that returns a run of that car on the signal of each target, or that car
             for a target without a signal.
-        most_rounds: maximum number of full simulations.
-
-    Returns:
-        The fit with the values of the full simulation.
 
     Source: Bandler et al., Space mapping: the state of the art, IEEE Transactions on Microwave Theory and Techniques
     52, 2004: a coarse model for the derivatives, the fine one for the residuals.
@@ -70,19 +65,17 @@ def full_steps(
     relative = {path: result.deviation_of_u(path) for path in result.free}
     values = dict(result.solution)
     steps: list[float] = []
-    first = 0.0
+    sizes: list[float] = []
     while True:
         current = dataclasses.replace(result, solution=values)
         runs = simulate(current.values)
         residuals = [
             target.misfit(target.response(run), current.groups(number), {})
-            if isinstance(target, DelayedTarget)
-            else target.residuals(run)
             for number, (target, run) in enumerate(zip(targets, runs, strict=True))
         ]
-        joined = np.concatenate([row for rows in residuals for row in rows])
-        if not steps:
-            first = float(np.sqrt(np.mean((joined * result.weights) ** 2)))
+        joined = np.concatenate([rows.ravel() for rows in residuals])
+        weighted = joined * result.weights
+        sizes.append(float(np.sqrt(np.mean(weighted**2))))
         shift = result.shift(joined)
         steps.append(max((abs(shift[path] / relative[path]) for path in result.free), default=0.0))
         settled = steps[-1] <= SMALL
@@ -93,7 +86,6 @@ def full_steps(
                 moved = unknown.value(unknown.coordinate(values[unknown.path]) + shift[unknown.path])
                 values[unknown.path] = float(np.clip(moved, unknown.low, unknown.high))
     freedom = 1.0 - len(result.free) / joined.size
-    weighted = joined * result.weights
     return FullSteps(
         result=dataclasses.replace(
             result,
@@ -105,13 +97,13 @@ def full_steps(
             rows=tuple(
                 row
                 for target, rows in zip(targets, residuals, strict=True)
-                for row in target_statistics(target.rows, list(rows), freedom)
+                for row in target_statistics(target.rows, rows, freedom)
             ),
-            after=float(np.sqrt(np.mean(weighted**2))),
+            after=sizes[-1],
             cost=0.5 * float(np.sum(weighted**2)),
             converged=result.converged and settled,
         ),
-        first=first,
+        first=sizes[0],
         moved={
             unknown.path: (unknown.coordinate(values[unknown.path]) - unknown.coordinate(result.solution[unknown.path]))
             / relative[unknown.path]

@@ -58,7 +58,6 @@ def worst_direction(jacobian: Vector, parameters: Sequence[Range | DelayRange]) 
 
     Args:
         jacobian: d r / d u, u = ln(value / start), residuals of unit variance; (n, p).
-        parameters: parameters of the columns.
 
     Returns:
         The parameter, or None if the error of every direction is at most `WIDEST`.

@@ -28,7 +28,7 @@ from vehicle.studies.tuning.error_sources import lag_shifts, misfit_errors
 from vehicle.studies.tuning.fit_result import RowStatistics, TuningResult, Unknown, target_statistics
 from vehicle.studies.tuning.identifiability import Unidentified, covariance, worst_direction
 from vehicle.studies.tuning.response_delays import DelayRange
-from vehicle.studies.tuning.target import DelayedTarget, Target
+from vehicle.studies.tuning.target import Target
 from vehicle.threads import one_blas_thread
 
 Vector = npt.NDArray[np.float64]
@@ -71,8 +71,8 @@ def fit(
     Args:
         parameters: parameters with bounds and start values.
         targets: measurements; the weights are estimated from the residuals of each row.
-        build: function of {path: value} that returns the model for `Target.residuals`.
-        delays: delays of groups of channels of a `DelayedTarget`, further unknowns.
+        build: function of {path: value} that returns the model for `Target.response`.
+        delays: delays of groups of channels of a `Target`, further unknowns.
         most_iterations: maximum number of iterations of each solution. There are at least two solutions: one to
             estimate the sizes of the residuals, one with these sizes; and one more each time parameters are held.
         progress: called with the number of evaluations and the root of the mean square of the weighted residuals.
@@ -126,14 +126,7 @@ def _open_directions(jacobian: Vector, parameters: list[Unknown]) -> list[Uniden
 
 
 class _Problem:
-    """Residuals and Jacobian over u = ln(value / start), with a count of the evaluations.
-
-    Args:
-        unknowns: parameters of the model with bounds and start values, then delays.
-        targets: measurements.
-        build: function of {path: value} of the parameters that returns a model.
-        progress: callback, see `fit`.
-    """
+    """Residuals and Jacobian over u = ln(value / start), with a count of the evaluations."""
 
     def __init__(
         self,
@@ -149,7 +142,7 @@ class _Problem:
         self.step = COARSE_STEP
         self.free = list(range(len(unknowns)))
         self.responses: dict[tuple[float, ...], list[Any]] = {}
-        self.lengths: list[int] = []
+        self.shapes: list[tuple[int, ...]] = []  # rows and samples of the residuals of each target
         self.weights = np.ones(1)
         self.scaled: tuple[RowStatistics, ...] = ()
         self.evaluations = 0
@@ -165,34 +158,34 @@ class _Problem:
         return {delay.group: values[delay.path] for delay in delays}
 
     def response(self, values: Mapping[str, float]) -> list[Any]:
-        """Return the response of the model for each target; residuals for a target without delays."""
+        """Return the response of the model for each target."""
         parameters = {unknown.path: values[unknown.path] for unknown in self.unknowns if isinstance(unknown, Range)}
         key = tuple(parameters.values())
         if key not in self.responses:
             model = self.build(parameters)
-            self.responses = {key: [
-                target.response(model) if isinstance(target, DelayedTarget) else target.residuals(model)
-                for target in self.targets
-            ]}  # fmt: skip
+            self.responses = {key: [target.response(model) for target in self.targets]}
             self.evaluations += 1
         return self.responses[key]
 
-    def rows(self, values: Mapping[str, float], lags: Mapping[str, float] | None = None) -> list[Vector]:
-        """Return the residuals of each target, with further delays by channel [s]."""
-        return [
+    def joined(self, values: Mapping[str, float], lags: Mapping[str, float] | None = None) -> Vector:
+        """Return the residuals of all rows before scaling, (n,), with further delays by channel [s]."""
+        tables = [
             target.misfit(response, self.groups(number, values), lags or {})
-            if isinstance(target, DelayedTarget)
-            else response
             for number, (target, response) in enumerate(zip(self.targets, self.response(values), strict=True))
         ]
+        self.shapes = [table.shape for table in tables]
+        return np.concatenate([table.ravel() for table in tables])
+
+    def tables(self, joined: Vector) -> list[Vector]:
+        """Return values of all residuals, (n, ...), by target, (rows, samples, ...) each."""
+        parts = np.split(joined, np.cumsum([rows * samples for rows, samples in self.shapes])[:-1])
+        return [part.reshape(*shape, *joined.shape[1:]) for part, shape in zip(parts, self.shapes, strict=True)]
 
     def residuals(self, point: Vector) -> Vector:
         """Return the residuals of all rows before scaling, (n,)."""
         if self.last is not None and self.last[0] == point.tobytes():
             return self.last[1]
-        rows = [row for table in self.rows(self.values(point)) for row in table]
-        self.lengths = [row.size for row in rows]
-        joined = np.concatenate(rows)
+        joined = self.joined(self.values(point))
         if not np.isfinite(joined).all():
             text = ", ".join(f"{path}={value:.5g}" for path, value in self.values(point).items())
             raise SimulationError(f"residuals are not finite at {text}; narrow the bounds")
@@ -206,13 +199,11 @@ class _Problem:
     def statistics(self, raw: Vector, parameters: int) -> tuple[RowStatistics, ...]:
         """Return the statistics of all rows, with the degrees of freedom reduced by the number of parameters."""
         freedom = max(1.0 - parameters / max(int(np.count_nonzero(raw)), parameters + 1), 1e-3)
-        rows, first = np.split(raw, np.cumsum(self.lengths)[:-1]), 0
-        row_statistics: list[RowStatistics] = []
-        for target in self.targets:
-            last = first + len(target.rows)
-            row_statistics += target_statistics(target.rows, rows[first:last], freedom)
-            first = last
-        return tuple(row_statistics)
+        return tuple(
+            row
+            for target, table in zip(self.targets, self.tables(raw), strict=True)
+            for row in target_statistics(target.rows, table, freedom)
+        )
 
     def use_scales(self, statistics: tuple[RowStatistics, ...]) -> None:
         """Set the weights of the rows to the inverse of their estimated scales."""
@@ -220,7 +211,8 @@ class _Problem:
         nonzero = scales[scales > 0.0]
         minimum = 1e-6 * float(np.max(nonzero)) if nonzero.size else 1.0
         self.scaled = statistics
-        self.weights = np.repeat(1.0 / np.maximum(scales, minimum), self.lengths)
+        lengths = [samples for rows, samples in self.shapes for _ in range(rows)]
+        self.weights = np.repeat(1.0 / np.maximum(scales, minimum), lengths)
 
     def jacobian(self, point: Vector, columns: Sequence[int]) -> Vector:
         """Return d (weighted residuals) / d u, (n, columns), by forward differences; backward near an upper bound."""
@@ -235,25 +227,13 @@ class _Problem:
         return table
 
     def information(self, jacobian: Vector, weighted: Vector) -> Vector:
-        """Return sum over i, j of rho_ij J_i' J_j over the rows of each target, (columns, columns).
+        """Return sum over i, j of rho_ij J_i' J_j over the rows of each target, (p, p), of J, (n, p), and residuals.
 
         Noise in one signal of a measurement, for example the input, appears in all rows of the measurement. rho_ij is
         the correlation of the residuals of two rows, sample by sample. For uncorrelated rows the sum is J' J.
-
-        Args:
-            jacobian: Jacobian of the weighted residuals, (n, columns).
-            weighted: weighted residuals, (n,).
         """
         weighted_sum = np.zeros((jacobian.shape[1], jacobian.shape[1]))
-        ends = np.cumsum(self.lengths)
-        row = 0
-        for target in self.targets:
-            rows = range(row, row + len(target.rows))
-            row = rows.stop
-            begin, end = ends[rows.start] - self.lengths[rows.start], ends[rows[-1]]
-            # (rows, samples): all rows of a target have the same number of samples.
-            residuals = weighted[begin:end].reshape(len(rows), -1)
-            columns = jacobian[begin:end].reshape(*residuals.shape, -1)
+        for residuals, columns in zip(self.tables(weighted), self.tables(jacobian), strict=True):
             sizes = np.sqrt(np.sum(residuals**2, axis=1))
             related = residuals @ residuals.T / np.maximum(np.outer(sizes, sizes), 1e-300)
             np.fill_diagonal(related, 1.0)
@@ -333,7 +313,7 @@ class _Problem:
         slopes = np.array([self.unknowns[index].slope(values[self.unknowns[index].path]) for index in inner])
         errors.update(dict(zip(free, (deviations * slopes).tolist(), strict=True)))
         widths = np.array([self.unknowns[index].half_width for index in inner])
-        misfit = np.maximum(misfit_errors(jacobian, weighted, self._shapes(), inverse), deviations) * slopes
+        misfit = np.maximum(misfit_errors(self.tables(jacobian), self.tables(weighted), inverse), deviations) * slopes
         lag = lag_shifts(self._lagged(values, raw), -inverse @ jacobian.T) * slopes
         return TuningResult(
             unknowns=self.unknowns,
@@ -357,21 +337,10 @@ class _Problem:
             lag_shifts=dict(zip(free, lag.tolist(), strict=True)),
         )
 
-    def _shapes(self) -> list[tuple[int, int]]:
-        """Return rows and samples of the residuals of each target."""
-        first, shapes = 0, list[tuple[int, int]]()
-        for target in self.targets:
-            shapes.append((len(target.rows), self.lengths[first]))
-            first += len(target.rows)
-        return shapes
-
     def _lagged(self, values: Mapping[str, float], raw: Vector) -> Vector:
         """Return the changes of the weighted residuals if a channel, or all, lag by half a sample, (cases, n)."""
-        targets = [target for target in self.targets if isinstance(target, DelayedTarget) and target.half_sample > 0.0]
+        targets = [target for target in self.targets if target.half_sample > 0.0]
         half = {name: target.half_sample for target in targets for name in target.recorded}
         cases = [{name: lag} for name, lag in half.items()] + [half] * (len(half) > 1)
-        changes = [
-            (np.concatenate([row for table in self.rows(values, case) for row in table]) - raw) * self.weights
-            for case in cases
-        ]
+        changes = [(self.joined(values, case) - raw) * self.weights for case in cases]
         return np.array(changes).reshape(len(cases), raw.size)

@@ -12,15 +12,13 @@ import scipy
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.runs.car import Car, Run
-from vehicle.signals.analysis.frf_agreement import log_ratio
 from vehicle.signals.analysis.phase_delay import PhaseDelay
 from vehicle.signals.analysis.response_name import ResponseName
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.formats.frf_file import FrfData
-from vehicle.studies.tuning.frf_target import FLOOR, LEAST_COHERENCE, Complex, Vector, late, response_lags
-from vehicle.studies.tuning.record_target import RecordTarget
+from vehicle.studies.tuning.frf_target import FLOOR, LEAST_COHERENCE, Complex, Vector, late, response_lags, scaled_ratio
+from vehicle.studies.tuning.record_target import RecordTarget, RoadCar
 from vehicle.studies.tuning.response_delays import ResponseDelays
-from vehicle.studies.tuning.road_car import RoadCar
 
 Indices = npt.NDArray[np.int64]
 
@@ -166,23 +164,12 @@ class LevelTarget:
         return self.delays.of(self.outputs, groups, lags) - reference
 
     def misfit(self, response: Complex, groups: Mapping[str, float], lags: Mapping[str, float] | None = None) -> Vector:
-        """Return Re and Im of ln(H exp(-2 pi i f d) / Hm) over its standard deviation; 0 where undefined.
+        """Return the residuals of FRFs, see `FrfTarget.misfit`, in rows of `lines_per_row`, (rows, lines of a row).
 
         The windows are not moved: a delay of 1 % of their length lowers |H| by less than 0.1 %.
-
-        Args:
-            response: result of `response`, H.
-            groups: group to delay d [s].
-            lags: channel to a further delay [s].
-
-        Returns:
-            Residuals, (rows, lines of a row).
         """
         turned = late(response, self.data.frequency, self._delays(groups, lags or {}))
-        logarithm, deviation = log_ratio(self.data.response, turned), self.deviation
-        included = np.isfinite(logarithm) & np.isfinite(deviation)
-        scaled = np.divide(logarithm, deviation, out=np.zeros(included.shape, dtype=complex), where=included)
-        rows = np.stack([scaled.real, scaled.imag], axis=1).reshape(-1, self.lines.size)
+        rows = scaled_ratio(self.data.response, turned, self.deviation)
         parts = -(-self.lines.size // self.lines_per_row)
         whole = np.zeros((rows.shape[0], parts * self.lines_per_row))
         whole[:, : self.lines.size] = rows
@@ -217,8 +204,6 @@ def level_target(
     """Return the FRFs of a record in classes of the input level.
 
     Args:
-        histories: the record.
-        reference: name of the input channel.
         excitation: values of the reference at the times of the record, (n,).
         plates: displacements of the plates of the axle of the reference, (plates, n).
         levels: number of classes; each has the same number of windows.

@@ -1,7 +1,8 @@
-"""Statements on what the data of a fit leave open: held parameters, bounds, correlated pairs, large standard errors."""
+"""Statements on what the data of a fit leave open, and the reason why its values are not to be used."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import combinations
 
 import numpy as np
@@ -17,15 +18,18 @@ UNSURE = 0.1
 """Minimum relative standard error of a value that is named [-]: the tolerance of a damper or a bushing in series
 production, so that the fit would not distinguish it from another specimen."""
 
+NO_MOTION = 100.0
+"""RMS error of a model that does not move, over the RMS of the measurement [%]: that of a mean of zero."""
+
+FIRST = "check delays (--delay), signs (--turn) and units (--unit) of the channels first"
+"""Advice: check the channels before the model is doubted."""
+
 
 def what_data_leave_open(result: TuningResult) -> tuple[str, ...]:
     """Return a message for each undetermined parameter or pair; empty if the data determine all parameters.
 
     For values a and b with relative standard errors s_a, s_b and correlation rho, the relative standard error of a / b
     (rho > 0) or a b (rho < 0) is sqrt(s_a^2 + s_b^2 - 2 |rho| s_a s_b).
-
-    Args:
-        result: result of a fit.
     """
     sentences = [held.message() for held in result.unidentified]
     for path in result.at_bound:
@@ -58,3 +62,27 @@ def what_data_leave_open(result: TuningResult) -> tuple[str, ...]:
         if error > UNSURE and path not in delays
     ]
     return tuple(sentences)
+
+
+def refusal(result: TuningResult, errors: Sequence[tuple[str, float]]) -> str:
+    """Return the reason why the values of a fit are unusable; empty if they are usable.
+
+    Args:
+        errors: name of each channel, and its RMS error after the fit over the RMS of the measurement [%].
+    """
+    for unknown in result.unknowns:
+        if unknown.path in result.at_bound:
+            value, factor, unit = result.solution[unknown.path], 1.0, ""
+            if unknown in result.delays:
+                factor, unit = 1e3, " ms"
+            return (
+                f"{unknown.path} ran into its limit of {factor * value:.5g}{unit}. Either the limit is too tight, or "
+                f"the data do not fit this model: {FIRST}"
+            )
+    name, error = max(errors, key=lambda item: item[1], default=("", 0.0))
+    if error > NO_MOTION:
+        return (
+            f"the error of {name} stays at {error:.3g} % of the measurement, more than that of a car at rest (100 %): "
+            f"{FIRST}"
+        )
+    return ""

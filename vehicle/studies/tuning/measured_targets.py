@@ -17,7 +17,7 @@ from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.formats.channel import uniform_axis
 from vehicle.signals.formats.table import Record
 from vehicle.signals.records.choice import Choice
-from vehicle.signals.records.counterpart import clock_advice, counterparts, run_times, sign_and_unit
+from vehicle.signals.records.counterpart import Counterpart, clock_advice, counterparts, run_times, sign_and_unit
 from vehicle.signals.records.delays import split_delay
 from vehicle.signals.records.measured import Measured, read_measured
 from vehicle.signals.records.resampled import at_times
@@ -26,9 +26,8 @@ from vehicle.studies.tuning.fit_settings import HistorySettings, LevelSettings, 
 from vehicle.studies.tuning.frf_target import FrfTarget, motions_of, to_driven_plates
 from vehicle.studies.tuning.level_target import LevelTarget, level_target
 from vehicle.studies.tuning.plate_signal import plate_choices, plate_signal
-from vehicle.studies.tuning.record_target import KEPT, RecordTarget, signal_until
+from vehicle.studies.tuning.record_target import KEPT, RecordTarget, RoadCar, Vector, signal_until
 from vehicle.studies.tuning.response_delays import response_delays
-from vehicle.studies.tuning.road_car import RoadCar
 
 LEVEL_WINDOW = 4.0
 """Default length of the windows of classes of the input level [s]: four periods at 1 Hz, and short enough for the level
@@ -167,95 +166,94 @@ def measured_levels(car: Car, file: Path | str, settings: LevelSettings) -> Meas
 def _histories(
     car: Car, file: Path | str, settings: HistorySettings, keep: str | None = None
 ) -> tuple[RecordTarget, tuple[str, ...]]:
-    """Return the target of `measured_histories`, and the notices.
-
-    Args:
-        car, file, settings: see `measured_histories`.
-        keep: a channel that is read in addition to `fitted`.
-    """
-    path, signal, contained = Path(file), settings.signal, settings.signal is None
-    drift, stretch, lowpass, fitted = settings.drift, settings.stretch, settings.lowpass, settings.fitted
+    """Return the target of `measured_histories`, which also reads the channel `keep`, and the notices."""
+    path, contained, stretch, lowpass = Path(file), settings.signal is None, settings.stretch, settings.lowpass
     begin, _ = split_delay(settings.delay)
-    asked, plates = plate_choices(_asked(settings), path, signal)
+    asked, plates = plate_choices(_asked(settings), path, settings.signal)
     measured = _read(car, path, asked, settings.inverted, None, histories_only=True)
-    held = measured.record
-    names = [] if held is None else [channel for channel in held.channels if not channel.startswith("plate_")]
-    if held is None or not names:
-        raise DataError(f"{path}: contains no time history except that of a plate; choose with --map CHANNEL=NAME")
-    if contained and (begin, drift) != (0.0, 0.0):
+    held = _compared_channels(path, measured.record, settings.fitted, keep)
+    names, step = list(held.channels), 1.0 / car.vehicle.solver.record_rate
+    if contained and (begin, settings.drift) != (0.0, 0.0):
         raise ConfigurationError(
             f"{path}: --delay S and --drift correct the clock against a signal of another file; this record contains "
             "its plate. Remove both, or add --signal FILE; --delay GROUP=TIME is for sensors that lag the plate"
         )
     if not lowpass > 0.0:
         raise ConfigurationError(f"{path}: found a low-pass of {lowpass:g} Hz, must be above 0")
-    road: RoadCar | None = None
-    settled = 0.0
-    if isinstance(signal, Road):
-        drive = signal.under(car.vehicle, car.overrides)
-        road, settled = RoadCar(start=car, rolling=car.with_(drive.overrides)), drive.skip
-        signal = drive.signal()
-    else:
-        signal = plate_signal(signal, car, path, measured, asked, settings.inverted, plates)
-        if contained and any("half-cosine ramp" in text for text in signal.notices):
-            settled = SETTLED
-    if fitted:
-        there = ", ".join(names)
-        names = [channel for channel in names if channel in (*fitted, keep)]
-        if not names:
-            raise DataError(f"{path}: contains no time history of --channels {','.join(fitted)}; found {there}")
+    signal, road, settled = _driven_input(car, path, measured, asked, settings, plates)
     delays = response_delays(measured, tuple(names), asked.delays, contained=contained)
-    step = 1.0 / car.vehicle.solver.record_rate
     grid = uniform_axis(int(signal.duration / step + 1e-6) + 1, step)
-    times = run_times(held, begin, drift, float(held.time[0]) if contained else measured.start)
+    times = run_times(held, begin, settings.drift, float(held.time[0]) if contained else measured.start)
     inside = np.flatnonzero((grid >= times[0] - 1e-9) & (grid <= times[-1] + 1e-9))
     if inside.size < 3:
         raise DataError(
             f"{path}: measured from {times[0]:.6g} to {times[-1]:.6g} s of the signal {signal.source}, which ends at "
             f"{signal.duration:.6g} s: no overlap; set --delay S, which is added to the measured times"
         )
-    histories = {}
-    for channel in names:
-        values = at_times(times, held.channels[channel], grid[inside], step)
-        histories[channel] = np.interp(np.arange(grid.size), inside, values)  # constant outside the window: excluded
-    window_s = (float(grid[inside[0]]), float(grid[inside[-1]]))
-    more: list[str] = []
+    window, more = (float(grid[inside[0]]), float(grid[inside[-1]])), list[str]()
     if stretch is not None:
-        window_s = (max(stretch[0], window_s[0]), min(stretch[1], window_s[1]))
-    elif settled > window_s[0]:
-        window_s = (settled, window_s[1])
+        window = (max(stretch[0], window[0]), min(stretch[1], window[1]))
+    elif settled > window[0]:
+        window = (settled, window[1])
         more = [f"begins in motion: the first {settled:g} s are left out; --stretch FROM:TO sets other times"]
-    signal = signal_until(signal, window_s[1] + AFTER / lowpass)
-    grid = grid[: int(signal.duration / step + 1e-6) + 1]
-    histories = {channel: values[: grid.size] for channel, values in histories.items()}
-    shortest = LEAST_VALUES / (KEPT * lowpass)
-    length = max(window_s[1] - window_s[0], 0.0)
+    length, shortest = max(window[1] - window[0], 0.0), LEAST_VALUES / (KEPT * lowpass)
     if length < shortest:
         raise DataError(
             f"{path}: {length:.3g} s of the record count, must be at least {shortest:.3g} s "
             f"({LEAST_VALUES} independent values below {lowpass:g} Hz); use a longer record or --stretch FROM:TO"
         )
-    units = {channel: held.units[channel] for channel in names}
-    record = Record(time=grid, channels=histories, units=units)
+    signal = signal_until(signal, window[1] + AFTER / lowpass)
+    count = int(signal.duration / step + 1e-6) + 1
+    histories = {}
+    for channel, values in held.channels.items():
+        on_grid = at_times(times, values, grid[inside], step)
+        histories[channel] = np.interp(np.arange(count), inside, on_grid)  # constant outside the window: excluded
     target = RecordTarget(
-        name=path.stem, signal=signal, record=record, window=window_s, lowpass=lowpass, road=road,
-        delays=delays, sample=held.step,
+        name=path.stem, signal=signal, record=Record(time=grid[:count], channels=histories, units=held.units),
+        window=window, lowpass=lowpass, road=road, delays=delays, sample=held.step,
     )  # fmt: skip
-    # A run with the start values shows errors of clock, signs and units of the measurement.
-    run = target.run(car)
-    parts = counterparts(
-        Record(time=held.time, channels={channel: held.channels[channel] for channel in names}, units=units),
-        Record(time=run.time, channels=run.recording.channels, units=run.recording.units),
-        times,
+    parts = _beside_run(target, car, held, times)
+    clock = [] if contained else clock_advice(parts, step, begin, settings.drift)  # the plate of a file has its clock
+    return target, _notices(path, measured, [*more, *clock, *sign_and_unit(parts)])
+
+
+def _compared_channels(path: Path, record: Record | None, fitted: Sequence[str], keep: str | None) -> Record:
+    """Return a record with the channels that are compared: all but plates, or those of --channels."""
+    names = [] if record is None else [channel for channel in record.channels if not channel.startswith("plate_")]
+    if record is None or not names:
+        raise DataError(f"{path}: contains no time history except that of a plate; choose with --map CHANNEL=NAME")
+    chosen = [channel for channel in names if channel in (*fitted, keep)] if fitted else names
+    if not chosen:
+        raise DataError(f"{path}: contains no time history of --channels {','.join(fitted)}; found {', '.join(names)}")
+    return Record(
+        time=record.time,
+        channels={channel: record.channels[channel] for channel in chosen},
+        units={channel: record.units[channel] for channel in chosen},
     )
-    # The plate of the same file has the same clock; a known delay of a sensor is no error of the clock.
-    parts = [
+
+
+def _driven_input(
+    car: Car, path: Path, measured: Measured, asked: Choice, settings: HistorySettings, plates: Choice | None
+) -> tuple[Signal, RoadCar | None, float]:
+    """Return the signal of the plates, the car on its road, and the time after which the run follows the record [s]."""
+    if isinstance(settings.signal, Road):
+        drive = settings.signal.under(car.vehicle, car.overrides)
+        return drive.signal(), RoadCar(start=car, rolling=car.with_(drive.overrides)), drive.skip
+    signal = plate_signal(settings.signal, car, path, measured, asked, settings.inverted, plates)
+    from_motion = settings.signal is None and any("half-cosine ramp" in text for text in signal.notices)
+    return signal, None, SETTLED if from_motion else 0.0
+
+
+def _beside_run(target: RecordTarget, car: Car, held: Record, times: Vector) -> list[Counterpart]:
+    """Return a record beside a run of the car, which shows errors of its clock, signs and units."""
+    run = target.run(car)
+    parts = counterparts(held, Record(time=run.time, channels=run.recording.channels, units=run.recording.units), times)
+    # A known delay of a sensor is no error of the clock.
+    lags = target.delays.of([part.channel for part in parts], {}, {}).tolist()
+    return [
         replace(part, shift=part.shift and replace(part.shift, shift=part.shift.shift + lag))
-        for part, lag in zip(parts, delays.of([part.channel for part in parts], {}, {}).tolist(), strict=True)
+        for part, lag in zip(parts, lags, strict=True)
     ]
-    clock = [] if contained else clock_advice(parts, step, begin, drift)
-    advice = [*clock, *sign_and_unit(parts)]
-    return target, _notices(path, measured, [*more, *advice])
 
 
 def _asked(settings: ReadingSettings) -> Choice:

@@ -25,11 +25,6 @@ def plate_choices(asked: Choice, file: Path, signal: object) -> tuple[Choice, Ch
     """Return the choice for a measurement file, and for the file of its signal; None without chosen plates there.
 
     The channel name of a plate selects it in both files if they contain it; a number is of the measurement file.
-
-    Args:
-        asked: all chosen channels.
-        file: measurement file.
-        signal: file of the plate displacement, or another source.
     """
     plates = {role: wanted for role, wanted in asked.channels.items() if PLATE_CHANNEL.fullmatch(role)}
     named = {role: wanted for role, wanted in plates.items() if not wanted.isdecimal()}

@@ -134,12 +134,7 @@ def require_posterior(targets: Sequence[FrfTarget]) -> None:
 
 
 def values_at(parameters: Sequence[Range], points: Vector) -> Vector:
-    """Return values at points u in [-1, 1]: ln(value) = (ln(low high) + u ln(high / low)) / 2.
-
-    Args:
-        parameters: parameters with bounds above 0.
-        points: (points, parameters).
-    """
+    """Return values at points u in [-1, 1], (points, parameters): ln(value) = (ln(low high) + u ln(high / low)) / 2."""
     low, high = (np.log([getattr(parameter, end) for parameter in parameters]) for end in ("low", "high"))
     return np.asarray(np.exp(0.5 * (low + high + points * (high - low))))
 
@@ -155,14 +150,6 @@ def emulated_car(
     progress: Callable[[float], None] | None = None,
 ) -> EmulatedCar:
     """Fit an emulator to cars at Sobol points between the bounds.
-
-    Args:
-        car: the car.
-        parameters: parameters with bounds.
-        targets: measured FRFs.
-        cars: number of cars.
-        seed: seed of the points.
-        progress: called with the finished fraction.
 
     Raises:
         ConfigurationError: too few cars, or bounds that are not above 0.
@@ -197,10 +184,8 @@ def posterior_of(
     """Sample the posterior distribution until R-hat of all parameters is below `CONVERGED`.
 
     Args:
-        car: the emulator.
         discrepancy: standard deviation of ln|H| between model and car in each band [-].
         data: other data than those of the cells, (cells,).
-        seed: seed of the sampler.
 
     Raises:
         ConfigurationError: a negative discrepancy.

@@ -24,7 +24,6 @@ def posterior_lines(posteriors: Sequence[NamedPosterior], vehicle: Vehicle) -> l
 
     Args:
         posteriors: the fitted law first, then its rivals.
-        vehicle: vehicle, for the units.
     """
     posterior = posteriors[0][1]
     width = max(len(parameter.path) for parameter in posterior.car.parameters)

@@ -20,12 +20,31 @@ from vehicle.signals.formats.table import Record
 from vehicle.signals.records.counterpart import SAME_MOTION
 from vehicle.studies.tuning.fast_run import fast_run
 from vehicle.studies.tuning.response_delays import ResponseDelays
-from vehicle.studies.tuning.road_car import RoadCar
 
 Vector = npt.NDArray[np.float64]
 
 KEPT = 2.0
 """Samples per period of the low-pass frequency after decimation: white noise then stays nearly white."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class RoadCar:
+    """Car of a fit on a road, and its variants with other parameters.
+
+    A variant is made from the car on the road: the terms of its matrices are computed once for all variants
+    (`Car.varied`).
+
+    Attributes:
+        start: car at the start of the fit, with standing tyres or the speed of its file.
+        rolling: the same car with the parameters that the road sets, as driving.speed.
+    """
+
+    start: Car
+    rolling: Car
+
+    def variant(self, car: Car) -> Car:
+        """Return a variant, from `start.varied`, on the road."""
+        return self.rolling.with_(car.overrides[len(self.start.overrides) :])
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -110,8 +129,6 @@ class RecordTarget:
         """Return the run of a car on the signal, on a road with turning wheels.
 
         Args:
-            car: variant of the car of the fit.
-            engine: engine of the run.
             channels: recorded channels; those of the record by default.
         """
         return self._driven(car).run(self.signal, engine=engine, channels=tuple(channels) or self.recorded)
@@ -140,13 +157,7 @@ class RecordTarget:
         return self._filtered(np.array([run[name] for name in names]))
 
     def misfit(self, response: Vector, groups: Mapping[str, float], lags: Mapping[str, float] | None = None) -> Vector:
-        """Return (ym - y(t - d)) over the RMS of ym, (channels, samples); 0 where the run has no value.
-
-        Args:
-            response: result of `response`.
-            groups: group to delay d [s].
-            lags: channel to a further delay [s].
-        """
+        """Return (ym - y(t - d)) over the RMS of ym, (channels, samples); 0 where the run has no value."""
         measured = self.measured()
         delays = self.delays.of(self.recorded, groups, lags or {})
         residuals = measured - self._delayed(response, delays)

@@ -32,14 +32,12 @@ class ResponseCells:
 
     Attributes:
         targets: measured FRFs.
-        names: name of each cell: target, channel and centre frequency.
         weights: for each target the normalised weights, (channels, bands, lines).
         data: measured means, (cells,).
         noise: standard deviations of the means from the coherence, (cells,).
     """
 
     targets: tuple[FrfTarget, ...]
-    names: tuple[str, ...]
     weights: tuple[Vector, ...]
     data: Vector
     noise: Vector
@@ -62,17 +60,13 @@ class ResponseCells:
 
 
 def response_cells(targets: Sequence[FrfTarget]) -> ResponseCells:
-    """Return the means of measured FRFs in third-octave bands.
-
-    Args:
-        targets: measured FRFs with a coherence or a random error.
+    """Return the means of measured FRFs with coherence or random error in third-octave bands.
 
     Raises:
         DataError: no FRF, or FRFs without coherence and random error.
     """
     if not targets:
         raise DataError("--posterior: no FRFs; add --frf FILE, the posterior is that of FRFs in third-octave bands")
-    names: list[str] = []
     all_weights, data, noise = [], [], []
     for target in targets:
         frequency = target.data.frequency
@@ -92,16 +86,12 @@ def response_cells(targets: Sequence[FrfTarget]) -> ResponseCells:
         sums = weights.sum(axis=2, keepdims=True)
         weights = np.divide(weights, sums, out=np.zeros_like(weights), where=sums > 0.0)
         size = np.where(usable, np.abs(target.data.response), 1.0)
-        for row, channel in enumerate(target.data.labels):
-            for column, number in enumerate(bands):
-                if sums[row, column, 0] > 0.0:
-                    names.append(f"{target.name}, {channel}, {10.0 ** (0.1 * number):.3g} Hz")
-                    data.append(float(weights[row, column] @ np.log(size[row])))
-                    noise.append(float(1.0 / np.sqrt(sums[row, column, 0])))
+        for row, column in zip(*np.nonzero(sums[:, :, 0] > 0.0), strict=True):
+            data.append(float(weights[row, column] @ np.log(size[row])))
+            noise.append(float(1.0 / np.sqrt(sums[row, column, 0])))
         all_weights.append(weights)
     return ResponseCells(
         targets=tuple(targets),
-        names=tuple(names),
         weights=tuple(all_weights),
         data=np.array(data),
         noise=np.array(noise),
@@ -111,12 +101,7 @@ def response_cells(targets: Sequence[FrfTarget]) -> ResponseCells:
 def evaluated_cars(
     cars: Sequence[Car], cells: ResponseCells, progress: Callable[[float], None] | None = None
 ) -> tuple[Vector, Vector]:
-    """Return the cells of cars, and the comfort values of each signal, by the reduced engine in batches.
-
-    Args:
-        cars: cars of one topology.
-        cells: cells of the data.
-        progress: called with the finished fraction.
+    """Return the cells of cars of one topology, and their comfort on each signal, by the reduced engine in batches.
 
     Returns:
         Means of ln|H|, (cars, cells), and comfort values [m/s2]: unweighted RMS of the seat rail, all axes, 2 to 50 Hz,

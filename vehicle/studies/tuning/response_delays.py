@@ -41,13 +41,7 @@ class ResponseDelays:
         return tuple(dict.fromkeys(self.fitted.values()))
 
     def of(self, channels: Sequence[str], groups: Mapping[str, float], lags: Mapping[str, float]) -> Vector:
-        """Return the delay of each channel [s].
-
-        Args:
-            channels: names of channels, (k,).
-            groups: group to delay [s]; 0 for a missing one.
-            lags: channel to a further delay [s].
-        """
+        """Return the delay of each channel [s], (k,): known or of its group, 0 for a missing one, and a further lag."""
         return np.array(
             [
                 self.known.get(name, groups.get(self.fitted.get(name, ""), 0.0)) + lags.get(name, 0.0)
@@ -127,8 +121,6 @@ def response_delays(
     """Return the known delays of channels against the input, and the groups of the others.
 
     Args:
-        measured: the measurement.
-        channels: fitted channels.
         delays: group, channel or pattern to delay [s].
         contained: the plates of the measurement are the input; else that of another file.
 

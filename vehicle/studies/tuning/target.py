@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -12,19 +12,11 @@ Vector = npt.NDArray[np.float64]
 
 
 class Target(Protocol):
-    """Measurement that a model is compared with."""
+    """Measurement whose residuals are computed in two steps, so that delays need no further run of the model."""
 
     @property
     def rows(self) -> tuple[str, ...]:
         """Return the names of the rows of the residuals."""
-
-    def residuals(self, model: Any, /) -> Vector:
-        """Return residuals over their assumed standard deviation, (rows, samples); 0 where a value is excluded."""
-
-
-@runtime_checkable
-class DelayedTarget(Target, Protocol):
-    """Measurement whose residuals are computed in two steps, so that delays need no further run of the model."""
 
     @property
     def recorded(self) -> tuple[str, ...]:
@@ -38,4 +30,10 @@ class DelayedTarget(Target, Protocol):
         """Return the response of a model, without delays."""
 
     def misfit(self, response: Any, groups: Mapping[str, float], lags: Mapping[str, float], /) -> Vector:
-        """Return the residuals for a response, group -> delay [s], and channel -> further delay [s]."""
+        """Return residuals over their assumed standard deviation, (rows, samples); 0 where a value is excluded.
+
+        Args:
+            response: result of `response`.
+            groups: group of channels to its delay [s].
+            lags: channel to a further delay [s].
+        """

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -16,14 +16,13 @@ from vehicle.runs.car import Car, Run
 from vehicle.signals.analysis.frf_agreement import log_ratio
 from vehicle.signals.analysis.response_name import ResponseName
 from vehicle.studies.tuning.car_fit import tune
-from vehicle.studies.tuning.fit_result import TuningResult
+from vehicle.studies.tuning.fit_result import TuningResult, known
 from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.full_steps import FullSteps, full_steps
 from vehicle.studies.tuning.level_target import LevelTarget
-from vehicle.studies.tuning.limits_of_data import what_data_leave_open
+from vehicle.studies.tuning.limits_of_data import refusal, what_data_leave_open
 from vehicle.studies.tuning.measured_targets import MeasuredTarget
 from vehicle.studies.tuning.record_target import RecordTarget
-from vehicle.studies.tuning.refusal import refusal
 from vehicle.threads import one_blas_thread
 
 Vector = npt.NDArray[np.float64]
@@ -143,9 +142,9 @@ class TunedCar:
                     "path": parameter.path,
                     "unit": unit_of(vehicle, parameter.path),
                     "value": result.values[parameter.path],
-                    "standard_error": _finite(result.standard_errors[parameter.path]),
-                    "misfit_error": _finite(result.misfit_errors.get(parameter.path)),
-                    "half_sample_shift": _finite(result.lag_shifts.get(parameter.path)),
+                    "standard_error": known(result.standard_errors[parameter.path]),
+                    "misfit_error": known(result.misfit_errors.get(parameter.path)),
+                    "half_sample_shift": known(result.lag_shifts.get(parameter.path)),
                     "start": parameter.start,
                     "low": parameter.low,
                     "high": parameter.high,
@@ -157,8 +156,8 @@ class TunedCar:
                     "measurement": self.measurements[delay.target].target.name,
                     "group": delay.group,
                     "delay_s": result.solution[delay.path],
-                    "standard_error_s": _finite(result.standard_errors[delay.path]),
-                    "misfit_error_s": _finite(result.misfit_errors.get(delay.path)),
+                    "standard_error_s": known(result.standard_errors[delay.path]),
+                    "misfit_error_s": known(result.misfit_errors.get(delay.path)),
                 }
                 for delay in result.delays
             ],
@@ -172,15 +171,7 @@ class TunedCar:
             "cars_computed": result.evaluations,
             "weighted_residual": {"before": result.before, "after": result.after},
             "agreement": [
-                {
-                    "measurement": row.measurement,
-                    "channel": row.channel,
-                    "plate": row.plate or None,
-                    "measure": row.measure,
-                    "unit": row.unit,
-                    "before": row.before,
-                    "after": row.after,
-                }
+                {key: value for key, value in asdict(row).items() if key != "label"} | {"plate": row.plate or None}
                 for row in self.agreement
             ],
             "engine": self.engine,
@@ -201,8 +192,6 @@ def tuned_car(
     """Fit parameters of a car with the fast models, then finish the fit with an engine.
 
     Args:
-        car: the car at the start.
-        parameters: parameters with bounds and start values.
         measurements: results of `measured_responses` and `measured_histories`.
         engine: engine of the last steps, see `full_steps`; "reduced" ends after the fit with the fast models.
         progress: see `tune`.
@@ -263,7 +252,3 @@ def _model_errors(target: FrfTarget | LevelTarget | RecordTarget, car: Car) -> V
     size, angle = (np.sqrt(np.nanmean(part**2, axis=1)) for part in (logarithm.real, logarithm.imag))
     missed, whole = (np.nansum(np.where(used, np.abs(part) ** 2, 0.0), axis=1) for part in (model - measured, measured))
     return np.stack([20.0 / np.log(10.0) * size, np.degrees(angle), 100.0 * np.sqrt(missed / whole)], axis=1)
-
-
-def _finite(value: float | None) -> float | None:
-    return value if value is not None and np.isfinite(value) else None

@@ -35,15 +35,7 @@ ACROSS = 4
 
 
 def plot_responses(path: Path, target: FrfTarget | LevelTarget, start: Car, fitted: Car, source: str) -> None:
-    """Draw measured FRFs, and those before and after the fit, four channels in a row.
-
-    Args:
-        path: PNG or SVG file.
-        target: measured FRFs of one level.
-        start: car before the fit.
-        fitted: car after the fit.
-        source: origin of the measurement, for the caption.
-    """
+    """Draw measured FRFs, and those before and after the fit, four channels in a row."""
     models = {"start": target.model_response(start), "fitted": target.model_response(fitted)}
     data, frequency = target.data, target.data.frequency
     shown = data.labels[:ACROSS]
@@ -82,15 +74,7 @@ def plot_responses(path: Path, target: FrfTarget | LevelTarget, start: Car, fitt
 
 
 def plot_histories(path: Path, target: RecordTarget, start: Car, fitted: Car, source: str) -> None:
-    """Draw measured time histories, and those before and after the fit, a row for each channel.
-
-    Args:
-        path: PNG or SVG file.
-        target: measured time histories.
-        start: car before the fit.
-        fitted: car after the fit.
-        source: origin of the measurement, for the caption.
-    """
+    """Draw measured time histories, and those before and after the fit, a row for each channel."""
     measured = target.measured()
     curves = {"measured": measured, "start": target.model_histories(start), "fitted": target.model_histories(fitted)}
     time = target.record.time[target.kept]
@@ -126,12 +110,7 @@ def _highest_level(time: npt.NDArray[np.float64], measured: npt.NDArray[np.float
 
 
 def plot_correlation(path: Path, result: TuningResult) -> None:
-    """Draw the correlation matrix of the fitted values.
-
-    Args:
-        path: PNG or SVG file.
-        result: result of a fit.
-    """
+    """Draw the correlation matrix of the fitted values."""
     names = [short_name(free_path) for free_path in result.free]
     size = (11.0, 2.0 + 0.45 * len(names))
     caption = "Near 1 or -1 the data determine a combination of two values much better than each value alone."
@@ -154,12 +133,7 @@ def short_name(path: str) -> str:
 
 
 def plot_corner(path: Path, posterior: Posterior) -> None:
-    """Draw the distribution of each parameter, and of each pair with its 50 and 90 % regions.
-
-    Args:
-        path: PNG or SVG file.
-        posterior: posterior distribution.
-    """
+    """Draw the distribution of each parameter, and of each pair with its 50 and 90 % regions."""
     parameters, samples = posterior.car.parameters, posterior.values()
     size = len(parameters)
     interval = posterior.interval()

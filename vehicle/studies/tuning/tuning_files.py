@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 
-from vehicle.runs.output.folder import write_json, write_text, write_whole
+from vehicle.runs.output.folder import write_files, write_json, write_text
 from vehicle.runs.output.own_files import parameters_text, write_own_files
 from vehicle.studies.tuning.posterior_text import NamedPosterior, posterior_summary
 from vehicle.studies.tuning.record_target import RecordTarget
@@ -49,13 +49,6 @@ def write_tuning(
 ) -> tuple[str, ...]:
     """Write the files of a fit.
 
-    Args:
-        folder: folder of the files.
-        tuned: fitted car.
-        command: command line of the fit.
-        posteriors: see `posterior_lines`; empty without a posterior.
-        author, project: names in the head of the report; may be empty.
-
     Returns:
         Names of the files, the vehicle file first.
 
@@ -68,8 +61,7 @@ def write_tuning(
     more = {"posterior": posterior_summary(posteriors)} if posteriors else {}
     write_json(folder / NUMBERS, {**tuned.summary(), **more, "command": command})
     figures = figures_of(tuned, posteriors)
-    for name, draw in figures.items():
-        write_whole(folder / f"{name}.png", draw)
+    write_files(folder, {f"{name}.png": draw for name, draw in figures.items()})
     page = tuning_page(tuned, figures, command, posteriors, author=author, project=project)
     write_text(folder / REPORT, page)
     return (VEHICLE, REPORT, NUMBERS, *(f"{name}.png" for name in figures), *copies.values())

@@ -16,6 +16,7 @@ from vehicle.runs.report.differences import parameter_words
 from vehicle.runs.report.markup import templates
 from vehicle.runs.report.page import document, head_line
 from vehicle.runs.report.svg_figure import drawing
+from vehicle.studies.tuning.fit_result import known
 from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.limits_of_data import what_data_leave_open
 from vehicle.studies.tuning.posterior_text import NamedPosterior, posterior_sentences
@@ -43,21 +44,13 @@ def tuning_page(
     author: str = "",
     project: str = "",
 ) -> str:
-    """Return the report of a fit as one HTML document.
-
-    Args:
-        tuned: fitted car.
-        figures: name of each picture and the function that writes it.
-        command: command line of the fit.
-        posteriors: see `posterior_lines`; empty without a posterior.
-        author, project: names in the head of the page; may be empty.
-    """
+    """Return the report of a fit as one HTML document."""
     names = ", ".join(each.target.name for each in tuned.measurements)
     vehicle = tuned.start.vehicle
     parts = [
         ("Result", "result", _result(tuned, figures)),
         ("Fitted values", "values", _values(tuned)),
-        ("What the data leave open", "open", _left_open(tuned)),
+        ("What the data leave open", "open", fill("left_open", sentences=what_data_leave_open(tuned.result))),
         *([("Posterior", "posterior", _posterior(tuned, figures, posteriors))] if posteriors else []),
         ("Before and after", "agreement", _agreement(tuned, figures)),
         ("Residuals", "residuals", _residuals(tuned)),
@@ -113,15 +106,13 @@ def _values(tuned: TunedCar) -> Markup:
     rows = []
     for parameter in result.parameters:
         value, error = result.values[parameter.path], result.standard_errors[parameter.path]
-        finite = math.isfinite(error)
         rows.append(
             (
                 parameter.path,
                 unit_of(vehicle, parameter.path),
                 number(value, 5),
-                number(error if finite else None, 2),
-                number(100.0 * error / value if finite else None, 2),
-                *(number(_finite(each.get(parameter.path)), 2) for each in (result.misfit_errors, result.lag_shifts)),
+                *(number(known(each), 2) for each in (error, 100.0 * error / value)),
+                *(number(known(each.get(parameter.path)), 2) for each in (result.misfit_errors, result.lag_shifts)),
                 number(parameter.start, 5),
                 number(100.0 * (value / parameter.start - 1.0), 3),
                 f"{number(parameter.low, 5)} to {number(parameter.high, 5)}",
@@ -129,14 +120,6 @@ def _values(tuned: TunedCar) -> Markup:
         )
     noted = [text for each in tuned.measurements for text in each.notices]
     return fill("fitted", rows=rows, delays=delay_lines(tuned), sentences=fit_sentences(tuned), noted=noted)
-
-
-def _finite(value: float | None) -> float | None:
-    return value if value is not None and math.isfinite(value) else None
-
-
-def _left_open(tuned: TunedCar) -> Markup:
-    return fill("left_open", sentences=what_data_leave_open(tuned.result))
 
 
 def _agreement(tuned: TunedCar, figures: Mapping[str, Callable[[Path], None]]) -> Markup:

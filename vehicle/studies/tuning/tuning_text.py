@@ -16,12 +16,7 @@ from vehicle.studies.tuning.tuned_car import Agreement, TunedCar
 
 
 def value_lines(result: TuningResult, vehicle: Vehicle) -> list[str]:
-    """Return a line for each parameter: value, standard error, unit, start value and bounds.
-
-    Args:
-        result: result of a fit.
-        vehicle: vehicle, for the units.
-    """
+    """Return a line for each parameter: value, standard error, unit, start value and bounds."""
     width = max((len(parameter.path) for parameter in result.parameters), default=0)
     lines = []
     for parameter in result.parameters:
@@ -44,11 +39,7 @@ def known_digits(value: float, error: float) -> int:
 
 
 def tuning_text(tuned: TunedCar) -> str:
-    """Return the result of a fit: values, options, what the data leave open, errors before and after, final check.
-
-    Args:
-        tuned: fitted car.
-    """
+    """Return the result of a fit: values, options, what the data leave open, errors before and after, final check."""
     result = tuned.result
     settings = " ".join(f"--set {text}" for text in tuned.settings)
     lines = value_lines(result, tuned.start.vehicle)

@@ -1,16 +1,16 @@
-"""Drawing of FRFs over each other: magnitude, phase and coherence."""
+"""Drawing of FRFs and of time histories over the curves that their axes already have."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import cycle, islice
-from typing import Any
 
 import numpy as np
 
-from vehicle.drawing.rendering.figure import COLOURS, LINES, frf_axes, wrapped_phase
+from vehicle.drawing.rendering.figure import COLOURS, frf_axes, looks, wrapped_phase
 from vehicle.drawing.rendering.open_axes import Axes
 from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.signals.analysis.samples import Vector
 
 MOST_NAMED = 12
 """Maximum number of curves with a legend."""
@@ -22,12 +22,10 @@ def draw_response(axes: Axes, response: FrequencyResponse, names: Sequence[str])
     Args:
         axes: axes of magnitude, phase and coherence, (3, 1); or of the magnitude alone, (1, 1).
         response: FRFs to the plate displacement [m/s2 per m].
-        names: names of the rows.
     """
     drawn = len(axes[0, 0].lines)
-    looks = islice(cycle(zip(COLOURS, LINES, strict=True)), drawn, None)
-    for row, (name, (colour, line)) in enumerate(zip(names, looks, strict=False)):
-        style: dict[str, Any] = {"color": colour, "linestyle": line, "linewidth": 1.1}
+    for row, (name, look) in enumerate(zip(names, islice(looks(), drawn, None), strict=False)):
+        style = look | {"linewidth": 1.1}
         axes[0, 0].plot(response.frequency, np.abs(response.response[row]), label=name, **style)
         if len(axes) > 1:
             axes[1, 0].plot(response.frequency, wrapped_phase(response.response[row]), **style)
@@ -39,3 +37,18 @@ def draw_response(axes: Axes, response: FrequencyResponse, names: Sequence[str])
         axes[0, 0].set_ylabel("acceleration / plate displacement [(m/s²)/m]")
     if drawn + len(names) <= MOST_NAMED:
         axes[0, 0].legend(loc="upper left", fontsize=8)
+
+
+def draw_histories(axes: Axes, time: Vector, histories: Mapping[str, tuple[Vector, str]]) -> None:
+    """Draw time histories; curves that the axes already have stay.
+
+    Args:
+        axes: axes, (channels, 1).
+        time: sample times [s], (n,).
+        histories: name of the channel to its samples, (n,), and their unit.
+    """
+    for axis, (name, (values, unit)) in zip(axes[:, 0], histories.items(), strict=True):
+        (colour,) = islice(cycle(COLOURS), len(axis.lines), len(axis.lines) + 1)
+        axis.plot(time, values, linewidth=0.7, color=colour, label=name)
+        axis.set(ylabel=f"{name}\n[{unit.replace('m/s2', 'm/s²')}]", xlim=(time[0], time[-1]))
+    axes[-1, 0].set_xlabel("time [s]")
