@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import shlex
 from dataclasses import replace
 from pathlib import Path
@@ -115,7 +116,16 @@ def parser() -> Parser:
         "uff with the places of the car. May be repeated",
     )
     figures_option(parser)
-    film_options(parser, "render a film of the run")
+    film = film_options(parser, "render a film of the run")
+    film.add_argument(
+        "--video-mode",
+        type=float,
+        nargs="?",
+        const=math.nan,
+        metavar="HZ",
+        help="show a mode beside the run: that nearest to this frequency [Hz], or that with the largest share in the "
+        "vertical acceleration of the seat rail",
+    )
     measured_options(parser)
     report_option(parser, "one HTML file with findings, figures, moving modes and tables", "the run")
     message_options(parser, quiet=True)
@@ -202,12 +212,15 @@ def _job(options: argparse.Namespace) -> None:
             from vehicle.drawing.rendering.crew import drawing_jobs
             from vehicle.drawing.rendering.film import film
             from vehicle.drawing.rendering.shot import Take
+            from vehicle.runs.car.main_mode import beside
 
             take = Take(
                 **take_settings(options),
                 speed=None if drive is None or drive.speed is None else drive.speed / 3.6,
                 profile=(signal.time, signal.profile) if signal.profile else None,
             )
+            if options.video_mode is not None:
+                take = replace(take, mode=beside(run, None if math.isnan(options.video_mode) else options.video_mode))
             progress = ProgressLine("film      ", enabled=not options.quiet)
             film(run, path, take, jobs=drawing_jobs(), progress=progress)
 

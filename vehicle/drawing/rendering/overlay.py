@@ -11,6 +11,7 @@ from PIL import Image, ImageDraw
 from vehicle.drawing.rendering.caption import Caption
 from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.drawing.rendering.layout import INK, PAPER, Layout, Picture
+from vehicle.drawing.rendering.mode_inset import LAMP, ModeInset
 from vehicle.drawing.rendering.trace_strip import TraceStrip
 
 STICK_COLOUR, SLIP_COLOUR = (tuple(bytes.fromhex(COLOURS[place][1:])) for place in (0, 1))
@@ -22,6 +23,8 @@ class Overlay(Caption):
 
     strip: TraceStrip
     """traces below the views"""
+    inset: ModeInset | None = None
+    """mode in place of the close-up"""
 
     def draw(self, picture: Picture, time: float, lamps: Mapping[str, bool]) -> Picture:
         """Compose a frame.
@@ -37,6 +40,8 @@ class Overlay(Caption):
         layout, image = self.layout, self.strip.backdrop.copy()
         image.paste(Image.fromarray(np.ascontiguousarray(picture)), (0, 0))
         pen = ImageDraw.Draw(image)
+        if self.inset is not None:
+            self.inset.write(image)
         self._head(image, f"t = {time:.3f} s")
         draw_lamps(pen, layout, lamps, (layout.width - layout.px(12), layout.px(12)))
         self._scale(image)
@@ -58,7 +63,7 @@ def draw_lamps(
         columns: number of columns.
     """
     px, font, (right, top) = layout.px, layout.font, corner
-    radius, row = px(9), px(30)
+    radius, row = px(9), px(LAMP)
     longest = max((font(16).getlength(label) for label in lamps), default=0.0)
     # A label, with the lamp on the left and the text on the right.
     width = max(px(236), round(longest) + px(112))

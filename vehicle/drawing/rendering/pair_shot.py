@@ -6,11 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 
-import mujoco
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from vehicle.drawing.rendering.cameras import whole_car
+from vehicle.drawing.rendering.cameras import farther, whole_car
 from vehicle.drawing.rendering.caption import Caption
 from vehicle.drawing.rendering.excerpt import Excerpt
 from vehicle.drawing.rendering.layout import INK, PAPER, Picture, TwoCars
@@ -34,9 +33,6 @@ from vehicle.errors import ConfigurationError
 SAME_PLATES = 0.05
 """Largest RMS of the difference of two plates over the RMS of the plate in films of one input: tyres of other sizes
 take a road a little differently."""
-
-WHOLE_AT = 1.575
-"""Width over height of a view from which the camera of the whole car has the whole car in it."""
 
 
 class PairShot:
@@ -138,12 +134,6 @@ def shared_excerpt(runs: Sequence[RecordedRun], take: Take) -> Excerpt:
     slips = [excerpt.reason == "most damper motion" for excerpt in excerpts]
     chosen = runs[slips.index(True) if any(slips) else 0]
     return excerpt_of(chosen, replace(take, slow=max(excerpt.slow for excerpt in excerpts)))
-
-
-def farther(camera: mujoco.MjvCamera, shape: float) -> mujoco.MjvCamera:
-    """Move a camera back, so that a narrow view of this width over height has the whole car in it."""
-    camera.distance *= max(WHOLE_AT / shape, 1.0)
-    return camera
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -11,6 +11,7 @@ import numpy as np
 from vehicle.drawing.rendering.cameras import close_up, whole_car
 from vehicle.drawing.rendering.excerpt import Excerpt, choose_excerpt
 from vehicle.drawing.rendering.layout import Layout, Picture
+from vehicle.drawing.rendering.mode_inset import BesideMode, ModeInset
 from vehicle.drawing.rendering.overlay import Overlay
 from vehicle.drawing.rendering.recorded_run import RecordedRun, dampers_of, hub_channel, level_words
 from vehicle.drawing.rendering.rounding import round_up
@@ -53,6 +54,8 @@ class Take:
     """speed on the road [m/s], to draw the moving road; None on a rig"""
     profile: tuple[Vector, Mapping[str, Vector]] | None = None
     """times [s], and heights of the road itself by wheel [m]; by default, the road is drawn as the plates move"""
+    mode: BesideMode | None = None
+    """mode to show in place of the close-up"""
 
     def __post_init__(self) -> None:
         if self.duration is not None and not 0.0 < self.duration < np.inf:
@@ -100,12 +103,14 @@ class Shot:
         excerpt = excerpt_of(run, take)
         self.layout = layout
         self.scene = scene = Scene(run, (layout.width, layout.view_height), excerpt, take.speed, take.profile)
+        self.inset = None if take.mode is None else ModeInset(scene, run.car.model, take.mode, layout)
         self.cut = cut_of(excerpt, scene.largest, take)
         self.scale_top = 1e-3 * round_up(1e3 * max(scene.node, AT_REST))
         self.visible = VISIBLE_TIME / np.sqrt(excerpt.slow)
         self.overlay = Overlay(
             layout=layout,
             heading=self._heading(run, excerpt.slow),
+            inset=self.inset,
             scale_top=1e3 * self.scale_top,
             strip=TraceStrip(
                 layout=layout,
@@ -124,23 +129,26 @@ class Shot:
         """
         views, scene = self._views(), self.scene
         with scene.opened(backend, self.cut.exaggeration, self.scale_top) as opened:
+            mode = None if self.inset is None else self.inset.drawing(opened.canvas)
             for number in range(first, self.cut.frames, every):
                 opened.draw(number, views)
+                if self.inset is not None and mode is not None:
+                    self.inset.draw(mode, number)
                 time = scene.times[number]
                 yield self.overlay.draw(opened.canvas.read(), time, scene.lamps(time))
 
     def _views(self) -> list[View]:
-        """Return the views of the whole car and of the suspension."""
+        """Return the view of the whole car, and that of the suspension in a film without a mode."""
         layout, scene = self.layout, self.scene
         model, wheel = scene.model, scene.wheel
         cleared = scene.unveiled.copy()
         rolling = next(placed.part for placed in scene.composition.wheels if placed.name == wheel)
         cleared[model.geom_matid[model.geom_bodyid == model.body(rolling).id]] = GHOST_OPACITY
+        whole = (whole_car(scene.vehicle), (0, 0, layout.main_width, layout.view_height), scene.opacity)
+        if self.inset is not None:
+            return [whole]
         right = (layout.main_width, 0, layout.width - layout.main_width, layout.view_height)
-        return [
-            (whole_car(scene.vehicle), (0, 0, layout.main_width, layout.view_height), scene.opacity),
-            (close_up(scene.motion, scene.vehicle, wheel), right, cleared),
-        ]
+        return [whole, (close_up(scene.motion, scene.vehicle, wheel), right, cleared)]
 
     def _heading(self, run: RecordedRun, slow: float) -> list[str]:
         """Return the heading: input and level, factors and excerpt."""
