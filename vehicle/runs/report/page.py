@@ -77,7 +77,7 @@ def report_page(
     """
     if not runs:
         raise ConfigurationError("report: no run; give at least one folder, as runs/low")
-    runs = _told_apart(runs)
+    runs = told_apart(runs)
     done = progress or (lambda fraction: None)
     modes = [modes_of(run) for run in runs]
     done(0.1)
@@ -108,7 +108,7 @@ def head_line(author: str = "", project: str = "") -> str:
     return ", ".join(filter(None, (project, author, date.today().isoformat(), package_version())))
 
 
-def _told_apart(runs: Sequence[FinishedRun]) -> list[FinishedRun]:
+def told_apart(runs: Sequence[FinishedRun]) -> list[FinishedRun]:
     """Return the runs with unique names: the parent folder is added to equal names, then a number."""
     names = [run.name for run in runs]
     longer = [

@@ -17,6 +17,7 @@ from vehicle.errors import DataError
 from vehicle.runs.car import Run
 from vehicle.runs.report.answer import what_changed
 from vehicle.runs.report.finished_run import FinishedRun, read_run, recorded_signal
+from vehicle.runs.report.page import told_apart
 
 SIMULATED = 0.2
 """Share of the progress of a film for the simulations."""
@@ -51,10 +52,7 @@ def film_of_two(
         MissingPartError, OutputError: see `film`.
     """
     told = progress or (lambda fraction: None)
-    saved = [read_run(folder) for folder in folders]
-    names = [run.name for run in saved]
-    if names[0] == names[1]:
-        saved = [replace(run, name=f"{run.place.resolve().parent.name}/{run.name}") for run in saved]
+    saved = told_apart([read_run(folder) for folder in folders])
     require_one_input({run.name: run for run in saved})
     again = []
     for count, run in enumerate(saved, 1):
@@ -71,7 +69,7 @@ def film_of_two(
         jobs=jobs,
         progress=lambda share: told(SIMULATED + (1.0 - SIMULATED) * share),
     )
-    off = max(deviation(run, new, cut.start, cut.end) for run, new in zip(saved, again, strict=True))
+    off = max(deviation(run, new) for run, new in zip(saved, again, strict=True))
     near = "equal" if off < ROUNDING else f"differ by {number(100.0 * off, 2)} % (RMS) from"
     return (
         f"{cut.start:.2f} to {cut.end:.2f} s, both runs simulated again by the engine mujoco; its curves {near} the "
@@ -95,19 +93,17 @@ def _simulated(run: FinishedRun) -> Run:
     return replace(run.car.run(signal, engine="mujoco"), road=run.summary["input"]["road"])
 
 
-def deviation(saved: FinishedRun, again: Run, start: float, end: float) -> float:
+def deviation(saved: FinishedRun, again: Run) -> float:
     """Return the RMS of the difference of a curve of the film from the saved one, over its RMS [-]; the largest.
 
     Args:
         saved: saved run.
         again: the same run, simulated again.
-        start, end: shown times [s].
     """
     old, new = saved.recording, again.recording
-    shown = (old.time >= start) & (old.time <= end)
     worst = 0.0
     for name in (f"plate_{saved.wheel}_displacement", "seat_rail_acc_z", f"damper_{saved.wheel}_velocity"):
-        if name in old.channels and name in new.channels and np.any(old[name][shown]):
-            off = np.interp(old.time[shown], new.time, new[name]) - old[name][shown]
-            worst = max(worst, float(np.sqrt(np.mean(off**2) / np.mean(old[name][shown] ** 2))))
+        if name in old.channels and name in new.channels and np.any(old[name]):
+            off = np.interp(old.time, new.time, new[name]) - old[name]
+            worst = max(worst, float(np.sqrt(np.mean(off**2) / np.mean(old[name] ** 2))))
     return worst
