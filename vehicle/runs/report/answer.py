@@ -68,7 +68,7 @@ def answer(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> Markup:
         changes[f"{run.name} against {before.name}"] = _changes(before, run)
     if all(changes.values()):
         title = "Change of comfort and loads"
-        caption = "green: smaller vibration or load, red: larger; grey: no rating"
+        caption = "blue: smaller vibration or load, amber: larger; grey: no rating"
         figure = drawing(partial(plot_changes, changes=changes, title=title, caption=caption), title)
     return fill("answer", texts=statements, figure=figure)
 
