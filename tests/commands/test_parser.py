@@ -26,6 +26,7 @@ LINES: dict[str, dict[str, tuple[list[str], list[str]]]] = {
         "a file of signals or a recorded road": (["--road", "C"], ["--road", "r.csv", "--speed", "channel:v"]),
         "a file of signals or of a measurement": (["--road", "C"], ["--road", "C", "--measured", "m.uff"]),
     },
+    "report": {"a film": (["A", "B"], ["A", "B", "--video"])},
     "sweep": {
         "a file of signals": (["--road", "C", "--road", "D"], ["--input", "low.csv"]),
         "a road": (["--input", "low.csv"], ["--road", "C"]),

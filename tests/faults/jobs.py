@@ -181,5 +181,7 @@ def commands(inputs: Path) -> list[Written]:
         job("body compare", ["body", "compare", "--output", "a", str(shipped)], [others[0]], [others[1]]),
         job("body participation", ["body", "participation", "--output", "a", "--damper"], ["stuck"], ["sliding"]),
         job("modes --video", ["modes", "--video", "a.mp4", "--animate"], ["20"], ["30"]),
+        job("report --video", ["report", "--output", "a.html", "--video", "a.mp4", "--video-duration", "0.1"],
+            [str(runs[0])] * 2, [str(runs[1])] * 2),
         signals("shaker --video", "shaker", "--no-figures", "--output", "a", "--video", "--video-duration", "0.1"),
     ]  # fmt: skip

@@ -151,21 +151,10 @@ def _check_film_options(options: argparse.Namespace) -> None:
     require_film()
 
 
-def nearest(modes: Sequence[Any], frequency: float) -> Any:
-    """Return the mode whose natural frequency [Hz] is nearest; unstable motions are left out.
-
-    Raises:
-        ConfigurationError: the car has no mode.
-    """
-    swinging = [mode for mode in modes if mode.frequency > 0.0 and not mode.grows]
-    if not swinging:
-        raise ConfigurationError(f"--animate {frequency:g}: this car has no mode up to 60 Hz; leave it out")
-    return min(swinging, key=lambda mode: abs(mode.frequency - frequency))
-
-
 def _film(options: argparse.Namespace, car: Any) -> dict[str, Any]:
     """Write the film of a mode, and return its description and path."""
     from vehicle.drawing.rendering.mode_film import mode_film
+    from vehicle.runs.car.main_mode import nearest
     from vehicle.runs.output.folder import write_whole
 
     mode = nearest(car.modes(options.damper), options.animate)

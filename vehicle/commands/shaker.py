@@ -13,6 +13,7 @@ from vehicle.commands.command_line import ProgressLine, command
 from vehicle.commands.compare import measured_beside, measured_options
 from vehicle.commands.crank_speed import crank_overrides, steady_points
 from vehicle.commands.destination import output_folder_of, path_beside, report_path
+from vehicle.commands.film_options import check_film_options, film_options, take_settings
 from vehicle.commands.input_options import (
     RECORD_NEEDS,
     drives_on_road,
@@ -120,23 +121,16 @@ def parser() -> Parser:
         "uff with the places of the car. May be repeated",
     )
     figures_option(parser)
-    parser.add_argument("--video", nargs="?", const="", metavar="FILE.mp4", help="render a film of the run")
-    film = parser.scoped_group("a film", needs="--video", active=lambda options: options.video is not None)
-    film.add_argument("--video-start", type=float, metavar="S", help="start of the excerpt [s]; chosen by default")
+    film = film_options(parser, "render a film of the run")
     film.add_argument(
-        "--video-duration",
+        "--video-mode",
         type=float,
-        metavar="S",
-        help="length of the film [s], 10 by default, shorter for a bump or an obstacle; slow motion shows less of the "
-        "record in it",
+        nargs="?",
+        const=math.nan,
+        metavar="HZ",
+        help="show a mode beside the run: that nearest to this frequency [Hz], or that with the largest share in the "
+        "vertical acceleration of the seat rail",
     )
-    film.add_argument(
-        "--slow-motion",
-        type=float,
-        metavar="N",
-        help="play N times slower; by default 1, or as much as a wheel that moves faster than 15 Hz needs",
-    )
-    film.add_argument("--exaggeration", type=float, metavar="N", help="motion N times larger; chosen by default")
     measured_options(parser)
     report_option(parser, "one HTML file with findings, figures, moving modes and tables", "the run")
     message_options(parser, quiet=True)
@@ -173,7 +167,7 @@ def _job(options: argparse.Namespace) -> None:
     inputs = tuple(
         path for path in (source, options.vehicle, options.measured, options.controller) if isinstance(path, Path)
     )
-    _check_numbers(options)
+    check_film_options(options)
     output = output_folder_of(options, Path("runs") / stem, protect=inputs)
     if "h5" in options.formats:
         from vehicle.signals.formats.optional_library import extra
@@ -223,15 +217,15 @@ def _job(options: argparse.Namespace) -> None:
             from vehicle.drawing.rendering.crew import drawing_jobs
             from vehicle.drawing.rendering.film import film
             from vehicle.drawing.rendering.shot import Take
+            from vehicle.runs.car.main_mode import beside
 
             take = Take(
-                start=options.video_start,
-                duration=options.video_duration,
-                slow=options.slow_motion,
-                exaggeration=options.exaggeration,
+                **take_settings(options),
                 speed=None if drive is None or drive.speed is None else drive.speed / 3.6,
                 profile=(signal.time, signal.profile) if signal.profile else None,
             )
+            if options.video_mode is not None:
+                take = replace(take, mode=beside(run, None if math.isnan(options.video_mode) else options.video_mode))
             progress = ProgressLine("film      ", enabled=not options.quiet)
             film(run, path, take, jobs=drawing_jobs(), progress=progress)
 
@@ -334,19 +328,6 @@ def _controller_overrides(options: argparse.Namespace) -> list[str]:
     texts = [f"law={FMU}", f"fmu={file}"]
     texts += [f"fmu_sha256={digest(options.controller)}"] if options.trust else []
     return [f"{path}.control.{text}" for path in paths for text in texts]
-
-
-def _check_numbers(options: argparse.Namespace) -> None:
-    """Check the numeric options of the film before the simulation."""
-    wanted = (
-        ("--slow-motion", options.slow_motion, 1.0, "at least 1"),
-        ("--video-duration", options.video_duration, 0.1, "at least 0.1 s"),
-        ("--exaggeration", options.exaggeration, 1e-3, "at least 0.001"),
-        ("--video-start", options.video_start, 0.0, "at least 0 s"),
-    )
-    for name, value, lowest, allowed in wanted:
-        if value is not None and not lowest <= value < math.inf:
-            raise ConfigurationError(f"{name} {value:g}: must be a finite number, {allowed}")
 
 
 def _engine(options: argparse.Namespace) -> tuple[str, str]:

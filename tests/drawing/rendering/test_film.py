@@ -127,7 +127,7 @@ def test_sizes_that_cannot_be_encoded_or_read_are_refused(size, message):
 def test_lamps_show_the_slip_of_each_damper(run):
     prepared = shot(run, start=0.0, duration=0.3)
     blank = np.full((prepared.layout.view_height, 320, 3), 200, dtype=np.uint8)
-    before, after = prepared._lamps(0.10), prepared._lamps(0.20)
+    before, after = prepared.scene.lamps(0.10), prepared.scene.lamps(0.20)
     assert before == {"damper right": False, "damper left": False}
     assert after == {"damper right": True, "damper left": False}
     for lamps, colours in ((before, {STICK_COLOUR}), (after, {STICK_COLOUR, SLIP_COLOUR})):
@@ -140,8 +140,8 @@ def test_lamps_show_the_slip_of_each_damper(run):
 def test_a_short_slip_between_two_frames_lights_the_lamp(run):
     prepared = shot(run, start=0.0, duration=0.3)
     # Slip begins at 0.15 s; the frame at 0.14 s stands for 0.123 to 0.157 s.
-    assert prepared._lamps(0.14)["damper right"]
-    assert not prepared._lamps(0.13)["damper right"]
+    assert prepared.scene.lamps(0.14)["damper right"]
+    assert not prepared.scene.lamps(0.13)["damper right"]
 
 
 @pytest.mark.render

@@ -11,13 +11,15 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from vehicle.commands import modes as command
-from vehicle.drawing.rendering import backend, mode_film
+from vehicle.drawing.rendering import backend, mode_film, mode_motion
 from vehicle.drawing.rendering.backend import find_ffmpeg
 from vehicle.drawing.rendering.layout import OneView
-from vehicle.drawing.rendering.mode_film import ModeMotion, ModeShot
+from vehicle.drawing.rendering.mode_film import ModeShot
+from vehicle.drawing.rendering.mode_motion import ModeMotion
 from vehicle.drawing.rendering.wireframe import car_wireframe
 from vehicle.errors import ConfigurationError, MissingPartError
 from vehicle.runs.car import Car
+from vehicle.runs.car.main_mode import nearest
 
 SMALL = 1e-5
 """Amplitude [m, rad] of the mode that is compared; the second order is SMALL of it."""
@@ -32,7 +34,8 @@ def modes(car):
 
 @pytest.fixture
 def few_frames(monkeypatch):
-    monkeypatch.setattr(mode_film, "PERIOD", 4)
+    for module in (mode_film, mode_motion):
+        monkeypatch.setattr(module, "PERIOD", 4)
 
 
 @pytest.mark.parametrize("phase", [0.0, 0.7, 2.5])
@@ -56,11 +59,11 @@ def test_a_mode_moves_the_bodies_as_mujoco_does(stage, modes, phase):
 def test_the_farthest_point_moves_as_the_heading_says(car, modes, few_frames, number):
     shot = ModeShot(car, modes[number], OneView(width=320, height=180))
     wire = car_wireframe(car)
-    nodes = len(shot.wireframe.rest)
+    nodes = len(shot.cycle.wireframe.rest)
     moved = wire.displacement(modes[number].shape)
     share = np.linalg.norm(moved, axis=1) / np.linalg.norm(moved, axis=1).max()
     # Of a node at its two quadratures: |Re|^2 + |Im|^2 is the square of its amplitude.
-    drawn = [shot.wireframe.displacement(shot.states[frame]) for frame in (0, 1)]
+    drawn = [shot.cycle.wireframe.displacement(shot.cycle.states[frame]) for frame in (0, 1)]
     np.testing.assert_allclose(np.hypot(*drawn), 1e-3 * share[:nodes], rtol=1e-3, atol=1e-6)
     assert shot.caption.heading[0].startswith(f"{modes[number].frequency:.2f} Hz, damping ratio ")
     assert "moves 1 mm, exaggerated 100 times" in shot.caption.heading[2]
@@ -83,12 +86,12 @@ def test_the_cycles_of_the_film_join(car, modes, few_frames, tmp_path):
 
 def test_the_nearest_mode_is_taken(modes):
     own = [mode.frequency for mode in modes]
-    assert command.nearest(modes, own[3] + 0.4 * (own[4] - own[3])) is modes[3]
-    assert command.nearest(modes, 500.0) is modes[-1]
+    assert nearest(modes, own[3] + 0.4 * (own[4] - own[3])) is modes[3]
+    assert nearest(modes, 500.0) is modes[-1]
     growing = SimpleNamespace(frequency=28.0, grows=True)
-    assert command.nearest([*modes, growing], 28.0) is not growing
+    assert nearest([*modes, growing], 28.0) is not growing
     with pytest.raises(ConfigurationError, match="has no mode up to 60 Hz"):
-        command.nearest([growing], 28.0)
+        nearest([growing], 28.0)
 
 
 @pytest.mark.parametrize(

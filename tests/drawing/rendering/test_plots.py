@@ -19,6 +19,7 @@ from vehicle.drawing.rendering.figure import FADED, wrapped_phase
 from vehicle.drawing.rendering.frf_plot import plot_frfs
 from vehicle.drawing.rendering.plots import distinct, envelope, plot_frf, plot_time
 from vehicle.drawing.rendering.recorded_run import liveliest
+from vehicle.drawing.rendering.tornado_plot import ROUGHER, SMOOTHER, draw_tornado
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.analysis.motion_response import MotionResponse
@@ -259,3 +260,19 @@ def test_figures_of_runs_that_are_compared_have_equal_scales(long_run, tmp_path,
     plot_time(tmp_path / "time.png", long_run, page=True)
     limits = [[axis.get_ylim() for axis in every_axis(figure)] for figure in figures]
     assert limits[0] == limits[1] != limits[2]
+
+
+def test_the_colour_of_a_bar_says_smoother_or_rougher_and_its_text_which_value():
+    axis = Figure().subplots()
+    changes = np.array([[24.5, -14.8], [-11.4, np.nan]])
+    draw_tornado(axis, ["body.mass", "tyre"], changes, np.array([4.1, np.nan]), ("-20 %", "+20 %"))
+    bars = {bar.get_width(): matplotlib.colors.to_hex(bar.get_facecolor()) for bar in axis.patches}
+    assert bars == {24.5: ROUGHER, -14.8: SMOOTHER, -11.4: SMOOTHER, 0.0: SMOOTHER}
+    texts = [(text.get_text(), *text.xy) for text in axis.texts]
+    assert texts == [
+        ("-20 %", pytest.approx(28.6), -0.19),
+        ("-20 %", -11.4, 0.81),
+        ("+20 %", pytest.approx(-18.9), 0.19),
+        ("+20 % failed", 0.0, 1.19),
+    ]
+    assert axis.get_xlabel().endswith("blue: smoother, amber: rougher")

@@ -107,9 +107,9 @@ def test_the_road_passes_in_the_film(road_run):
     assert any(
         line.endswith("heights in numbers: effective, as the tyre takes them") for line in driving.overlay.heading
     )
-    names = {driving.model.geom(number).name for number in range(driving.model.ngeom)}
+    names = {driving.scene.model.geom(number).name for number in range(driving.scene.model.ngeom)}
     standing = Shot(road_run, layout, take)
-    rig = {standing.model.geom(number).name for number in range(standing.model.ngeom)} - names
+    rig = {standing.scene.model.geom(number).name for number in range(standing.scene.model.ngeom)} - names
     assert rig == {
         *("plate_fr", "plate_inserts_fr", "plate_fl", "plate_rr", "plate_inserts_rr", "plate_rl", "bed_plate"),
         *("shaker_fr", "shaker_frame_fr", "pedestal_fl", "shaker_rr", "shaker_frame_rr", "pedestal_rl"),

@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 
 from tests.patience import HANG
-from vehicle.drawing.rendering.backend import find_ffmpeg
+from vehicle.drawing.rendering.backend import film_available, find_ffmpeg
 from vehicle.runs.report.film_section import BUDGET, embedded, film
 from vehicle.runs.report.finished_run import read_run
+from vehicle.runs.report.pair_film import film_of_two
 
 pytest.importorskip("mediapy", reason="mediapy is missing: pip install 'vehicle-on-shaker[video]'")
 
@@ -75,3 +76,21 @@ def test_the_report_has_the_film_a_picture_for_paper_or_a_sentence(reported, lar
     left_out = film(run, share=1e-5)
     assert left_out is not None and "is too large for this page" in left_out and "base64" not in left_out
     assert film(read_run(reported.folder)) is None
+
+
+@pytest.mark.render
+def test_two_saved_runs_make_a_film(reported, tmp_path):
+    """A run beside itself: both halves are one picture, and the new simulation has the curves of the saved run."""
+    if (reason := film_available()) is not None:
+        pytest.skip(reason)
+    path = tmp_path / "both.mp4"
+    said = film_of_two([reported.folder] * 2, path, {"start": 0.5, "duration": 0.1, "slow": 1.0}, size=(320, 180))
+    assert said.startswith("0.50 to 0.57 s, both runs simulated again by the engine mujoco; its curves differ by ")
+    share = float(re.search(r"differ by ([\d.]+) %", said)[1])
+    assert share < 5.0, "the saved run is of the reduced engine, for small rotations"
+    command = [find_ffmpeg(), "-loglevel", "error", "-i", str(path), "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
+    raw = subprocess.run(command, capture_output=True, check=True, timeout=HANG).stdout
+    frames = np.frombuffer(raw, dtype=np.uint8).reshape(-1, 180, 320, 3).astype(int)
+    assert len(frames) == 3
+    car = frames[:, 70:140]
+    assert np.abs(car[:, :, 4:156] - car[:, :, 164:316]).mean() < 3.0 < car[0].std()

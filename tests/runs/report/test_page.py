@@ -105,16 +105,26 @@ def empty_figure(path, *arguments, **options):
     path.write_text('<svg viewBox="0 0 1 1"></svg>')
 
 
-def test_runs_stand_beside_each_other(reported, tmp_path, monkeypatch):
-    """The figures of each run are those of a single one, and are left out here."""
+def test_runs_stand_beside_each_other(reported, tmp_path, monkeypatch, capsys):
+    """The figures of each run are those of a single one, and are left out here, as is the film of both."""
+
+    def film(folders, path, take, **options):
+        assert folders == [reported.folder] * 2 and take["slow"] == 4.0
+        path.write_bytes(b"film")
+        return "as they are"
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("vehicle.runs.report.pair_film.film_of_two", film)
+    monkeypatch.setattr("vehicle.drawing.rendering.backend.require_film", lambda: "osmesa")
     monkeypatch.setattr("vehicle.runs.report.sections.plot_time", empty_figure)
     monkeypatch.setattr("vehicle.runs.report.response_section.plot_frfs", empty_figure)
     page = tmp_path / "two.html"
-    assert main([str(reported.folder), str(reported.folder), "--output", str(page), "--quiet"]) == 0
+    assert main([*[str(reported.folder)] * 2, "--output", str(page), "--video", "--slow-motion", "4"]) == 0
+    assert "film        film.mp4: as they are" in capsys.readouterr().out
     found = Outline()
     found.feed(page.read_text(encoding="utf-8"))
-    wanted = ["Result", "Comparison of the runs", "Frequency responses and spectra", "Time histories"]
-    assert found.titles[:4] == wanted and found.titles[5:] == ["Modes", "Each run"]
+    wanted = ["Result", "Film", "Comparison of the runs", "Frequency responses and spectra", "Time histories"]
+    assert found.titles[:5] == wanted and found.titles[6:] == ["Modes", "Each run"]
     assert "None: the cars have equal parameters." in found.words
     assert page.stat().st_size < 6e6
 
@@ -232,6 +242,7 @@ def test_parameters_are_in_words():
         (["nowhere"], "nowhere: is no folder; give the folder of a run"),
         (["."], "has no summary.json; give the folder of a run"),
         (["{run}", "--output", "page.txt"], "--output page.txt: this file is written as .html"),
+        (["{run}", "--video"], "--video: shows two runs side by side, found 1"),
         (["{run}", "--output", "mine.html", "--force"], "--output mine.html: is not as this program wrote it there"),
     ],
 )

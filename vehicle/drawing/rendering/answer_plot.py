@@ -19,9 +19,10 @@ from vehicle.drawing.rendering.figure import (
     saved_figure,
     wrapped,
 )
+from vehicle.drawing.rendering.tornado_plot import ROUGHER, SMOOTHER
 from vehicle.signals.analysis.samples import Vector
 
-BETTER, WORSE, NEUTRAL = COLOURS[2], COLOURS[1], "#9aa5b1"
+BETTER, WORSE, NEUTRAL = SMOOTHER, ROUGHER, "#9aa5b1"
 """Colours of a change: smaller vibration or load, larger vibration or load, no rating."""
 
 FULL_PANEL = 1.0

@@ -26,6 +26,16 @@ def whole_car(vehicle: Vehicle) -> mujoco.MjvCamera:
     return camera
 
 
+WHOLE_AT = 1.575
+"""Width over height of a view from which the camera of the whole car has the whole car in it."""
+
+
+def farther(camera: mujoco.MjvCamera, shape: float) -> mujoco.MjvCamera:
+    """Move a camera back, so that a narrow view of this width over height has the whole car in it."""
+    camera.distance *= max(WHOLE_AT / shape, 1.0)
+    return camera
+
+
 def close_up(motion: Motion, vehicle: Vehicle, wheel: str) -> mujoco.MjvCamera:
     """Return a camera on the suspension of a wheel from the front outside, aimed between hub and highest point."""
     hub = motion.position[motion.model.body(hub_of(vehicle.composition, wheel)).id]

@@ -28,6 +28,9 @@ REACH = 0.5
 ARM = 1.2
 """Drawn length of a line from a contact point to a swing centre that lies farther away [m]."""
 
+OVER_LINES = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5}
+"""White behind a text that may lie over lines."""
+
 
 def plot_car(path: Path, wire: CarWireframe, data: Any, size: tuple[float, float] = (11.0, 8.0)) -> None:
     """Write the drawing of a car.
@@ -80,7 +83,7 @@ def _side_view(axes: Axes, wire: CarWireframe, data: Any) -> None:
             ends.append(float(end[0]))
             angle = f"brake support {geometry.brake_support_deg:.1f}°"
             axes.annotate(angle, (end[0], end[1]), (0.0, 6.0), textcoords="offset points", color=CONSTRUCTION,
-                          ha="center", fontsize=8)  # fmt: skip
+                          ha="center", fontsize=8, bbox=OVER_LINES)  # fmt: skip
         load = f"{axle.name} {sum(axle.load_n.values()):.0f} N"
         axes.annotate(load, (axle.x_m, level), (-6.0 * towards, -3.0), textcoords="offset points", fontsize=8,
                       ha="right" if axle.front else "left", color=INK)  # fmt: skip
@@ -113,7 +116,7 @@ def _axle_view(axes: Axes, wire: CarWireframe, data: Any, axle: Any) -> None:
             _arm(axes, np.array([side * half, ground]), centre, whole=True)
         axes.plot(*centre, "o", color=CENTRE, markersize=6)
         axes.annotate(f"roll centre {1e3 * geometry.roll_centre_height_m:.0f}", (centre[0], centre[1]), (0.0, 9.0),
-                      textcoords="offset points", ha="center", color=CENTRE, fontsize=8)  # fmt: skip
+                      textcoords="offset points", ha="center", color=CENTRE, fontsize=8, bbox=OVER_LINES)  # fmt: skip
     if math.isfinite(geometry.caster_deg):
         for side in (1.0, -1.0):
             foot = np.array([side * (half - geometry.scrub_radius_m), ground])

@@ -8,14 +8,26 @@ from collections.abc import Iterator
 from contextlib import closing
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
+from typing import Protocol
 
 import numpy as np
 
 from vehicle.drawing.rendering.backend import variables
-from vehicle.drawing.rendering.layout import Picture
-from vehicle.drawing.rendering.shot import Shot
+from vehicle.drawing.rendering.layout import Layout, Picture
+from vehicle.drawing.rendering.shot import Cut
 from vehicle.errors import OutputError
 from vehicle.threads import one_thread_each
+
+
+class Drawable(Protocol):
+    """Excerpt for drawing frame by frame, in other processes too."""
+
+    layout: Layout
+    cut: Cut
+
+    def frames(self, backend: str, first: int = 0, every: int = 1) -> Iterator[Picture]:
+        """Draw frames; see `Shot.frames`."""
+
 
 WORTH_A_PROCESS = 40
 """Minimum number of frames for each process: fewer are drawn faster than a process starts."""
@@ -29,7 +41,7 @@ def drawing_jobs() -> int:
     return min(len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1, MOST)
 
 
-def drawn_by(jobs: int, shot: Shot, backend: str) -> Iterator[Picture]:
+def drawn_by(jobs: int, shot: Drawable, backend: str) -> Iterator[Picture]:
     """Yield all frames of a shot in order, (height, width, 3) each.
 
     Process k of n draws the frames k, k + n, k + 2 n and so on. Each process is at most one frame ahead: it waits until
@@ -69,7 +81,7 @@ def drawn_by(jobs: int, shot: Shot, backend: str) -> Iterator[Picture]:
             process.join()
 
 
-def _draw(shot: Shot, backend: str, first: int, every: int, sender: Connection) -> None:
+def _draw(shot: Drawable, backend: str, first: int, every: int, sender: Connection) -> None:
     """Draw every n-th frame and send it to the main process."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the main process ends the others
     os.environ.update(variables(backend))

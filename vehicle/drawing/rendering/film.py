@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 
 from vehicle.drawing.rendering.backend import choose_backend, find_ffmpeg
-from vehicle.drawing.rendering.crew import drawn_by
+from vehicle.drawing.rendering.crew import Drawable, drawn_by
 from vehicle.drawing.rendering.excerpt import FPS
-from vehicle.drawing.rendering.layout import Layout, Picture
+from vehicle.drawing.rendering.layout import Layout, Picture, TwoCars
+from vehicle.drawing.rendering.pair_shot import PairShot
 from vehicle.drawing.rendering.recorded_run import RecordedRun
 from vehicle.drawing.rendering.shot import Cut, Shot, Take
 from vehicle.errors import OutputError
@@ -49,9 +50,40 @@ def film(
         MissingPartError: an off-screen OpenGL library or ffmpeg is missing.
         OutputError: the file cannot be written.
     """
+    return _written(Shot(run, Layout(width=size[0], height=size[1]), take or Take()), path, jobs, progress)
+
+
+def pair_film(
+    runs: Mapping[str, RecordedRun],
+    difference: str,
+    path: Path,
+    take: Take | None = None,
+    *,
+    size: tuple[int, int] = (1280, 720),
+    jobs: int = 1,
+    progress: Callable[[float], None] | None = None,
+) -> Cut:
+    """Write a film of two runs of one input, side by side.
+
+    Args:
+        runs: name to run, two; the first is the reference.
+        difference: what differs, in a line.
+        path, take, size, jobs, progress: see `film`.
+
+    Returns:
+        The excerpt in the film.
+
+    Raises:
+        ConfigurationError: the inputs or lengths of the runs differ, or an option is out of range.
+        MissingPartError, OutputError: see `film`.
+    """
+    shot = PairShot(runs, difference, TwoCars(width=size[0], height=size[1]), take or Take())
+    return _written(shot, path, jobs, progress)
+
+
+def _written(shot: Drawable, path: Path, jobs: int, progress: Callable[[float], None] | None) -> Cut:
+    """Write the film of a shot, and return its excerpt."""
     backend = choose_backend()
-    layout = Layout(width=size[0], height=size[1])
-    shot = Shot(run, layout, take or Take())
 
     def counted() -> Iterator[Picture]:
         for number, frame in enumerate(drawn_by(jobs, shot, backend), start=1):
@@ -59,7 +91,7 @@ def film(
             if progress is not None:
                 progress(number / shot.cut.frames)
 
-    write_film(path, counted(), (layout.height, layout.width))
+    write_film(path, counted(), (shot.layout.height, shot.layout.width))
     return shot.cut
 
 

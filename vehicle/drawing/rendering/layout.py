@@ -53,6 +53,11 @@ class Layout:
         return round(0.79 * self.height)
 
     @property
+    def trace_top(self) -> int:
+        """Return the upper edge of the traces [pixel]."""
+        return self.view_height
+
+    @property
     def main_width(self) -> int:
         """Return the width of the view of the whole car [pixel]."""
         return round(0.70 * self.width)
@@ -69,6 +74,30 @@ class Layout:
     def font(self, size: float, bold: bool = False) -> ImageFont.FreeTypeFont:
         """Return the font for a size in a picture of 720 lines, with a readable minimum."""
         return font(max(round(size * self.height / 720.0), 6), bold)
+
+
+class TwoCars(Layout):
+    """Frame with two cars side by side, a caption above them and traces along the bottom."""
+
+    @property
+    def caption_height(self) -> int:
+        """Return the height of the caption [pixel]."""
+        return round(0.16 * self.height)
+
+    @property
+    def view_height(self) -> int:
+        """Return the height of the views [pixel]."""
+        return round(0.79 * self.height) - self.caption_height
+
+    @property
+    def trace_top(self) -> int:
+        """Return the upper edge of the traces [pixel]."""
+        return self.caption_height + self.view_height
+
+    @property
+    def main_width(self) -> int:
+        """Return the width of the view of a car [pixel]."""
+        return self.width // 2
 
 
 class OneView(Layout):

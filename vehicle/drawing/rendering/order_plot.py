@@ -15,7 +15,7 @@ Vector = npt.NDArray[np.float64]
 DEEPEST = 60.0
 """Range of the colours of a map below its largest amplitude [dB]."""
 
-APART = 0.028
+APART = 0.032
 """Smallest distance of two names of modes, over the height of the map."""
 
 LABEL = 44
@@ -81,6 +81,8 @@ def plot_campbell(
         spectrum: amplitudes; (k, f).
         modes: frequency [Hz] and name of each mode.
     """
+    from matplotlib.patheffects import withStroke
+
     top = float(np.max(spectrum[:, 1:]))
     decibel = 20.0 * np.log10(np.maximum(spectrum / top, 10.0 ** (-DEEPEST / 20.0)))
     with saved_figure(path, (9.5, 6.2), title, caption) as figure:
@@ -93,14 +95,17 @@ def plot_campbell(
         )
         bar = figure.colorbar(image, ax=axes, location="left", pad=0.09, shrink=0.8)
         bar.set_label(f"{labels[1]}, dB below {top:.3g}")
+        outlined = [withStroke(linewidth=2.4, foreground="#222222")]  # white is not seen on yellow
+        top_line = float(frequency[-1])
         for order in orders:
-            axes.plot(
-                edges[[0, -1]], order * turns[-1] / points[-1] * edges[[0, -1]], "--", color="white", linewidth=0.9
-            )
-            axes.annotate(
-                f"order {order:g}", (edges[-1], order * turns[-1] / points[-1] * edges[-1]), color="white", fontsize=8,
-                xytext=(-8, -10), textcoords="offset points", ha="right",
-            )  # fmt: skip
+            slope = order * turns[-1] / points[-1]
+            axes.plot(edges[[0, -1]], slope * edges[[0, -1]], "--", color="white", linewidth=0.9, path_effects=outlined)
+            if slope * edges[0] < top_line:
+                end = min(edges[-1], top_line / slope)
+                axes.annotate(
+                    f"order {order:g}", (end, slope * end), color="white", fontsize=9, path_effects=outlined,
+                    xytext=(-8, -12), textcoords="offset points", ha="right",
+                )  # fmt: skip
         axes.set(xlim=edges[[0, -1]], ylim=(0.0, float(frequency[-1])), xlabel=labels[0], ylabel="frequency [Hz]")
         axes.grid(visible=False)
         height = -1.0
@@ -110,6 +115,6 @@ def plot_campbell(
             short = name if len(name) <= LABEL else f"{name[: LABEL - 1]}…"
             axes.annotate(
                 f"{value:.1f} Hz {short}", (1.0, value / float(frequency[-1])), xycoords="axes fraction",
-                xytext=(1.015, height), textcoords="axes fraction", fontsize=7, color=INK, va="center",
+                xytext=(1.015, height), textcoords="axes fraction", fontsize=8, color=INK, va="center",
                 annotation_clip=False,
             )  # fmt: skip

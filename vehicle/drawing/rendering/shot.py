@@ -2,48 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import closing
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import mujoco
 import numpy as np
 
-from vehicle.drawing.rendering.body_wireframe import Wireframe
 from vehicle.drawing.rendering.cameras import close_up, whole_car
-from vehicle.drawing.rendering.canvas import Canvas
-from vehicle.drawing.rendering.drawing import Drawing
-from vehicle.drawing.rendering.excerpt import FPS, choose_excerpt
-from vehicle.drawing.rendering.force_arrows import ForceArrows
+from vehicle.drawing.rendering.excerpt import Excerpt, choose_excerpt
 from vehicle.drawing.rendering.layout import Layout, Picture
-from vehicle.drawing.rendering.motion import Motion, RecordedMotion
+from vehicle.drawing.rendering.mode_inset import BesideMode, ModeInset
 from vehicle.drawing.rendering.overlay import Overlay
-from vehicle.drawing.rendering.recorded_run import (
-    RecordedRun,
-    dampers_of,
-    hub_channel,
-    hub_of,
-    level_words,
-    wheels_of,
-)
-from vehicle.drawing.rendering.road_strip import RoadStrip
-from vehicle.drawing.rendering.rolling import RollingWheel
-from vehicle.drawing.rendering.rounding import round_factor, round_up
+from vehicle.drawing.rendering.recorded_run import RecordedRun, dampers_of, hub_channel, level_words
+from vehicle.drawing.rendering.rounding import round_up
+from vehicle.drawing.rendering.scene import AT_REST, Scene, View, exaggeration_of, frames_of
 from vehicle.drawing.rendering.trace_strip import Trace, TraceStrip
 from vehicle.errors import ConfigurationError
 from vehicle.names import side_of
 from vehicle.signals.analysis.samples import Vector
-
-VISIBLE_TRAVEL = 0.08
-"""Travel [m] to which the largest displacement of the excerpt is exaggerated."""
-
-LARGEST_FACTOR = 1000.0
-"""Maximum automatic exaggeration."""
-
-AT_REST = 1e-6
-"""Maximum displacement of a car at rest [m], which is not exaggerated; static equilibrium is exact to 1e-9 m, rounding
-is below that."""
 
 FASTEST_MOTION = 40.0
 """Maximum frequency [Hz] of visible motion; the heading of a film with fewer than two frames per period states it."""
@@ -78,6 +54,8 @@ class Take:
     """speed on the road [m/s], to draw the moving road; None on a rig"""
     profile: tuple[Vector, Mapping[str, Vector]] | None = None
     """times [s], and heights of the road itself by wheel [m]; by default, the road is drawn as the plates move"""
+    mode: BesideMode | None = None
+    """mode to show in place of the close-up"""
 
     def __post_init__(self) -> None:
         if self.duration is not None and not 0.0 < self.duration < np.inf:
@@ -122,50 +100,24 @@ class Shot:
     """
 
     def __init__(self, run: RecordedRun, layout: Layout, take: Take) -> None:
-        # Attributes must be picklable for other processes, so they contain no model specification; there, drawing
-        # imports no shapes.
-        from vehicle.drawing.rendering.stage import stage_model, unveiled
-
-        recording, vehicle = run.recording, run.car.model.vehicle
-        self.recording, self.vehicle, self.wheel = recording, vehicle, run.wheel
-        self.layout, self.composition = layout, vehicle.composition
-        self.wheels, self.dampers, self.hub = (
-            wheels_of(recording),
-            dampers_of(recording),
-            hub_channel(vehicle.composition, run.wheel),
-        )
-        record = float(recording.time[-1])
-        self.slip = vehicle.damper.slip_velocity if self.dampers else 0.0
-        if take.start is not None and not 0.0 <= take.start < record:
-            raise ConfigurationError(f"film, start: found {take.start:g} s, the record goes from 0 to {record:g} s")
-        excerpt = choose_excerpt(
-            recording, run.wheel, self.hub, self.slip, start=take.start, duration=take.duration, slow=take.slow
-        )
-        start, slow, interval = excerpt.start, excerpt.slow, 1.0 / (FPS * excerpt.slow)
-        frames = max(int(excerpt.length * slow * FPS + 1e-9), 1)
-        self.model = stage_model(run.car.model, (layout.width, layout.view_height), road=take.speed is not None)
-        self.opacity = self.model.mat_rgba[:, 3].copy()  # drawing changes the values of the model
-        self.unveiled = unveiled(self.model)
-        self.motion = Motion(self.model)
-        self.wireframe = Wireframe(run.car.model, self.motion)
-        recorded = RecordedMotion(self.model, recording, start, start + excerpt.length)
-        self.states = [recorded.at(start + number * interval, interval) for number in range(frames)]
-        largest, node = self._largest()
-        self.rests = largest < AT_REST
-        chosen = 1.0 if self.rests else round_factor(min(VISIBLE_TRAVEL / largest, LARGEST_FACTOR))
-        factor = chosen if take.exaggeration is None else take.exaggeration
-        self.cut = Cut(start=start, frames=frames, interval=interval, exaggeration=factor, reason=excerpt.reason)
-        self.arrows = ForceArrows(self.motion, self.composition, recording, start, start + excerpt.length)
-        self.road = None
-        if take.speed is not None:
-            self.road = RoadStrip(self.composition.wheels, recording, take.speed, interval, take.profile)
-        self.visible = VISIBLE_TIME / np.sqrt(slow)
-        self.scale_top = 1e-3 * round_up(1e3 * max(node, AT_REST))
+        excerpt = excerpt_of(run, take)
+        self.layout = layout
+        self.scene = scene = Scene(run, (layout.width, layout.view_height), excerpt, take.speed, take.profile)
+        self.inset = None if take.mode is None else ModeInset(scene, run.car.model, take.mode, layout)
+        self.cut = cut_of(excerpt, scene.largest, take)
+        self.scale_top = 1e-3 * round_up(1e3 * max(scene.node, AT_REST))
+        self.visible = VISIBLE_TIME / np.sqrt(excerpt.slow)
         self.overlay = Overlay(
             layout=layout,
-            heading=self._heading(run, slow),
+            heading=self._heading(run, excerpt.slow),
+            inset=self.inset,
             scale_top=1e3 * self.scale_top,
-            strip=TraceStrip(layout=layout, time=recording.time, traces=self._traces(), visible=self.visible),
+            strip=TraceStrip(
+                layout=layout,
+                time=run.recording.time,
+                traces=traces([scene], self.cut, self.visible),
+                visible=self.visible,
+            ),
         )
 
     def frames(self, backend: str, first: int = 0, every: int = 1) -> Iterator[Picture]:
@@ -175,106 +127,115 @@ class Shot:
             backend: OpenGL backend, one of `BACKENDS`.
             first, every: the first frame and the distance to the next; all by default.
         """
-        layout, factor = self.layout, self.cut.exaggeration
-        wheels = [
-            RollingWheel(self.motion, wheel, hub_of(self.composition, wheel.name), self.vehicle.driving.speed)
-            for wheel in self.composition.wheels
-        ]
-        views = self._views()
-        with closing(Canvas(self.model, (layout.width, layout.view_height), backend)) as canvas:
-            drawing = Drawing(canvas, self.motion, self.wireframe, self.composition, self.scale_top)
+        views, scene = self._views(), self.scene
+        with scene.opened(backend, self.cut.exaggeration, self.scale_top) as opened:
+            mode = None if self.inset is None else self.inset.drawing(opened.canvas)
             for number in range(first, self.cut.frames, every):
-                time = self.cut.start + number * self.cut.interval
-                state = self.states[number]
-                drawing.pose(state, factor)
-                for wheel in wheels:
-                    wheel.turn(drawing.data, state, factor, time)
-                for camera, viewport, opacity in views:
-                    drawing.see(camera, opacity)
-                    if self.road is not None:
-                        self.road.draw(canvas.scene, time, self.cut.interval, factor)
-                    self.arrows.draw(canvas.scene, state, factor, time, self.cut.interval)
-                    canvas.render(viewport)
-                yield self.overlay.draw(canvas.read(), time, self._lamps(time))
+                opened.draw(number, views)
+                if self.inset is not None and mode is not None:
+                    self.inset.draw(mode, number)
+                time = scene.times[number]
+                yield self.overlay.draw(opened.canvas.read(), time, scene.lamps(time))
 
-    def _views(self) -> list[tuple[mujoco.MjvCamera, tuple[int, int, int, int], Vector]]:
-        """Return camera, viewport and opacity of all materials of each view."""
-        layout, wheel, model = self.layout, self.wheel, self.model
-        cleared = self.unveiled.copy()
-        rolling = next(placed.part for placed in self.composition.wheels if placed.name == wheel)
+    def _views(self) -> list[View]:
+        """Return the view of the whole car, and that of the suspension in a film without a mode."""
+        layout, scene = self.layout, self.scene
+        model, wheel = scene.model, scene.wheel
+        cleared = scene.unveiled.copy()
+        rolling = next(placed.part for placed in scene.composition.wheels if placed.name == wheel)
         cleared[model.geom_matid[model.geom_bodyid == model.body(rolling).id]] = GHOST_OPACITY
+        whole = (whole_car(scene.vehicle), (0, 0, layout.main_width, layout.view_height), scene.opacity)
+        if self.inset is not None:
+            return [whole]
         right = (layout.main_width, 0, layout.width - layout.main_width, layout.view_height)
-        return [
-            (whole_car(self.vehicle), (0, 0, layout.main_width, layout.view_height), self.opacity),
-            (close_up(self.motion, self.vehicle, wheel), right, cleared),
-        ]
-
-    def _largest(self) -> tuple[float, float]:
-        """Return the largest displacement of a part or node, and the 97 % quantile of the node displacements [m]."""
-        part_displacements, node_displacements = [], []
-        bodies = [(hub_of(self.composition, wheel.name), wheel.plate) for wheel in self.composition.wheels]
-        moving = [int(self.model.body(name).id) for pair in bodies for name in pair]
-        for state in self.states:
-            part_displacements.append(np.linalg.norm(state.translation[moving], axis=1))
-            node_displacements.append(self.wireframe.displacement(state))
-        largest = max(float(np.max(part_displacements)), float(np.max(node_displacements)))
-        return largest, float(np.quantile(node_displacements, 0.97))
+        return [whole, (close_up(scene.motion, scene.vehicle, wheel), right, cleared)]
 
     def _heading(self, run: RecordedRun, slow: float) -> list[str]:
         """Return the heading: input and level, factors and excerpt."""
-        cut = self.cut
-        level = level_words(run.recording, run.wheel, run.signal.rms(run.wheel))
-        wheel = run.car.model.vehicle.wheel_text(run.wheel, source=False)
-        speed = "real time" if slow == 1.0 else f"slow motion 1 : {slow:g}"
-        highest = 0.5 / cut.interval
-        if highest < FASTEST_MOTION:
-            speed += f" (faster than {highest:g} Hz averages out)"
-        scale = f"exaggerated {cut.exaggeration:g} times" if cut.exaggeration != 1.0 else "true to scale"
-        if self.rests:
-            scale += " (at rest)"
+        cut, scene = self.cut, self.scene
         road, exaggerated = [], "motion"
-        if self.road is not None:
+        if scene.road is not None:
             road = [
-                f"road passes at {3.6 * self.road.speed:.4g} km/h, a stripe is {self.road.stripe:g} m long; "
+                f"road passes at {3.6 * scene.road.speed:.4g} km/h, a stripe is {scene.road.stripe:g} m long; "
                 "heights in numbers: effective, as the tyre takes them"
             ]
             exaggerated = "motion and road"
         return [
-            f"{Path(run.signal.source).name}: {level} under the {wheel}",
-            f"{exaggerated} {scale}, {speed}",
+            input_words(run),
+            f"{exaggerated} {scale_words(cut, rests=scene.largest < AT_REST)}, {speed_words(cut, slow)}",
             *road,
             f"excerpt from {cut.start:.2f} s ({cut.reason}); "
-            f"{f'SLIP: above {1e3 * self.slip:g} mm/s; ' if self.dampers else ''}tyres {self.vehicle.driving.words}",
-            *filter(None, [self.arrows.words]),
+            f"{f'SLIP: above {1e3 * scene.slip:g} mm/s; ' if scene.dampers else ''}"
+            f"tyres {scene.vehicle.driving.words}",
+            *filter(None, [scene.arrows.words]),
         ]
 
-    def _traces(self) -> list[Trace]:
-        """Return the curves below the picture (plate, seat rail, damper), scaled to their maxima in the shown time."""
-        recording, wheel = self.recording, self.wheel
-        ahead = 0.5 * self.visible
-        inside = (recording.time >= self.cut.start - ahead) & (recording.time <= self.cut.end + ahead)
-        traces = []
-        input_label = "plate [mm]" if self.road is None else "effective road [mm]"
-        for label, channel, scale, band, minimum in (
-            (input_label, f"plate_{wheel}_displacement", 1e3, None, 1e3 * AT_REST),
-            ("seat rail, vertical [m/s²]", "seat_rail_acc_z", 1.0, None, LEAST_ACCELERATION),
-            (f"damper {side_of(wheel, self.wheels)} [mm/s]", f"damper_{wheel}_velocity", 1e3, 1e3 * self.slip, 0.0),
-        ):
-            if channel not in recording.channels:
-                continue
-            values = scale * recording[channel]
-            top = round_up(max(float(np.max(np.abs(values[inside]))), 1.2 * (band or 0.0), minimum))
-            traces.append(Trace(label=label, values=values, top=top, band=band))
-        return traces
 
-    def _lamps(self, time: float) -> dict[str, bool]:
-        """Label of each damper, and whether it slipped at any sample of the time between two frames."""
-        recording = self.recording
-        half = max(0.5 * self.cut.interval, 0.5 * recording.timestep)
-        first, last = np.searchsorted(recording.time, [time - half, time + half])
-        part = slice(int(first), max(int(last), int(first) + 1))
-        speeds = {wheel: recording[f"damper_{wheel}_velocity"][part] for wheel in self.dampers}
-        return {
-            f"damper {side_of(wheel, self.wheels)}": bool(np.any(np.abs(speed) > self.slip))
-            for wheel, speed in speeds.items()
-        }
+def excerpt_of(run: RecordedRun, take: Take) -> Excerpt:
+    """Return the excerpt of a run in a film.
+
+    Raises:
+        ConfigurationError: the start is outside the record.
+    """
+    recording, vehicle = run.recording, run.car.model.vehicle
+    record = float(recording.time[-1])
+    if take.start is not None and not 0.0 <= take.start < record:
+        raise ConfigurationError(f"film, start: found {take.start:g} s, the record goes from 0 to {record:g} s")
+    slip = vehicle.damper.slip_velocity if dampers_of(recording) else 0.0
+    hub = hub_channel(vehicle.composition, run.wheel)
+    return choose_excerpt(recording, run.wheel, hub, slip, start=take.start, duration=take.duration, slow=take.slow)
+
+
+def cut_of(excerpt: Excerpt, largest: float, take: Take) -> Cut:
+    """Return the frames of an excerpt whose largest displacement [m] is known."""
+    frames, interval = frames_of(excerpt)
+    factor = exaggeration_of(largest, take.exaggeration)
+    return Cut(start=excerpt.start, frames=frames, interval=interval, exaggeration=factor, reason=excerpt.reason)
+
+
+def input_words(run: RecordedRun) -> str:
+    """Return the input of a run, its level and its wheel."""
+    level = level_words(run.recording, run.wheel, run.signal.rms(run.wheel))
+    wheel = run.car.model.vehicle.wheel_text(run.wheel, source=False)
+    return f"{Path(run.signal.source).name}: {level} under the {wheel}"
+
+
+def speed_words(cut: Cut, slow: float) -> str:
+    """Return the speed of a film, and the frequency above which motion averages out if it may be seen."""
+    speed = "real time" if slow == 1.0 else f"slow motion 1 : {slow:g}"
+    highest = 0.5 / cut.interval
+    return speed + (f" (faster than {highest:g} Hz averages out)" if highest < FASTEST_MOTION else "")
+
+
+def scale_words(cut: Cut, *, rests: bool) -> str:
+    """Return the exaggeration of a film; `rests` for a car at rest."""
+    scale = f"exaggerated {cut.exaggeration:g} times" if cut.exaggeration != 1.0 else "true to scale"
+    return scale + (" (at rest)" if rests else "")
+
+
+def traces(scenes: Sequence[Scene], cut: Cut, visible: float) -> list[Trace]:
+    """Return the curves below the picture (plate, seat rail, damper), scaled to their maxima in the shown time.
+
+    Args:
+        scenes: a scene, or two with the same plates, whose curves lie over each other.
+        cut: shown excerpt.
+        visible: length of the curves on the screen [s].
+    """
+    first, wheel = scenes[0], scenes[0].wheel
+    time = first.recording.time
+    inside = (time >= cut.start - 0.5 * visible) & (time <= cut.end + 0.5 * visible)
+    made = []
+    input_label = "plate [mm]" if first.road is None else "effective road [mm]"
+    for label, channel, scale, band, minimum in (
+        (input_label, f"plate_{wheel}_displacement", 1e3, None, 1e3 * AT_REST),
+        ("seat rail, vertical [m/s²]", "seat_rail_acc_z", 1.0, None, LEAST_ACCELERATION),
+        (f"damper {side_of(wheel, first.wheels)} [mm/s]", f"damper_{wheel}_velocity", 1e3, 1e3 * first.slip, 0.0),
+    ):
+        if not all(channel in scene.recording.channels for scene in scenes):
+            continue
+        shown = scenes if channel != f"plate_{wheel}_displacement" else scenes[:1]
+        values = tuple(scale * np.interp(time, scene.recording.time, scene.recording[channel]) for scene in shown)
+        peak = max(float(np.max(np.abs(curve[inside]))) for curve in values)
+        top = round_up(max(peak, 1.2 * (band or 0.0), minimum))
+        made.append(Trace(label=label, values=values, top=top, band=band))
+    return made

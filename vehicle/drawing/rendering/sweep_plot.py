@@ -19,6 +19,9 @@ MOST_TICKS = 8
 
 COLOURS_OF_COMFORT = "viridis"
 
+ABOVE: dict[str, Any] = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "ncols": 2}
+"""Position of a legend above the axes, where it covers no cars."""
+
 
 def plot_sweep(
     path: Path,
@@ -76,7 +79,7 @@ def _map(figure: Any, axis: Any, names: Sequence[str], parameters: Vector, weigh
     _mark(axis, parameters[:, 0], parameters[:, 1], weighted)
     axis.set(xlabel=names[0], ylabel=names[1])
     axis.grid(visible=False)
-    axis.legend(loc="upper right")
+    axis.legend(**ABOVE)
     figure.colorbar(shown, ax=axis, label="weighted RMS [m/s²] (ISO 2631-1)")
 
 
@@ -95,21 +98,24 @@ def _parallel(figure: Any, axis: Any, names: Sequence[str], parameters: Vector, 
     lines = [np.column_stack([across, shares[car]]) for car in drawn]
     axis.add_collection(LineCollection(lines, colors=colours.to_rgba(weighted[drawn]), linewidths=0.8, alpha=0.6))
     best = int(np.nanargmin(weighted))
-    axis.plot(across, shares[best], color=COLOURS[1], linewidth=2.2, label="most comfortable")
-    axis.plot(across, shares[0], color=INK, linewidth=1.6, linestyle="--", label="first car")
+    axis.plot(across, shares[best], color="black", linewidth=2.4, label="most comfortable")
+    axis.plot(across, shares[0], color="black", linewidth=1.6, linestyle="--", label="first car")
     axis.set(xlim=(-0.2, len(names) - 0.8), ylim=(-0.08, 1.08), yticks=[], xticks=across)
     axis.set_xticklabels([name.replace(".", ".\n") for name in names])
     for column in across:
         axis.annotate(f"{high[column]:.6g}", (column, 1.02), ha="center", va="bottom", fontsize=8, color=INK)
         axis.annotate(f"{low[column]:.6g}", (column, -0.02), ha="center", va="top", fontsize=8, color=INK)
-    axis.legend(loc="upper right")
+    axis.legend(**ABOVE)
     figure.colorbar(colours, ax=axis, label="weighted RMS [m/s²] (ISO 2631-1)")
 
 
 def _mark(axis: Any, x: Vector, y: Vector, weighted: Vector) -> None:
     """Mark the most comfortable car and the first car."""
-    best = int(np.nanargmin(weighted))
-    star = {"marker": "*", "markersize": 15, "color": COLOURS[1], "markeredgecolor": "white"}
-    circle = {"marker": "o", "markersize": 17, "markerfacecolor": "none", "markeredgecolor": COLOURS[1]}
+    from matplotlib.patheffects import withStroke
+
+    best, halo = int(np.nanargmin(weighted)), [withStroke(linewidth=3.5, foreground="white")]
+    # Black and white are seen on every colour of a map.
+    star = {"marker": "*", "markersize": 15, "color": "white", "markeredgecolor": "black"}
+    circle = {"marker": "o", "markersize": 17, "markerfacecolor": "none", "markeredgecolor": "black"}
     for index, look, label in ((best, star, "most comfortable"), (0, circle, "first car")):
-        axis.plot(x[index], y[index], linestyle="none", label=label, **look)
+        axis.plot(x[index], y[index], linestyle="none", label=label, path_effects=halo, **look)

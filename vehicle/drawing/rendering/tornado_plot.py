@@ -7,11 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.drawing.rendering.figure import COLOURS, INK, saved_figure
+from vehicle.signals.analysis.samples import Vector
 
-Vector = npt.NDArray[np.float64]
+SMOOTHER, ROUGHER = COLOURS[0], COLOURS[3]
+"""Colours of a change: less and more acceleration. Without red and green, which not everybody tells apart."""
 
 
 def plot_tornado(
@@ -37,24 +38,30 @@ def plot_tornado(
 def draw_tornado(axis: Any, labels: Sequence[str], changes: Vector, half_widths: Vector, ends: tuple[str, str]) -> None:
     """Draw two bars for each parameter, its low and its high value, with their 95 % interval.
 
+    The colour says what the change does: blue is smoother, amber rougher. The value of the parameter stands beside.
+
     Args:
         axis: the axes.
         labels: parameters; the first is on top.
         changes: changes at the low and the high value [%], (parameters, 2); NaN draws no bar.
         half_widths: half widths of the intervals [%], (parameters,); NaN draws none.
-        ends: names of the low and the high value.
+        ends: names of the low and the high value, as "-20 %".
     """
-    rows = np.arange(len(labels), dtype=float)
-    with_interval = np.isfinite(half_widths)
-    for column, (name, colour) in enumerate(zip(ends, (COLOURS[0], COLOURS[1]), strict=True)):
+    rows, width = np.arange(len(labels), dtype=float), np.nan_to_num(half_widths)
+    for column, name in enumerate(ends):
         height = rows + (0.19 if column else -0.19)
-        values = changes[:, column]
-        axis.barh(height, np.nan_to_num(values), 0.34, color=colour, label=name)
-        shown = with_interval & np.isfinite(values)
+        values = np.nan_to_num(changes[:, column])
+        axis.barh(height, values, 0.34, color=np.where(values > 0.0, ROUGHER, SMOOTHER))
+        shown = np.isfinite(half_widths) & np.isfinite(changes[:, column])
         axis.errorbar(values[shown], height[shown], xerr=half_widths[shown], fmt="none", ecolor=INK, elinewidth=0.9)
+        names = np.where(np.isfinite(changes[:, column]), name, f"{name} failed")
+        for place, value, half, text in zip(height, values, width, names, strict=True):
+            side, across = (3, "left") if value > 0.0 or (value == 0.0 and column) else (-3, "right")
+            end = value + np.copysign(half, side)
+            axis.annotate(text, (end, place), (side, 0), textcoords="offset points", va="center", ha=across, fontsize=8)
     axis.axvline(0.0, color=INK, linewidth=0.8)
-    axis.set_yticks(rows, labels, fontsize=8)
+    axis.set_yticks(rows, labels, fontsize=9)
     axis.invert_yaxis()
-    axis.set_xlabel("change of the weighted acceleration [%]")
-    axis.grid(axis="x", alpha=0.3)
-    axis.legend(loc="best", fontsize=8, frameon=False)
+    axis.margins(x=0.12)
+    axis.set_xlabel("change of the weighted acceleration [%]; blue: smoother, amber: rougher")
+    axis.grid(visible=False, axis="y")

@@ -16,6 +16,9 @@ from vehicle.signals.analysis.samples import Vector
 
 GRID = (208, 212, 218)
 TRACE_COLOURS = tuple(tuple(bytes.fromhex(COLOURS[place][1:])) for place in (4, 0, 1))
+PAIR_COLOURS = (INK, tuple(bytes.fromhex(COLOURS[2][1:])))
+"""Colours of two runs: dark and green, which differ in brightness; lamps and arrows have other colours."""
+
 BAND = (221, 233, 246)
 FINE = 2
 """Factor by which traces are drawn larger and then reduced, to smooth their lines."""
@@ -30,8 +33,8 @@ class Trace:
 
     label: str
     """quantity and unit"""
-    values: Vector
-    """samples in that unit, (n,)"""
+    values: tuple[Vector, ...]
+    """samples in that unit of a run, or of two that are compared, (n,) each"""
     top: float
     """value at the upper edge; the lower edge is its negative"""
     band: float | None = None
@@ -63,7 +66,8 @@ class TraceStrip:
         pen = ImageDraw.Draw(image)
         for (top, bottom), trace, colour in zip(self._rows, self.traces, TRACE_COLOURS, strict=False):
             middle = (top + bottom) / 2
-            pen.text((px(12), middle), trace.label, fill=colour, font=font(14, True), anchor="lm")
+            ink = colour if len(trace.values) == 1 else INK
+            pen.text((px(12), middle), trace.label, fill=ink, font=font(13, True), anchor="lm")
             x = layout.trace_left - px(6)
             pen.text((x, top), f"{trace.top:g}", fill=INK, font=font(11), anchor="rt")
             pen.text((x, bottom), f"{-trace.top:g}", fill=INK, font=font(11), anchor="rb")
@@ -73,15 +77,15 @@ class TraceStrip:
     def _rows(self) -> list[tuple[int, int]]:
         """Return the upper and lower edge of each trace in the frame [pixel]."""
         layout, gap = self.layout, self.layout.px(6)
-        height = (layout.height - layout.view_height - gap - self.layout.px(AXIS)) // max(len(self.traces), 1)
-        first = layout.view_height + gap
+        height = (layout.height - layout.trace_top - gap - self.layout.px(AXIS)) // max(len(self.traces), 1)
+        first = layout.trace_top + gap
         return [(first + height * row, first + height * (row + 1) - gap) for row in range(len(self.traces))]
 
     def _time_axis(self, image: Image.Image, begin: float, width: int) -> None:
         """Draw the scrolling time labels under the traces."""
         px, font = self.layout.px, self.layout.font
         layout, pen = self.layout, ImageDraw.Draw(image)
-        top = self._rows[-1][1] if self._rows else layout.view_height
+        top = self._rows[-1][1] if self._rows else layout.trace_top
         pen.text((px(12), top + px(1)), "time [s]", fill=INK, font=font(12))
         step = round_up(self.visible / TICKS)
         for number in range(int(np.ceil(begin / step)), int((begin + self.visible) / step) + 1):
@@ -114,7 +118,8 @@ class TraceStrip:
                 half = height / 2 * min(trace.band / trace.top, 1.0)
                 pen.rectangle([0, height / 2 - half, width * FINE, height / 2 + half], fill=BAND)
             pen.line([(0, height / 2), (width * FINE, height / 2)], fill=GRID, width=FINE)
-            up = height / 2 * (1.0 - trace.values[part] / trace.top)
-            pen.line(list(zip(across.tolist(), up.tolist(), strict=True)), fill=colour, width=FINE + 1)
+            for values, shade in zip(trace.values, (colour,) if len(trace.values) == 1 else PAIR_COLOURS, strict=True):
+                up = height / 2 * (1.0 - values[part] / trace.top)
+                pen.line(list(zip(across.tolist(), up.tolist(), strict=True)), fill=shade, width=FINE + 1)
             pen.line([(width * FINE / 2, 0), (width * FINE / 2, height)], fill=INK, width=FINE)
             image.paste(panel.reduce(FINE), (layout.trace_left, top))

@@ -21,6 +21,7 @@ def write_report(
     force: bool = False,
     progress: Callable[[float], None] | None = None,
     targets: Path | str | None = None,
+    film: Path | str | None = None,
     author: str = "",
     project: str = "",
 ) -> Path:
@@ -32,6 +33,7 @@ def write_report(
         force: replace a report that was written there before.
         progress: called with the finished fraction.
         targets: TOML file of figures with limits, or "ride" for the shipped one; the report begins with the verdict.
+        film: film of two runs side by side, as `film_of_two` writes it, for the page; none by default.
         author, project: names in the head of the page; may be empty.
 
     Returns:
@@ -52,6 +54,7 @@ def write_report(
     check_file(path, ending=".html", force=force)
     figures = None if targets is None else read_targets(targets)
     finished = [read_run(folder) for folder in folders]
-    page = report_page(finished, progress, trial=trial, targets=figures, author=author, project=project)
+    beside = None if film is None else Path(film)
+    page = report_page(finished, progress, trial=trial, targets=figures, beside=beside, author=author, project=project)
     write_text(path, page)
     return path

@@ -307,24 +307,38 @@ class Run:
             path: Path = HANDED["write_report"]([saved], file, force=force, author=author, project=project)
         return path
 
-    def film(self, file: Path | str, take: Take | None = None, *, progress: Progress | None = None) -> Path:
+    def film(
+        self,
+        file: Path | str,
+        take: Take | None = None,
+        *,
+        beside: Run | None = None,
+        names: tuple[str, str] = ("A", "B"),
+        caption: str = "",
+        progress: Progress | None = None,
+    ) -> Path:
         """Write a film of a run of the MuJoCo engine as MP4.
 
         Args:
             file: name of the film, with the ending .mp4.
-            take: start, length, slow motion and exaggeration (`vehicle.drawing.rendering.shot.Take`); by default ten
-                seconds with the largest motion, or a single event; slow where motion is fast.
+            take: start, length, slow motion, exaggeration and mode beside the run
+                (`vehicle.drawing.rendering.shot.Take`); by default ten seconds with the largest motion, or a single
+                event; slow where motion is fast.
+            beside: another run of the same input, shown at the right of this one.
+            names: names of both runs.
+            caption: what differs between both, in a line.
             progress: called with the finished fraction.
 
         Raises:
-            ConfigurationError: the run has no poses: the reduced engine stores none, nor does a saved run.
+            ConfigurationError: a run has no poses: the reduced engine stores none, nor does a saved run; or both have
+                other inputs.
             MissingPartError: an off-screen OpenGL library or ffmpeg is missing.
             OutputError: the file cannot be written.
         """
-        from vehicle.drawing.rendering.film import film
+        from vehicle.drawing.rendering.film import film, pair_film
         from vehicle.drawing.rendering.shot import Take
 
-        if not self.recording.poses.size:
+        if not all(run.recording.poses.size for run in (self, beside) if run is not None):
             raise ConfigurationError(
                 f"{file}: the run has no poses, which neither the reduced engine nor a saved run stores; run the car "
                 "with engine='mujoco'"
@@ -332,7 +346,11 @@ class Run:
         speed = (self.road or {}).get("speed_kmh")
         profile = (self.signal.time, self.signal.profile) if self.signal.profile else None
         driven = Take(speed=float(speed) / 3.6 if isinstance(speed, int | float) else None, profile=profile)
-        film(self, Path(file), take or driven, progress=progress)
+        if beside is None:
+            film(self, Path(file), take or driven, progress=progress)
+        else:
+            both = dict(zip(names, (self, beside), strict=True))
+            pair_film(both, caption or " and ".join(names), Path(file), take or driven, progress=progress)
         return Path(file)
 
     def at(self, point: str) -> list[npt.NDArray[np.float64]]:

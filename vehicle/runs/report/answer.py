@@ -67,7 +67,7 @@ def answer(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> Markup:
         changes[f"{run.name} against {before.name}"] = _changes(before, run)
     if all(changes.values()):
         title = "Change of comfort and loads"
-        caption = "green: smaller vibration or load, red: larger; grey: no rating"
+        caption = "blue: smaller vibration or load, amber: larger; grey: no rating"
         figure = drawing(partial(plot_changes, changes=changes, title=title, caption=caption), title)
     return fill("answer", texts=statements, figure=figure)
 
@@ -179,7 +179,7 @@ def _effect(first: FinishedRun, run: FinishedRun) -> str:
         if _input_words(first) != _input_words(run):
             rating = ""  # of the inputs, not of the cars
         effect = f"{word} from {number(before)} to {number(after)} m/s² ({difference(before, after)}{rating})"
-    return f"{_what_changed(first, run)}: the weighted acceleration at the seat rail (ISO 2631-1) {effect}."
+    return f"{what_changed(first, run)}: the weighted acceleration at the seat rail (ISO 2631-1) {effect}."
 
 
 def _weighted(run: FinishedRun) -> float | None:
@@ -194,7 +194,7 @@ def _percent(first: FinishedRun, run: FinishedRun) -> float | None:
     return None if before is None or after is None or before == 0.0 else 100.0 * (after / before - 1.0)
 
 
-def _what_changed(first: FinishedRun, run: FinishedRun) -> str:
+def what_changed(first: FinishedRun, run: FinishedRun) -> str:
     """Return what differs between two runs: car, parameters, input, engine."""
     parts = []
     vehicles = [first.car.vehicle, run.car.vehicle]

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.engines.linear.car_modes import Mode
 from vehicle.engines.linear.mode_shares import mode_shares
 from vehicle.engines.linear.path_shares import REST, path_shares
 from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS, point_words
+from vehicle.runs.car.main_mode import mode_of, plate_lines
 from vehicle.runs.report.findings import damper_state
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.main_band import POINT, MainBand
@@ -47,29 +46,6 @@ OTHER_SIDE = 0.25
 """Minimum share of a side in the sum of both sides, for which both sides are named together."""
 
 
-@dataclass(frozen=True, slots=True)
-class Lines:
-    """Plates of a run at the spectral lines of a band."""
-
-    frequency: npt.NDArray[np.float64]  # [Hz]; (m,)
-    plates: npt.NDArray[np.complex128]  # complex amplitudes of the plate displacements [m]; (w, m)
-
-
-def lines_of(run: FinishedRun, band: MainBand) -> Lines | None:
-    """Return the lines of the periodogram of the plates in a band, at most about `LINES`; None without plates."""
-    recording, wheels = run.recording, run.car.matrices.system.inputs
-    names = [f"plate_{wheel}_displacement" for wheel in wheels]
-    if not all(name in recording.channels for name in names):
-        return None
-    first = round(evaluated_from(run.summary) / recording.timestep)
-    plates = [recording.channels[name][first:] for name in names]
-    frequency = np.fft.rfftfreq(plates[0].size, recording.timestep)
-    inside = np.flatnonzero((frequency >= band.low) & (frequency <= band.high))
-    inside = inside[:: max(inside.size // LINES, 1)]
-    spectra = np.array([np.fft.rfft(np.hanning(plate.size) * (plate - plate.mean()))[inside] for plate in plates])
-    return Lines(np.asarray(frequency[inside], dtype=float), spectra)
-
-
 def strongest(run: FinishedRun, band: MainBand, modes: Sequence[Mode]) -> Mode | None:
     """Return the mode of the linear car with the largest share in a band of the seat rail.
 
@@ -81,19 +57,15 @@ def strongest(run: FinishedRun, band: MainBand, modes: Sequence[Mode]) -> Mode |
     Returns:
         The mode; None if no plate is recorded or no mode has a positive share.
     """
-    lines = lines_of(run, band)
+    first = round(evaluated_from(run.summary) / run.recording.timestep)
+    system = run.car.matrices.system
+    lines = plate_lines(run.recording, system.inputs, first, (band.low, band.high), LINES)
     if lines is None:
         return None
     stuck = damper_state(run) == "stuck"
-    channel = f"{POINT}_acc_{band.axis}"
-    result = mode_shares(run.car.matrices.system, channel, lines.frequency, lines.plates, stuck=stuck)
+    result = mode_shares(system, f"{POINT}_acc_{band.axis}", lines.frequency, lines.plates, stuck=stuck)
     at = int(np.argmax(result.shares))
-    if result.shares[at] <= 0.0:
-        return None
-    natural = abs(result.poles[at]) / (2.0 * np.pi)
-    mode = min(modes, key=lambda other: abs(other.frequency - natural), default=None)
-    same = mode is not None and abs(mode.frequency - natural) < 1e-6 * natural
-    return mode if same else None
+    return mode_of(modes, result, at) if result.shares[at] > 0.0 else None
 
 
 def paths(run: FinishedRun, axis: str, mode: Mode) -> dict[str, float]:

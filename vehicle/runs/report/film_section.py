@@ -38,8 +38,11 @@ def film(run: FinishedRun, share: float = 1.0) -> Markup | None:
     name = run.summary["files"].get("video")
     candidates = [] if name is None else [run.folder / name, Path(name)]
     path = next((candidate for candidate in candidates if candidate.is_file()), None)
-    if path is None:
-        return None
+    return None if path is None else film_part(path, share)
+
+
+def film_part(path: Path, share: float = 1.0) -> Markup:
+    """Return a film, and a picture of it for paper; see `film`."""
     with TemporaryDirectory() as folder:
         content, still = embedded(path, share * BUDGET, Path(folder)), _still(path, Path(folder))
     return fill(

@@ -10,14 +10,15 @@ import numpy as np
 from vehicle.digits import number
 from vehicle.engines.linear.car_modes import Mode
 from vehicle.names import point_words, side_of
+from vehicle.runs.car.main_mode import WORKS
 from vehicle.runs.report.body_modes import body_modes
 from vehicle.runs.report.comfort_class import CREST_FACTOR_LIMIT
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.order_words import order_sentences
 from vehicle.signals.records.run_summary import RunSummary, slip_shares
 
-STICKS, WORKS = 0.01, 0.25
-"""Maximum share of the time in slip of a sticking damper, and minimum share of a sliding damper."""
+STICKS = 0.01
+"""Maximum share of the time in slip of a sticking damper."""
 
 NEAR = 0.06
 """Maximum relative distance of a resonance from the natural frequency of its mode: the peak of an acceleration is

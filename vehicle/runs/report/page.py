@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import date
 from importlib import resources
+from pathlib import Path
 
 from markupsafe import Markup
 
@@ -20,7 +21,7 @@ from vehicle.runs.report.base_run import base_run
 from vehicle.runs.report.car_section import car_section
 from vehicle.runs.report.comfort_section import comfort
 from vehicle.runs.report.comparison_section import curves_over_each_other, numbers_beside
-from vehicle.runs.report.film_section import film
+from vehicle.runs.report.film_section import film, film_part
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import templates
 from vehicle.runs.report.measured_section import measured
@@ -54,6 +55,7 @@ def report_page(
     *,
     trial: Callable[[FinishedRun], Trial],
     targets: Mapping[str, Figure] | None = None,
+    beside: Path | None = None,
     author: str = "",
     project: str = "",
 ) -> str:
@@ -63,6 +65,7 @@ def report_page(
         progress: called with the finished fraction.
         trial: makes the section for trials of a single run.
         targets: figures with their limits; the report then begins with the verdict on them.
+        beside: film of two runs side by side; none by default.
         author, project: names in the head of the page; may be empty.
 
     Returns:
@@ -73,7 +76,7 @@ def report_page(
     """
     if not runs:
         raise ConfigurationError("report: no run; give at least one folder, as runs/low")
-    runs = _told_apart(runs)
+    runs = told_apart(runs)
     done = progress or (lambda fraction: None)
     modes = [modes_of(run) for run in runs]
     done(0.1)
@@ -82,7 +85,7 @@ def report_page(
         tried = trial(runs[0])
         parts = _of_one(runs[0], modes[0], tried.content)
     else:
-        parts = _of_several(runs, modes, lambda share: done(0.1 + 0.8 * share))
+        parts = _of_several(runs, modes, lambda share: done(0.1 + 0.8 * share), beside)
     if targets is not None:
         parts.insert(0, ("Targets", "targets", verdict_section(targets, runs)))
     first, others = runs[0].name, [run.name for run in runs[1:]]
@@ -104,7 +107,7 @@ def head_line(author: str = "", project: str = "") -> str:
     return ", ".join(filter(None, (project, author, date.today().isoformat(), package_version())))
 
 
-def _told_apart(runs: Sequence[FinishedRun]) -> list[FinishedRun]:
+def told_apart(runs: Sequence[FinishedRun]) -> list[FinishedRun]:
     """Return the runs with unique names: the parent folder is added to equal names, then a number."""
     names = [run.name for run in runs]
     longer = [
@@ -145,10 +148,13 @@ def _of_one(run: FinishedRun, modes: Modes, trial_part: Markup) -> list[Part]:
     return [(title, anchor, content) for title, anchor, content in parts if content is not None]
 
 
-def _of_several(runs: Sequence[FinishedRun], modes: Sequence[Modes], done: Callable[[float], None]) -> list[Part]:
+def _of_several(
+    runs: Sequence[FinishedRun], modes: Sequence[Modes], done: Callable[[float], None], beside: Path | None
+) -> list[Part]:
     """Return the sections of a comparison; what belongs to a single run is folded under its name."""
     parts = [
         ("Result", "result", answer(runs, modes) + explained()),
+        *([("Film", "film", film_part(beside))] if beside is not None else []),
         ("Comparison of the runs", "comparison", numbers_beside(runs)),
         ("Frequency responses and spectra", "responses", curves_over_each_other(runs)),
         ("Time histories", "time", Markup().join(sections.time_figure(run, runs) for run in runs)),

@@ -112,7 +112,7 @@ class Effects:
         labels = [f"{each.path}  {number(each.value)} {each.unit}" for each in self.shown]
         changes = np.array([(each.change_low, each.change_high) for each in self.shown])
         percent = number(100.0 * self.share)
-        ends = f"parameter -{percent} %", f"parameter +{percent} %"
+        ends = f"-{percent} %", f"+{percent} %"
         return labels, changes, np.array([each.half_width for each in self.shown]), ends
 
 
