@@ -28,7 +28,8 @@ HOP: dict[str, Any] = {"at_least": 4.0, "at_most": 30.0, "why": "wheels of cars 
 class StatedNumbers:
     """Numbers of a car; None: not stated. `option` returns its name on a command line.
 
-    `of_class` has the names of the numbers that are those of the class of the car.
+    `tyre_size` is the size of the tyres, as 205/55R16, instead of their radius. `of_class` has the names of the numbers
+    that are those of the class of the car.
     """
 
     kerb_mass: float | None = quantity(
@@ -96,6 +97,7 @@ class StatedNumbers:
         default=None,
     )
     car_class: str | None = quantity("-", "class of the car, for default numbers", default=None)
+    tyre_size: str | None = None
     of_class: tuple[str, ...] = ()
     load: Mapping[str, dict] = field(default_factory=dict)  # type: ignore[type-arg]
 
@@ -135,14 +137,16 @@ class StatedNumbers:
         return f"{name.replace('_', ' ')} {getattr(self, name):g}{unit} ({self.origin(name)})"
 
     def origin(self, name: str) -> str:
-        """Return where a number comes from: "given" or "class small"."""
+        """Return where a number comes from: "given", "class small" or "tyre 205/55R16"."""
+        if name == "tyre_radius" and self.tyre_size is not None:
+            return f"tyre {self.tyre_size}"
         return f"class {self.car_class}" if name in self.of_class else "given"
 
 
 LOADS_AGREE = 5e-4
 """Largest deviation of the sum of two axle loads from the kerb mass, as a share of it: half of the promised 0.1 %."""
 
-NOT_NUMBERS = ("load", "inertia", "car_class", "of_class")
+NOT_NUMBERS = ("tyre_size", "load", "inertia", "car_class", "of_class")
 """Fields that are no numbers of a car."""
 
 NAMES = tuple(entry.name for entry in dataclasses.fields(StatedNumbers) if entry.name not in NOT_NUMBERS)
