@@ -39,7 +39,7 @@ def test_every_figure_of_the_chapter_is_offered():
 
 def test_an_unknown_figure_is_refused_with_the_names_there_are(tmp_path, capsys):
     assert main(["--figure", "2.7", "--output", str(tmp_path / "x")]) == 2
-    assert "invalid choice: '2.7'" in capsys.readouterr().err
+    assert "--figure '2.7': must be one of 2.5, 2.6, " in capsys.readouterr().err
     assert not (tmp_path / "x").exists()
 
 

@@ -79,7 +79,7 @@ def test_a_table_of_variations(tmp_path):
         (["--vary", "damper.viscous=1,,2"], "must be PATH=A,B,C, PATH=A:B:N", 2),
         (["--vary", "a=1", "--vary", "a=2"], "given twice", 2),
         (["--vary", "damper.viscous=1:2"], "contains bounds; needed are values", 2),
-        (["--vary", "damper.viscous=1000", "--skip", "3"], "--skip 3 s: allowed is 0 s to less than road, 3 s", 2),
+        (["--vary", "damper.viscous=1000", "--skip", "3"], "--skip 3 s: must be at least 0 and below the 3 s of road", 2),
         (["--vary", "damper.viscous=1000", "--skip", "-5"], "--skip -5 s: allowed is 0 s to", 2),
         (["--vary", "damper.viscous=1000", "--skip", "nan"], "--skip nan s: allowed is 0 s to", 2),
         (["--vary", "damper.viscous=1000", "--jobs", "0"], "--jobs 0: must be at least 1", 2),

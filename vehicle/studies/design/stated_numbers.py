@@ -21,6 +21,9 @@ BODY: dict[str, Any] = {
     "at_most": 8.0,
     "why": "bodies of cars move at 1 to 2 Hz, of race cars up to 6 Hz",
 }
+CAR: dict[str, Any] = {"at_least": 100.0, "why": "kg, not t"}
+AXLE: dict[str, Any] = {"at_least": 20.0, "why": "kg, neither a share nor t"}
+METRES: dict[str, Any] = {"why": "m, not mm"}
 HOP: dict[str, Any] = {"at_least": 4.0, "at_most": 30.0, "why": "wheels of cars hop at 8 to 16 Hz"}
 
 
@@ -33,22 +36,33 @@ class StatedNumbers:
     """
 
     kerb_mass: float | None = quantity(
-        "kg", "mass of the car without the loads of [load]", above=0.0, at_most=2e4, default=None
+        "kg", "mass of the car without the loads of [load]", at_most=2e4, default=None, **CAR
     )
     front_axle_load: float | None = quantity(
-        "kg", "load of the front axle on the scales, without [load]", above=0.0, at_most=2e4, default=None
+        "kg", "load of the front axle on the scales, without [load]", at_most=2e4, default=None, **AXLE
     )
     rear_axle_load: float | None = quantity(
-        "kg", "load of the rear axle on the scales, without [load]", above=0.0, at_most=2e4, default=None
+        "kg", "load of the rear axle on the scales, without [load]", at_most=2e4, default=None, **AXLE
     )
     cog_x: float | None = quantity(
-        "m", "centre of gravity behind the front axle, instead of an axle load", above=0.0, default=None
+        "m",
+        "centre of gravity behind the front axle, instead of an axle load",
+        above=0.0,
+        at_most=8.0,
+        default=None,
+        **METRES,
     )
     cog_height: float | None = quantity("m", "centre of gravity above the ground", above=0.0, at_most=3.0, default=None)
-    wheelbase: float | None = quantity("m", "distance of the axles", above=0.0, default=None)
-    track_front: float | None = quantity("m", "distance of the front wheels", above=0.0, default=None)
-    track_rear: float | None = quantity("m", "distance of the rear wheels", above=0.0, default=None)
-    tyre_radius: float | None = quantity("m", "loaded radius: wheel centre above the ground", above=0.0, default=None)
+    wheelbase: float | None = quantity("m", "distance of the axles", above=0.0, at_most=8.0, default=None, **METRES)
+    track_front: float | None = quantity(
+        "m", "distance of the front wheels", above=0.0, at_most=4.0, default=None, **METRES
+    )
+    track_rear: float | None = quantity(
+        "m", "distance of the rear wheels", above=0.0, at_most=4.0, default=None, **METRES
+    )
+    tyre_radius: float | None = quantity(
+        "m", "loaded radius: wheel centre above the ground", above=0.0, at_most=2.0, default=None, **METRES
+    )
     roll_inertia: float | None = quantity(
         "kg m2", "Ixx of the car about its centre of gravity, without [load]", above=0.0, default=None
     )
