@@ -124,7 +124,7 @@ def test_a_run_of_some_channels_is_not_saved(focus, tmp_path):
 def test_wrong_arguments_are_refused(focus, record, tmp_path):
     vary = {VISCOUS: (800.0, 4000.0)}
     for call, message in (
-        (lambda: focus.run("low.csv", skip=70.0), r"--skip 70 s: allowed is 0 s to less than low\.csv"),
+        (lambda: focus.run("low.csv", skip=70.0), r"--skip 70 s: must be at least 0 and below the 60 s of low\.csv"),
         (lambda: compare(tmp_path, record, drift=0.2), "--drift 200000: must be"),
         (lambda: compare(tmp_path, record, bands=(9.0, 3.0)), "must be increasing edges"),
         (lambda: write_report("nowhere", "report.html"), "nowhere: is no folder"),

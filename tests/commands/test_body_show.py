@@ -31,6 +31,7 @@ def test_tables_and_files(car, tmp_path, capsys):
     assert main(["show", "--output", str(folder)]) == 0
     printed = capsys.readouterr().out
     body = car.trimmed_body
+    assert "\ncompared with the car focus; --vehicle chooses another\n" in printed
     assert "mass [kg]              813.00     813.00       +0.00" in printed
     assert "   2   25.500   3.00 %  torsion" in printed and "-0.0" not in printed
     assert "two different bodies" not in printed  # the frame has the mass properties of its vehicle
@@ -48,6 +49,11 @@ def test_tables_and_files(car, tmp_path, capsys):
         {name: own[2, 2] for name, own in body.residual.items()}, rel=1e-5
     )
     assert (folder / "shapes.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def test_a_quiet_task_writes_its_file_only(tmp_path, capsys):
+    assert main(["build", "--quiet", "--output", str(tmp_path / "frame.npz")]) == 0
+    assert capsys.readouterr().out == "" and (tmp_path / "frame.npz").is_file()
 
 
 def test_json_is_the_model_in_numbers(capsys):

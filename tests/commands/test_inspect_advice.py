@@ -64,6 +64,26 @@ def test_plate_and_accelerations_of_one_file_give_the_comparison(tmp_path, capsy
     assert line.endswith(" --map 'plate_fl_displacement=Shaker FL' --map 'knuckle_fl_acc_z=Hub FL z'")
 
 
+def test_the_comparison_of_a_file_of_many_channels_is_short(tmp_path, capsys):
+    """Of 61 channels 25 fit the car; the command has plates and vertical accelerations (it runs at the teardown)."""
+    time = np.arange(3600) / 400.0
+    points = [*(f"Hub {wheel}" for wheel in ("VL", "VR", "HL", "HR")), "Motor", "Fahrersitz", "Sitzschiene"]
+    names = [f"Weg {wheel}" for wheel in ("VL", "VR", "HL", "HR")] + [
+        f"{point} {axis}" for point in points for axis in "xyz"
+    ]
+    columns = [(name, "mm" if "Weg" in name else "g", sine(time, 0.1, 2.0 + k)) for k, name in enumerate(names)]
+    columns += [(f"Spare {number}", "V", time) for number in range(61 - len(columns))]
+    written(tmp_path / "a.csv", time, columns)
+    assert inspect([str(tmp_path / "a.csv")]) == 0
+    head, line = capsys.readouterr().out.splitlines()[-2:]
+    assert head.endswith("tune takes the same --map; 15 more channels fit, --json lists them:")
+    mapped = [word.split("=") for word in shlex.split(line) if "=" in word]
+    assert len(mapped) == 10 and sum(model.startswith("plate_") for model, _ in mapped) == 4
+    assert {name.removesuffix(" z") for model, name in mapped if model.endswith("_z")} == {*points} - {"Motor"}
+    assert inspect([str(tmp_path / "a.csv"), "--json"]) == 0
+    assert len(json.loads(capsys.readouterr().out)["comparison_left_out"]) == 15
+
+
 @pytest.mark.parametrize(
     ("names", "words"),
     [

@@ -122,7 +122,7 @@ def test_a_road_is_evaluated_from_two_seconds_on(shaker, tmp_path):
     assert RoadDrive(road="B", speed=5.0, wheels=(("fr", 0.0, "right"), ("rr", 2.615, "right")), track=1.5).skip == 3.4
     for skip in ("-1", "nan", "5"):
         outcome = shaker(*given, "--output", "other", "--skip", skip)
-        assert outcome.code == 2 and f"--skip {skip} s: allowed is 0 s to less than road_B_80, 5 s" in outcome.err
+        assert outcome.code == 2 and f"--skip {skip} s: must be at least 0 and below the 5 s" in outcome.err
 
 
 @pytest.mark.parametrize(

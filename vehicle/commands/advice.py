@@ -14,6 +14,7 @@ from vehicle.signals.formats.channel import NOT_OVER_TIME, ROAD_PROFILE
 from vehicle.signals.formats.text import LARGEST
 from vehicle.signals.records.channel_words import (
     axis_of,
+    main_channels,
     map_options,
     may_be_plate,
     of_wheel_or_engine,
@@ -107,8 +108,11 @@ def command_for(measurement: Measurement, file: str, databases: Sequence[Path] =
     return "", "no channel with times: set --rate HZ, or --channel time=NAME"
 
 
-def comparison_for(measurement: Measurement, file: str, command: str) -> str:
-    """Return the command that compares the accelerations of a file with a run of its plate; empty without both.
+def comparison_for(measurement: Measurement, file: str, command: str) -> tuple[str, dict[str, str]]:
+    """Return the command that compares the accelerations of a file with a run of its plate, and channels left out.
+
+    Without plate or acceleration the command is empty. The channels left out are names of measured channels by channel
+    of the model, as for `--map`, beyond the main ones.
 
     Args:
         command: command from `command_for`; the comparison uses its run.
@@ -118,18 +122,21 @@ def comparison_for(measurement: Measurement, file: str, command: str) -> str:
 
     run_command = shlex.split(command)[3:]
     if run_command[:1] != ["shaker"] or "--road" in run_command:
-        return ""
+        return "", {}
     car = Path(run_command[run_command.index("--vehicle") + 1]) if "--vehicle" in run_command else None
     suggested = suggested_channels(measurement.channels, load_vehicle(car).channels)
     plates = [name for name in suggested if name.startswith("plate_")]
     if not plates or len(plates) == len(suggested):
-        return ""
-    mapped_channels = [measurement.channels[pick(measurement, name)] for name in suggested.values()]
+        return "", {}
+    main = main_channels(suggested)
+    mapped_channels = [measurement.channels[pick(measurement, name)] for name in main.values()]
     databases = [word for at, word in enumerate(run_command) if "--dbc" in run_command[max(at - 1, 0) : at + 1]]
     arguments = ["compare", "RUN", "--measured", file, *databases, *_clock(*mapped_channels)]
     mapped = map_options(suggested)
     checked = [*arguments, *shlex.split(mapped), *(("--vehicle", str(car)) if car else ())]
-    return "" if _is_checked(measurement) and _refusal(checked) else f"{_line(*arguments)} {mapped}"
+    if _is_checked(measurement) and _refusal(checked):
+        return "", {}
+    return f"{_line(*arguments)} {mapped}", {name: text for name, text in suggested.items() if name not in main}
 
 
 def _line(*arguments: str) -> str:

@@ -42,12 +42,13 @@ def _job(options: argparse.Namespace) -> None:
     def one(name: str) -> dict[str, Any]:
         measurement = read_record(find_input(name), tuple(options.databases))
         command, reason = command_for(measurement, name, options.databases)
-        comparison = comparison_for(measurement, name, command) or None
+        comparison, left_out = comparison_for(measurement, name, command)
         return {
             **contents(measurement),
             "command": command or None,
             "command_reason": reason,
-            "comparison": comparison,
+            "comparison": comparison or None,
+            "comparison_left_out": left_out,
         }
 
     names, several = expanded(options.files)
@@ -192,7 +193,9 @@ def report(content: dict[str, Any]) -> str:
     else:
         lines.append(f"no command: {content['command_reason']}")
     if content["comparison"]:
-        lines += ["compares the accelerations with the run RUN of that command; tune takes the same --map:",
+        count = len(content["comparison_left_out"])
+        others = f"; {count} more channels fit, --json lists them" if count else ""
+        lines += [f"compares the accelerations with the run RUN of that command; tune takes the same --map{others}:",
                   f"  {content['comparison']}"]  # fmt: skip
     return "\n".join(lines)
 

@@ -73,6 +73,10 @@ def parser() -> Parser:
                 option(name), type=str if file else float, metavar="FILE" if file else "X",
                 help=f"{declared['meaning']}{unit}",
             )  # fmt: skip
+        if "tyre_radius" in names:
+            group.add_argument(
+                "--tyre-size", metavar="SIZE", help="size of the tyres, as 205/55R16, instead of --tyre-radius"
+            )
     inertia = field_quantity(StatedNumbers, "inertia")
     parser.add_argument(
         "--inertia", choices=inertia["choices"], help=f"{inertia['meaning']}; {inertia['default']} by default"
@@ -99,7 +103,9 @@ def _job(options: argparse.Namespace) -> None:
         raise ConfigurationError(f"NAME {str(options.folder)!r}: its last part must be letters, digits, '_', '.', '-'")
     if name in CARS and options.folder == Path(name):
         raise ConfigurationError(f"NAME {name}: is the name of a shipped car, which --vehicle would read; take another")
-    stated = stated_numbers(options.numbers, {key: getattr(options, key) for key in (*NAMES, "inertia", "car_class")})
+    stated = stated_numbers(
+        options.numbers, {key: getattr(options, key) for key in (*NAMES, "tyre_size", "inertia", "car_class")}
+    )
     if options.source is None:
         if stated.car_class is None:
             raise ConfigurationError("--from: missing; name a template, as --from sedan, or state --car-class")

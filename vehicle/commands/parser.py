@@ -6,7 +6,9 @@ import argparse
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 from vehicle.errors import ConfigurationError
@@ -138,8 +140,39 @@ class Parser(argparse.ArgumentParser):
             return None
         return super()._parse_optional(arg_string)
 
+    def _plain(self, message: str) -> str:
+        """Return a message of argparse in words of the user: option, value, what it must be."""
+        if found := re.fullmatch(r"argument (--[\w-]+)(?:/\S+)?: (.*)", message, re.DOTALL):
+            option, text = found.groups()
+            if wrong := re.fullmatch(r"invalid (float|int) value: (.*)", text, re.DOTALL):
+                return f"{option} {wrong[2]}: must be a {'whole ' if wrong[1] == 'int' else ''}number without a unit"
+            if wrong := re.fullmatch(r"invalid choice: (.*) \(choose from (.*)\)", text, re.DOTALL):
+                choices = wrong[2].replace("'", "")
+                return f"{option} {wrong[1]}: must be one of {choices}"
+            return f"{option}: {text.replace('expected one argument', 'needs a value')}"
+        message = message.replace("the following arguments are required", "missing")
+        typed = message.removeprefix("unrecognized arguments: ")
+        return message if typed == message else self._of_unknown(typed)
+
+    def _of_unknown(self, typed: str) -> str:
+        """Return the message for words that belong to no option, with the option that was probably meant."""
+        word = typed.split()[0]
+        if word == "=":
+            return f"{typed}: write PATH=VALUE without blanks around '='"
+        options = [option for option in self._option_string_actions if option.startswith("--")]
+        if word.startswith("--"):
+            name = word.partition("=")[0]
+            near = [option for option in options if option.startswith(name)] or get_close_matches(
+                name, options, n=1, cutoff=0.75
+            )
+            return f"{word}: no such option" + (f"; did you mean {' or '.join(near)}?" if near else "")
+        if "--input" in options and (re.fullmatch(r"\.\w{2,3}", Path(word).suffix) or Path(word).is_file()):
+            return f"{typed}: a measurement is given by --input {word}"
+        return f"{typed}: belongs to no option; names without an option come first"
+
     def error(self, message: str) -> None:  # type: ignore[override]
         """Raise a ConfigurationError with the message and the advice; argparse would end the process."""
+        message = self._plain(message)
         raise ConfigurationError(f"{message}; {f'{self.advice}; ' if self.advice else ''}see {self.prog} --help")
 
 

@@ -12,6 +12,10 @@ if TYPE_CHECKING:
     from vehicle.signals.records.run_summary import ComfortSummary, Peaks, RunSummary, SolverSummary
 
 
+NAMED_SHARE = 1e-3
+"""Share of the time with full friction from which it is named: 60 ms of a minute; below, a damper sticks."""
+
+
 def _each(wheels: Collection[str], say: Callable[[str, str], str], last: str = ", ") -> str:
     """Return a list in words, with a text for each wheel from its name and its side."""
     texts = [say(wheel, side_of(wheel, wheels)) for wheel in wheels]
@@ -52,28 +56,31 @@ def summary_text(summary: RunSummary) -> str:
 
 
 def _dampers(summary: RunSummary) -> list[str]:
-    """Return the line of sticking and slipping dampers, and that of fully developed friction; none without a damper."""
+    """Return the line of sticking and slipping dampers, and that of slow sliding; none without a damper."""
     share, first = summary["slip_share"], summary["first_slip_s"]
-    full = {wheel: summary["friction_saturated_share"][wheel] for wheel in first}
-    limit, fast = 1e3 * share["slip_velocity"] if first else 0.0, 1e3 * summary["saturated_velocity"]
-    started = {wheel: time for wheel, time in first.items() if time is not None}
     if not first:
         return []
-    if not started:
-        every = (
-            "both dampers stick" if len(first) == 2 else "the damper sticks" if len(first) == 1 else "all dampers stick"
-        )
-        lines = [f"damper      {every} all the time (|v| < {limit:g} mm/s)"]
-    else:
+    full = {wheel: summary["friction_saturated_share"][wheel] for wheel in first}
+    limit, fast = 1e3 * share["slip_velocity"], 1e3 * summary["saturated_velocity"]
+    started = {wheel: time for wheel, time in first.items() if time is not None}
+    slow = max(full.values()) >= NAMED_SHARE
+    every, ending = ("both dampers", "") if len(first) == 2 else ("the damper", "s")
+    if len(first) > 2:
+        every = "all dampers"
+    if started:
         shares = _each(first, lambda w, side: f"{number(100 * share[w])} % ({side})", " and ")
         earliest = min(started, key=lambda wheel: started[wheel])
         lines = [
             f"damper      slip (|v| > {limit:g} mm/s) for {shares} of the time, first at {started[earliest]:.3g} s "
             f"({side_of(earliest, first)})"
         ]
-    if any(full.values()):
+    elif slow:
+        lines = [f"damper      {every} slide{ending} slowly at times, never faster than {limit:g} mm/s"]
+    else:
+        lines = [f"damper      {every} stick{ending} all the time (|v| < {limit:g} mm/s)"]
+    if slow:
         shares = _each(first, lambda w, side: f"{number(100 * full[w])} % ({side})", " and ")
-        lines.append(f"            full friction (|v| > {fast:g} mm/s) for {shares}")
+        lines.append(f"            above {fast:g} mm/s, where friction has its full value, for {shares}")
     return lines
 
 

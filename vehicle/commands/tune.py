@@ -72,6 +72,8 @@ def parser() -> Parser:
     output_options(parser, OUTPUT)
     head_options(parser)
     parser.add_argument("--json", action="store_true", help="print the content of tune.json")
+    parser.former("--measured", "--measured: FRFs are given by --frf FILE, time histories by --record FILE")
+    parser.former("--(vary|fit) ", "the parameters to fit are given by --parameters PATH=LOW:HIGH")
     message_options(parser, quiet=True)
     return parser
 

@@ -71,7 +71,7 @@ def test_command(tmp_path, capsys):
         (["--step", "-0.1"], "--step -0.1: must be 0.001 to 0.5 ms"),
         (["--speed", "-5"], "--speed -5: must be 0 to 300 km/h"),
         (["--speed", "80"], "focus has other ground contacts than wheels"),
-        (["--fmi", "1"], "invalid choice: '1'"),
+        (["--fmi", "1"], "--fmi '1': must be one of "),
         (["--channels", "seat"], "--channels: no channel 'seat'"),
         (["--output", "car.zip"], "car.zip"),
     ],

@@ -203,7 +203,7 @@ CASES = {
     "axes of words": option("--axes", "forward", says="three different, right-handed source axes"),
     "origin of two": option("--origin", "1,2", says="must be three numbers in metres"),
     "origin nan": option("--origin", "1,nan,0", says="must be three numbers in metres"),
-    "unit": option("--length-unit", "furlong", says="invalid choice: 'furlong'"),
+    "unit": option("--length-unit", "furlong", says="--length-unit 'furlong': must be one of "),
     "unit of a universal file": option("--length-unit", "mm", says="a universal file states its own units"),
     "matrices in mm": Case("K.mtx", nothing, (*MARKET, "--length-unit", "mm"), "Set --length-unit m."),
     "matrices in t": Case("K.mtx", nothing, (*MARKET, "--mass-unit", "t"), 'Set --mass-unit "kg".'),

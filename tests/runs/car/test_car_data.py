@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import json
 import math
+import re
 
 import numpy as np
 import numpy.typing as npt
@@ -14,7 +15,7 @@ from tests.engines.kinematics.instant_centres import across, motion, rod
 from tests.validation import validated
 from vehicle import Car, ConfigurationError
 from vehicle.model.parameters.vehicle import vehicle_of
-from vehicle.runs.car.axle import axle_statics
+from vehicle.runs.car.axle import axle_statics, mass_and_cog
 from vehicle.runs.car.axle_data import axle_data
 from vehicle.runs.car.car_data import CarData
 
@@ -264,6 +265,15 @@ def test_summary_is_json_and_lines_are_short(shown, cars):
         for value in (data, data.axles[0], data.parameters[5]):
             assert "\n" not in repr(value)
     assert repr(shown["sedan"]) == "CarData(sedan, 1653 kg, 51 % in front, CoG 489 mm high)"
+
+
+def test_loads_are_shown_or_how_to_add_a_driver(shown):
+    seated = Car.load("focus_road_seated", {"load.trunk.mass": 80.0, "load.trunk.at": (3.6, 0.0, 0.7)}).show()
+    assert "\nload          trunk 80 kg, driver (on a seat) 55 kg\n" in str(seated)
+    line = re.search("^load +none: .*; (--set .*) adds a driver$", str(shown["sedan"]), re.MULTILINE)
+    assert line is not None
+    driven = Car.load("sedan", line[1].removeprefix("--set ").split(" --set "))
+    assert mass_and_cog(driven)[0] == pytest.approx(shown["sedan"].mass_kg + 75.0, abs=1e-9)
 
 
 def test_a_rolling_car_is_shown_at_its_speed(shown):

@@ -6,7 +6,10 @@ from html import unescape
 import numpy as np
 import pytest
 
+from vehicle.commands.summary_text import summary_text
+from vehicle.runs.report.findings import damper_sentences
 from vehicle.signals.formats.frf_file import read_frf
+from vehicle.signals.records.run_summary import read_summary
 
 
 def test_the_share_of_incoherent_lines_is_that_of_the_table(reported):
@@ -22,3 +25,29 @@ def test_the_share_of_incoherent_lines_is_that_of_the_table(reported):
         assert said is not None
         assert float(said[1]) == pytest.approx(np.median(finite), abs=1e-3)
         assert float(said[2]) == pytest.approx(100.0 * low, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("full", "console", "page"),
+    [
+        (5e-5, ["both dampers stick all the time (|v| < 6 mm/s)"], "Both dampers are all the time stuck: "),
+        (
+            0.04,
+            [
+                "both dampers slide slowly at times, never faster than 6 mm/s",
+                "above 1 mm/s, where friction has its full value, for 4 % (right) and 4 % (left)",
+            ],
+            "Both dampers are at times sliding slowly, seldom or never faster than 6 mm/s.",
+        ),
+    ],
+)
+def test_console_and_report_give_dampers_without_slip_one_state(reported, full, console, page):
+    summary = read_summary(reported.folder)
+    summary["slip_share"] |= {"fr": 0.0, "fl": 0.0}
+    summary["first_slip_s"] = {"fr": None, "fl": None}
+    summary["friction_saturated_share"] = {"fr": full, "fl": full}
+    lines = summary_text(summary).splitlines()
+    first = next(k for k, line in enumerate(lines) if line.startswith("damper "))
+    ending = next(k for k, line in enumerate(lines) if line.startswith("resonances "))
+    assert [line[12:] for line in lines[first:ending]] == console
+    assert damper_sentences(summary)[0].startswith(page)

@@ -188,6 +188,12 @@ def test_the_command_line_takes_precedence_over_the_file(tmp_path):
         ("--roll-inertia 200", "the body would have I.*check --yaw-inertia"),
         ("--wheel-hop-front 80", "--wheel-hop-front: found 80.0 Hz, must be at most 30.0"),
         ("--pitch-frequency 2 --pitch-inertia 3000", "either gives the other; leave one of the two out"),
+        (
+            "--tyre-size 205-55-16",
+            "--tyre-size '205-55-16': not the size of a radial tyre; write width/height R rim, as 205/55R16",
+        ),
+        ("--tyre-size 205/55R99", "rim 99 inch, must be 10 to 24"),
+        ("--tyre-size 205/55R16 --tyre-radius 0.3", "the size gives the radius; leave one of the two out"),
         ("--damper-curve-front none.csv", "front.damper.curve: .*none.csv: no such file"),
     ],
 )
@@ -224,8 +230,24 @@ def test_estimates_are_inside_the_survey_for_a_measured_car():
     assert back == pytest.approx(indices, rel=1e-12)
 
 
-def test_survey_inertia_is_that_of_the_whole_car(tmp_path):
-    car = made(tmp_path / "survey", "--inertia", "survey", "--kerb-mass", "1500", "--front-axle-load", "850")
+@pytest.fixture(scope="module")
+def surveyed(tmp_path_factory):
+    """A car on tyres 205/55 R 16 with the moments of inertia of the survey."""
+    folder = tmp_path_factory.mktemp("new") / "survey"
+    sizes = ("--kerb-mass", "1500", "--front-axle-load", "850", "--tyre-size", "205/55 R 16 91V")
+    return made(folder, "--inertia", "survey", *sizes)
+
+
+def test_the_size_of_a_tyre_is_its_radius_without_load(surveyed):
+    """By hand: half the rim of 16 inch, 203.2 mm, and a side wall of 0.55 205 = 112.75 mm (UN Regulation 30)."""
+    wheels = {wheel.name: wheel for wheel in surveyed.vehicle.composition.wheels}
+    deflection = 425.0 * 9.81 / surveyed["front.bushings.tyre.stiffness"].value[2]
+    assert 0.015 < deflection < 0.025
+    assert wheels["fl"].center[2] - wheels["fl"].patch[2] + deflection == pytest.approx(0.31595, abs=1e-5)
+
+
+def test_survey_inertia_is_that_of_the_whole_car(surveyed):
+    car = surveyed
     whole, wheels = car_masses(car.model), {wheel.name: wheel for wheel in car.vehicle.composition.wheels}
     a = whole.cog[0] - wheels["fr"].center[0]
     b = wheels["rr"].center[0] - whole.cog[0]

@@ -30,18 +30,18 @@ def add(tasks: Any) -> None:
     )
     output_options(built)
     vehicle_options(built)
-    message_options(built)
+    message_options(built, quiet=True)
 
 
-def _fitted(design: BodyDesign, vehicle: Vehicle) -> BodyDesign:
-    """Return the design with section factors fitted on this car; print the factors."""
+def _fitted(design: BodyDesign, vehicle: Vehicle, *, quiet: bool) -> BodyDesign:
+    """Return the design with section factors fitted on this car; print the factors unless quiet."""
     from vehicle.model.flexbody.body_frame import body_frame
     from vehicle.model.flexbody.node_masses import NodeProperties
     from vehicle.model.flexbody.section_fit import STAGES, fit_factors
 
     frame = body_frame(design, vehicle.points, NodeProperties.of_body(vehicle.body, design.least_ixx))
     factors = fit_factors(frame, dict.fromkeys(design.factors, 1.0), STAGES)
-    for group in design.fitted_groups:
+    for group in design.fitted_groups if not quiet else ():
         print(f"members.{group}.factor = {factors[group]:.5g}")
     members = {
         name: replace(group, factor=factors[name]) if name in design.fitted_groups else group
@@ -60,7 +60,9 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     file = options.design or body_file(vehicle, options.vehicle.parent if options.vehicle else None)
     design = read_design(file)
     if options.fit:
-        design = _fitted(design, vehicle)
+        design = _fitted(design, vehicle, quiet=options.quiet)
     model = design_superelement(design, vehicle.points, vehicle.composition.attachments(), vehicle.body)
     write(options, model)
+    if options.quiet:
+        return
     print("\n".join(report(model, vehicle)))

@@ -78,7 +78,7 @@ def add(tasks: Any) -> None:
     )
     _add_model_options(parser)
     vehicle_options(parser)
-    message_options(parser)
+    message_options(parser, quiet=True)
 
 
 def _add_matrix_options(parser: Parser) -> None:
@@ -209,6 +209,8 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
         modes = normalised(shapes, weight, options.modal_mass, options.up_to, residual)
     model = superelement_of(modes, attached, name=options.name or options.file.stem, damping=options.damping)
     write(options, model)
+    if options.quiet:
+        return
     print("\n".join([*(f"note: {notice}" for notice in (*notices, *modes.notices)), *report(model, vehicle)]))
     print("points of the car")
     for interface in attached:

@@ -75,7 +75,11 @@ def mass_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
     """Return lines with mass, CoG and inertia about the CoG, of the model and of the vehicle."""
     from vehicle.model.flexbody.rigid_body import rigid_body
 
-    body, lines = rigid_body(vehicle.body), [f"{'':<18} {'model':>10} {'vehicle':>10} {'difference':>11}"]
+    body = rigid_body(vehicle.body)
+    lines = [
+        f"compared with the car {vehicle.name}; --vehicle chooses another",
+        f"{'':<18} {'model':>10} {'vehicle':>10} {'difference':>11}",
+    ]
 
     def line(name: str, mine: float, theirs: float, digits: int) -> None:
         apart = f"{mine - theirs:>+z11.{digits}f}"

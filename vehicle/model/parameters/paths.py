@@ -371,4 +371,7 @@ def parsed_value(assignment: str, text: str, old: Any) -> Any:
             return float(text)  # ".5" and "1." are numbers, but not in TOML
         except ValueError:
             pass
-        raise ConfigurationError(f"--set {assignment}: {text!r} is not a number, a list of numbers or a text") from None
+        comma = "; decimals have a point, a list has brackets" if "," in text else ""
+        raise ConfigurationError(
+            f"--set {assignment}: {text!r} is not a number, a list of numbers or a text{comma}"
+        ) from None

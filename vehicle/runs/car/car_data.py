@@ -39,6 +39,7 @@ class CarData:
         cog_behind_front_m: its distance behind the wheel centres of the first axle.
         inertia_kg_m2: Ixx, Iyy, Izz and the integral of z x about it.
         wheelbase_m: distance of two axles; None for a car with another number of axles on wheels.
+        loads_kg: masses of persons, luggage and other loads, `[load.NAME]` and `[seat.NAME]` of the vehicle file.
         support_n: static load of each contact with the ground other than a tyre [N].
         axles: axles with wheels.
         figures: headline figures: heave, pitch, roll, wheel hop; see `MotionFigure`.
@@ -59,6 +60,7 @@ class CarData:
     cog_behind_front_m: float
     inertia_kg_m2: tuple[float, float, float, float]
     wheelbase_m: float | None
+    loads_kg: Mapping[str, float]
     support_n: Mapping[str, float]
     axles: tuple[AxleData, ...]
     figures: tuple[MotionFigure, ...]
@@ -171,6 +173,7 @@ def car_data(car: Any) -> CarData:
         cog_behind_front_m=x - axles[0].x_m if axles else x,
         inertia_kg_m2=_inertia(still, cog),
         wheelbase_m=abs(axles[1].x_m - axles[0].x_m) if len(axles) == 2 else None,
+        loads_kg=_loads(vehicle.table),
         support_n={name: float(load) for name, load in still.static.support_load.items()},
         axles=axles,
         figures=motion_figures(car),
@@ -190,6 +193,14 @@ def source_file(car: Any) -> Path | None:
     default = FOCUS_FILE if car.vehicle.name == FOCUS_FILE.parent.name else None
     file = default if origin is None else Path(origin)
     return file if file is not None and file.is_file() else None
+
+
+def _loads(table: Mapping[str, Any]) -> dict[str, float]:
+    """Return the masses of the loads of a vehicle table, and of persons on seats [kg]."""
+    loads = {name: float(load["mass"]) for name, load in (table.get("load") or {}).items() if load["mass"]}
+    for name, seat in (table.get("seat") or {}).items():
+        loads[f"{name} (on a seat)"] = sum(float(part["mass"]) for part in seat["parts"].values())
+    return loads
 
 
 def _inertia(car: Any, cog: npt.NDArray[np.float64]) -> tuple[float, float, float, float]:

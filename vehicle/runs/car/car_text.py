@@ -86,6 +86,7 @@ def _whole_car(data: CarData) -> TextTable:
             f"{1e3 * data.cog_behind_front_m:.0f} mm behind the {data.axles[0].name} wheels, {1e3 * y:z.0f} mm to the "
             f"right, {1e3 * data.cog_height_m:.0f} mm above the ground; x {x:.4f}, y {y:z.4f}, z {z:.4f} m",
         ),
+        ("load", _load_words(data)),
         ("inertia", f"Ixx {ixx:.1f}, Iyy {iyy:.1f}, Izz {izz:.1f}, integral of z x {izx:.1f} kg m2, about the CoG"),
     ]
     if data.wheelbase_m is not None:
@@ -95,6 +96,14 @@ def _whole_car(data: CarData) -> TextTable:
         parts += [f"{point_words(name)} {load:.0f} N" for name, load in data.support_n.items()]
         rows.append(("static loads", f"{', '.join(parts)}; {100 * data.front_share:.1f} % on {data.axles[0].name}"))
     return TextTable(title="Car", heads=(), rows=tuple(rows))
+
+
+def _load_words(data: CarData) -> str:
+    """Return persons and luggage on board; for an empty car how to add a driver."""
+    if data.loads_kg:
+        return ", ".join(f"{name} {mass:g} kg" for name, mass in data.loads_kg.items())
+    at = "seat" if any(parameter.path == "hardpoints.seat" for parameter in data.parameters) else "[X,Y,Z]"
+    return f"none: no driver, passenger or luggage; --set load.driver.mass=75 --set load.driver.at={at} adds a driver"
 
 
 def _usual(data: CarData) -> TextTable:

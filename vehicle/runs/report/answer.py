@@ -144,6 +144,8 @@ def _damper_words(run: FinishedRun) -> str:
     if not shares:
         return ""
     low, high = (100.0 * limit(shares.values()) for limit in (min, max))
+    if high < 1.0 <= 100.0 * max(run.summary["friction_saturated_share"].values()):
+        return "; the dampers slide slowly at times"
     if high < 1.0:
         return "; the dampers stick, so they dissipate almost no energy"
     ends = dict.fromkeys(number(share, 2) for share in (low, high))

@@ -43,7 +43,7 @@ def findings(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[Find
         modes: modes of the car, for dampers "stuck" and "sliding".
     """
     summary = run.summary
-    sentences = [Finding("Dampers", text) for text in _dampers(summary)]
+    sentences = [Finding("Dampers", text) for text in damper_sentences(summary)]
     sentences += [Finding("Forces", text) for text in order_sentences(summary)]
     sentences += [Finding("Resonances", text) for text in _resonances(run, modes)]
     sentences += [Finding("Body", text) for text in body_modes(run, damper_state(run))]
@@ -52,12 +52,18 @@ def findings(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[Find
     return [*sentences, *(Finding("Computation", f"Warning: {text}") for text in summary["solver"]["warnings"])]
 
 
-def _dampers(summary: RunSummary) -> list[str]:
-    """Return a sentence for each state: the dampers in it, and their shares of the time in slip."""
+def damper_sentences(summary: RunSummary) -> list[str]:
+    """Return a sentence for each state: the dampers in it, and their shares of the time in slip.
+
+    Args:
+        summary: content of the `summary.json` of the run.
+    """
     shares, limit = slip_shares(summary), 1e3 * summary["slip_share"].get("slip_velocity", 0.0)
     by_state: dict[str, list[str]] = {}
     for wheel, share in shares.items():
-        if summary["first_slip_s"][wheel] is None:
+        if share <= STICKS < summary["friction_saturated_share"][wheel]:
+            state = f"at times sliding slowly, seldom or never faster than {limit:g} mm/s"
+        elif summary["first_slip_s"][wheel] is None:
             state = "all the time stuck: almost no energy is dissipated, and the strut acts as a rigid link"
         elif share <= STICKS:
             state = "almost always stuck: almost no energy is dissipated, and the strut acts as a rigid link"

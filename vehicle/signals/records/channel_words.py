@@ -51,6 +51,9 @@ LONGITUDE = {"lon", "long", "lng", "longitude", "länge", "laenge", "längengrad
 ROUTE = {"altitude", "alt", "distance", "odometer", "accuracy", "range", "strecke", "entfernung", "höhenmeter"}
 """Words for lengths along or above a route, which are no motion of a plate."""
 
+MAPPED = 10
+"""Maximum number of channels in a printed command: plates and knuckles of four wheels, seat and seat rail."""
+
 
 def words_of(name: str) -> list[str]:
     """Return the words of a channel name, as "accSeatZ", in small letters: split at signs, digits and capitals."""
@@ -141,9 +144,21 @@ def suggested_channels(channels: Sequence[Channel], model_channels: Collection[s
     return suggested
 
 
+def main_channels(suggested: dict[str, str]) -> dict[str, str]:
+    """Return the main ones of suggested channels: plates, vertical accelerations of knuckles and seat, then others.
+
+    Args:
+        suggested: result of `suggested_channels`; at most `MAPPED` of them are returned, in their order.
+    """
+    order = sorted(
+        suggested, key=lambda name: (not name.startswith("plate_"), not name.endswith("_z"), name.startswith("engine"))
+    )
+    return {name: suggested[name] for name in suggested if name in order[:MAPPED]}
+
+
 def map_options(suggested: dict[str, str]) -> str:
-    """Return the options `--map` of the result of `suggested_channels`, as typed."""
-    return " ".join(f"--map {shlex.quote(f'{model}={name}')}" for model, name in suggested.items())
+    """Return the options `--map` of the main ones of `suggested_channels`, as typed."""
+    return " ".join(f"--map {shlex.quote(f'{model}={name}')}" for model, name in main_channels(suggested).items())
 
 
 def _suggested(channel: Channel) -> str:

@@ -99,7 +99,9 @@ def read_measured(
     output_of = {role: parsed_name(role).output for role in roles}
     unknown = next((name for name in (*output_of.values(), *inverted) if name not in model_channels), None)
     if unknown is not None:
-        close = get_close_matches(unknown, model_channels, n=3)
+        close = (
+            get_close_matches(unknown, model_channels, n=3) or [name for name in model_channels if unknown in name][:3]
+        )
         raise ConfigurationError(
             f"--map {unknown}=...: unknown model channel; names are such as knuckle_fr_acc_z"
             + (f"; did you mean {' or '.join(close)}?" if close else "")

@@ -24,6 +24,7 @@ from vehicle.studies.design.ride_solution import Target, new_car_of, quantities,
 from vehicle.studies.design.scaled_parts import scaled_parts
 from vehicle.studies.design.stated_numbers import AXLES, NAMES, StatedNumbers, option
 from vehicle.studies.design.template_car import TemplateCar, template_car
+from vehicle.studies.design.tyre_size import with_tyre_size
 from vehicle.threads import one_blas_thread
 
 LOADS_MET, FREQUENCIES_MET = 1e-3, 1e-2
@@ -90,6 +91,7 @@ def new_car(name: str, source: Path | str, stated: StatedNumbers, *, scale: bool
     template = template_car(source)
     template_mass = car_masses(kerb_model(template.table, template)).mass
     ratio = kerb_mass(stated, template_mass) / template_mass if scale else 1.0
+    stated = with_tyre_size(stated, template, ratio)
     engine = powertrain(stated.car_class)
     template = template.with_powertrain(engine)
     table, sources = moved_points(template, stated)

@@ -22,6 +22,9 @@ BODY: dict[str, Any] = {
     "at_most": 8.0,
     "why": "bodies of cars move at 1 to 2 Hz, of race cars up to 6 Hz",
 }
+CAR: dict[str, Any] = {"at_least": 100.0, "why": "kg, not t"}
+AXLE: dict[str, Any] = {"at_least": 20.0, "why": "kg, neither a share nor t"}
+METRES: dict[str, Any] = {"why": "m, not mm"}
 HOP: dict[str, Any] = {"at_least": 4.0, "at_most": 30.0, "why": "wheels of cars hop at 8 to 16 Hz"}
 
 optional = partial(quantity, default=None)
@@ -32,22 +35,31 @@ optional = partial(quantity, default=None)
 class StatedNumbers:
     """Numbers of a car; None: not stated. `option` returns its name on a command line.
 
-    `of_class` has the names of the numbers that are those of the class of the car.
+    `tyre_size` is the size of the tyres, as 205/55R16, instead of their radius. `of_class` has the names of the numbers
+    that are those of the class of the car.
     """
 
-    kerb_mass: float | None = optional("kg", "mass of the car without the loads of [load]", above=0.0, at_most=2e4)
+    kerb_mass: float | None = optional("kg", "mass of the car without the loads of [load]", at_most=2e4, **CAR)
     front_axle_load: float | None = optional(
-        "kg", "load of the front axle on the scales, without [load]", above=0.0, at_most=2e4
+        "kg", "load of the front axle on the scales, without [load]", at_most=2e4, **AXLE
     )
     rear_axle_load: float | None = optional(
-        "kg", "load of the rear axle on the scales, without [load]", above=0.0, at_most=2e4
+        "kg", "load of the rear axle on the scales, without [load]", at_most=2e4, **AXLE
     )
-    cog_x: float | None = optional("m", "centre of gravity behind the front axle, instead of an axle load", above=0.0)
+    cog_x: float | None = optional(
+        "m",
+        "centre of gravity behind the front axle, instead of an axle load",
+        above=0.0,
+        at_most=8.0,
+        **METRES,
+    )
     cog_height: float | None = optional("m", "centre of gravity above the ground", above=0.0, at_most=3.0)
-    wheelbase: float | None = optional("m", "distance of the axles", above=0.0)
-    track_front: float | None = optional("m", "distance of the front wheels", above=0.0)
-    track_rear: float | None = optional("m", "distance of the rear wheels", above=0.0)
-    tyre_radius: float | None = optional("m", "loaded radius: wheel centre above the ground", above=0.0)
+    wheelbase: float | None = optional("m", "distance of the axles", above=0.0, at_most=8.0, **METRES)
+    track_front: float | None = optional("m", "distance of the front wheels", above=0.0, at_most=4.0, **METRES)
+    track_rear: float | None = optional("m", "distance of the rear wheels", above=0.0, at_most=4.0, **METRES)
+    tyre_radius: float | None = optional(
+        "m", "loaded radius: wheel centre above the ground", above=0.0, at_most=2.0, **METRES
+    )
     roll_inertia: float | None = optional(
         "kg m2", "Ixx of the car about its centre of gravity, without [load]", above=0.0
     )
@@ -95,6 +107,7 @@ class StatedNumbers:
         above=0.0,
     )
     car_class: str | None = optional("-", "class of the car, for default numbers")
+    tyre_size: str | None = None
     of_class: tuple[str, ...] = ()
     load: Mapping[str, dict] = field(default_factory=dict)  # type: ignore[type-arg]
 
@@ -134,14 +147,16 @@ class StatedNumbers:
         return f"{name.replace('_', ' ')} {getattr(self, name):g}{unit} ({self.origin(name)})"
 
     def origin(self, name: str) -> str:
-        """Return where a number comes from: "given" or "class small"."""
+        """Return where a number comes from: "given", "class small" or "tyre 205/55R16"."""
+        if name == "tyre_radius" and self.tyre_size is not None:
+            return f"tyre {self.tyre_size}"
         return f"class {self.car_class}" if name in self.of_class else "given"
 
 
 LOADS_AGREE = 5e-4
 """Largest deviation of the sum of two axle loads from the kerb mass, as a share of it: half of the promised 0.1 %."""
 
-NOT_NUMBERS = ("load", "inertia", "car_class", "of_class")
+NOT_NUMBERS = ("tyre_size", "load", "inertia", "car_class", "of_class")
 """Fields that are no numbers of a car."""
 
 NAMES = tuple(entry.name for entry in dataclasses.fields(StatedNumbers) if entry.name not in NOT_NUMBERS)

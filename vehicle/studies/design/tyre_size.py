@@ -1,0 +1,75 @@
+"""Size of a tyre, as 205/55R16: its radius without load, and under the static load of a car."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.paths import value_at
+from vehicle.studies.design.mass_balance import axle_loads, kerb_model
+from vehicle.studies.design.scaled_parts import OF_TYRES
+from vehicle.studies.design.stated_numbers import StatedNumbers
+from vehicle.studies.design.template_car import TemplateCar
+
+INCH = 25.4e-3
+"""Unit of the rim diameter [m], UN Regulation No. 30, 2.17.1.2."""
+
+SIZE = re.compile(r"P?(\d+)/(\d+) *Z?R *(\d+)(?: *\d+ *[A-Z])?", re.IGNORECASE)
+"""Width [mm], height in percent of it, rim [inch] of a radial tyre; load index and speed symbol may follow."""
+
+RANGES = {"width": (105, 395, "mm"), "height": (20, 95, "% of the width"), "rim": (10, 24, "inch")}
+"""Minimum, maximum and unit of the numbers of a size; assumed: tyres of passenger cars that are sold."""
+
+
+def unloaded_radius(size: str) -> float:
+    """Return the radius of a tyre without load [m]: d/2 + H, H = S a / 100.
+
+    d is the diameter of the rim, S the nominal width, a the height of the section in percent of it.
+
+    Args:
+        size: size of a radial tyre, as "205/55R16" or "205/55 R 16 91V".
+
+    Raises:
+        ConfigurationError: no size, or a number outside its range.
+
+    Source: UN Regulation No. 30 (ISO 4000-1), 6.1.2.1: outer diameter D = d + 2 H.
+    """
+    form = "write width/height R rim, as 205/55R16: 205 mm wide, 55 % of it high, rim of 16 inch"
+    found = SIZE.fullmatch(size.strip())
+    if found is None:
+        raise ConfigurationError(f"--tyre-size {size!r}: not the size of a radial tyre; {form}")
+    numbers = dict(zip(RANGES, map(int, found.groups()), strict=True))
+    for name, (low, high, unit) in RANGES.items():
+        if not low <= numbers[name] <= high:
+            raise ConfigurationError(
+                f"--tyre-size {size!r}: {name} {numbers[name]} {unit}, must be {low} to {high}; {form}"
+            )
+    return INCH * numbers["rim"] / 2.0 + 1e-5 * numbers["width"] * numbers["height"]
+
+
+def with_tyre_size(stated: StatedNumbers, template: TemplateCar, ratio: float) -> StatedNumbers:
+    """Return stated numbers with the loaded radius of their tyre size: unloaded radius less F / k.
+
+    F is the static load of a front wheel, stated or in proportion to the mass, k the stiffness of the front tyres of
+    the template, scaled as by `scaled_parts`; a stated wheel hop, which changes k, is left out.
+
+    Args:
+        stated: stated numbers.
+        template: the template car.
+        ratio: kerb mass of the new car over that of the template [-]; 1 if its parts are not scaled.
+
+    Raises:
+        ConfigurationError: no tyre size, or a size and a radius.
+    """
+    if stated.tyre_size is None:
+        return stated
+    if stated.tyre_radius is not None and "tyre_radius" not in stated.of_class:
+        raise ConfigurationError("--tyre-size and --tyre-radius: the size gives the radius; leave one of the two out")
+    front = stated.front_axle_load or ratio * axle_loads(kerb_model(template.table, template), template)["front"]
+    stiffness = (
+        value_at(template.table, f"{template.tyre_paths['front']}.stiffness")[2] * ratio ** OF_TYRES["stiffness"]
+    )
+    radius = unloaded_radius(str(stated.tyre_size)) - front * template.vehicle.gravity / 2.0 / stiffness
+    others = tuple(name for name in stated.of_class if name != "tyre_radius")
+    return dataclasses.replace(stated, tyre_radius=radius, of_class=others)
