@@ -72,7 +72,7 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def _film(options: argparse.Namespace) -> Path:
-    """Write the film of two runs, say how near it is to them, and return its path."""
+    """Write the film of two runs, print how exact the film is, and return the path."""
     from vehicle.drawing.rendering.backend import require_film
     from vehicle.drawing.rendering.crew import drawing_jobs
     from vehicle.runs.output.folder import write_whole
