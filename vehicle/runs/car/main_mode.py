@@ -96,10 +96,11 @@ def main_mode(run: Run, frequency: float | None = None) -> MainMode:
 
     Args:
         run: the run.
-        frequency: take the mode nearest to this frequency [Hz]; by default, that with the largest share.
+        frequency: take the mode nearest to this frequency [Hz]; by default, that with the largest share, or the lowest
+            mode of a car at rest.
 
     Raises:
-        ConfigurationError: the car has no mode, or none has a part in the motion.
+        ConfigurationError: the car has no mode.
     """
     car, vehicle = run.car, run.car.vehicle
     slip = max((run.slip_share(wheel) for wheel in vehicle.damped_wheels), default=0.0)
@@ -113,14 +114,10 @@ def main_mode(run: Run, frequency: float | None = None) -> MainMode:
         for at, share in enumerate(shares.shares):
             if (mode := mode_of(modes, shares, at)) is not None:
                 by_mode[mode.frequency] = float(share)
-    if frequency is not None:
-        chosen = nearest(modes, frequency)
-    elif max(by_mode.values(), default=0.0) > 0.0:
+    if frequency is None and max(by_mode.values(), default=0.0) > 0.0:
         chosen = max(modes, key=lambda mode: by_mode.get(mode.frequency, 0.0))
     else:
-        raise ConfigurationError(
-            f"{run.signal.source}: no mode has a part in the motion of the seat rail; give the frequency of a mode"
-        )
+        chosen = nearest(modes, frequency or 0.0)
     return MainMode(mode=chosen, share=by_mode.get(chosen.frequency), damper=damper)
 
 
