@@ -53,8 +53,8 @@ def _job(options: argparse.Namespace) -> None:
     if options.video is not None:
         if len(options.runs) != 2:
             raise ConfigurationError(
-                f"--video: shows two runs side by side, found {len(options.runs)}; for a film of a single run, give --video "
-                "to shaker"
+                f"--video: shows two runs side by side, found {len(options.runs)}; for a film of a single run, give "
+                "--video to shaker"
             )
         film = _film(options)
     write_report(
