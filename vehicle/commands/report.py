@@ -53,8 +53,8 @@ def _job(options: argparse.Namespace) -> None:
     if options.video is not None:
         if len(options.runs) != 2:
             raise ConfigurationError(
-                f"--video: shows two runs side by side, found {len(options.runs)}; a film of a single run is made by "
-                "--video of its own command"
+                f"--video: shows two runs side by side, found {len(options.runs)}; for a film of a single run, give "
+                "--video to shaker"
             )
         film = _film(options)
     write_report(
@@ -72,7 +72,7 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def _film(options: argparse.Namespace) -> Path:
-    """Write the film of two runs, say how near it is to them, and return its path."""
+    """Write the film of two runs, print how exact the film is, and return the path."""
     from vehicle.drawing.rendering.backend import require_film
     from vehicle.drawing.rendering.crew import drawing_jobs
     from vehicle.runs.output.folder import write_whole

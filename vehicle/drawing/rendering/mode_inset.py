@@ -1,4 +1,4 @@
-"""Mode of the car beside a run in its film: in place of the close-up, slowly, with its own exaggeration."""
+"""Mode of the car in the film of a run, which replaces the close-up: slow motion with another exaggeration."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ LETTERS = 47
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class BesideMode:
-    """Mode to show beside a run."""
+    """Mode in the film of a run, and text on it."""
 
     mode: MovingMode
     """the mode"""

@@ -77,7 +77,7 @@ class ModeMotion(Motion):
 
 
 class ModeCycle:
-    """One cycle of a mode, without its decay.
+    """Cycle of a mode without decay.
 
     Args:
         model: visible model, with the joints of the car.

@@ -109,17 +109,17 @@ def require_one_input(runs: Mapping[str, RecordedRun]) -> None:
     Raises:
         ConfigurationError: their lengths or the motions of their plates differ.
     """
-    (first, one), (second, other) = runs.items()
-    ends = [float(run.recording.time[-1]) for run in (one, other)]
-    if abs(ends[0] - ends[1]) > max(one.recording.timestep, other.recording.timestep):
+    (first, reference), (second, compared) = runs.items()
+    ends = [float(run.recording.time[-1]) for run in (reference, compared)]
+    if abs(ends[0] - ends[1]) > max(reference.recording.timestep, compared.recording.timestep):
         raise ConfigurationError(
             f"film: {first} lasts {ends[0]:g} s, {second} lasts {ends[1]:g} s; two cars side by side need one input"
         )
-    for wheel in dict.fromkeys((one.wheel, other.wheel)):
+    for wheel in dict.fromkeys((reference.wheel, compared.wheel)):
         channel = f"plate_{wheel}_displacement"
-        if channel in one.recording.channels and channel in other.recording.channels:
-            plate = one.recording[channel]
-            beside = np.interp(one.recording.time, other.recording.time, other.recording[channel])
+        if channel in reference.recording.channels and channel in compared.recording.channels:
+            plate = reference.recording[channel]
+            beside = np.interp(reference.recording.time, compared.recording.time, compared.recording[channel])
             if np.sqrt(np.mean((plate - beside) ** 2)) <= SAME_PLATES * np.sqrt(np.mean(plate**2)):
                 continue
         raise ConfigurationError(
@@ -187,14 +187,14 @@ class PairOverlay(Caption):
 
 
 def two_lines(text: str, letters: ImageFont.FreeTypeFont, width: float) -> list[str]:
-    """Return a text in at most two lines that are at most this wide [pixel]."""
-    words = text.split()
-    count = next((n for n in range(len(words), 1, -1) if letters.getlength(" ".join(words[:n])) <= width), 1)
-    return [fitted(" ".join(part), letters, width) for part in (words[:count], words[count:]) if part]
+    """Return a text in one or two lines of at most this width [pixel]."""
+    parts = text.split()
+    count = next((n for n in range(len(parts), 1, -1) if letters.getlength(" ".join(parts[:n])) <= width), 1)
+    return [fitted(" ".join(part), letters, width) for part in (parts[:count], parts[count:]) if part]
 
 
 def fitted(text: str, letters: ImageFont.FreeTypeFont, width: float) -> str:
-    """Return a text that is at most this wide [pixel]: its end becomes an ellipsis."""
+    """Return a text of at most this width [pixel]; the end of a longer text becomes an ellipsis."""
     if letters.getlength(text) <= width:
         return text
     while text and letters.getlength(f"{text}…") > width:

@@ -139,7 +139,7 @@ class OpenScene:
         """Draw the views of a frame on the canvas."""
         scene, canvas = self.scene, self.canvas
         state, time = scene.states[number], scene.times[number]
-        canvas.gl.make_current()  # another scene may have its own
+        canvas.gl.make_current()  # another scene has another context
         self.drawing.pose(state, self.factor)
         for wheel in self.wheels:
             wheel.turn(self.drawing.data, state, self.factor, time)
@@ -152,7 +152,7 @@ class OpenScene:
 
 
 def exaggeration_of(largest: float, asked: float | None) -> float:
-    """Return the factor of all motion: the asked one, else the one that makes the largest displacement [m] visible."""
+    """Return the factor of all motion: as asked, or so that the largest displacement [m] is visible."""
     if asked is not None:
         return asked
     return 1.0 if largest < AT_REST else round_factor(min(VISIBLE_TRAVEL / largest, LARGEST_FACTOR))

@@ -224,7 +224,7 @@ def traces(scenes: Sequence[Scene], cut: Cut, visible: float) -> list[Trace]:
     first, wheel = scenes[0], scenes[0].wheel
     time = first.recording.time
     inside = (time >= cut.start - 0.5 * visible) & (time <= cut.end + 0.5 * visible)
-    made = []
+    curves = []
     input_label = "plate [mm]" if first.road is None else "effective road [mm]"
     for label, channel, scale, band, minimum in (
         (input_label, f"plate_{wheel}_displacement", 1e3, None, 1e3 * AT_REST),
@@ -235,7 +235,7 @@ def traces(scenes: Sequence[Scene], cut: Cut, visible: float) -> list[Trace]:
             continue
         shown = scenes if channel != f"plate_{wheel}_displacement" else scenes[:1]
         values = tuple(scale * np.interp(time, scene.recording.time, scene.recording[channel]) for scene in shown)
-        peak = max(float(np.max(np.abs(curve[inside]))) for curve in values)
+        peak = max(float(np.max(np.abs(history[inside]))) for history in values)
         top = round_up(max(peak, 1.2 * (band or 0.0), minimum))
-        made.append(Trace(label=label, values=values, top=top, band=band))
-    return made
+        curves.append(Trace(label=label, values=values, top=top, band=band))
+    return curves

@@ -12,7 +12,7 @@ from vehicle.drawing.rendering.figure import COLOURS, INK, saved_figure
 from vehicle.signals.analysis.samples import Vector
 
 SMOOTHER, ROUGHER = COLOURS[0], COLOURS[3]
-"""Colours of a change: less and more acceleration. Without red and green, which not everybody tells apart."""
+"""Colours of a change: less and more acceleration. Blue and amber differ for every eye."""
 
 
 def plot_tornado(
@@ -38,7 +38,7 @@ def plot_tornado(
 def draw_tornado(axis: Any, labels: Sequence[str], changes: Vector, half_widths: Vector, ends: tuple[str, str]) -> None:
     """Draw two bars for each parameter, its low and its high value, with their 95 % interval.
 
-    The colour says what the change does: blue is smoother, amber rougher. The value of the parameter stands beside.
+    Blue bars are smoother, amber bars rougher; the text at a bar is the value of the parameter.
 
     Args:
         axis: the axes.
@@ -55,10 +55,10 @@ def draw_tornado(axis: Any, labels: Sequence[str], changes: Vector, half_widths:
         shown = np.isfinite(half_widths) & np.isfinite(changes[:, column])
         axis.errorbar(values[shown], height[shown], xerr=half_widths[shown], fmt="none", ecolor=INK, elinewidth=0.9)
         names = np.where(np.isfinite(changes[:, column]), name, f"{name} failed")
-        for place, value, half, text in zip(height, values, width, names, strict=True):
+        for row, value, half, text in zip(height, values, width, names, strict=True):
             side, across = (3, "left") if value > 0.0 or (value == 0.0 and column) else (-3, "right")
             end = value + np.copysign(half, side)
-            axis.annotate(text, (end, place), (side, 0), textcoords="offset points", va="center", ha=across, fontsize=8)
+            axis.annotate(text, (end, row), (side, 0), textcoords="offset points", va="center", ha=across, fontsize=8)
     axis.axvline(0.0, color=INK, linewidth=0.8)
     axis.set_yticks(rows, labels, fontsize=9)
     axis.invert_yaxis()

@@ -54,7 +54,7 @@ def write_report(
     check_file(path, ending=".html", force=force)
     figures = None if targets is None else read_targets(targets)
     finished = [read_run(folder) for folder in folders]
-    beside = None if film is None else Path(film)
-    page = report_page(finished, progress, trial=trial, targets=figures, beside=beside, author=author, project=project)
+    pair = None if film is None else Path(film)
+    page = report_page(finished, progress, trial=trial, targets=figures, pair=pair, author=author, project=project)
     write_text(path, page)
     return path

@@ -40,7 +40,7 @@ class MainMode:
 
 
 def plate_lines(
-    recording: Recording, wheels: Sequence[str], first: int, band: tuple[float, float], most: int | None = None
+    recording: Recording, wheels: Sequence[str], first: int, band: tuple[float, float], limit: int | None = None
 ) -> Lines | None:
     """Return the lines of the periodogram of the plates in a band; None without plates.
 
@@ -49,7 +49,7 @@ def plate_lines(
         wheels: wheels of the plates, all of the car.
         first: first evaluated sample.
         band: frequencies [Hz].
-        most: about the maximum number of lines, evenly chosen; all by default.
+        limit: about the maximum number of lines, evenly chosen; all by default.
     """
     names = [f"plate_{wheel}_displacement" for wheel in wheels]
     if not all(name in recording.channels for name in names):
@@ -57,7 +57,7 @@ def plate_lines(
     plates = [recording.channels[name][first:] for name in names]
     frequency = np.fft.rfftfreq(plates[0].size, recording.timestep)
     inside = np.flatnonzero((frequency >= band[0]) & (frequency <= band[1]))
-    inside = inside[:: max(inside.size // most, 1)] if most else inside
+    inside = inside[:: max(inside.size // limit, 1)] if limit else inside
     spectra = np.array([np.fft.rfft(np.hanning(plate.size) * (plate - plate.mean()))[inside] for plate in plates])
     return Lines(np.asarray(frequency[inside], dtype=float), spectra)
 
@@ -92,14 +92,15 @@ def as_measured(run: Run, lines: Lines, *, stuck: bool) -> ModeShares:
 def main_mode(run: Run, frequency: float | None = None) -> MainMode:
     """Return the mode with the largest share in the vertical acceleration of the seat rail, 1 to 50 Hz, or another.
 
-    The dampers of the linear car are stuck or sliding as during most of the run.
+    The dampers of the linear car are in the state of most of the run, stuck or sliding.
 
     Args:
         run: the run.
-        frequency: take the mode nearest to this frequency [Hz]; by default, that with the largest share.
+        frequency: take the mode nearest to this frequency [Hz]; by default, that with the largest share, or the lowest
+            mode of a car at rest.
 
     Raises:
-        ConfigurationError: the car has no mode, or none has a part in the motion.
+        ConfigurationError: the car has no mode.
     """
     car, vehicle = run.car, run.car.vehicle
     slip = max((run.slip_share(wheel) for wheel in vehicle.damped_wheels), default=0.0)
@@ -113,14 +114,10 @@ def main_mode(run: Run, frequency: float | None = None) -> MainMode:
         for at, share in enumerate(shares.shares):
             if (mode := mode_of(modes, shares, at)) is not None:
                 by_mode[mode.frequency] = float(share)
-    if frequency is not None:
-        chosen = nearest(modes, frequency)
-    elif max(by_mode.values(), default=0.0) > 0.0:
+    if frequency is None and max(by_mode.values(), default=0.0) > 0.0:
         chosen = max(modes, key=lambda mode: by_mode.get(mode.frequency, 0.0))
     else:
-        raise ConfigurationError(
-            f"{run.signal.source}: no mode has a part in the motion of the seat rail; give the frequency of a mode"
-        )
+        chosen = nearest(modes, frequency or 0.0)
     return MainMode(mode=chosen, share=by_mode.get(chosen.frequency), damper=damper)
 
 

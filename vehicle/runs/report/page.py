@@ -55,7 +55,7 @@ def report_page(
     *,
     trial: Callable[[FinishedRun], Trial],
     targets: Mapping[str, Figure] | None = None,
-    beside: Path | None = None,
+    pair: Path | None = None,
     author: str = "",
     project: str = "",
 ) -> str:
@@ -65,7 +65,7 @@ def report_page(
         progress: called with the finished fraction.
         trial: makes the section for trials of a single run.
         targets: figures with their limits; the report then begins with the verdict on them.
-        beside: film of two runs side by side; none by default.
+        pair: film of two runs side by side; none by default.
         author, project: names in the head of the page; may be empty.
 
     Returns:
@@ -85,7 +85,7 @@ def report_page(
         tried = trial(runs[0])
         parts = _of_one(runs[0], modes[0], tried.content)
     else:
-        parts = _of_several(runs, modes, lambda share: done(0.1 + 0.8 * share), beside)
+        parts = _of_several(runs, modes, lambda share: done(0.1 + 0.8 * share), pair)
     if targets is not None:
         parts.insert(0, ("Targets", "targets", verdict_section(targets, runs)))
     first, others = runs[0].name, [run.name for run in runs[1:]]
@@ -149,12 +149,12 @@ def _of_one(run: FinishedRun, modes: Modes, trial_part: Markup) -> list[Part]:
 
 
 def _of_several(
-    runs: Sequence[FinishedRun], modes: Sequence[Modes], done: Callable[[float], None], beside: Path | None
+    runs: Sequence[FinishedRun], modes: Sequence[Modes], done: Callable[[float], None], pair: Path | None
 ) -> list[Part]:
     """Return the sections of a comparison; what belongs to a single run is folded under its name."""
     parts = [
         ("Result", "result", answer(runs, modes) + explained()),
-        *([("Film", "film", film_part(beside))] if beside is not None else []),
+        *([("Film", "film", film_part(pair))] if pair is not None else []),
         ("Comparison of the runs", "comparison", numbers_beside(runs)),
         ("Frequency responses and spectra", "responses", curves_over_each_other(runs)),
         ("Time histories", "time", Markup().join(sections.time_figure(run, runs) for run in runs)),

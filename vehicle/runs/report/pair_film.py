@@ -51,13 +51,13 @@ def film_of_two(
         DataError: a run is damaged, or has not the displacement of a moving plate.
         MissingPartError, OutputError: see `film`.
     """
-    told = progress or (lambda fraction: None)
+    report = progress or (lambda fraction: None)
     saved = told_apart([read_run(folder) for folder in folders])
     require_one_input({run.name: run for run in saved})
     again = []
     for count, run in enumerate(saved, 1):
         again.append(_simulated(run))
-        told(SIMULATED * count / len(saved))
+        report(SIMULATED * count / len(saved))
     speed = (again[0].road or {}).get("speed_kmh")
     settings = Take(**(take or {}), speed=float(speed) / 3.6 if isinstance(speed, int | float) else None)
     cut = pair_film(
@@ -67,7 +67,7 @@ def film_of_two(
         settings,
         size=size,
         jobs=jobs,
-        progress=lambda share: told(SIMULATED + (1.0 - SIMULATED) * share),
+        progress=lambda share: report(SIMULATED + (1.0 - SIMULATED) * share),
     )
     off = max(deviation(run, new) for run, new in zip(saved, again, strict=True))
     near = "equal" if off < ROUNDING else f"differ by {number(100.0 * off, 2)} % (RMS) from"
