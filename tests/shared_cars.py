@@ -5,8 +5,6 @@ built, so that a car of a shipped file with equal changes serves every test that
 anew, also those whose changes name a file.
 """
 
-from __future__ import annotations
-
 from collections import OrderedDict
 from collections.abc import Callable
 from pathlib import Path
@@ -17,9 +15,9 @@ from vehicle.model.parameters.shipped import VEHICLES, vehicle_file
 from vehicle.runs.car import Car
 
 SHARED = (
-    *("tests/commands/", "tests/documentation/test_pages", "tests/runs/car/", "tests/runs/comparison/"),
-    *("tests/signals/", *(f"tests/system/test_{name}" for name in ("bad_inputs", "lost_files", "no_traceback"))),
-    "tests/system/test_road_run",
+    *("tests/commands/", "tests/documentation/test_pages", "tests/physics/", "tests/runs/car/"),
+    *("tests/runs/comparison/", "tests/signals/", "tests/studies/"),
+    *(f"tests/system/test_{name}" for name in ("bad_inputs", "lost_files", "no_traceback", "road_run")),
 )
 """Folders and modules of tests that share cars."""
 

@@ -1,11 +1,10 @@
 """The house: which room may import which, where MJCF and heavy packages may be named, how long a file may be."""
 
-from __future__ import annotations
-
 import ast
 import re
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -148,9 +147,16 @@ def unit_named(name):
     return parts[1] if WINGS.get(parts[0]) and len(parts) > 1 else parts[0]
 
 
+@cache
+def tree_of(path):
+    """Parsed text of a file."""
+    return ast.parse(path.read_text(encoding="utf-8"), filename=str(path))
+
+
+@cache
 def imported(path):
     """(module, line) of every import of a file, wherever it stands; relative ones made absolute."""
-    tree = ast.parse(path.read_text(encoding="utf-8"), filename=str(path))
+    tree = tree_of(path)
     package = ["vehicle", *path.relative_to(PACKAGE).parts[:-1]]
     found = []
     for node in ast.walk(tree):
@@ -178,12 +184,13 @@ NAMES = {dotted(path) for path in modules()}
 """Dotted names of the package and of all its modules."""
 
 
+@cache
 def named(path, text=None):
     """Return the modules that a file names in strings, and may import: whole names, as in a table, and patterns.
 
     Of a pattern, as f"vehicle.model.laws.{name}", the file has the names; if it has none, all modules match.
     """
-    tree = ast.parse(text or path.read_text(encoding="utf-8"), filename=str(path))
+    tree = ast.parse(text) if text else tree_of(path)
     texts = {node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)}
     found = {text for text in texts if text in NAMES and text.count(".") > 1}
     for node in ast.walk(tree):
@@ -248,7 +255,7 @@ def test_studies_stand_above_the_package():
 
 def modules_of(path):
     """Modules that a study imports, wherever the import stands."""
-    tree = ast.parse(path.read_text(encoding="utf-8"), filename=str(path))
+    tree = tree_of(path)
     named = [node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) and node.module]
     return [*named, *(one.name for node in ast.walk(tree) if isinstance(node, ast.Import) for one in node.names)]
 
@@ -282,13 +289,14 @@ def test_imports_go_down_from_wing_to_wing_and_from_room_to_room():
 
 def needed_modules(path, names):
     """Return the modules of the package that a file imports, wherever the import is; also those for types only."""
-    tree = ast.parse(path.read_text(encoding="utf-8"), filename=str(path))
+    tree = tree_of(path)
     pairs = [(node.module or "", alias.name) for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)
              for alias in node.names]  # fmt: skip
     single = [alias.name for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in node.names]
     return names & {*single, *(f"{base}.{name}" if f"{base}.{name}" in names else base for base, name in pairs)}
 
 
+@cache
 def needs():
     """Return each module with those that it imports, also by name."""
     return {dotted(path): (needed_modules(path, NAMES) | named(path)) - {dotted(path)} for path in modules()}
@@ -329,8 +337,7 @@ def test_heavy_packages_stay_in_their_rooms(package):
 def test_only_assembly_makes_elements_of_the_car():
     found: dict[str, list[str]] = {}
     for path in modules():
-        tree = ast.parse(path.read_text(encoding="utf-8"))
-        for node in ast.walk(tree):
+        for node in ast.walk(tree_of(path)):
             if isinstance(node, ast.Attribute) and node.attr in MAKERS:
                 if (str(path.relative_to(PACKAGE)), node.attr) in SCENERY:
                     continue
@@ -380,7 +387,7 @@ def test_nothing_heavy_is_loaded_before_it_is_used(tmp_path):
 def test_only_commands_print():
     printing = set()
     for path in modules():
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in ast.walk(tree_of(path)):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "print":
                 printing.add(path.relative_to(PACKAGE).as_posix())
     assert {name for name in printing if not name.startswith("commands/")} == {"__main__.py"}

@@ -1,7 +1,5 @@
 """Time of a case of a sweep with everything: its car, the run of 30 s, what is measured of it, the row on the disk."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -32,7 +30,7 @@ def cases(count: int) -> list[Case]:
         lead=LEAD_S,
         lower_band_edge=ROAD_EDGE_HZ,
     )
-    points = points_of("lhs", count, 2006).tolist()
+    points = points_of(max(24, 2 * count), 2006)[:count].tolist()
     return list(table_cases([one.path for one in RANGES], points, [road], engine="reduced"))
 
 

@@ -1,7 +1,5 @@
 """`python -m vehicle body compare`: a body against itself with other frequencies and another order of modes."""
 
-from __future__ import annotations
-
 import csv
 import dataclasses
 
@@ -64,12 +62,3 @@ def test_crossed_modes_are_found_by_their_shape(files, tmp_path, capsys, monkeyp
         changed.frequencies.tolist(),
     ) and "points of the car" in caption
     assert (folder / FILES[1]).read_bytes()[:4] == b"\x89PNG"
-
-
-def test_files_are_not_replaced_unasked(files, tmp_path, capsys):
-    folder = tmp_path / "out"
-    folder.mkdir()
-    (folder / FILES[0]).write_text("mine", encoding="utf-8")
-    assert main(["compare", str(files[0]), str(files[1]), "--output", str(folder)]) == 2
-    assert str(folder) in capsys.readouterr().err
-    assert (folder / FILES[0]).read_text(encoding="utf-8") == "mine"

@@ -1,7 +1,5 @@
 """Roads as files: class and speed, measured profiles, what the shaker reads of them."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -123,10 +121,3 @@ def test_roughness_index_of_a_profile(tmp_path, capsys):
             np.testing.assert_allclose(table[f"iri_{side}_mkm"], expected.segments, rtol=1e-5)
             assert f"IRI of the {side} track: {number(expected.overall)} m/km" in said
         assert "class B of ISO 8608" in said
-
-
-def test_roughness_index_of_a_short_road_is_refused(tmp_path, capsys):
-    arguments = ["--obstacle", "cleat:20x50@2", "--speed", "10", "--duration", "2", "--output", str(tmp_path / "r.csv")]
-    assert main([*arguments, "--iri", "--no-figures"]) == 3
-    assert "the road is 5.55 m long; needed are 11 m or more" in capsys.readouterr().err
-    assert not list(tmp_path.iterdir())

@@ -162,19 +162,3 @@ def test_refused_by_name(record, tmp_path, capsys, arguments, message, code):
     assert main(["focus", *words, "--output", str(tmp_path / "tune")]) == code
     assert message in capsys.readouterr().err
     assert not (tmp_path / "tune").exists()
-
-
-def test_a_channel_without_a_unit_is_refused(tmp_path, capsys):
-    asammdf = pytest.importorskip("asammdf")
-    time = np.arange(4000) / 1000.0
-    with asammdf.MDF(version="4.10") as file:
-        file.append(
-            [
-                asammdf.Signal(np.sin(30.0 * time), time, unit=unit, name=name)
-                for name, unit in (("Shaker FL", "mm"), ("Rad VL z", ""), ("Sitz z", "m/s2"))
-            ]
-        )
-        file.save(tmp_path / "bench.mf4")
-    words = ["focus", "--record", str(tmp_path / "bench.mf4"), *MAP, "--parameters", BOUNDS[0]]
-    assert main([*words, "--output", str(tmp_path / "tune")]) == 3
-    assert "'Rad VL z' has no unit; set --unit knuckle_fl_acc_z=UNIT" in capsys.readouterr().err

@@ -1,7 +1,5 @@
 """The shipped libraries are built from these sources, and a changed source is compiled with the compiler at hand."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import shutil
@@ -53,7 +51,7 @@ def test_changed_sources_are_compiled_once_for_all_processes(tmp_path):
         "import shutil, sys; from pathlib import Path; from vehicle.core import build, library, records;"
         "folder = Path(sys.argv[1]) / 'source'; folder.exists() or shutil.copytree(build.SOURCES, folder);"
         "(folder / 'layout.c').write_text((build.SOURCES / 'layout.c').read_text() + '/* changed */');"
-        "library.SOURCES = folder; library.cache_folder = lambda: Path(sys.argv[1]);"
+        "build.OPTIONS[1] = '-O0'; library.SOURCES = folder; library.cache_folder = lambda: Path(sys.argv[1]);"
         "library.digest.__defaults__ = (folder,); print(library.core().core_variant())"
     )
     times = []

@@ -1,7 +1,5 @@
 """Number of threads for linear algebra: one in commands and in calls of the package; the setting of the user stays."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys
@@ -146,7 +144,7 @@ def test_linear_algebra_of_public_functions_has_one_thread(three, monkeypatch):
 
 
 def test_results_are_bitwise_those_of_one_thread_in_the_environment():
-    one, free = Server(one=True, duration=4.0), Server(threads=4, duration=4.0)
+    one, free = Server(one=True, duration=3.0), Server(threads=4, duration=3.0)
     assert one.names == free.names and len(one.names) == 6
     for name in one.names:
         assert one(name)[2] == free(name)[2], name

@@ -1,7 +1,5 @@
 """State of the bench without a browser: settings, changes, A and B, faulty cars, latest request."""
 
-from __future__ import annotations
-
 import json
 import math
 import threading
@@ -150,18 +148,6 @@ def test_the_written_vehicle_file_is_the_shown_car(state, tmp_path):
     assert Car.load(paths[0])[FRICTION].value == 60.0
 
 
-def test_run_and_report_are_those_of_the_shown_cars(state, tmp_path):
-    state.change(FRICTION, 60.0)
-    assert state.update()
-    folder = write_run(state, tmp_path)
-    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    value = summary["comfort"]["seat_rail"]["rms_2_50_hz"]["overall"]
-    assert value == pytest.approx(state.present[1].comfort.unweighted.overall, rel=1e-6)
-    report = write_comparison(state, tmp_path).read_text(encoding="utf-8")
-    assert "coulomb_friction" in report and "60" in report
-    assert sorted(path.name for path in tmp_path.iterdir() if not path.name.startswith(".")) == ["report.html", "run"]
-
-
 def test_files_of_a_moved_point_on_an_obstacle(tmp_path):
     car = Car.load("focus_road")
     state = BenchState(car, bench_drive(car, road("cleat:20x50", 30)))
@@ -182,3 +168,5 @@ def test_files_of_a_moved_point_on_an_obstacle(tmp_path):
     assert summary["obstacle"]["vdv"]["seat_rail"] == pytest.approx(shown.obstacle["vdv"]["seat_rail"])
     report = write_comparison(state, tmp_path).read_text(encoding="utf-8")
     assert "strut_top" in report and "cleat" in report
+    names = sorted(path.name for path in tmp_path.iterdir() if not path.name.startswith("."))
+    assert names == ["car", "report.html", "run"]

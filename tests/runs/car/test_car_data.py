@@ -1,7 +1,5 @@
 """Masses, loads, stiffnesses and modes of a car against statics by hand."""
 
-from __future__ import annotations
-
 import copy
 import json
 import math
@@ -13,7 +11,7 @@ import pytest
 
 from tests.engines.kinematics.instant_centres import across, motion, rod
 from tests.validation import validated
-from vehicle import Car, ConfigurationError
+from vehicle import Car
 from vehicle.model.parameters.vehicle import vehicle_of
 from vehicle.runs.car.axle import axle_statics, mass_and_cog
 from vehicle.runs.car.axle_data import axle_data
@@ -282,15 +280,3 @@ def test_a_rolling_car_is_shown_at_its_speed(shown):
     for figure, still in zip(moving.figures, shown["sedan"].figures, strict=True):
         # The figures are those of the car at rest, the modes beside them those at its speed.
         assert figure.frequency_hz == still.frequency_hz and figure.modes != still.modes
-
-
-def test_a_parameter_of_a_car_by_its_path():
-    car = Car.load("focus", {"damper.coulomb_friction": 93.75})
-    friction = car["damper.coulomb_friction"]
-    assert (friction.path, friction.value, friction.unit) == ("front.damper.coulomb_friction", 93.75, "N")
-    assert friction.source == "set, or computed from what is set" and "section" in car["body.mass"].source
-    with pytest.raises(ConfigurationError, match=r"no parameter damper\.viscus; the nearest is "):
-        car["damper.viscus"]
-    with pytest.raises(ConfigurationError, match=r"front\.damper is a table or a component; car\.search"):
-        car["front.damper"]
-    assert car["damper.coulomb_friction"] in car.search("coulomb DAMPER")

@@ -1,7 +1,5 @@
 """Variations one after the other: each acts on the car before it, and the texts of all make the same car at once."""
 
-from __future__ import annotations
-
 import itertools
 from pathlib import Path
 from types import SimpleNamespace
@@ -44,14 +42,6 @@ def test_a_moment_that_was_set_before_scales_with_the_mass():
     assert loaded.vehicle.body == body
     # Set in the same variation, it is kept.
     assert Car.load("sedan", ["body.inertia.iyy=2500", "body.mass=1500"]).vehicle.body.inertia.iyy == 2500.0
-
-
-def test_a_table_about_the_origin_follows_too():
-    first = Car.load("sedan").with_(ORIGIN)
-    body = first.with_(["body.mass=1500"]).vehicle.body
-    np.testing.assert_allclose(inertia(body), inertia(first.vehicle.body), rtol=1e-12, atol=1e-12)
-    moved = first.with_(["body.cog.z=1.0"]).with_(["body.mass=1500"]).vehicle.body
-    np.testing.assert_allclose(inertia(moved), inertia(first.vehicle.body), rtol=1e-12, atol=1e-12)
 
 
 @pytest.mark.parametrize("about", list(STEPS))

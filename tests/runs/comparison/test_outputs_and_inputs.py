@@ -47,7 +47,7 @@ def folder(tmp_path_factory):
     """Folder with the run of a car on two independent plates, and a record of it with noise."""
     folder = tmp_path_factory.mktemp("plates")
     signals = {
-        wheel: random_road(rms=1e-3, seed=seed, duration=24.0, wheel=wheel).displacement[wheel]
+        wheel: random_road(rms=1e-3, seed=seed, duration=16.0, wheel=wheel).displacement[wheel]
         for wheel, seed in (("fr", 1), ("fl", 2))
     }
     time = np.arange(signals["fr"].size) / 1000.0
@@ -171,24 +171,20 @@ def test_a_fit_pairs_responses_of_two_plates_in_any_order(folder, columns, tmp_p
     car = Car.load("focus")
     true = car.vehicle.damper.viscous or 0.0
     found = []
-    for number, order in enumerate((list(NAMES), list(NAMES)[::-1])):
+    signal = ["--signal", str(folder / "two.csv")]
+    for number, (order, more) in enumerate(((list(NAMES), []), (list(NAMES)[::-1], signal))):
         file = record(tmp_path / f"{number}.csv", columns, order)
         arguments = ["focus", "--set", f"damper.viscous={1.3 * true}", "--parameters",
-                     f"damper.viscous={0.4 * true}:{3.0 * true}", "--frf", str(file), *options(order),
+                     f"damper.viscous={0.4 * true}:{3.0 * true}", "--frf", str(file), *options(order), *more,
                      "--engine", "reduced", "--spacing", "1", "--quiet"]  # fmt: skip
         assert tune([*arguments, "--output", str(tmp_path / f"fit{number}"), "--json"]) == 0
         found.append(json.loads(capsys.readouterr().out))
     one, other = ([entry["value"] for entry in each["parameters"]] for each in found)
-    assert one == pytest.approx(other, rel=1e-9)
+    assert one == pytest.approx(other, rel=1e-3)
     (parameter,) = found[0]["parameters"]
     assert abs(parameter["value"] - true) < 3.0 * parameter["standard_error"] < 0.1 * true
     named = {(row["channel"], row["plate"]) for row in found[0]["agreement"]}
     assert named == {(name, plate) for name in ACCELERATIONS for plate in ("plate_fr", "plate_fl")}
-    signal = ["--signal", str(folder / "two.csv"), *options(NAMES)]
-    again = [*arguments[:7], *signal, *arguments[-5:], "--output", str(tmp_path / "again"), "--json"]
-    assert tune(again) == 0
-    (value,) = json.loads(capsys.readouterr().out)["parameters"]
-    assert value["value"] == pytest.approx(parameter["value"], rel=1e-3)
 
 
 def test_measured_plates_that_move_as_one_are_one_input(folder, columns, tmp_path):

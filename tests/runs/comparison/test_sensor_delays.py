@@ -36,8 +36,7 @@ def found(comparison):
     return {group.group: group for group in comparison.delays}
 
 
-@pytest.mark.parametrize(("delay", "noise"), [(0.0, 0.0), (0.4e-3, 0.0), (12.3e-3, 0.0), (0.0, 0.1), (0.4e-3, 0.1),
-                                              (12.3e-3, 0.1)])  # fmt: skip
+@pytest.mark.parametrize(("delay", "noise"), [(0.4e-3, 0.0), (0.0, 0.1), (12.3e-3, 0.1)])
 def test_delay_of_the_accelerations_is_found_and_taken_out(run, tmp_path, delay, noise):
     file = write_record(tmp_path / "record.csv", run, delays(delay), noise=noise, noisy="")
     comparison = compare(run, file)

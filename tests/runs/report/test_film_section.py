@@ -1,7 +1,5 @@
 """Film in a report: as it is if it is small, encoded again if it is large, and left out with a sentence otherwise."""
 
-from __future__ import annotations
-
 import base64
 import dataclasses
 import re
@@ -14,6 +12,9 @@ import pytest
 from tests.patience import HANG
 from vehicle.drawing.rendering.backend import film_available, find_ffmpeg
 from vehicle.runs.report.film_section import BUDGET, embedded, film
+from vehicle.drawing.rendering.backend import find_ffmpeg
+from vehicle.runs.report import film_section
+from vehicle.runs.report.film_section import BUDGET, QUALITIES, embedded, film
 from vehicle.runs.report.finished_run import read_run
 from vehicle.runs.report.pair_film import film_of_two
 
@@ -26,10 +27,10 @@ def large_film(tmp_path_factory):
     from vehicle.drawing.rendering.film import write_film
 
     path, generator = tmp_path_factory.mktemp("film") / "run.mp4", np.random.default_rng(1)
-    frames = generator.integers(0, 255, (60, 240, 320, 3)).astype(np.uint8)
+    frames = generator.integers(0, 255, (60, 120, 160, 3)).astype(np.uint8)
     for number, frame in enumerate(frames):
-        frame[80:160, 4 * number : 4 * number + 80] = 255
-    write_film(path, iter(frames), (240, 320))
+        frame[40:80, 2 * number : 2 * number + 40] = 255
+    write_film(path, iter(frames), (120, 160))
     return path
 
 
@@ -58,13 +59,12 @@ def test_a_large_film_is_encoded_again_with_all_frames_and_the_same_bytes(large_
         "-",
     ]
     raw = subprocess.run(command, capture_output=True, check=True, timeout=HANG).stdout
-    pictures = np.frombuffer(raw, dtype=np.uint8).reshape(-1, 240, 320)
+    pictures = np.frombuffer(raw, dtype=np.uint8).reshape(-1, 120, 160)
     assert len(pictures) == 60
-    assert pictures[30][100:140, 130:190].mean() > 200 > pictures[30][100:140, 10:60].mean(), "the square has moved"
-    assert embedded(large_film, 100.0, folders[0]) is None
+    assert pictures[30][50:70, 65:95].mean() > 200 > pictures[30][50:70, 5:30].mean(), "the square has moved"
 
 
-def test_the_report_has_the_film_a_picture_for_paper_or_a_sentence(reported, large_film):
+def test_the_report_has_the_film_a_picture_for_paper_or_a_sentence(reported, large_film, monkeypatch):
     run = read_run(reported.folder)
     summary: Any = {**run.summary, "files": {**run.summary["files"], "video": str(large_film)}}
     run = dataclasses.replace(run, summary=summary)
@@ -73,6 +73,7 @@ def test_the_report_has_the_film_a_picture_for_paper_or_a_sentence(reported, lar
     content = re.search(r'src="data:video/mp4;base64,([^"]+)"', section)
     assert content is not None and len(base64.b64decode(content[1])) <= BUDGET
     assert 'class="only-paper"' in section
+    monkeypatch.setattr(film_section, "QUALITIES", QUALITIES[-1:])
     left_out = film(run, share=1e-5)
     assert left_out is not None and "is too large for this page" in left_out and "base64" not in left_out
     assert film(read_run(reported.folder)) is None

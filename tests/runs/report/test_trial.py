@@ -1,7 +1,5 @@
 """The section "Try it" in a real browser: its numbers against the program, the sentence, the latest settings."""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 import time
@@ -169,7 +167,7 @@ def test_each_damper_has_its_own_slip_and_force(browser):
     car, signal = shipped("low.csv", seconds=LONGEST)
     factor = {"front-coulomb_friction": 117.0, "level": 3.25}
     states = ({**factor, "level": 1.6}, {**factor, "front-curve_scale": 1.7}, {**factor, "main-springs": 0.8})
-    for _ in range(4):
+    for _ in range(3):
         page = Page(browser, car, signal)
         for state in states:
             result = page.ask("record", **state)
