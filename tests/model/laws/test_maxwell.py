@@ -1,12 +1,11 @@
-"""The elastomer: stiffness over frequency, exact step, and springs in series."""
+"""The elastomer: stiffness over frequency, and springs in series."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
-from tests.validation import foreign, validated
+from tests.validation import validated
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.kelvin import Kelvin
 from vehicle.model.laws.maxwell import Maxwell
@@ -46,52 +45,12 @@ def test_the_loss_peak_is_the_largest_angle_of_a_fine_grid(element):
     assert angles.max() == pytest.approx(angle, rel=1e-8)  # the parabola within half a cell
 
 
-def test_the_step_is_exact_for_a_ramp_of_any_size():
-    rate, initial = 0.03, 40.0
-    for step in (1e-6, 5e-4, 0.02, 1.0):
-        exact = solve_ivp(
-            lambda t, f: 3.4e5 * rate - 3.4e5 / 6057.0 * f,
-            (0.0, step),
-            [initial],
-            rtol=1e-12,
-            atol=1e-12,
-            method="DOP853",
-        ).y[0, -1]
-        validated(
-            "Bushings, springs and stops", f"force of a Maxwell branch after a ramp of {step:g} s",
-            ENGINE_MOUNT.step(initial, rate * step, step), exact, rel=1e-10, unit="N",
-            source=foreign("scipy", "DOP853, tolerance 1e-12"),
-        )  # fmt: skip
-
-
-def test_many_steps_give_the_complex_stiffness():
-    # A linear interpolation of a sine over 40 points a period errs by (w h)^2/12 = 0.2 %.
-    omega = 2.0 * np.pi * 8.0
-    step = 1.0 / 8.0 / 400.0
-    time = np.arange(0, 4001) * step
-    extension = np.sin(omega * time)
-    force = np.zeros_like(time)
-    for i in range(4000):
-        force[i + 1] = ENGINE_MOUNT.step(force[i], extension[i + 1] - extension[i], step)
-    last = slice(3601, 4001)  # one period, long after the relaxation time of 18 ms
-    response = 2.0 * np.mean(force[last] * np.exp(-1j * (omega * time[last] - np.pi / 2)))
-    branch = ENGINE_MOUNT.complex_stiffness(omega) - 8e5
-    assert response == pytest.approx(branch, rel=(omega * step) ** 2 / 6)
-
-
-def test_an_absent_branch_carries_no_force():
+def test_an_absent_branch_has_the_static_stiffness():
     for branch in ({"branch_stiffness": 0.0, "branch_damping": 5.0}, {"branch_stiffness": 5.0, "branch_damping": 0.0}):
         element = Maxwell(stiffness=3.0, **branch)
-        assert element.step(0.0, 1.0, 0.1) == 0.0
         assert element.complex_stiffness(7.0) == 3.0
         with pytest.raises(ConfigurationError, match=r"must be greater than 0\.0 for a peak"):
             element.loss_peak()
-
-
-@pytest.mark.parametrize("step", [0.0, -1e-3, np.nan])
-def test_a_bad_step_is_refused(step):
-    with pytest.raises(ConfigurationError, match=r"^timestep: found .* s, must be finite and greater than 0\.0$"):
-        ENGINE_MOUNT.step(0.0, 1.0, step)
 
 
 @pytest.mark.parametrize(
