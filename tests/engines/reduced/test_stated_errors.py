@@ -5,6 +5,7 @@ import pytest
 
 from tests.validation import validated
 from vehicle.engines.reduced import second_order
+from vehicle.engines.reduced.linear_motion import motion_rows
 from vehicle.engines.reduced.second_order import error_sentence, is_main, misses_main
 from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
@@ -95,6 +96,17 @@ def test_parts_of_a_record_state_what_the_whole_states(monkeypatch: pytest.Monke
         source="second derivation: the record of 6 s as a whole",
         abs=0.01,
     )
+
+
+def test_an_applied_force_leaves_the_forces_of_laws_where_they_are() -> None:
+    """The forces of a stop were read from the history of a torque: 1 mN m moved a stated error by 4 points."""
+    stop = "front.damper.stop={displacement=[-0.03, -0.002, 0.002, 0.03], force=[-2800.0, 0.0, 0.0, 2800.0]}"
+    shake = ["force.shake.on=engine", "force.shake.moment=[0, 1, 0]", "force.shake.frequency=8"]
+    model = Car.load("kinematic_reference", [stop, *shake, "force.shake.harmonics=[[1, 1, 0]]"]).poles
+    lines = model.applied.shape[1]
+    assert model.laws and lines
+    for rows, alone in zip(motion_rows(model), motion_rows(model.without_forces()), strict=True):
+        assert rows[:, :-lines] == pytest.approx(alone, rel=1e-9, abs=1e-9 * np.max(np.abs(alone), initial=0.0))
 
 
 def test_auto_answers_for_the_channels_that_are_asked_for() -> None:

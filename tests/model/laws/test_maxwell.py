@@ -1,10 +1,9 @@
-"""The elastomer: stiffness over frequency, exact step, and springs in series."""
+"""The elastomer: stiffness over frequency, and springs in series."""
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
-from tests.validation import foreign, validated
+from tests.validation import validated
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.kelvin import Kelvin
 from vehicle.model.laws.maxwell import Maxwell
@@ -44,37 +43,12 @@ def test_the_loss_peak_is_the_largest_angle_of_a_fine_grid(element):
     assert angles.max() == pytest.approx(angle, rel=1e-8)  # the parabola within half a cell
 
 
-def test_the_step_is_exact_for_a_ramp_of_any_size():
-    rate, initial = 0.03, 40.0
-    for step in (1e-6, 5e-4, 0.02, 1.0):
-        exact = solve_ivp(
-            lambda t, f: 3.4e5 * rate - 3.4e5 / 6057.0 * f,
-            (0.0, step),
-            [initial],
-            rtol=1e-12,
-            atol=1e-12,
-            method="DOP853",
-        ).y[0, -1]
-        validated(
-            "Bushings, springs and stops", f"force of a Maxwell branch after a ramp of {step:g} s",
-            ENGINE_MOUNT.step(initial, rate * step, step), exact, rel=1e-10, unit="N",
-            source=foreign("scipy", "DOP853, tolerance 1e-12"),
-        )  # fmt: skip
-
-
-def test_an_absent_branch_carries_no_force():
+def test_an_absent_branch_has_the_static_stiffness():
     for branch in ({"branch_stiffness": 0.0, "branch_damping": 5.0}, {"branch_stiffness": 5.0, "branch_damping": 0.0}):
         element = Maxwell(stiffness=3.0, **branch)
-        assert element.step(0.0, 1.0, 0.1) == 0.0
         assert element.complex_stiffness(7.0) == 3.0
         with pytest.raises(ConfigurationError, match=r"must be greater than 0\.0 for a peak"):
             element.loss_peak()
-
-
-@pytest.mark.parametrize("step", [0.0, -1e-3, np.nan])
-def test_a_bad_step_is_refused(step):
-    with pytest.raises(ConfigurationError, match=r"^timestep: found .* s, must be finite and greater than 0\.0$"):
-        ENGINE_MOUNT.step(0.0, 1.0, step)
 
 
 @pytest.mark.parametrize(

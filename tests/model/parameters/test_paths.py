@@ -1,6 +1,7 @@
 """Paths of parameters: into vehicles and back, whole or their ends, with their units."""
 
 import re
+import tomllib
 
 import numpy as np
 import pytest
@@ -152,3 +153,10 @@ def test_overrides_as_a_mapping_and_a_single_text():
         assignments("a=1")
     with pytest.raises(ConfigurationError, match="a is a object; must be a number"):
         assignments({"a": object()})
+
+
+@pytest.mark.parametrize("text", ['C:\\cars\\"new".csv', "two\nlines", "Prüfstand"])
+def test_a_text_keeps_its_quotes_and_line_breaks(text):
+    """They were refused in a mapping, as the path of a file on Windows."""
+    (assignment,) = assignments({"file": text})
+    assert tomllib.loads(assignment) == {"file": text}

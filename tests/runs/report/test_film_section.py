@@ -11,8 +11,6 @@ import pytest
 
 from tests.patience import HANG
 from vehicle.drawing.rendering.backend import film_available, find_ffmpeg
-from vehicle.runs.report.film_section import BUDGET, embedded, film
-from vehicle.drawing.rendering.backend import find_ffmpeg
 from vehicle.runs.report import film_section
 from vehicle.runs.report.film_section import BUDGET, QUALITIES, embedded, film
 from vehicle.runs.report.finished_run import read_run

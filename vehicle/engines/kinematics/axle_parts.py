@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from vehicle.engines.simulation.law_arrays import model_numbers
 from vehicle.errors import ConfigurationError
-from vehicle.model.assembly.element_numbers import FLUID
+from vehicle.model.assembly.element_numbers import FLUID, TURNING
 from vehicle.model.laws.curve import Curve
 from vehicle.model.laws.damper import unpack
 from vehicle.names import AXES
@@ -153,7 +153,7 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
         # A fluid carries no static force.
         if kinds[index] == connect and not name.startswith(FLUID)
     }
-    rotational = [name for name in ends if laws[name].size and laws[name][12] > 0.0]
+    rotational = [name for name in ends if laws[name].size and laws[name][TURNING] > 0.0]
     torques = dict(zip(rotational, preload[preload.size - 3 * len(rotational) :].reshape(-1, 3), strict=True))
     numbers = [model.body(name).id for name in wheels]
     links = [(body, int(model.body_parentid[body])) for body in range(1, model.nbody)]
@@ -184,7 +184,7 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
                 continue
             way = fields.get(f"directions/{name}", np.eye(3)).reshape(3, 3).T
             curves = {axis: _bent(fields, f"{name}/{letter}", force[axis]) for axis, letter in enumerate(AXES)}
-            soft.append((ends[name], way, law[:3], force, torque, law[12], curves))
+            soft.append((ends[name], way, law[:3], force, torque, law[TURNING], curves))
         elif kinds[index] == tendon and law.size:
             lower, upper = (model.site(f"{name}/{end}").id for end in ("lower", "upper"))
             if bodies & {int(model.site_bodyid[lower]), int(model.site_bodyid[upper])}:

@@ -250,16 +250,17 @@ def law_matrices(
     tyres = {"stiffness": bushings.stiffness[e.tyres, 2], "damping": bushings.damping[e.tyres, 2]}
     inputs = {f"input_{term}": vertical.T * values for term, values in tyres.items()}
     branch_rows = jacobian[bushings.rows[present]]
-    over_displacement, rolling = displacement_laws(rows, jacobian, preload), None
+    over_displacement = displacement_laws(rows, jacobian, preload)
+    slope, drifting = np.zeros((len(damping), 0)), dict[str, Any]()
     if len(e.rolling.tyres):
-        rolling = rolling_terms(rows, preload)
-        damping += rolling.damping
-        inputs["input_damping"] = inputs["input_damping"] + rolling.slope
+        more, slope, drifting = rolling_terms(rows, preload, branch_rows)
+        damping += more
+        inputs["input_damping"] = inputs["input_damping"] + slope
     return (
         {
             "damping": damping,
             "branch_rows": branch_rows,
-            **({} if rolling is None else rolling.branches(branch_rows, present)),
+            **drifting,
             "branch_inputs": np.zeros((int(np.count_nonzero(present)), len(e.tyres))),
             "branch_stiffness": bushings.branch_stiffness[present],
             "branch_time": bushings.branch_time[present],
@@ -272,7 +273,7 @@ def law_matrices(
             "sides": side_rows(rows, jacobian, preload, over_displacement),
             "tyre_rows": vertical,
             **{f"tyre_{term}": values for term, values in tyres.items()},
-            "slope": np.zeros((len(damping), 0)) if rolling is None else rolling.slope,
+            "slope": slope,
         },
     )
 

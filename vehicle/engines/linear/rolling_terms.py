@@ -8,7 +8,7 @@ centre along x, proportional to the static load.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -22,43 +22,17 @@ ACROSS = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 0.0], [-1.0, 0.0, 0.0]])
 """Matrix of the cross product e_y x a."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class RollingTerms:
-    """Terms of r rolling tyres; n coordinates, w plates.
-
-    Attributes:
-        elements: indices of the tyres among the bushings; (r,).
-        drift, arm: V t_z and trail t_z; (r, n).
-        damping: gyroscopic moments, and damping of the course hold; (n, n).
-        slope: generalised forces per velocity of a plate; (n, w).
-    """
-
-    elements: npt.NDArray[np.int64]
-    drift: Vector
-    arm: Vector
-    damping: Vector
-    slope: Vector
-
-    def branches(self, rows: Vector, present: npt.NDArray[np.bool_]) -> dict[str, Vector]:
-        """Return drifts and effects of the Maxwell branches of a car.
-
-        Args:
-            rows: rows e_b of the branches; (b, n).
-            present: True for the axes of bushings with a branch; (bushings, 3).
-        """
-        drifts, effects = np.zeros_like(rows), rows.copy()
-        numbers = np.cumsum(present.ravel()).reshape(present.shape) - 1
-        drifts[numbers[self.elements, 1]] = self.drift
-        effects[numbers[self.elements, 1]] += self.arm
-        return {"branch_drifts": drifts, "branch_effects": effects}
-
-
-def rolling_terms(rows: Rows, preload: Vector) -> RollingTerms:
-    """Return the damping and stiffness terms that rolling wheels add to the linear car in its design position.
+def rolling_terms(rows: Rows, preload: Vector, branch_rows: Vector) -> tuple[Vector, Vector, dict[str, Any]]:
+    """Return the terms that r rolling wheels add to the linear car in its design position.
 
     Args:
         rows: constraint rows of all elements of the car, with its rolling tyres.
         preload: static forces of the rows [N].
+        branch_rows: rows e_b of the Maxwell branches; (b, n).
+
+    Returns:
+        Damping by gyroscopic moments and the course hold, (n, n); generalised forces per velocity of a plate, (n, w);
+        drifts and effects of the branches, as fields of `LinearSystem`.
     """
     model, e, rolling = rows.model, rows.layout, rows.layout.rolling
     data = mujoco.MjData(model)
@@ -78,10 +52,9 @@ def rolling_terms(rows: Rows, preload: Vector) -> RollingTerms:
     slope[:, rolling.plates] = (
         centres[:, 0] * (preload[e.bushings.rows[rolling.tyres, 2]] / rolling.speeds)[:, None]
     ).T
-    return RollingTerms(
-        elements=rolling.tyres,
-        drift=rolling.speeds[:, None] * rotations[:, 2],
-        arm=rolling.trails[:, None] * rotations[:, 2],
-        damping=damping,
-        slope=slope,
-    )
+    # The branches of the side slip; `branch_rows` has a row for each axis with a branch.
+    numbers = np.cumsum(e.bushings.branch_stiffness > 0.0).reshape(-1, 3)[rolling.tyres, 1] - 1
+    drifts, effects = np.zeros_like(branch_rows), branch_rows.copy()
+    drifts[numbers] = rolling.speeds[:, None] * rotations[:, 2]
+    effects[numbers] += rolling.trails[:, None] * rotations[:, 2]
+    return damping, slope, {"branch_drifts": drifts, "branch_effects": effects}

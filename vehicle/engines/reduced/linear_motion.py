@@ -96,7 +96,7 @@ def motion_rows(model: PoleModel) -> MotionRows:
     needed += system.effects.T @ branch
     needed[:, -count:] -= forces
     inputs = np.eye(count, displacement.shape[1], displacement.shape[1] - count)
-    height_rate, last = inputs[wheels : 2 * wheels], count - len(matrices.laws)
+    height_rate, last = inputs[wheels : 2 * wheels], count - model.applied.shape[1]
     rolling = matrices.slope.size > 0
     displacement[list(system.cyclic)] = 0.0
     return MotionRows(
@@ -107,7 +107,7 @@ def motion_rows(model: PoleModel) -> MotionRows:
         height=inputs[:wheels],
         height_rate=height_rate,
         slope=height_rate + inputs[2 * wheels : 3 * wheels] if rolling else np.zeros_like(height_rate),
-        laws=inputs[last:],
+        laws=inputs[last - len(matrices.laws) : last],
         joints=np.linalg.pinv(system.constraints.T) @ needed,
     )
 

@@ -190,7 +190,7 @@ def numbers_with(
 def _march(cars: CarTable, feedback: Feedback) -> dict[str, Any]:
     """Return the record March without outputs, which the runtime reads itself, and memory of a run, which it adds."""
     nothing, blank, none = aligned_table(0, DOUBLE), np.zeros((0, 0)), np.zeros(0, dtype=np.int64)
-    fields = dict.fromkeys(("x", "changes", "y", "peaks", "positions", "levels", "rotations"), nothing)
+    fields: dict[str, Any] = dict.fromkeys(("x", "changes", "y", "peaks", "positions", "levels", "rotations"), nothing)
     fields |= dict.fromkeys(("rates", "plate_z", "offset", "weights"), blank)
     fields |= {"tyre_of": np.full(cars.rows["curves"], -1, dtype=np.int64), "wanted": none, "cars": none}
     fields |= {"every": 1, "step": 0, "first": 1, "loads": 0, "watched": 0, "check_every": 1, "always": False}

@@ -10,7 +10,7 @@ import scipy
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.beam import FloatArray
-from vehicle.model.flexbody.frame_modes import fix_signs
+from vehicle.model.flexbody.frame_modes import signs
 from vehicle.model.flexbody.mass_properties import MassProperties
 from vehicle.model.flexbody.superelement import Superelement
 
@@ -95,8 +95,7 @@ def with_added_mass(superelement: Superelement, added: FloatArray, properties: M
     squared, mix = scipy.linalg.eigh(np.diag(omega**2), total[6:, 6:] - total[6:, :6] @ rigid_per_mode)
     rigid_share = mix.T @ rigid_per_mode.T  # share of the rigid motions in each new mode, (modes, 6)
     shapes = np.tensordot(mix.T, superelement.shapes, 1) - np.tensordot(rigid_share, rigid, 1)
-    signed = fix_signs(shapes)
-    sign = np.where(np.einsum("ank,ank->a", signed, shapes) < 0.0, -1.0, 1.0)[:, None]
+    sign = signs(shapes)[:, None]
     rotations = {
         node: sign * (mix.T @ rotation - rigid_share @ rigid_rotations)
         for node, rotation in superelement.rotations.items()
@@ -110,7 +109,7 @@ def with_added_mass(superelement: Superelement, added: FloatArray, properties: M
         mass_properties=properties,
         frequencies=new_omega / (2.0 * np.pi),
         damping_ratio=damping / (2.0 * new_omega),
-        shapes=signed,
+        shapes=sign[..., None] * shapes,
         rotations=rotations,
         mode_names=tuple(superelement.mode_names[i] for i in largest_share),
         derived=True,

@@ -74,7 +74,7 @@ def free_free_modes(
         added: mass matrix in addition to the lumped masses [kg], shape (3 n, 3 n).
 
     Returns:
-        Frequencies [Hz], shape (count,); shapes [kg^-1/2], shape (count, n, 3), signs by `fix_signs`.
+        Frequencies [Hz], shape (count,); shapes [kg^-1/2], shape (count, n, 3), signs by `signs`.
 
     Raises:
         DataError: a mode without stiffness beside the rigid-body modes.
@@ -100,15 +100,11 @@ def free_free_modes(
         )
     plain = vectors / root[:, None] if added is None else scipy.linalg.solve_triangular(lower.T, vectors)
     shapes = plain.T.reshape(count, -1, 3)
-    return np.sqrt(values) / (2.0 * np.pi), fix_signs(shapes)
+    return np.sqrt(values) / (2.0 * np.pi), signs(shapes)[:, None, None] * shapes
 
 
-def fix_signs(shapes: FloatArray) -> FloatArray:
-    """Choose the sign of every mode so that its largest component is positive, which makes the shapes reproducible.
-
-    Args:
-        shapes: mode shapes, shape (modes, n, 3).
-    """
+def signs(shapes: FloatArray) -> FloatArray:
+    """Return 1 or -1 for each mode (modes, n, 3), which makes its largest component positive, so reproducible."""
     flat = shapes.reshape(len(shapes), -1)
     largest = flat[np.arange(len(flat)), np.argmax(np.abs(flat), axis=1)]
-    return np.asarray(shapes * np.sign(largest)[:, None, None])
+    return np.where(largest < 0.0, -1.0, 1.0)

@@ -57,26 +57,3 @@ class Maxwell(Validated):
         total = np.asarray(self.stiffness + self.branch_stiffness)
         frequency = np.sqrt(self.stiffness / total) / self.relaxation_time
         return frequency, np.arctan(self.branch_stiffness / (2.0 * np.sqrt(self.stiffness * total)))
-
-    def step(self, branch_force: Numbers, extension_change: Numbers, timestep: Numbers) -> npt.NDArray[np.float64]:
-        """Return the branch force F2 [N] after a step, exact for an extension that is linear in time.
-
-        F2(t + h) = exp(-h/tau) F2(t) + D2 (1 - exp(-h/tau)) / h (u(t + h) - u(t)) with tau = D2/K2; zero if the branch
-        is absent.
-
-        Args:
-            branch_force: F2 [N] at the start of the step.
-            extension_change: u(t + h) - u(t) [m].
-            timestep: step h [s].
-
-        Raises:
-            ConfigurationError: a step that is not a finite number above zero.
-        """
-        h = np.asarray(timestep, dtype=float)
-        if not (np.isfinite(h) & (h > 0.0)).all():
-            raise ConfigurationError(f"timestep: found {timestep!r} s, must be finite and greater than 0.0")
-        tau = self.relaxation_time
-        present = tau > 0.0
-        exponent = np.where(present, h / np.where(present, tau, 1.0), np.inf)
-        gain = self.branch_stiffness * tau * -np.expm1(-exponent) / h
-        return np.asarray(np.exp(-exponent) * branch_force + gain * np.asarray(extension_change))

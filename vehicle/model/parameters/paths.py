@@ -16,7 +16,7 @@ from typing import Any
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.quantity import PATH_PATTERN, field_quantity
-from vehicle.model.parameters.toml_file import as_table, copy_table
+from vehicle.model.parameters.toml_file import as_table, copy_table, literal
 from vehicle.names import AXES, SIDE_SIGN
 
 Optional = Callable[[], Iterable[str]]
@@ -156,12 +156,8 @@ def _toml(path: str, value: Any) -> str:
     """Return a value as TOML text."""
     if hasattr(value, "tolist"):  # of numpy
         value = value.tolist()
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, int | float):
-        return repr(value)
-    if isinstance(value, str | PurePath):
-        return f'"{value}"'
+    if isinstance(value, int | float | str | PurePath):
+        return literal(str(value) if isinstance(value, PurePath) else value)
     if isinstance(value, Mapping):
         return "{" + ", ".join(f"{key} = {_toml(path, inner)}" for key, inner in value.items()) + "}"
     if isinstance(value, Sequence):

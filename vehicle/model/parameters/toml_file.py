@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import difflib
 import functools
+import json
 import tomllib
 import types
 import typing
@@ -129,7 +130,7 @@ def _write(table: Mapping[str, Any], path: str, lines: list[str], describe: Call
         if not isinstance(value, Mapping):
             declared = describe(_join(path, key))
             comment = f"  # [{declared['unit']}] {declared['meaning']}".rstrip() if "unit" in declared else ""
-            lines.append(f"{_key(key)} = {_literal(value)}{comment}")
+            lines.append(f"{_key(key)} = {literal(value)}{comment}")
     for key, value in table.items():
         if isinstance(value, Mapping):
             prefix = _join(path, _key(key))
@@ -139,16 +140,15 @@ def _write(table: Mapping[str, Any], path: str, lines: list[str], describe: Call
 
 
 def _key(key: str) -> str:
-    return key if NAME_PATTERN.fullmatch(key) and "." not in key else _literal(key)
+    return key if NAME_PATTERN.fullmatch(key) and "." not in key else literal(key)
 
 
-def _literal(value: Any) -> str:
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, str):
-        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
+def literal(value: Any) -> str:
+    """Return a number, truth value, text or list as TOML text."""
+    if isinstance(value, str | bool):
+        return json.dumps(value, ensure_ascii=False)  # a text of JSON is one of TOML
     if isinstance(value, tuple | list):
-        return "[" + ", ".join(_literal(item) for item in value) + "]"
+        return "[" + ", ".join(literal(item) for item in value) + "]"
     return repr(value)
 
 

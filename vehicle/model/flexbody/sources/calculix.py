@@ -10,7 +10,7 @@ import numpy as np
 from vehicle.errors import DataError
 from vehicle.model.flexbody.sources.body_matrices import BodyMatrices, IntArray
 from vehicle.model.flexbody.sources.deck import Deck, read_deck
-from vehicle.model.flexbody.sources.text_matrices import coordinate_matrix, rows_of_numbers, whole_numbers
+from vehicle.model.flexbody.sources.text_matrices import coordinate_matrix, nodes_and_directions, rows_of_numbers
 
 INSIDE = 3
 """Number of nodes that CalculiX adds to a brick C3D8I: their displacements are the amplitudes of its nine incompatible
@@ -36,9 +36,7 @@ def read_calculix(path: Path) -> BodyMatrices:
                 f"input deck .inp contains the node positions ({suffix} is missing)."
             )
     numbers = rows_of_numbers(files["dof"], 1, separator=".", columns=2)
-    identity, direction = (whole_numbers(files["dof"], numbers[:, i]) - i for i in (0, 1))
-    if direction.min() < 0 or direction.max() > 5:
-        raise DataError(f"{files['dof']}: directions {direction.min() + 1} to {direction.max() + 1}, must be 1 to 6.")
+    identity, direction = nodes_and_directions(files["dof"], numbers)
     deck = read_deck(files["inp"])
     size = len(identity)
     stiffness, mass = (coordinate_matrix(files[suffix], size) for suffix in ("sti", "mas"))

@@ -10,6 +10,7 @@ from vehicle.errors import DataError
 from vehicle.model.flexbody.sources.body_matrices import BodyNodes
 from vehicle.model.flexbody.sources.deck import LINES
 from vehicle.model.flexbody.sources.mode_shapes import GivenModes
+from vehicle.model.flexbody.sources.text_matrices import text_of
 
 _CORNERS = {1: 8, 4: 8, 2: 6, 5: 6, 3: 4, 6: 4}
 """Element type number of the format -> number of corners."""
@@ -28,10 +29,7 @@ def read_frd(path: Path, length: float, mass: float = 1.0) -> GivenModes:
 
     Source: G. Dhondt, CalculiX CrunchiX user's manual, "Format of the frd file"; fields of twelve columns.
     """
-    try:
-        lines = path.read_text(encoding="ascii").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise DataError(f"{path}: cannot be read as text ({error}); write *NODE FILE, not *NODE OUTPUT.") from error
+    lines = text_of(path, "; write *NODE FILE, not *NODE OUTPUT").splitlines()
     positions: dict[int, list[float]] = {}
     edges: set[tuple[int, int]] = set()
     shapes: list[dict[int, list[float]]] = []

@@ -10,16 +10,24 @@ import numpy as np
 import scipy
 
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.model.flexbody.sources.body_matrices import BodyMatrices
+from vehicle.model.flexbody.sources.body_matrices import BodyMatrices, IntArray
 from vehicle.model.flexbody.sources.calculix import assembled
 from vehicle.model.flexbody.sources.deck import Deck, read_deck
-from vehicle.model.flexbody.sources.dof_list import read_dofs
 from vehicle.model.flexbody.sources.harwell_boeing import is_harwell_boeing, read_harwell_boeing
 from vehicle.model.flexbody.sources.nastran import dmig_pair, is_bulk_data, read_bulk_data
-from vehicle.model.flexbody.sources.text_matrices import coordinate_matrix, rows_of_numbers, whole, whole_numbers
+from vehicle.model.flexbody.sources.text_matrices import (
+    coordinate_matrix,
+    nodes_and_directions,
+    rows_of_numbers,
+    text_of,
+    whole,
+    whole_numbers,
+)
 
 _FIVE = re.compile(r"\s*(\d+[\s,]+){4}[-+.\d]")
 """Row "node, direction, node, direction, value"."""
+_LABELS = ("UX", "UY", "UZ", "ROTX", "ROTY", "ROTZ")
+"""Directions in a mapping file of ANSYS."""
 
 
 def read_matrices(stiffness: Path, mass: Path | None, dofs: Path | None, nodes: Path | None) -> BodyMatrices:
@@ -51,9 +59,7 @@ def read_matrices(stiffness: Path, mass: Path | None, dofs: Path | None, nodes: 
         pairs = np.unique(np.vstack(named).reshape(-1, 2), axis=0)
         index = {(int(node), int(direction)): i for i, (node, direction) in enumerate(pairs)}
         matrices = [_of_pairs(rows, index) for rows in (table, other)]
-        identity, direction = pairs[:, 0], pairs[:, 1] - 1
-        if direction.min() < 0 or direction.max() > 5:
-            raise DataError(f"{stiffness}: directions {direction.min() + 1} to {direction.max() + 1}, must be 1 to 6.")
+        identity, direction = nodes_and_directions(stiffness, pairs)
     else:
         if dofs is None:
             raise ConfigurationError(
@@ -63,6 +69,35 @@ def read_matrices(stiffness: Path, mass: Path | None, dofs: Path | None, nodes: 
         identity, direction = read_dofs(dofs)
         matrices = [_matrix(file, len(identity)) for file in (stiffness, mass)]
     return assembled(stiffness, matrices[0], matrices[1], identity, direction, deck, "finite elements")
+
+
+def read_dofs(path: Path) -> tuple[IntArray, IntArray]:
+    """Read the node numbers and the directions, 0 to 5, of the rows of the matrices, in their order.
+
+    Args:
+        path: rows "node,direction", direction 1 to 3 displacements along x, y, z, 4 to 6 rotations about x, y, z; or
+            rows "equation node label" with labels UX to ROTZ, written to JOB.mapping by `HBMAT,...,YES` of ANSYS.
+
+    Raises:
+        DataError: a row is invalid, a direction or label unknown, or the equations are not numbered 1, 2, 3, ...
+    """
+    table = [line.replace(",", " ").split() for line in text_of(path).splitlines()]
+    labelled = [i for i, row in enumerate(table) if len(row) in (2, 3) and row[-1].upper() in _LABELS]
+    if not labelled:
+        return nodes_and_directions(path, rows_of_numbers(path, 1, columns=2))
+    rows = [row for row in table[labelled[0] :] if row]
+    try:
+        directions = [{label: i for i, label in enumerate(_LABELS)}[row[-1].upper()] for row in rows]
+        nodes = [int(row[-2]) for row in rows]
+        equations = [int(row[0]) for row in rows if len(row) == 3]
+    except (KeyError, ValueError, IndexError) as error:
+        raise DataError(
+            f"{path}: found {error}; a row must be equation, node and one of {', '.join(_LABELS)}. Temperatures, "
+            "pressures and other degrees of freedom are not supported."
+        ) from error
+    if equations and equations != list(range(1, len(rows) + 1)):
+        raise DataError(f"{path}: equations are not 1 to {len(rows)} in this order. Specify the complete mapping file.")
+    return np.array(nodes), np.array(directions)
 
 
 def _of_bulk_data(stiffness: Path, mass: Path | None, nodes: Path | None) -> BodyMatrices:

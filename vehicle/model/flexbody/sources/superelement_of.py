@@ -10,7 +10,7 @@ import numpy as np
 
 from vehicle.digits import number
 from vehicle.model.flexbody.beam import FloatArray
-from vehicle.model.flexbody.frame_modes import fix_signs
+from vehicle.model.flexbody.frame_modes import signs
 from vehicle.model.flexbody.mass_properties import MassProperties
 from vehicle.model.flexbody.sources import METHODS
 from vehicle.model.flexbody.sources.attachment_modes import ReducedModes, attachment_modes
@@ -164,8 +164,7 @@ def superelement_of(
         len(attachments), 3, vectors.shape[1]
     )
     shapes = np.concatenate([attachment_shapes.transpose(2, 0, 1), body.displacements(vectors)[:, shown]], axis=1)
-    signed = fix_signs(shapes)
-    sign = np.where(np.einsum("ank,ank->a", signed, shapes) < 0.0, -1.0, 1.0)
+    sign = signs(shapes)[:, None]
     has_damping = np.isfinite(modes.damping_ratio)
     damping_remark = (
         []
@@ -180,9 +179,9 @@ def superelement_of(
         mass_properties=modes.rigid,
         frequencies=modes.frequencies,
         damping_ratio=np.where(has_damping, modes.damping_ratio, damping),
-        shapes=signed,
+        shapes=sign[..., None] * shapes,
         rotations={
-            attachment.name: sign[:, None] * (attachment.turned.T @ vectors).T
+            attachment.name: sign * (attachment.turned.T @ vectors).T
             for attachment in attachments
             if attachment.turned is not None
         },

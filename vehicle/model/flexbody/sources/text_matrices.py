@@ -22,6 +22,18 @@ _NAMES = re.compile(r"(?!nan|inf)[a-z_]\w*([\s,]+[a-z_]\w*)*", re.IGNORECASE)
 """Header line of column names, as "node,direction". Headers with units in brackets do not match."""
 
 
+def text_of(path: Path, advice: str = "") -> str:
+    """Read an ASCII file.
+
+    Raises:
+        DataError: the file is unreadable or not text; the message ends with the advice.
+    """
+    try:
+        return path.read_text(encoding="ascii")
+    except (OSError, UnicodeDecodeError) as error:
+        raise DataError(f"{path}: cannot be read as text ({error}){advice}.") from error
+
+
 def rows_of_numbers(
     path: Path, minimum: int, *, separator: str | None = None, columns: int | None = None
 ) -> FloatArray:
@@ -36,10 +48,7 @@ def rows_of_numbers(
     Raises:
         DataError: the file is unreadable or truncated, or has entries other than numbers or rows of unequal length.
     """
-    try:
-        text = path.read_text(encoding="ascii")
-    except (OSError, UnicodeDecodeError) as error:
-        raise DataError(f"{path}: cannot be read as text ({error}).") from error
+    text = text_of(path)
     if _NAMES.fullmatch(text[: (end := text.find("\n"))].strip()):
         text = text[end + 1 :]
     text = text.replace(separator or ",", " ").replace("D", "E").replace("d", "e")
@@ -96,6 +105,18 @@ def whole_numbers(path: Path, values: FloatArray) -> IntArray:
             f"{path}: found {values[integers != values][0]:g}, must be a whole number (node, direction, row)."
         )
     return integers
+
+
+def nodes_and_directions(path: Path, rows: FloatArray | IntArray) -> tuple[IntArray, IntArray]:
+    """Return the node numbers, and the directions as 0 to 5, of rows "node, direction 1 to 6".
+
+    Raises:
+        DataError: a number is not whole, or a direction is not 1 to 6.
+    """
+    node, direction = whole_numbers(path, rows).T
+    if direction.min() < 1 or direction.max() > 6:
+        raise DataError(f"{path}: directions {direction.min()} to {direction.max()}, must be 1 to 6.")
+    return node, direction - 1
 
 
 def whole(matrix: Any) -> Any:
