@@ -163,7 +163,7 @@ def _bare(model: Superelement, vehicle: Vehicle) -> list[str]:
 
 
 def rotation_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
-    """Return lines with the points of rotational stiffness at which the model has, or lacks, nodal rotations."""
+    """Return lines with the points of rotational stiffness with and without nodal rotations in the model."""
     from vehicle.model.flexbody.superelement import attached_nodes
 
     stiff = {

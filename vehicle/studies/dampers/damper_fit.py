@@ -142,7 +142,7 @@ def fit_law(tests: Sequence[DamperTest], law: DamperLaw, starts: Sequence[Vector
 
     Args:
         starts: start values in the order of `law.parameters`.
-        masks: samples of each test that are fitted; the settled ones by default.
+        masks: samples of each test that are fitted; the settled samples by default.
         evaluations: maximum number of evaluations of a start.
         tolerance: relative change of cost and parameters at which a fit ends.
     """
