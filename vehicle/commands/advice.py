@@ -269,7 +269,7 @@ def _accelerations(measurement: Measurement, files: list[str], those: list[Numbe
         points.setdefault(point_of(pair[1]), []).append(pair)
     if not points:
         return "", "accelerations of wheels or engine: comfort needs one of a seat or a floor"
-    # The point with the most axes; of equal ones the first.
+    # The first of the points with the most axes.
     of_point = max(points.values(), key=lambda pairs: len({axis_of(channel) for _, channel in pairs}))
     axes: dict[str, int] = {}
     for number, channel in of_point:

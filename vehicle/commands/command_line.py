@@ -125,7 +125,7 @@ def _stand_in_for_closed_streams() -> io.StringIO | None:
 
 
 def _flush() -> None:
-    """Flush standard output; an error such as a full disk is raised here."""
+    """Flush standard output; an error, for example a full disk, is raised here."""
     try:
         sys.stdout.flush()
     except OSError:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.command_line import command
 from vehicle.commands.destination import output_files_of
@@ -66,8 +66,7 @@ def parser() -> Parser:
 def _job(options: argparse.Namespace) -> None:
     from vehicle.drawing.rendering.load_plot import plot_loads
     from vehicle.runs.output.folder import write_together
-    from vehicle.signals.analysis.load_spectrum import load_spectrum
-    from vehicle.signals.formats.reader import read_columns, time_file
+    from vehicle.signals.formats.reader import time_file
     from vehicle.signals.records.run_summary import available_summary
 
     source = time_file(options.runs[0])
@@ -76,24 +75,19 @@ def _job(options: argparse.Namespace) -> None:
     if len(options.runs) > 1 or options.reference_run or options.repeats:
         _schedule(options)
         return
-    record = read_columns(source)
-    names = _chosen(options.channels, record.units, source)
     paths = output_files_of(options, source.parent, FILES)
-    duration = float(record.time[-1] - record.time[0])
-    spectra_of_channels = [
-        load_spectrum(name, record.units[name], record.channels[name], slope=options.slope, duration=duration)
-        for name in names
-    ]
+    counted = _counted(options.runs[0], options)
+    loads = list(counted.loads.values())
     summary = available_summary(source.parent)
     tyres = summary.get("tyre") if summary else None
     caption = (
-        f"{source.name}, {duration:g} s{f'; tyres {tyres}' if tyres else ''}; rainflow counts of ASTM E1049; "
+        f"{source.name}, {counted.duration:g} s{f'; tyres {tyres}' if tyres else ''}; rainflow counts of ASTM E1049; "
         f"equivalent amplitude: one cycle a second of equal damage, slope {options.slope:g}"
     )
-    texts = _table(spectra_of_channels, caption), _spectra(spectra_of_channels, caption, options.classes)
-    write_together(paths, (*texts, partial(plot_loads, loads=spectra_of_channels, caption=caption)))
+    texts = _table(loads, caption), _spectra(loads, caption, options.classes)
+    write_together(paths, (*texts, partial(plot_loads, loads=loads, caption=caption)))
     if not options.quiet:
-        print(_report(spectra_of_channels, caption))
+        print(_report(loads, caption))
         print(f"files: {paths[0].parent}: {', '.join(path.name for path in paths)}")
 
 
@@ -105,6 +99,7 @@ def _schedule(options: argparse.Namespace) -> None:
     from vehicle.digits import number
     from vehicle.runs.output.folder import write_text
     from vehicle.signals.analysis.load_schedule import scheduled_loads
+    from vehicle.signals.formats.text_format import table_text
 
     texts = options.repeats.split(",") if options.repeats else ["1"] * len(options.runs)
     try:
@@ -120,11 +115,11 @@ def _schedule(options: argparse.Namespace) -> None:
     caption = f"schedule {parts}; rainflow counts of ASTM E1049, slope {options.slope:g}{against}"
     heads = ["channel", "unit", "equivalent_amplitude", *(f"share of {run.name} [-]" for run in runs)]
     heads += [] if reference is None else ["damage_ratio [-]"]
-    lines = [f"# {caption}", ",".join(heads)]
-    for row in rows:
-        values = [row.equivalent_amplitude, *row.shares, *([] if reference is None else [row.ratio])]
-        lines.append(",".join([row.name, row.unit, *("" if value is None else f"{value:.6g}" for value in values)]))
-    write_text(path, "\n".join([*lines, ""]))
+    table = [
+        [row.name, row.unit, row.equivalent_amplitude, *row.shares, *([] if reference is None else [row.ratio])]
+        for row in rows
+    ]
+    write_text(path, table_text([heads, *table], [caption]))
     if options.quiet:
         return
     print(caption)
@@ -173,20 +168,24 @@ HEADS = ("minimum", "maximum", "mean", "rms", "cycles", "largest_range", "equiva
 
 
 def _table(loads: list[LoadSpectrum], caption: str) -> str:
-    rows = [",".join([load.name, load.unit, *(f"{getattr(load, head):.9g}" for head in HEADS)]) for load in loads]
-    return "\n".join([f"# {caption}", ",".join(["channel", "unit", *HEADS]), *rows, ""])
+    from vehicle.signals.formats.text_format import table_text
+
+    rows = [[load.name, load.unit, *(getattr(load, head) for head in HEADS)] for load in loads]
+    return table_text([["channel", "unit", *HEADS], *rows], [caption], digits=9)
 
 
 def _spectra(loads: list[LoadSpectrum], caption: str, classes: int) -> str:
     """Return the range-pair table: cycles in equal classes from zero to the largest range of each channel."""
-    lines = [f"# {caption}", "channel,unit,range_above,range_up_to,cycles,cycles_of_this_range_or_more"]
+    from vehicle.signals.formats.text_format import table_text
+
+    rows: list[list[Any]] = [
+        ["channel", "unit", "range_above", "range_up_to", "cycles", "cycles_of_this_range_or_more"]
+    ]
     for load in loads:
         edges, counts = load.classes(classes)
-        more = counts[::-1].cumsum()[::-1]
-        for number, count in enumerate(counts):
-            numbers = (edges[number], edges[number + 1], count, more[number])
-            lines.append(",".join([load.name, load.unit, *(f"{value:.9g}" for value in numbers)]))
-    return "\n".join([*lines, ""])
+        columns = zip(edges[:-1], edges[1:], counts, counts[::-1].cumsum()[::-1], strict=True)
+        rows += [[load.name, load.unit, *numbers] for numbers in columns]
+    return table_text(rows, [caption], digits=9)
 
 
 def _report(loads: list[LoadSpectrum], caption: str) -> str:

@@ -104,7 +104,7 @@ def extra_output_options(parser: Parser, files: str) -> None:
 
 
 def figures_option(parser: argparse._ActionsContainer) -> None:
-    """Add --no-figures, for a command that writes pictures beside its tables; the default of `figures` is True."""
+    """Add --no-figures, for a command that writes pictures and tables; the default of `figures` is True."""
     parser.add_argument(
         "--no-figures",
         dest="figures",
@@ -120,7 +120,7 @@ def head_options(parser: argparse._ActionsContainer) -> None:
 
 
 def report_option(parser: Parser, content: str, folder: str) -> None:
-    """Add --report, a report beside the results, with --author and --project of its head."""
+    """Add --report, a report in addition to the results, with --author and --project of its head."""
     parser.add_argument(
         "--report",
         nargs="?",

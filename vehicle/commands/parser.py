@@ -74,7 +74,7 @@ class Parser(argparse.ArgumentParser):
         self.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
 
     def advise(self, advice: str) -> None:
-        """Add advice, the command for a task that this one does not do, to the help and to each message about usage."""
+        """Add the command for a similar task to the help and to each message about usage."""
         self.advice = advice
         self.epilog = f"{advice[0].upper()}{advice[1:]}. {self.epilog or ''}"
 

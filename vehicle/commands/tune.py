@@ -31,7 +31,7 @@ from vehicle.studies.tuning.fit_settings import HistorySettings, PosteriorSettin
 if TYPE_CHECKING:
     from vehicle.model.parameters.ranges import Range
     from vehicle.runs.car import Car
-    from vehicle.studies.tuning.measured_targets import MeasuredTarget
+    from vehicle.studies.tuning.frf_target import FrfTarget
     from vehicle.studies.tuning.posterior_text import NamedPosterior
 
 OUTPUT = Path("runs/tune")
@@ -106,8 +106,9 @@ def _job(options: argparse.Namespace) -> None:
     if not (options.quiet or options.json):
         for text in dict.fromkeys(text for target in targets for text in target.notices):
             print(f"notice: {text}", file=sys.stderr, flush=True)
+    responses = [each.target for each in targets if isinstance(each.target, FrfTarget)]
     if options.posterior:
-        require_posterior([each.target for each in targets if isinstance(each.target, FrfTarget)])
+        require_posterior(responses)
     line = ProgressLine("fit       ", enabled=not options.quiet)
     tuned = tuned_car(
         car,
@@ -118,7 +119,7 @@ def _job(options: argparse.Namespace) -> None:
         progress=lambda count, _: line(0.7 * count / (count + 6.0 * len(parameters))),
         simulated=lambda count: line(0.7 + 0.3 * count / (count + 2.0)),
     )
-    posteriors = _posteriors(options, car, parameters, targets) if options.posterior else []
+    posteriors = _posteriors(options, car, parameters, responses) if options.posterior else []
     line(1.0)
     with output_folder(folder, force=options.force, protect=(*files, *protect)) as work:
         names = write_tuning(
@@ -139,16 +140,14 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def _posteriors(
-    options: argparse.Namespace, car: Car, parameters: Sequence[Range], measured: Sequence[MeasuredTarget]
+    options: argparse.Namespace, car: Car, parameters: Sequence[Range], targets: Sequence[FrfTarget]
 ) -> list[NamedPosterior]:
     """Return the posteriors of the fitted law and of its rival."""
     from vehicle.model.parameters.ranges import parsed_variation
     from vehicle.runs.car import Car
     from vehicle.studies.tuning.car_fit import ranges_of
-    from vehicle.studies.tuning.frf_target import FrfTarget
     from vehicle.studies.tuning.posterior import emulated_car, posterior_of
 
-    targets = [each.target for each in measured if isinstance(each.target, FrfTarget)]
     laws: list[tuple[str, Car, Sequence[Range]]] = [("fitted law", car, parameters)]
     chosen = PosteriorSettings.of_options(options)
     if chosen.rival:

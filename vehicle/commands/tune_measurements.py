@@ -59,7 +59,7 @@ class _OfMeasurement(argparse.Action):
 
 
 def measurement_options(parser: Parser) -> None:
-    """Add the options that name measurement files, and those that belong to the files before them."""
+    """Add the options that name measurement files, and the options that act on the preceding files."""
     parser.set_defaults(measurements=[], latest=[])
     files = parser.add_argument_group("measurements")
     files.add_argument(

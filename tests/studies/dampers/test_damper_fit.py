@@ -13,7 +13,7 @@ from vehicle.studies.dampers.damper_fit import choose_law, finished, judged
 from vehicle.studies.dampers.damper_law import DamperLaw
 from vehicle.studies.dampers.damper_test import read_test
 from vehicle.studies.dampers.fitted_damper import FittedDamper
-from vehicle.studies.dampers.waveform import waveform_of
+from vehicle.studies.dampers.waveform import reversals, waveform_of
 
 SUBJECT = "Sweeps, tuning and optimisation"
 REAL = Path(__file__).resolve().parents[4] / "shared" / "data" / "mr-damper"
@@ -73,6 +73,13 @@ def test_velocity_steps_and_random_motion_give_the_law():
     law = law_of(known)
     fit = finished(tests, judged(tests, law, [np.array([0.9 * true[name] for name in law.parameters])]))
     assert np.all(fit.fitted < 0.022) and np.all(fit.left_out < 0.05), (fit.fitted, fit.left_out)
+    # All strokes of a test with velocity steps count alike, as in the fit and in the error left out.
+    strokes = np.split(
+        (fit.force(tests[0]) - tests[0].force) ** 2, reversals(tests[0].displacement, tests[0].velocity)[1:-1]
+    )
+    assert fit.fitted[0] == pytest.approx(
+        np.sqrt(np.mean([each.mean() for each in strokes])) / tests[0].scale, rel=1e-2
+    )
     largest = max(map(abs, deviations(known, fit).values()))
     validated(
         SUBJECT, "damper test: velocity steps and random motion, deviation in standard errors", largest, 0.0, abs=3.0,

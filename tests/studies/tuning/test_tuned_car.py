@@ -1,6 +1,8 @@
 """Fits of the car to synthetic data: with its matrices, with the reduced engine, and with MuJoCo."""
 
 import dataclasses
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,7 +18,9 @@ from vehicle.signals.formats.table import Record
 from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.full_steps import SMALL, full_steps
 from vehicle.studies.tuning.least_squares import fit
+from vehicle.studies.tuning.measured_targets import MeasuredTarget
 from vehicle.studies.tuning.record_target import RecordTarget
+from vehicle.studies.tuning.tuned_car import TunedCar
 
 CHANNELS = ("knuckle_fr_acc_z", "seat_rail_acc_z")
 NAMES = tuple(parsed_name(f"{channel}/plate_fr") for channel in CHANNELS)
@@ -132,6 +136,20 @@ def test_a_run_and_its_target_have_the_same_residuals(build, car, high_piece):
     assert len(target.rows) == len(target.residuals(car)) == 4
     record = record_of(car.run(bump(amplitude=7.5e-3, wheel="fr", duration=1.3, start=0.3), engine="reduced"))
     assert len(record.rows) == len(record.residuals(car)) == 2
+
+
+def test_a_channel_without_a_coherent_point_has_no_error(car):
+    target = target_of(car, None)
+    coherence = target.data.coherence * [[1.0], [0.01]]
+    target = dataclasses.replace(target, data=dataclasses.replace(target.data, coherence=coherence))
+    nothing: Any = SimpleNamespace(values={}, at_bound=(), unknowns=())
+    measured = MeasuredTarget(target=target, signal=None)
+    tuned = TunedCar(start=car, result=nothing, measurements=(measured,), engine="reduced", final=None)
+    assert [(row.channel, row.measure) for row in tuned.agreement] == [
+        (CHANNELS[0], "magnitude"), (CHANNELS[0], "phase")
+    ]  # fmt: skip
+    assert [row.before for row in tuned.agreement] == pytest.approx([0.26, 1.7], rel=0.3)  # noise of 3 %, 36 lines
+    assert tuned.refusal == ""
 
 
 def test_bad_targets_are_rejected(car, high_piece):

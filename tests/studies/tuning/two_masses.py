@@ -29,7 +29,8 @@ class MeasuredMasses:
     """The FRFs as a target; noise of a standard deviation SIGMA on ln|H| and on the phase."""
 
     rows = ("wheel, magnitude", "wheel, phase", "body, magnitude", "body, phase")
-    recorded, half_sample = (), 0.0
+    recorded: tuple[str, ...] = ()
+    half_sample: float = 0.0
 
     def __init__(self, true=TRUE, *, seed=0, sigma=SIGMA, assumed=SIGMA):
         real, imaginary = np.random.default_rng(seed).standard_normal((2, 2, FREQUENCY.size))

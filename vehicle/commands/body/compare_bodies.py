@@ -68,17 +68,15 @@ def _write_files(
     """Write the MAC matrix as a table, and a picture of its first modes."""
     from vehicle.runs.comparison.pictures import plot_mac
     from vehicle.runs.output.folder import output_folder, write_files
+    from vehicle.signals.formats.text_format import table_text
 
     rows, columns = (model.frequencies for model in models)
-    table = [f"# {title}; rows: {options.file.name}, columns: {options.other.name}"]
-    table.append(
-        "mode,frequency [Hz]" + "".join(f",mode_{j + 1} {frequency:.9g} Hz [-]" for j, frequency in enumerate(columns))
-    )
-    for i, (frequency, row) in enumerate(zip(rows, likeness, strict=True)):
-        table.append(f"{i + 1},{frequency:.9g}," + ",".join(f"{value:.6g}" for value in row))
+    heads = ["mode", "frequency [Hz]", *(f"mode_{j + 1} {each:.9g} Hz [-]" for j, each in enumerate(columns))]
+    table = [(i + 1, f"{each:.9g}", *row) for i, (each, row) in enumerate(zip(rows, likeness, strict=True))]
+    text = table_text([heads, *table], [f"{title}; rows: {options.file.name}, columns: {options.other.name}"])
     axes_title = f"down: {options.file.name}\nacross: {options.other.name}"
     note = f"; the first {MOST} modes" if max(likeness.shape) > MOST else ""
     shown = [(axes_title, likeness[:MOST, :MOST], rows[:MOST].tolist(), columns[:MOST].tolist())]
     picture = partial(plot_mac, tables=shown, caption=f"{title}{note}")
     with output_folder(options.output, force=options.force) as folder:
-        write_files(folder, dict(zip(FILES, ("\n".join(table) + "\n", picture), strict=True)))
+        write_files(folder, dict(zip(FILES, (text, picture), strict=True)))

@@ -172,7 +172,7 @@ def _write(options: argparse.Namespace, over: Participation, result: Participati
     from vehicle.drawing.rendering.participation_plot import plot_participation
     from vehicle.engines.linear.mode_participation import in_phase
     from vehicle.runs.output.folder import output_folder, write_files
-    from vehicle.signals.formats.text_format import write_table
+    from vehicle.signals.formats.text_format import table_text, write_table
 
     at, keys = result.frequency[0], ["body_x", "body_y", "body_z", "body_rx", "body_ry", "body_rz"]
     keys += [f"mode_{n + 1}" for n in range(len(over.mode_frequency))]
@@ -187,10 +187,10 @@ def _write(options: argparse.Namespace, over: Participation, result: Participati
             columns.append(100.0 * share)
     names = _named(over)
     comments = [caption, *(f"{key}: {name}" for key, name in zip(keys, names, strict=True))]
-    rows = [f"# {caption}, {at:g} Hz: share of each attachment in the force on each mode", "attachment"]
-    rows[1] += "".join(f",mode_{n + 1} [%]" for n in range(len(result.modal_forces)))
+    rows = [["attachment", *(f"mode_{n + 1} [%]" for n in range(len(result.modal_forces)))]]
     for name, shares in zip(result.attachments, result.attachment_shares[:, :, 0].T, strict=True):
-        rows.append(",".join([f'"{name}"' if "," in name else name, *(f"{100.0 * share:.6g}" for share in shares)]))
+        rows.append([name, *(100.0 * shares)])
+    attachments = table_text(rows, [f"{caption}, {at:g} Hz: share of each attachment in the force on each mode"])
     order = np.argsort(-np.abs(result.shares[:, 0]))
     drivers = result.attachment_shares[mode, :, 0]
     picture = partial(
@@ -205,4 +205,4 @@ def _write(options: argparse.Namespace, over: Participation, result: Participati
     )
     table = partial(write_table, cells=heads, columns=columns, comments=comments)
     with output_folder(options.output, force=options.force) as folder:
-        write_files(folder, dict(zip(FILES, (table, "\n".join(rows) + "\n", picture), strict=True)))
+        write_files(folder, dict(zip(FILES, (table, attachments, picture), strict=True)))

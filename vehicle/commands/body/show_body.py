@@ -167,7 +167,7 @@ def _bare(model: Superelement, vehicle: Vehicle) -> list[str]:
 
 
 def rotation_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
-    """Return lines with the points of rotational stiffness at which the model has, or lacks, nodal rotations."""
+    """Return lines with the points of rotational stiffness with and without nodal rotations in the model."""
     from vehicle.model.flexbody.superelement import attached_nodes
 
     stiff = {
@@ -232,20 +232,19 @@ def _write(options: argparse.Namespace, model: Superelement, levels: Mapping[str
 
     from vehicle.drawing.rendering.body_plot import MOST, plot_body
     from vehicle.runs.output.folder import Content, output_folder, write_files
+    from vehicle.signals.formats.text_format import table_text
 
     count = len(model.frequencies)
     modes = ["mode,frequency [Hz],damping ratio [-],name"]
     for i, (frequency, ratio) in enumerate(zip(model.frequencies, model.damping_ratio, strict=True)):
         modes.append(f'{i + 1},{frequency:.9g},{ratio:.6g},"{model.mode_names[i]}"')
-    taking = ["# shape at each attachment and place over its mean in the body, sqrt(m) Phi"]
-    taking.append("attachment,axis" + "".join(f",mode_{number + 1} [-]" for number in range(count)))
+    taking = [["attachment", "axis", *(f"mode_{n + 1} [-]" for n in range(count))]]
     for name, values in levels.items():
-        taking += [
-            f"{name},{axis}," + ",".join(f"{value:.6g}" for value in values[:, i]) for i, axis in enumerate("xyz")
-        ]
+        taking += [[name, axis, *values[:, i]] for i, axis in enumerate("xyz")]
     pairs = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
-    residuals = ["attachment" + "".join(f",{'xyz'[i]}{'xyz'[j]} [m/N]" for i, j in pairs)]
-    residuals += [name + "".join(f",{values[i, j]:.6g}" for i, j in pairs) for name, values in model.residual.items()]
+    residuals = [["attachment", *(f"{'xyz'[i]}{'xyz'[j]} [m/N]" for i, j in pairs)]]
+    residuals += [[name, *(values[pair] for pair in pairs)] for name, values in model.residual.items()]
+    note = "shape at each attachment and place over its mean in the body, sqrt(m) Phi"
     # A place is a node of the picture where it is one of the model.
     shown = [index for index, node in enumerate(model.nodes) if node in levels]
     titles = [
@@ -255,9 +254,8 @@ def _write(options: argparse.Namespace, model: Superelement, levels: Mapping[str
     ]
     more = f"; the first {MOST} of {count} modes" if count > MOST else ""
     caption = f"grey: at rest; colour: displacement, each mode at its own scale; dots: attachments and places{more}"
-    contents: dict[str, Content] = {
-        name: "\n".join(lines) + "\n" for name, lines in zip(FILES, (modes, taking, residuals), strict=False)
-    }
+    texts = ("\n".join(modes) + "\n", table_text(taking, [note]), table_text(residuals))
+    contents: dict[str, Content] = dict(zip(FILES, texts, strict=False))
     if count:
         contents[FILES[3]] = partial(
             plot_body,

@@ -23,7 +23,8 @@ BACKENDS, REMEDY = (
     else (("glfw",), "Install the graphics driver")
 )
 """OpenGL backends of MuJoCo, preferred ones first: OSMesa renders on the processor, the same picture on every machine;
-EGL needs a driver, GLFW also a display; Windows and macOS have only this one. And what is said where none works."""
+EGL needs a driver, GLFW also a display; Windows and macOS have only this one. The second text is the remedy in the
+message if no backend works."""
 
 ENCODER = "libx264"
 PATIENCE = 120.0

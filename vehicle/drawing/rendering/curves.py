@@ -1,4 +1,4 @@
-"""Drawing of FRFs and of time histories over the curves that their axes already have."""
+"""Drawing of FRFs and of time histories over the curves in the same axes."""
 
 from __future__ import annotations
 

@@ -143,7 +143,7 @@ def plot_time(path: Path, run: RecordedRun, *, page: bool = False, others: Seque
     dampers = dampers_of(recording)
     time, side = recording.time, side_of(wheel, wheels)
     slip = run.car.model.vehicle.damper.slip_velocity if dampers else 0.0
-    # Where nothing slips the plate is what is lively.
+    # Without slip the motion of the plate determines the excerpt.
     lively = (
         f"damper_{wheel if wheel in dampers else dampers[0]}_velocity" if dampers else f"plate_{wheel}_displacement"
     )

@@ -15,7 +15,7 @@ MOST_LINES = 3000
 """Maximum number of cars drawn on parallel axes: the most comfortable and evenly spaced others."""
 
 MOST_TICKS = 8
-"""Maximum number of values of a parameter that each have a tick of their own."""
+"""Maximum number of values of a parameter that all have a tick."""
 
 COLOURS_OF_COMFORT = "viridis"
 

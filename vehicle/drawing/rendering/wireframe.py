@@ -210,7 +210,7 @@ def _stand(pen: _Pen, top: Vector, floor: float) -> None:
 def _coil(low: Vector, high: Vector) -> Vector:
     """Return a helix between two points [m], (n, 3), with straight ends."""
     axis = high - low
-    lying = abs(axis[0]) > 0.99 * np.linalg.norm(axis)  # along the car, as of a push rod
+    lying = abs(axis[0]) > 0.99 * np.linalg.norm(axis)  # along the car, for example a push rod
     across = np.cross(axis, (0.0, 1.0, 0.0) if lying else (1.0, 0.0, 0.0))
     across /= np.linalg.norm(across)
     third = np.cross(axis, across) / np.linalg.norm(axis)

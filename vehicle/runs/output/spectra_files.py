@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
-import io
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 from vehicle.errors import ConfigurationError
 from vehicle.names import point_words
+from vehicle.signals.formats.text_format import table_text
 from vehicle.signals.records.record_spectra import RecordSpectra
 
 
@@ -37,42 +36,27 @@ def picture_columns(runs: Sequence[RecordSpectra]) -> dict[str, tuple[str, dict[
 def spectra_text(runs: Mapping[str, RecordSpectra], caption: str) -> str:
     """Return the table of densities and cumulative RMS as CSV text, a row for each line of each channel."""
     heads = ("run", "channel", "weighting", "frequency [Hz]", "density [(m/s2)^2/Hz]", "cumulative RMS [m/s2]")
-    return _text(
-        caption + "; densities: Welch's method, Hann windows; cumulative RMS from the lowest frequency upwards",
-        heads,
-        (
-            (name, spectrum.name, spectrum.weighting, *numbers)
-            for name, run in runs.items()
-            for spectrum in run.channels
-            for numbers in zip(spectrum.frequency, spectrum.density, spectrum.cumulative_rms, strict=True)
-        ),
-    )
+    rows = [
+        (name, spectrum.name, spectrum.weighting, *numbers)
+        for name, run in runs.items()
+        for spectrum in run.channels
+        for numbers in zip(spectrum.frequency, spectrum.density, spectrum.cumulative_rms, strict=True)
+    ]
+    note = "densities: Welch's method, Hann windows; cumulative RMS from the lowest frequency upwards"
+    return table_text([heads, *rows], [f"{caption}; {note}"])
 
 
 def third_octaves_text(runs: Mapping[str, RecordSpectra], caption: str) -> str:
     """Return the table of third octaves as CSV text, a row for each band of each channel."""
     heads = ("run", "channel", "weighting", "midband [Hz]", "from [Hz]", "to [Hz]", "RMS [m/s2]", "standard error [-]")
-    return _text(
-        caption
-        + "; third octaves of IEC 61260-1 (base ten), rectangular; empty: the record is shorter than 1/bandwidth",
-        heads,
-        (
-            (name, spectrum.name, spectrum.weighting, *numbers)
-            for name, run in runs.items()
-            for spectrum in run.channels
-            for bands in [spectrum.third_octaves]
-            for numbers in zip(
-                bands.nominal, bands.edges[:-1], bands.edges[1:], bands.rms, bands.standard_error, strict=True
-            )
-        ),
-    )
-
-
-def _text(caption: str, heads: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    file = io.StringIO()
-    file.write(f"# {caption}\n")
-    writer = csv.writer(file, lineterminator="\n")
-    writer.writerow(heads)
-    for row in rows:
-        writer.writerow([cell if isinstance(cell, str) else "" if cell != cell else f"{cell:.6g}" for cell in row])
-    return file.getvalue()
+    rows = [
+        (name, spectrum.name, spectrum.weighting, *numbers)
+        for name, run in runs.items()
+        for spectrum in run.channels
+        for bands in [spectrum.third_octaves]
+        for numbers in zip(
+            bands.nominal, bands.edges[:-1], bands.edges[1:], bands.rms, bands.standard_error, strict=True
+        )
+    ]
+    note = "third octaves of IEC 61260-1 (base ten), rectangular; empty: the record is shorter than 1/bandwidth"
+    return table_text([heads, *rows], [f"{caption}; {note}"])

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import csv
+import io
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -267,3 +269,17 @@ def decimal_points(numbers: list[int], rows: list[str], header: Header) -> list[
                     "other sign"
                 )
     return [row.replace(",", ".") for row in rows]
+
+
+def table_text(rows: Iterable[Sequence[Any]], comments: Sequence[str] = (), digits: int = 6) -> str:
+    """Return a table of any cells as CSV text: numbers with significant digits, None and NaN empty, texts unchanged."""
+
+    def shown(cell: Any) -> str:
+        if isinstance(cell, str):
+            return cell
+        return "" if cell is None or cell != cell else f"{cell:.{digits}g}"
+
+    file = io.StringIO()
+    file.writelines(f"# {comment}\n" for comment in comments)
+    csv.writer(file, lineterminator="\n").writerows([shown(cell) for cell in row] for row in rows)
+    return file.getvalue()

@@ -91,8 +91,8 @@ class DamperFit:
         law: parts of the law.
         parameters: in the order of `law.parameters`, SI units, velocities as widths of segments; (p,).
         errors: standard errors of `values`; (p,).
-        fitted: RMS error over the standard deviation of the force, settled part of each test; (tests,).
-        whole: the same for the whole record; (tests,).
+        fitted: RMS error over the standard deviation of the force, settled part of each test by its weights; (tests,).
+        whole: that of all samples of the record; (tests,).
         left_out: the same of the settled part of each test, by the fits without that test; NaN if not computed.
         blocks: mean squares of the errors left out and of `FLOOR`, by blocks; (b,).
     """
@@ -142,7 +142,7 @@ def fit_law(tests: Sequence[DamperTest], law: DamperLaw, starts: Sequence[Vector
 
     Args:
         starts: start values in the order of `law.parameters`.
-        masks: samples of each test that are fitted; the settled ones by default.
+        masks: samples of each test that are fitted; the settled samples by default.
         evaluations: maximum number of evaluations of a start.
         tolerance: relative change of cost and parameters at which a fit ends.
     """
@@ -354,9 +354,10 @@ def finished(tests: Sequence[DamperTest], fit: DamperFit) -> DamperFit:
         shares = np.where(test.settled, test.weights, 0.0) / np.sum(test.weights[test.settled])
         columns = slopes * sizes / test.scale
         curvature += columns.T @ (shares[:, None] * columns)
-        noise += (shares @ error**2) * columns.T @ (shares[:, None] ** 2 * columns)
+        square = shares @ error**2
+        noise += square * columns.T @ (shares[:, None] ** 2 * columns)
         scores += [columns[rows].T @ (shares[rows] * error[rows]) for rows in test.cycle_rows]
-        fitted.append(np.sqrt(np.mean(error[test.settled] ** 2)))
+        fitted.append(np.sqrt(square))
         whole.append(np.sqrt(np.mean(error**2)))
     inverse = np.linalg.pinv(curvature, hermitian=True, rcond=1e-12)
     middle = np.array(scores).T @ np.array(scores) * len(scores) / (len(scores) - 1)

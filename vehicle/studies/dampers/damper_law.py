@@ -35,7 +35,7 @@ STEP = 1e-6
 2e7 N/m while dry friction turns, and that stiffness would be fitted 15 % too low."""
 
 EXPONENT = 2.0
-"""Exponent delta of Stribeck friction; tests determine it hardly beside the velocity vs."""
+"""Exponent delta of Stribeck friction; tests hardly distinguish it from the velocity vs."""
 
 LINEAR = ("gas_force", "gas_stiffness")
 """Parameters that may be zero or negative, fitted without logarithm."""
@@ -50,7 +50,7 @@ class DamperLaw:
 
     Attributes:
         bends: breakpoints of the curve on each side.
-        own_sides: bump and rebound have their own slopes and breakpoints.
+        own_sides: bump and rebound have different slopes and breakpoints.
         friction: "", "coulomb", "stribeck" or "presliding".
         elements: Jenkins elements of presliding.
         series: a stiffness in series with the damper.
@@ -98,7 +98,7 @@ class DamperLaw:
     def larger(self) -> Iterator[DamperLaw]:
         """Yield the laws with one more part.
 
-        A slider is close to dry friction behind a series stiffness: those laws are tried too.
+        A slider is close to dry friction in series with a stiffness: those laws are tried too.
         """
         change = dataclasses.replace
         if self.bends < MAX_BENDS:

@@ -49,7 +49,7 @@ SMALLEST_TURN = 0.01
 """Smallest swing between two reversals, over the stroke."""
 
 HEADLESS = {3: ("displacement", "force"), 4: ("displacement", "velocity", "force")}
-"""Roles of the columns behind the time in a file without a header, by the number of its columns."""
+"""Roles of the columns after the time in a file without a header, by the number of columns."""
 
 HEADLESS_UNITS = {"time": "s", "displacement": "mm", "velocity": "mm/s", "force": "N"}
 """Units of these columns, as test machines write them."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from collections.abc import Sequence
 from typing import Any
@@ -11,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from vehicle.digits import number, rounded
+from vehicle.signals.formats.text_format import table_text
 from vehicle.studies.dampers.damper_law import EXPONENT, SMOOTHING, values_of
 from vehicle.studies.dampers.fitted_damper import FittedDamper
 
@@ -160,19 +159,15 @@ def fit_json(fitted: FittedDamper) -> dict[str, Any]:
 
 def tests_text(fits: Sequence[FittedDamper]) -> str:
     """Return a table of the tests as CSV, with the RMS errors over the standard deviation of the force."""
-    file = io.StringIO()
-    writer = csv.writer(file, lineterminator="\n")
     names = list(dict.fromkeys(name for fitted in fits for name in fitted.conditions))
-    writer.writerow(
-        ["test", *names, "stroke [mm]", "velocity [mm/s]", "force [N]", "fitted [-]", "left_out [-]", "whole [-]"]
-    )
+    rows = [["test", *names, "stroke [mm]", "velocity [mm/s]", "force [N]", "fitted [-]", "left_out [-]", "whole [-]"]]
     for fitted in fits:
         errors = zip(fitted.tests, fitted.fit.fitted, fitted.fit.left_out, fitted.fit.whole, strict=True)
         for test, inside, outside, whole in errors:
             sizes = [1e3 * np.ptp(test.displacement), 1e3 * np.max(np.abs(test.velocity)), test.scale]
-            row = [test.conditions.get(name, "") for name in names]
-            writer.writerow([test.name, *row, *(f"{value:.4g}" for value in [*sizes, inside, outside, whole])])
-    return file.getvalue()
+            conditions = [str(test.conditions.get(name, "")) for name in names]
+            rows.append([test.name, *conditions, *(f"{value:.4g}" for value in [*sizes, inside, outside, whole])])
+    return table_text(rows)
 
 
 def summary_lines(fitted: FittedDamper) -> list[str]:

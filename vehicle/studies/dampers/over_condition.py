@@ -28,7 +28,7 @@ class Setting(NamedTuple):
     Attributes:
         words: condition, as "current 1".
         damping: constant with the work of the curve in the tests [N s/m].
-        friction: sliding friction beside the curve [N].
+        friction: sliding friction in addition to the curve [N].
         bend_force: mean force of the curve beyond its last bend, extended to rest, of rebound and bump [N].
         slope: mean slope there [N s/m].
     """

@@ -50,7 +50,7 @@ def axle_loads(car: CarModel, template: TemplateCar) -> dict[str, float]:
 
 
 def balanced(table: dict[str, Any], template: TemplateCar, stated: StatedNumbers) -> tuple[dict[str, Any], Sources]:
-    """Return a vehicle table with the body of the stated masses in place of its own, and the sources of its numbers.
+    """Return a vehicle table with a body of the stated masses, and the sources of the numbers of this body.
 
     Raises:
         ConfigurationError: a car that cannot be: lighter than its parts, centre of gravity outside the wheelbase,

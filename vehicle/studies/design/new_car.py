@@ -236,7 +236,7 @@ FOLLOWS: dict[str, tuple[str, ...]] = {
 
 
 def _unusual_notes(car: Car, template: TemplateCar, stated: StatedNumbers) -> Iterator[str]:
-    """Yield a note for each figure outside its usual range, with its origin; the loads of the car are left out."""
+    """Yield a note with the origin of each figure outside the usual range; the loads of the car are left out."""
     kerb = new_car_of({key: value for key, value in car.vehicle.table.items() if key != "load"}, template)
     axle_words = {template.axle(word): word for word in AXLES}
     for figure in kerb.show().usual:

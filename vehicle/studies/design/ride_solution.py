@@ -229,7 +229,7 @@ class RideProblem:
             moved[column] += DIFFERENCE * factors[column]
             jacobian[:, column] = (deviation(moved) - residual) / (DIFFERENCE * factors[column])
         for _ in range(MOST_STEPS):
-            # A quantity grows with the parameter of its target; pitch, which does not, meets the limits of Iyy first.
+            # A quantity grows with the parameter of its target; only pitch falls, and Iyy limits it first.
             held = ((factors <= lower) & (residual > SOLVED)) | ((factors >= upper) & (residual < -SOLVED))
             free = ~held
             if not np.any(np.abs(residual[free]) >= SOLVED):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from collections.abc import Sequence
 from typing import Any
@@ -11,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from vehicle.digits import number, rounded
+from vehicle.signals.formats.text_format import table_text
 from vehicle.studies.mounts.measured_stiffness import MeasuredStiffness
 from vehicle.studies.mounts.mount_fit import MountFit
 
@@ -88,18 +87,15 @@ def fit_json(fits: Sequence[MountFit], caption: str) -> dict[str, Any]:
 
 def points_text(fit: MountFit, data: MeasuredStiffness) -> str:
     """Return the measured and fitted values of all points as CSV text."""
-    file = io.StringIO()
-    writer = csv.writer(file, lineterminator="\n")
     heads = ("frequency [Hz]", "amplitude [mm]", "stiffness [N/mm]", "loss_angle [deg]")
-    writer.writerow([*heads, "fitted_stiffness [N/mm]", "fitted_loss_angle [deg]"])
+    rows: list[Sequence[Any]] = [[*heads, "fitted_stiffness [N/mm]", "fitted_loss_angle [deg]"]]
     fitted = fit.stiffness(data.frequency, data.amplitude)
-    for _, level in data.levels():
-        for index in level:
-            values = [data.frequency[index], 1e3 * data.amplitude[index]]
-            for stiffness in (data.stiffness[index], fitted[index]):
-                values += [1e-3 * abs(stiffness), np.degrees(np.angle(stiffness))]
-            writer.writerow([f"{value:.6g}" for value in values])
-    return file.getvalue()
+    for index in np.concatenate([level for _, level in data.levels()]):
+        values = [data.frequency[index], 1e3 * data.amplitude[index]]
+        for stiffness in (data.stiffness[index], fitted[index]):
+            values += [1e-3 * abs(stiffness), np.degrees(np.angle(stiffness))]
+        rows.append(values)
+    return table_text(rows)
 
 
 def summary_lines(fits: Sequence[MountFit], caption: str) -> list[str]:

@@ -14,6 +14,7 @@ from vehicle.runs.output.own_files import parameters_text, write_own_files
 from vehicle.signals.excitation.signal_file import write_signal
 from vehicle.signals.formats.formats import write_record
 from vehicle.signals.formats.table import Record
+from vehicle.signals.formats.text_format import table_text
 from vehicle.studies.replication.drive_search import FoundDrive
 from vehicle.studies.replication.iteration import Replication
 
@@ -137,11 +138,7 @@ def write_drive(folder: Path, drive: FoundDrive, *, figures: bool = True) -> dic
 
 def _table(replication: Replication, channels: tuple[str, ...], description: str) -> str:
     """Return the table of the iterations as CSV."""
-    rows = [
-        f"{step.number},{step.gain:g},{int(step.kept)},{step.error:.9g},"
-        + ",".join(f"{value:.9g}" for value in step.errors)
-        for step in replication.steps
-    ]
-    heads = ",".join(["iteration", "gain", "kept", "error", *(f"error_{name}" for name in channels)])
+    heads = ["iteration", "gain", "kept", "error", *(f"error_{name}" for name in channels)]
+    rows = [(step.number, f"{step.gain:g}", int(step.kept), step.error, *step.errors) for step in replication.steps]
     error = "error: RMS of target minus response over RMS of target, in the band [-]"
-    return "\n".join([f"# {description}", f"# {error}", heads, *rows, ""])
+    return table_text([heads, *rows], [description, error], digits=9)

@@ -43,7 +43,7 @@ class Plant(ABC):
         """Return FRFs (k, p, m) at frequencies (m,) [Hz], linearised about the last run; before it about rest."""
 
     def possible(self, drive: Vector) -> tuple[Vector, str]:
-        """Return a feasible drive for a drive, and a message if there is none, else ""."""
+        """Return a feasible drive for a drive, and "", or a message if no drive is feasible."""
         return drive, ""
 
 

@@ -123,11 +123,11 @@ class Mixture:
         return new, self.log_density(points) - self.log_density(new)
 
 
-def fitted_mixture(points: Vector, seed: int = 1) -> Mixture:
-    """Return a mixture for points (n, p): a component for each cluster (k-means), found with a seed."""
+def fitted_mixture(points: Vector) -> Mixture:
+    """Return a mixture for points (n, p): a component for each cluster (k-means)."""
     size = points.shape[1]
     scale = np.std(points, axis=0) + 1e-9
-    _, label = scipy.cluster.vq.kmeans2(points / scale, CLUSTERS, minit="++", rng=np.random.default_rng(seed))
+    _, label = scipy.cluster.vq.kmeans2(points / scale, CLUSTERS, minit="++", rng=np.random.default_rng(1))
     groups = [points[label == number] for number in range(CLUSTERS) if np.count_nonzero(label == number) > size]
     groups = groups or [points]
     counts = np.array([len(group) for group in groups])

@@ -22,7 +22,7 @@ Unknown = Range | DelayRange
 
 
 def known(value: float | None) -> float | None:
-    """Return a number; None for one that is missing or not finite."""
+    """Return a number; None for a missing or infinite number and for NaN."""
     return value if value is not None and np.isfinite(value) else None
 
 

@@ -23,6 +23,12 @@ SPACING = 0.3
 """Default distance of the fitted frequencies [Hz]: a record of 60 s has 17 lines of 1/60 Hz in this distance, from
 which the FRF is estimated."""
 
+CARS = 256
+"""Default number of cars of the emulator: a cubic of six parameters has 84 terms."""
+
+DISCREPANCY = 0.1
+"""Default standard deviation of ln|H| between model and car [-]: 10 %."""
+
 
 @dataclass(frozen=True)
 class ReadingSettings(Settings):
@@ -127,10 +133,10 @@ class LevelSettings(HistorySettings, BandSettings):
 class PosteriorSettings(Settings):
     """Settings of a posterior distribution."""
 
-    samples: int = setting("cars of the emulator; %(default)s by default", 256, type=int, metavar="K")
+    samples: int = setting("cars of the emulator; %(default)s by default", CARS, type=int, metavar="K")
     discrepancy: float = setting(
         "standard deviation of the error of the model in each third octave [-]; %(default)g by default",
-        0.1,
+        DISCREPANCY,
         factor=0.01,
         type=float,
         metavar="PERCENT",

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.runs.car import Car, Run
+from vehicle.runs.car import FRF_BAND, Car, Run
 from vehicle.signals.analysis.dependence import common_motions
 from vehicle.signals.analysis.frf_agreement import log_ratio
 from vehicle.signals.analysis.motion_response import motion_responses
@@ -25,9 +25,6 @@ from vehicle.studies.tuning.response_delays import ResponseDelays
 Vector = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
 
-
-FRF_BAND = (1.0, 50.0)
-"""Band in which the motions of plates are compared [Hz], as for the FRFs of a run."""
 
 LEAST_COHERENCE = 0.1
 """Minimum coherence of an included point: at lower coherence the logarithm is biased, and the weight would be small."""

@@ -18,6 +18,9 @@ Vector = npt.NDArray[np.float64]
 SMALL = 0.3
 """Maximum step in standard errors that is left out: it would not change any conclusion about the values."""
 
+MOST_ROUNDS = 4
+"""Maximum number of full simulations."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class FullSteps:
@@ -44,8 +47,6 @@ def full_steps(
     result: TuningResult,
     targets: Sequence[Target],
     simulate: Callable[[Mapping[str, float]], Sequence[Car | Run]],
-    *,
-    most_rounds: int = 4,
 ) -> FullSteps:
     """Continue a fit with the full simulation by Gauss-Newton steps with the Jacobian of the fast models.
 
@@ -79,7 +80,7 @@ def full_steps(
         shift = result.shift(joined)
         steps.append(max((abs(shift[path] / relative[path]) for path in result.free), default=0.0))
         settled = steps[-1] <= SMALL
-        if settled or len(steps) == most_rounds:
+        if settled or len(steps) == MOST_ROUNDS:
             break
         for unknown in result.unknowns:
             if unknown.path in shift:

@@ -45,8 +45,8 @@ error, for the thousands of values of a measurement."""
 STEADY = 1.3
 """Maximum factor by which the scales of the rows may change in the last iteration."""
 
-MOST_ROUNDS = 8
-"""Maximum number of iterations with new scales."""
+MOST_ROUNDS, MOST_ITERATIONS = 8, 40
+"""Maximum number of solutions with new scales, and of iterations of each solution."""
 
 REGULARISATION = 1e-3
 """Weight of |u| in half widths of the bounds during the iterations. It moves an identifiable value by a millionth of
@@ -63,7 +63,6 @@ def fit(
     build: Callable[[Mapping[str, float]], Any],
     *,
     delays: Sequence[DelayRange] = (),
-    most_iterations: int = 40,
     progress: Callable[[int, float], None] | None = None,
 ) -> TuningResult:
     """Fit parameters to measurements by weighted least squares.
@@ -73,8 +72,6 @@ def fit(
         targets: measurements; the weights are estimated from the residuals of each row.
         build: function of {path: value} that returns the model for `Target.response`.
         delays: delays of groups of channels of a `Target`, further unknowns.
-        most_iterations: maximum number of iterations of each solution. There are at least two solutions: one to
-            estimate the sizes of the residuals, one with these sizes; and one more each time parameters are held.
         progress: called with the number of evaluations and the root of the mean square of the weighted residuals.
 
     Returns:
@@ -87,7 +84,7 @@ def fit(
     problem = _Problem((*checked_ranges(parameters), *delays), targets, build, progress)
     start = problem.residuals(np.zeros(len(problem.unknowns)))
     problem.weights = np.ones(start.size)
-    point, answer = problem.solve(np.zeros(len(problem.unknowns)), COARSE, most_iterations)
+    point, answer = problem.solve(np.zeros(len(problem.unknowns)), COARSE)
     held: list[Unidentified] = []
     problem.step = STEP
     rounds = 0
@@ -107,7 +104,7 @@ def fit(
             raise ConfigurationError(
                 "the data identify no parameter: " + "; ".join(parameter.message() for parameter in held)
             )
-        point, answer = problem.solve(point, FINE, most_iterations)
+        point, answer = problem.solve(point, FINE)
         rounds += 1
     return problem.result(point, start, raw, inner, jacobian, tuple(held), answer)
 
@@ -261,7 +258,7 @@ class _Problem:
                 self.free.remove(index)
                 point[index] = 0.0
 
-    def solve(self, start: Vector, tolerance: float, most_iterations: int) -> tuple[Vector, tuple[bool, str]]:
+    def solve(self, start: Vector, tolerance: float) -> tuple[Vector, tuple[bool, str]]:
         """Minimise from a point with the present scales; return the final point, (converged, message)."""
 
         def whole(free: Vector) -> Vector:
@@ -288,7 +285,7 @@ class _Problem:
             ftol=tolerance,
             xtol=tolerance,
             gtol=None,
-            max_nfev=most_iterations,
+            max_nfev=MOST_ITERATIONS,
         )
         return whole(answer.x), (answer.status > 0, str(answer.message))
 

@@ -86,7 +86,7 @@ class LevelTarget:
 
     @property
     def road(self) -> RoadCar | None:
-        """Car on the road of the record; None for a signal of a rig."""
+        """Car on the road of the record; None on a rig."""
         return self.histories.road
 
     @property

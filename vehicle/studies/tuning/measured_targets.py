@@ -245,7 +245,7 @@ def _driven_input(
 
 
 def _beside_run(target: RecordTarget, car: Car, held: Record, times: Vector) -> list[Counterpart]:
-    """Return a record beside a run of the car, which shows errors of its clock, signs and units."""
+    """Compare a record with a run of the car, which shows errors of the clock, of signs and of units."""
     run = target.run(car)
     parts = counterparts(held, Record(time=run.time, channels=run.recording.channels, units=run.recording.units), times)
     # A known delay of a sensor is no error of the clock.

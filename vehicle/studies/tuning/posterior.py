@@ -28,17 +28,16 @@ from vehicle.runs.car import Car
 from vehicle.studies.tuning.annealing import annealed, bounded, fitted_mixture
 from vehicle.studies.tuning.convergence import effective_samples, r_hat
 from vehicle.studies.tuning.emulator import Emulator, fitted_emulator
+from vehicle.studies.tuning.fit_settings import CARS, DISCREPANCY
 from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.response_cells import ResponseCells, evaluated_cars, response_cells, signals_of
 from vehicle.threads import one_blas_thread
 
 Vector = npt.NDArray[np.float64]
 
-CARS = 256
-"""Default number of cars of the emulator: a cubic of six parameters has 84 terms."""
-
-DISCREPANCY = 0.1
-"""Default standard deviation of ln|H| between model and car [-]: 10 %."""
+TAIL = 50.0 * (1.0 - 0.9)
+ENDS = (TAIL, 50.0, 100.0 - TAIL)
+"""Percentiles at the lower end, the median and the upper end of an interval of 90 %."""
 
 WALKERS = 40
 """Number of walkers of the ensemble; more than twice any usual number of parameters."""
@@ -107,19 +106,17 @@ class Posterior:
         """Return the samples in the units of the parameters, (samples, parameters)."""
         return values_at(self.car.parameters, self.chains.reshape(-1, self.chains.shape[2]))
 
-    def interval(self, probability: float = 0.9) -> Vector:
+    def interval(self) -> Vector:
         """Return lower end, median and upper end of the central intervals, (3, parameters)."""
-        tail = 50.0 * (1.0 - probability)
-        return np.asarray(np.percentile(self.values(), [tail, 50.0, 100.0 - tail], axis=0))
+        return np.asarray(np.percentile(self.values(), ENDS, axis=0))
 
-    def comfort(self, probability: float = 0.9, seed: int = 1) -> Vector:
+    def comfort(self) -> Vector:
         """Return lower end, median and upper end of the comfort on each signal [m/s2], (3, signals)."""
         if self.car.comfort is None:
             return np.zeros((3, 0))
         predictions = self.car.comfort(self.chains.reshape(-1, self.chains.shape[2]))
-        errors = np.random.default_rng(seed).standard_normal(predictions.shape) * self.car.comfort.left_out
-        tail = 50.0 * (1.0 - probability)
-        return np.asarray(np.exp(np.percentile(predictions + errors, [tail, 50.0, 100.0 - tail], axis=0)))
+        errors = np.random.default_rng(1).standard_normal(predictions.shape) * self.car.comfort.left_out
+        return np.asarray(np.exp(np.percentile(predictions + errors, ENDS, axis=0)))
 
 
 def require_posterior(targets: Sequence[FrfTarget]) -> None:
@@ -146,7 +143,6 @@ def emulated_car(
     targets: Sequence[FrfTarget],
     *,
     cars: int = CARS,
-    seed: int = 1,
     progress: Callable[[float], None] | None = None,
 ) -> EmulatedCar:
     """Fit an emulator to cars at Sobol points between the bounds.
@@ -157,7 +153,7 @@ def emulated_car(
     """
     checked = checked_ranges(parameters)
     cells = response_cells(targets)
-    sequence = scipy.stats.qmc.Sobol(len(checked), seed=seed)
+    sequence = scipy.stats.qmc.Sobol(len(checked), seed=1)
     points = 2.0 * sequence.random_base2(max(cars - 1, 1).bit_length())[:cars] - 1.0
     paths = [parameter.path for parameter in checked]
     done = progress or (lambda fraction: None)

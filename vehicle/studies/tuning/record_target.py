@@ -63,7 +63,7 @@ class RecordTarget:
         window: begin and end of the included part [s].
         lowpass: -6 dB frequency of a Butterworth low-pass of order 4, forwards and backwards [Hz]; two samples are kept
             for each period, so that the noise of neighbouring samples stays nearly independent.
-        road: car on the road of the record; None for a signal of a rig.
+        road: car on the road of the record; None on a rig.
         delays: delays of the channels against the signal: the run is compared at the earlier time t - d, so that the
             noise of the measurement is not differentiated.
         sample: sampling interval of the measurement [s]; that of the record by default.

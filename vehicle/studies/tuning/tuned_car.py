@@ -91,6 +91,7 @@ class TunedCar:
             (f"{channel} in {each.target.name}", error)
             for each, (_, after) in zip(self.measurements, self._errors, strict=True)
             for channel, error in zip(_labels(each.target), after[:, -1].tolist(), strict=True)
+            if np.isfinite(error)
         ]
         return refusal(self.result, names)
 
@@ -104,7 +105,7 @@ class TunedCar:
 
     @cached_property
     def agreement(self) -> tuple[Agreement, ...]:
-        """Errors of all channels with the models of the fit: matrices of the stuck car, or the reduced engine."""
+        """Errors of all compared channels with the models of the fit: matrices of a stuck car, or reduced engine."""
         rows: list[Agreement] = []
         for measurement, errors in zip(self.measurements, self._errors, strict=True):
             target = measurement.target
@@ -117,6 +118,8 @@ class TunedCar:
             for row, (name, label) in enumerate(zip(names, _labels(target), strict=True)):
                 for column, (measure, unit) in enumerate(measures):
                     before, after = (float(table[row, column]) for table in errors)
+                    if not np.isfinite(before):  # all points of the channel are excluded
+                        continue
                     rows.append(
                         Agreement(
                             measurement=target.name,
@@ -243,12 +246,17 @@ def _model_errors(target: FrfTarget | LevelTarget | RecordTarget, car: Car) -> V
 
     Returns:
         Time histories: RMS of the error over that of the measurement [%], (channels, 1). FRFs: RMS over frequency of
-        the magnitude [dB], of the phase [deg], and of |H - Hm| over that of |Hm| [%], (channels, 3).
+        the magnitude [dB], of the phase [deg], and of |H - Hm| over that of |Hm| [%], (channels, 3); NaN for a channel
+        without an included point.
     """
     if isinstance(target, RecordTarget):
         return np.asarray(100.0 * np.sqrt(np.mean(target.residuals(car) ** 2, axis=1))[:, None])
-    used, measured, model = np.isfinite(target.deviation), target.data.response, target.model_response(car)
+    rows = np.isfinite(target.deviation).any(axis=1)
+    tables = np.isfinite(target.deviation), target.data.response, target.model_response(car)
+    used, measured, model = (table[rows] for table in tables)
     logarithm = np.where(used, log_ratio(measured, model), np.nan)
     size, angle = (np.sqrt(np.nanmean(part**2, axis=1)) for part in (logarithm.real, logarithm.imag))
     missed, whole = (np.nansum(np.where(used, np.abs(part) ** 2, 0.0), axis=1) for part in (model - measured, measured))
-    return np.stack([20.0 / np.log(10.0) * size, np.degrees(angle), 100.0 * np.sqrt(missed / whole)], axis=1)
+    errors = np.full((rows.size, 3), np.nan)
+    errors[rows] = np.stack([20.0 / np.log(10.0) * size, np.degrees(angle), 100.0 * np.sqrt(missed / whole)], axis=1)
+    return errors
