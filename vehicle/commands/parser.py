@@ -142,8 +142,8 @@ class Parser(argparse.ArgumentParser):
 
     def _plain(self, message: str) -> str:
         """Return a message of argparse in words of the user: option, value, what it must be."""
-        if found := re.fullmatch(r"argument (--[\w-]+)(?:/\S+)?: (.*)", message, re.DOTALL):
-            option, text = found.groups()
+        if matched := re.fullmatch(r"argument (--[\w-]+)(?:/\S+)?: (.*)", message, re.DOTALL):
+            option, text = matched.groups()
             if wrong := re.fullmatch(r"invalid (float|int) value: (.*)", text, re.DOTALL):
                 return f"{option} {wrong[2]}: must be a {'whole ' if wrong[1] == 'int' else ''}number without a unit"
             if wrong := re.fullmatch(r"invalid choice: (.*) \(choose from (.*)\)", text, re.DOTALL):

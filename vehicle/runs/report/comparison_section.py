@@ -21,23 +21,29 @@ from vehicle.runs.report.svg_figure import drawing
 
 fill = templates(__file__)
 
+MANY = 6
+"""Number of runs above which a run is a row of the tables, and pictures of single runs are few."""
+
 SIZE = (PAGE_WIDTH, 5.6)
 """Width and height of the figure of FRFs [inch]."""
 
 
 def numbers_beside(runs: Sequence[FinishedRun]) -> Markup:
-    """Return tables of inputs, key figures and parameters of several runs, and their notices."""
-    figures = [key_figures(run) for run in runs]
-    heads = ["", "unit", runs[0].name]
-    for run in runs[1:]:
-        heads += [run.name, "change"]
-    rows = []
-    for name, unit in dict.fromkeys(key for table_of_run in figures for key in table_of_run):
-        values = [table_of_run.get((name, unit)) for table_of_run in figures]
-        cells = [number(values[0])]
-        for value in values[1:]:
-            cells += [number(value), difference(values[0], value, unit)]
-        rows.append((name, unit, *cells))
+    """Return tables of inputs, key figures and parameters of several runs, and their notices.
+
+    Above `MANY` runs a run is a row, without the change of each figure.
+    """
+    names = [run.name for run in runs]
+    figures = _figures_of_many(runs) if len(runs) > MANY else _figures_beside(runs)
+    changed = changed_parameters([run.car.vehicle for run in runs])
+    if len(runs) > MANY:
+        columns = [f"{path} [{unit}]" for path, unit, _ in changed]
+        parameters = (
+            ["run", *columns],
+            [(name, *(values[k] for *_, values in changed)) for k, name in enumerate(names)],
+        )
+    else:
+        parameters = (["parameter", "unit", *names], [(path, unit, *values) for path, unit, values in changed])
     inputs = [
         (
             run.name,
@@ -51,14 +57,46 @@ def numbers_beside(runs: Sequence[FinishedRun]) -> Markup:
     ]
     return fill(
         "comparison",
-        names=[run.name for run in runs],
+        first=names[0],
+        many=len(runs) > MANY,
         inputs=inputs,
-        heads=heads,
-        rows=rows,
-        changed=[(path, unit, *values) for path, unit, values in changed_parameters([run.car.vehicle for run in runs])],
+        figures=figures,
+        count=len(changed),
+        parameters=parameters,
         other_signals=len({run.summary["input"]["sha256"] or run.signal.source for run in runs}) > 1,
         noted=_notices(runs),
     )
+
+
+Table = tuple[list[str], list[tuple[str, ...]]]
+"""Heads and rows of a table."""
+
+
+def _figures_beside(runs: Sequence[FinishedRun]) -> Table:
+    """Return the key figures of runs: a row for each, with its change against the first run."""
+    figures = [key_figures(run) for run in runs]
+    heads = ["", "unit", runs[0].name]
+    for run in runs[1:]:
+        heads += [run.name, "change"]
+    rows = []
+    for name, unit in dict.fromkeys(key for table_of_run in figures for key in table_of_run):
+        values = [table_of_run.get((name, unit)) for table_of_run in figures]
+        cells = [number(values[0])]
+        for value in values[1:]:
+            cells += [number(value), difference(values[0], value, unit)]
+        rows.append((name, unit, *cells))
+    return heads, rows
+
+
+def _figures_of_many(runs: Sequence[FinishedRun]) -> Table:
+    """Return the key figures of runs: a row for each run."""
+    figures = [key_figures(run) for run in runs]
+    keys = list(dict.fromkeys(key for table_of_run in figures for key in table_of_run))
+    heads = ["run", *(f"{name} [{unit}]" if unit else name for name, unit in keys)]
+    return heads, [
+        (run.name, *(number(table_of_run.get(key)) for key in keys))
+        for run, table_of_run in zip(runs, figures, strict=True)
+    ]
 
 
 def _notices(runs: Sequence[FinishedRun]) -> list[str]:

@@ -26,14 +26,12 @@ def modes_of(run: FinishedRun) -> Modes:
 
 
 def car_modes_of(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> list[dict[str, object]]:
-    """Return the modes of each car; equal cars appear once."""
+    """Return the modes of each car; cars with equal modes appear once."""
     sets: list[dict[str, object]] = []
-    seen: list[tuple[FinishedRun, dict[str, object]]] = []
     for run, car_modes in zip(runs, modes, strict=True):
-        same = next((entry for other, entry in seen if other.car.vehicle == run.car.vehicle), None)
+        entry = mode_set(run.name, run.wheel, car_wireframe(run.car.model), car_modes)
+        same = next((other for other in sets if {**other, "name": ""} == {**entry, "name": ""}), None)
         if same is None:
-            entry = mode_set(run.name, run.wheel, car_wireframe(run.car.model), car_modes)
-            seen.append((run, entry))
             sets.append(entry)
         else:
             same["name"] = f"{same['name']}, {run.name}"

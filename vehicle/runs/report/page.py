@@ -20,7 +20,7 @@ from vehicle.runs.report.answer import answer, comfort_bands, explained
 from vehicle.runs.report.base_run import base_run
 from vehicle.runs.report.car_section import car_section
 from vehicle.runs.report.comfort_section import comfort
-from vehicle.runs.report.comparison_section import curves_over_each_other, numbers_beside
+from vehicle.runs.report.comparison_section import MANY, curves_over_each_other, numbers_beside
 from vehicle.runs.report.film_section import film, film_part
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import templates
@@ -92,7 +92,8 @@ def report_page(
     names = f"{' and '.join(others) if len(others) < 4 else f'{len(others)} runs'} against {first}" if others else first
     captions = "; ".join(dict.fromkeys(run.caption for run in runs))
     head = head_line(author, project)
-    data = as_json(car_modes_of(runs, modes))
+    shown = _drawn(runs)
+    data = as_json(car_modes_of([runs[k] for k in shown], [modes[k] for k in shown]))
     page = document(f"Car on the shaker: {names}", (captions, head), parts, modes=data, trial=tried)
     done(1.0)
     return page
@@ -148,30 +149,48 @@ def _of_one(run: FinishedRun, modes: Modes, trial_part: Markup) -> list[Part]:
     return [(title, anchor, content) for title, anchor, content in parts if content is not None]
 
 
+def _drawn(runs: Sequence[FinishedRun]) -> list[int]:
+    """Return the indices of runs with pictures of their own: all; above `MANY` the first, the calmest, the loudest."""
+    totals = [
+        value["iso2631"]["vector_sum"]["weighted_rms"] for run in runs for value in list(run.comfort.values())[:1]
+    ]
+    if len(runs) <= MANY:
+        return list(range(len(runs)))
+    ends = (totals.index(min(totals)), totals.index(max(totals))) if len(totals) == len(runs) else (1, len(runs) - 1)
+    return sorted({0, *ends})
+
+
 def _of_several(
     runs: Sequence[FinishedRun], modes: Sequence[Modes], done: Callable[[float], None], pair: Path | None
 ) -> list[Part]:
     """Return the sections of a comparison; what belongs to a single run is folded under its name."""
+    shown = _drawn(runs)
+    of_shown = [runs[k] for k in shown]
+    few = fill("few_of_many", count=len(runs)) if len(shown) < len(runs) else Markup()
+    # Runs on several inputs are compared on each of them.
+    told = shown if len({run.caption for run in runs}) == 1 else range(len(runs))
     parts = [
-        ("Result", "result", answer(runs, modes) + explained()),
+        ("Result", "result", few + answer([runs[k] for k in told], [modes[k] for k in told]) + explained()),
         *([("Film", "film", film_part(pair))] if pair is not None else []),
         ("Comparison of the runs", "comparison", numbers_beside(runs)),
-        ("Frequency responses and spectra", "responses", curves_over_each_other(runs)),
-        ("Time histories", "time", Markup().join(sections.time_figure(run, runs) for run in runs)),
+        ("Frequency responses and spectra", "responses", curves_over_each_other(of_shown)),
+        ("Time histories", "time", Markup().join(sections.time_figure(run, runs) for run in of_shown)),
         (f"The car of {runs[0].name}", "car", car_section(runs[0].car)),
-        ("Modes", "modes", moving_modes(runs, modes)),
+        ("Modes", "modes", moving_modes(of_shown, [modes[k] for k in shown])),
     ]
     details = []
     for index, (run, car_modes) in enumerate(zip(runs, modes, strict=True)):
         # A car is shown once.
-        new = all(run.car.vehicle != other.car.vehicle for other in runs[:index])
+        drawn = index in shown
+        new = drawn and all(run.car.vehicle != runs[k].car.vehicle for k in shown if k < index)
         of_run = (
-            ("Film", film(run, 1.0 / len(runs))),
+            ("Pictures", None if drawn else fill("own_report", run=run.place)),
+            ("Film", film(run, 1.0 / len(runs)) if drawn else None),
             ("Findings", sections.tiles(run) + sections.what_was_found(run, car_modes)),
             ("Notices", sections.notices(run)),
             ("Car, signal, engine", sections.what_was_run(run)),
             ("The car", car_section(run.car) if new and index else None),
-            ("Frequency responses", responses(run, car_modes) if run.responses else None),
+            ("Frequency responses", responses(run, car_modes) if run.responses and drawn else None),
             ("Dampers", sections.dampers(run)),
             ("Comfort", comfort(run)),
             ("Measured", measured(run)),

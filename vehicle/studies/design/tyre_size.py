@@ -36,10 +36,10 @@ def unloaded_radius(size: str) -> float:
     Source: UN Regulation No. 30 (ISO 4000-1), 6.1.2.1: outer diameter D = d + 2 H.
     """
     form = "write width/height R rim, as 205/55R16: 205 mm wide, 55 % of it high, rim of 16 inch"
-    found = SIZE.fullmatch(size.strip())
-    if found is None:
+    matched = SIZE.fullmatch(size.strip())
+    if matched is None:
         raise ConfigurationError(f"--tyre-size {size!r}: not the size of a radial tyre; {form}")
-    numbers = dict(zip(RANGES, map(int, found.groups()), strict=True))
+    numbers = dict(zip(RANGES, map(int, matched.groups()), strict=True))
     for name, (low, high, unit) in RANGES.items():
         if not low <= numbers[name] <= high:
             raise ConfigurationError(
