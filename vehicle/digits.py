@@ -16,3 +16,15 @@ def number(value: float | None, digits: int = 3) -> str:
         digits: significant digits; 100 with one is "100", not "1e+02".
     """
     return "–" if value is None else f"{rounded(value, digits):.10g}"
+
+
+def duration(seconds: float) -> str:
+    """Return a computing time for people: in s below 2 min, in min below 2 h, else in h.
+
+    Args:
+        seconds: the time [s].
+    """
+    for size, unit in ((7200.0, "h"), (120.0, "min")):
+        if seconds >= size:
+            return f"{number(seconds / (0.5 * size), 2)} {unit}"
+    return f"{seconds:.0f} s"

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from vehicle.runs.car import Car
-from vehicle.signals.analysis.ride_comfort import WAVE_NAMES
+from vehicle.signals.analysis.ride_comfort import UNWEIGHTED, WEIGHTED, wave_names
 from vehicle.studies.sweeps.case_result import Block, Result, row_text
 from vehicle.studies.sweeps.measure import ComfortMeasure
 from vehicle.studies.sweeps.plan import plan_sweep
@@ -46,7 +46,7 @@ class Instant(Executor):
 
     def __init__(self) -> None:
         self.seconds = 0.0
-        names = [*ComfortMeasure().units, *WAVE_NAMES]
+        names = [*ComfortMeasure().units, *wave_names(UNWEIGHTED), *wave_names(WEIGHTED)]
         values = np.random.default_rng(1).random(len(names)).tolist()
         self.result = Result(values=dict(zip(names, values, strict=True)), engine="reduced", seconds=TASK_S)
         self.row = b""

@@ -13,7 +13,7 @@ from vehicle.runs.car import Car
 from vehicle.runs.output.saved_run import save_run
 from vehicle.runs.report.comfort_section import comfort as report_section
 from vehicle.runs.report.finished_run import read_run
-from vehicle.signals.analysis.ride_comfort import ERROR, comfort_columns, comfort_units
+from vehicle.signals.analysis.ride_comfort import comfort_columns, comfort_units
 from vehicle.studies.optimisation.ride import QUANTITIES, ride_measure
 from vehicle.studies.sweeps.measure import ComfortMeasure
 from vehicle.studies.sweeps.plan import plan_sweep
@@ -49,7 +49,7 @@ def swept(car, source, engine):
     assert isinstance(plan.measure, ComfortMeasure)
     from vehicle.studies.sweeps.case_evaluation import evaluate
 
-    names = tuple(name for name in comfort_units(seated=car.vehicle.seated) if name != ERROR)
+    names = tuple(name for name in comfort_units(seated=car.vehicle.seated) if not name.endswith("_error"))
     ride = ride_measure(car.vehicle, names, plan.skip)
     assert ride.timestep == plan.measure.timestep
     results = [evaluate(plan.cases[:1], measure)[0] for measure in (plan.measure, ride)]

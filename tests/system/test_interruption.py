@@ -40,18 +40,20 @@ def test_the_time_left_is_that_of_the_work_that_goes_on(monkeypatch, capsys):
     line = ProgressLine("work")
     for fraction in (0.01, 0.11, 0.21):
         line(fraction)
-    assert capsys.readouterr().err.splitlines() == ["work: 1 %", "work: 11 %, 276 s left", "work: 21 %, 245 s left"]
+    assert capsys.readouterr().err.splitlines() == ["work: 1 %", "work: 11 %, 4.6 min left", "work: 21 %, 4.1 min left"]
 
 
 def test_the_line_of_many_runs_counts_them(monkeypatch, capsys):
-    clock = iter([0.0, 31.0, 62.0])
+    """The first finished run tells how long all of them take, without waiting for the next line."""
+    clock = iter([0.0, 0.0, 14.0, 20.0, 45.0, 1400.0])
     monkeypatch.setattr("time.monotonic", lambda: next(clock))
     line = ProgressLine("sweep", runs=400)
-    for done in (7, 14):
+    for done in (0, 1, 2, 3, 100):
         line(done / 400)
     assert capsys.readouterr().err.splitlines() == [
-        "sweep: 2 %, 7 of 400 runs",
-        "sweep: 4 %, 14 of 400 runs, 1709 s left",
+        "sweep: 0 %, 1 of 400 runs, 93 min left",
+        "sweep: 1 %, 3 of 400 runs, 99 min left",
+        "sweep: 25 %, 100 of 400 runs, 70 min left",
     ]
 
 

@@ -21,6 +21,7 @@ from types import FrameType
 from typing import Any
 
 from vehicle.commands.parser import Parser
+from vehicle.digits import duration
 from vehicle.errors import ConfigurationError, OutputError, VehicleError
 from vehicle.threads import prefer_one_thread
 
@@ -243,13 +244,15 @@ class ProgressLine:
             self.end = now + (now - begun) * (1.0 - fraction) / (fraction - done)
         self.fraction = fraction
         due = now - self.last >= (MOVING_EVERY if self.moving else LINE_EVERY) or (self.moving and fraction >= 1.0)
+        # The first estimate of many runs comes at once: it tells whether to wait.
+        due = due or (bool(self.runs) and self.last == self.started and self.end - now > LINE_EVERY)
         if not (self.enabled and due) or self._ended.is_set():
             return
         self.last = now
         if self.moving:
             self._draw(now)
         else:
-            left = "" if math.isnan(self.end) else f", {self.end - now:.0f} s left"
+            left = "" if math.isnan(self.end) else f", {duration(self.end - now)} left"
             counted = f", {self._counted()}" if self.runs else ""
             sys.stderr.write(f"{self.what.strip()}: {100 * fraction:.0f} %{counted}{left}\n")
             sys.stderr.flush()
@@ -273,7 +276,7 @@ class ProgressLine:
         bar = "#" * round(30 * self.fraction)
         newline = "\n" if self.fraction >= 1.0 else ""
         elapsed = f"after {now - self.started:.0f} s"
-        remark = elapsed if math.isnan(self.end) else f"{max(self.end - now, 0.0):.0f} s left"
+        remark = elapsed if math.isnan(self.end) else f"{duration(max(self.end - now, 0.0))} left"
         counted = f"  {self._counted()}" if self.runs else ""
         sys.stderr.write(f"\r{self.what} [{bar:<30}] {100 * self.fraction:3.0f} %{counted}  {remark:>12} {newline}")
         sys.stderr.flush()

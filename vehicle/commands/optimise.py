@@ -116,7 +116,8 @@ def _meet_targets(options: argparse.Namespace) -> None:
     from vehicle.runs.output.folder import study_folder, write_json, write_text
     from vehicle.runs.output.own_files import parameters_text, write_own_files
     from vehicle.runs.targets.verdict import read_targets
-    from vehicle.studies.optimisation.target_search import meet_targets
+    from vehicle.signals.excitation.road_drive import USUAL_DURATION
+    from vehicle.studies.optimisation.target_search import meet_targets, outlook
 
     for name in ("minimise", "maximise", "limits", "tolerances", "check", "beside", "resume"):
         if getattr(options, name):
@@ -127,6 +128,9 @@ def _meet_targets(options: argparse.Namespace) -> None:
     car, figures = Car.load(options.vehicle, options.overrides), read_targets(options.targets)
     costs = dict(_cost(text) for text in options.cost)
     output = study_folder_of(options, options.output, rows=())
+    if not options.quiet:
+        length = USUAL_DURATION if options.duration is None else options.duration
+        print(f"note        {outlook(len(options.vary), figures, length)}", flush=True)
     with study_folder(output, force=options.force, resume=False, rows=()) as folder:
         result = meet_targets(
             car,

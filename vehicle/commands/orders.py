@@ -6,7 +6,9 @@ import argparse
 import json
 import math
 import shlex
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.command_line import parse_and_run
 from vehicle.commands.destination import output_folder_of
@@ -44,7 +46,10 @@ def parser() -> Parser:
         "--orders", default="1,2", metavar="N,...", help="orders of the angle, as 2,4; %(default)s by default"
     )
     parser.add_argument(
-        "--channel", default="seat rail z", metavar="WORDS", help="acceleration channel; %(default)s by default"
+        "--channel",
+        action="append",
+        metavar="WORDS",
+        help="acceleration channels, as seat rail z,roof left rear x; may be repeated. By default seat rail z",
     )
     parser.add_argument(
         "--angle", metavar="NAME", help="crank, or a wheel, as wheel_fr; that of the first force by default"
@@ -77,15 +82,16 @@ def job(options: argparse.Namespace) -> None:
         raise ConfigurationError("--rpm and --speed: vary one of them; with --rpm give one --speed, as --speed 80")
     orders = _orders(options.orders)
     from vehicle.runs.car import Car
-    from vehicle.runs.car.order_points import order_points
+    from vehicle.runs.car.order_points import order_points_at
     from vehicle.runs.report.order_page import HEADS, order_points_sentences, order_rows
 
     folder = None if options.output is None else output_folder_of(options, options.output)
     driving = [f"driving.speed={speeds[0] / 3.6!r}"] if rpm and speeds else []
     car = Car.load(options.vehicle, [*options.overrides, *driving])
-    results = order_points(
+    words = ",".join(options.channel or ["seat rail z"]).split(",")
+    channels = order_points_at(
         car,
-        options.channel,
+        words,
         rpm=rpm,
         speed=() if rpm else speeds,
         orders=orders,
@@ -94,19 +100,32 @@ def job(options: argparse.Namespace) -> None:
         duration=options.duration,
         engine=options.engine,
     )
-    caption = f"{len(results.points)} runs of {options.duration:g} s, road {options.road}, engine {options.engine}"
+    caption = f"{len(channels[0].points)} runs of {options.duration:g} s, road {options.road}, engine {options.engine}"
     if folder is not None:
-        _write(options, results, car.vehicle.name, caption)
+        _write(options, channels, car.vehicle.name, caption)
     if options.json:
-        print(json.dumps({"channel": results.channel, "angle": results.angle, "unit": results.unit,
-                          "rows": results.rows()}, indent=2, allow_nan=False))  # fmt: skip
+        data = [_data(results) for results in channels]
+        # Keys of the first channel as without the others.
+        print(json.dumps(data[0] | ({"channels": data} if len(data) > 1 else {}), indent=2, allow_nan=False))
         return
-    rows = order_rows(results)
-    widths = [max(len(cell) for cell in column) for column in zip(HEADS, *rows, strict=True)]
-    print(f"{car.vehicle.name}, {results.channel}, {caption}; amplitudes")
-    for row in (HEADS, *rows):
-        print("  ".join(f"{cell:>{width}}" for cell, width in zip(row, widths, strict=True)))
-    print("\n".join(order_points_sentences(results)))
+    for results in channels:
+        rows = order_rows(results)
+        widths = [max(len(cell) for cell in column) for column in zip(HEADS, *rows, strict=True)]
+        print(f"{car.vehicle.name}, {results.channel}, {caption}; amplitudes")
+        for row in (HEADS, *rows):
+            print("  ".join(f"{cell:>{width}}" for cell, width in zip(row, widths, strict=True)))
+        print("\n".join(order_points_sentences(results)))
+
+
+def _data(results: OrderPoints) -> dict[str, Any]:
+    """Return the results of a channel for JSON."""
+    parts = [
+        [{"frequency_hz": part.frequency, "name": part.name, "share": part.share} for part in each]
+        for each in results.parts
+    ]
+    modes = dict(zip(map("{:g}".format, results.orders.tolist()), parts, strict=True))
+    return {"channel": results.channel, "angle": results.angle, "unit": results.unit, "rows": results.rows(),
+            "parts": modes}  # fmt: skip
 
 
 def points_of(option: str, text: str | None) -> list[float]:
@@ -157,18 +176,23 @@ def _orders(text: str) -> list[float]:
     return orders
 
 
-def _write(options: argparse.Namespace, results: OrderPoints, name: str, caption: str) -> None:
+def _write(options: argparse.Namespace, channels: Sequence[OrderPoints], name: str, caption: str) -> None:
     from vehicle.runs.output.folder import output_folder, write_text, write_whole
     from vehicle.runs.report.order_page import draw_cuts, draw_map, order_page
     from vehicle.signals.formats.text_format import write_table
 
-    heads, columns = results.columns()
     command = shlex.join(["python", "-m", "vehicle", "orders", *options.words])
     with output_folder(options.output, force=options.force) as folder:
-        comments = [f"{name}: {results.channel} at orders of {results.angle}; {caption}"]
-        write_whole(folder / "orders.csv", lambda file: write_table(file, heads, columns, comments))
-        if len(results.points) > 1:
-            write_whole(folder / "orders.png", lambda file: draw_cuts(file, results, name, caption))
-            write_whole(folder / "campbell.png", lambda file: draw_map(file, results, name, caption))
-            page = order_page(results, name, caption, command=command)
-            write_text(folder / "report.html", page)
+        for results in channels:
+            # The files of the first channel have their names with and without others.
+            end = "" if results is channels[0] else f"_{results.channel}"
+            heads, columns = results.columns()
+            comments = [f"{name}: {results.channel} at orders of {results.angle}; {caption}"]
+            table = partial(write_table, cells=heads, columns=columns, comments=comments)
+            write_whole(folder / f"orders{end}.csv", table)
+            if len(results.points) > 1:
+                for stem, draw in (("orders", draw_cuts), ("campbell", draw_map)):
+                    picture = partial(draw, orders=results, name=name, caption=caption)
+                    write_whole(folder / f"{stem}{end}.png", picture)
+        if len(channels[0].points) > 1:
+            write_text(folder / "report.html", order_page(channels, name, caption, command=command))

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from tests.validation import validated
-from vehicle.engines.linear.mode_shares import mode_shares
+from vehicle.engines.linear.forced_response import force_amplitudes, unit_response
+from vehicle.engines.linear.mode_shares import forced_mode_shares, mode_shares
 from vehicle.runs.car import Car
 
 CHANNEL = "seat_rail_acc_z"
@@ -35,3 +36,24 @@ def test_a_sine_at_a_resonance_belongs_to_its_mode():
     strongest = int(np.argmax(result.shares))
     assert abs(result.poles[strongest]) / (2 * np.pi) == pytest.approx(heave.frequency, rel=1e-9)
     assert 0.5 < result.shares[strongest] < 1.5 and abs(result.shares.sum() - 1.0) < 0.2
+
+
+@pytest.mark.parametrize("stuck", [True, False])
+def test_the_parts_of_forces_add_up_to_their_response(stuck):
+    """An imbalance, a run-out of a tyre and the orders of the engine, each at its own frequency."""
+    texts = {
+        "front.imbalance.mass": 0.02, "front.imbalance.radius": 0.2, "front.nonuniformity.runout": [[1, 1e-4, 0]],
+        "force.a.on": "engine", "force.a.moment": [0, 1, 0], "force.a.angle": "crank",
+        "force.a.harmonics": [[2, 10, 0]], "crank.rpm": 800.0, "driving.speed": 30.0,
+    }  # fmt: skip
+    matrices = Car.load("sedan", texts).matrices
+    forced, amplitudes = np.array(matrices.lines.frequencies), force_amplitudes(matrices)
+    every = np.arange(len(amplitudes))
+    unit = unit_response(matrices, [CHANNEL], forced, every, stuck=stuck)[:, 0]
+    assert len(forced) > 1
+    for line, frequency in enumerate(forced / (2.0 * np.pi)):
+        found = forced_mode_shares(matrices, CHANNEL, frequency, amplitudes[:, line], stuck=stuck)
+        expected = np.sum(unit[:, line] * amplitudes[:, line])
+        assert found.acceleration == pytest.approx(np.array([expected]), rel=1e-7)
+        # What is left of the whole belongs to real poles.
+        assert abs(found.shares.sum() - 1.0) < 0.2

@@ -7,6 +7,7 @@ import pytest
 
 from vehicle.signals.analysis.comfort import comfort_values
 from vehicle.signals.analysis.comfort_error import WAVES, difference_error
+from vehicle.signals.analysis.ride_comfort import comfort_columns, wave_names
 
 STEP, SAMPLES, RECORDS = 5e-3, 2000, 400
 FREQUENCY = np.fft.rfftfreq(SAMPLES, STEP)
@@ -68,6 +69,26 @@ def test_error_of_a_difference_on_the_same_road():
     assert gap.std(ddof=1) < 0.3 * values[0].overall.std(ddof=1)
     assert np.sqrt(np.mean(stated**2)) == pytest.approx(gap.std(ddof=1), rel=0.11)
     assert values[0].waves.shape == (RECORDS, WAVES)
+
+
+def test_the_error_of_the_weighted_value_is_its_scatter():
+    """Gaussian motions of 1.5 Hz along x, 4 and 9 Hz along z, by Wd and Wk: not the error of the unweighted RMS."""
+    rng = np.random.default_rng(5)
+    heave, road = 0.2 * lines(1.5, 0.2, rng), [lines(frequency, 0.1, rng) for frequency in (4.0, 9.0)]
+    records = history(heave, 0.0 * heave, road[0] + road[1] + heave)
+    other = history(heave, 0.0 * heave, road[0] + 0.9 * road[1] + heave)
+    cars = [comfort_columns(STEP, each, skip=2.0) for each in (records, other)]
+    for name in ("weighted", "unweighted"):
+        values, stated = cars[0][name], cars[0][f"{name}_error"]
+        assert rms(stated) == pytest.approx(values.std(ddof=1) / values.mean(), rel=0.11)
+        gap = cars[1][name] - values
+        waves = [np.stack([car[each] for each in wave_names(name)], axis=1).view(complex) for car in cars]
+        assert rms(difference_error(*waves)) == pytest.approx(gap.std(ddof=1), rel=0.11)
+    assert rms(cars[0]["unweighted_error"]) > 1.1 * rms(cars[0]["weighted_error"])
+
+
+def rms(values):
+    return np.sqrt(np.mean(values**2))
 
 
 def lines_ratio(first, second):

@@ -8,9 +8,12 @@ import pytest
 
 from vehicle import Car, road
 from vehicle.commands.optimise import main
+from vehicle.digits import number
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.ranges import Range
 from vehicle.runs.targets.figure import Figure
+from vehicle.signals.analysis.comfort_error import overall_error, weighted_lines
+from vehicle.signals.analysis.weighting import weighted_record
 from vehicle.studies.optimisation.target_search import meet_targets
 from vehicle.studies.sweeps.plan import plan_sweep
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
@@ -101,8 +104,17 @@ def test_command(tmp_path, capsys, monkeypatch):
     assert main([*words, "--duration", "3", "--output", "change"]) == 0
     said = capsys.readouterr().out
     assert "front.bushings.tyre.stiffness.z" in said and "targets: " in said
+    # Before the first run: how many cars, and what makes it shorter.
+    assert said.startswith("note        64 cars, then steps of 2 cars from up to 3 starts, on 1 input; roads of 3 s: ")
     summary = json.loads((tmp_path / "change" / "summary.json").read_text(encoding="utf-8"))
     changed = Car.load(tmp_path / "change" / "vehicle.toml")
+    # The error is that of the targets page: of the figure of a single run of this car, on the screen twice it.
+    run = changed.run(road("C", 80, duration=3), engine="reduced")
+    weighted = weighted_record(run.recording.timestep, run["seat_rail_acc_z"], "Wk")[run.evaluated]
+    lines = weighted_lines(run.recording.timestep, weighted[None], [1.0])
+    error, figure = float(overall_error(lines[None])[0]), summary["figures"]["ride"]
+    assert figure["after_error"] == pytest.approx(error * figure["after"], rel=1e-4)
+    assert f"{number(figure['after'])} +- {number(2.0 * figure['after_error'], 2)}  met within +-" in said
     path = "front.bushings.tyre.stiffness.z"
     assert changed[path].value == pytest.approx(summary["parameters"][path]["after"])
     for more, message in (

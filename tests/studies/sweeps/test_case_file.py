@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 
+import numpy as np
 import pytest
 
 from vehicle import Car, road
@@ -38,6 +39,52 @@ def test_cars_and_inputs(tmp_path):
     assert cases.inputs == [road("A", 60.0, duration=3.0), road("B", 60.0, duration=3.0)]
     both = CaseFile(roads=("A", "cleat:20x50"), speeds=(30.0, 60.0), signals=("low.csv",), duration=5.0)
     assert [getattr(each, "duration", None) for each in both.inputs] == [5.0, 5.0, None, None, None]
+
+
+def test_each_road_has_its_own_speeds(tmp_path):
+    """A cleat is driven slower than a road: speeds as a table, in a file of today and in Python."""
+    file, roads = tmp_path / "cases.toml", 'roads = ["C", "cleat:20x50"]\n'
+    file.write_text(
+        roads + 'speeds = {"cleat:20x50" = [30], C = [80, 110]}\n[variants.soft]\n"damper.viscous" = 900\n',
+        encoding="utf-8",
+    )
+    cases = read_cases(file)
+    assert cases.inputs == [road("C", 80.0), road("C", 110.0), road("cleat:20x50", 30.0)]
+    assert CaseFile(roads=cases.roads, speeds={"C": (80.0, 110.0), "cleat:20x50": (30.0,)}).inputs == cases.inputs
+
+
+def test_one_event_has_no_random_error(tmp_path, capsys, monkeypatch):
+    """Beside a cleat no error is shown, in its rows and with the mean over road and cleat only that of the road."""
+    monkeypatch.chdir(tmp_path)
+    lines = ['vehicle = "sedan"', 'roads = ["B", "cleat:20x50"]', 'speeds = {B = [80], "cleat:20x50" = [30]}']
+    (tmp_path / "cases.toml").write_text(
+        "\n".join([*lines, "duration = 3", "[variants.soft]", '"rear.damper.viscous" = 1200']), encoding="utf-8"
+    )
+    assert main(["--cases", "cases.toml", "--engine", "reduced", "--output", "out"]) == 0
+    tables = {name: read(tmp_path / "out" / f"{name}.csv") for name in ("cases", "differences", "table")}
+    road, cleat = (row for row in tables["cases"] if row["car"] == "soft")
+    assert float(road["half_width_95 [%]"]) > 0.0 and cleat["half_width_95 [%]"] == ""
+    mean, width = np.mean([float(row["change [%]"]) for row in (road, cleat)]), float(road["half_width_95 [%]"]) / 2.0
+    assert f"{mean:+.1f} +- {width:.1f} %" in capsys.readouterr().out
+    road, cleat = (row for row in tables["differences"] if row["rear.damper.viscous"])
+    assert cleat["cars differ on"] == "one event: no random error" and cleat["weighted_difference [m/s2]"]
+    for column in ("standard_error", "half_width_95", "weighted_standard_error", "weighted_half_width_95"):
+        assert float(road[f"{column} [m/s2]"]) > 0.0 and cleat[f"{column} [m/s2]"] == ""
+    base = float(tables["cases"][0]["weighted [m/s2]"])
+    relative = 100.0 * float(road["weighted_half_width_95 [m/s2]"]) / base
+    assert relative == pytest.approx(2.0 * width, rel=1e-4)
+    for row in tables["table"]:
+        errors = [float(row[f"{name}_error [-]"]) for name in ("weighted", "unweighted")]
+        assert np.isnan(errors).all() if "cleat" in row["input"] else min(errors) > 0.0
+    assert main(["--road", "cleat:20x50", "--speed", "30", "--vehicle", "sedan", "--engine", "reduced", "--output",
+                 "one", "--each", "20%", "--vary", "rear.damper.viscous"]) == 0  # fmt: skip
+    said = capsys.readouterr().out
+    assert "no +-: one event has no random error" in said and " -\n" in said
+
+
+def read(path):
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
 
 
 def test_command(tmp_path, capsys, monkeypatch):
@@ -78,6 +125,10 @@ def test_command(tmp_path, capsys, monkeypatch):
     [
         ("", "roads: no input"),
         ('roads = ["C"]', "set roads and speeds"),
+        ('roads = ["C", "D"]\nspeeds = {C = [80]}', "speeds: no speed on 'D'; add 'D' = [80], in km/h"),
+        ('roads = ["C"]\nspeeds = {C = []}', "speeds: no speed on 'C'"),
+        ('roads = ["C"]\nspeeds = {C = [80], D = [80]}', "speeds: 'D' is not among roads; add it there, or remove it"),
+        ('roads = ["C"]\nspeeds = {C = 80}', "speeds.C: found 80, must be a list"),
         ('roads = ["C"]\nspeeds = [80]\nspeed = 3', "speed: unknown parameter"),
         ('roads = "C"\nspeeds = [80]', "roads: found 'C', must be a list"),
         ('roads = ["C"]\nspeeds = [80]', "no states and no variants: add one, as [variants.soft]"),

@@ -20,6 +20,7 @@ class Paced(Executor):
     """
 
     _max_workers = 2
+    ran = "mujoco"
 
     def __init__(self, pace=0.0, deadly="", wrong=""):
         self.pace, self.deadly, self.wrong = pace, deadly, wrong
@@ -33,7 +34,7 @@ class Paced(Executor):
         elif self.wrong in self.tasks[-1]:
             future.set_exception(TypeError("no number"))
         else:
-            results = [Result(values={"peak": 1.0}, seconds=self.pace)] * len(self.tasks[-1])
+            results = [Result(values={"peak": 1.0}, engine=self.ran, seconds=self.pace)] * len(self.tasks[-1])
             future.set_result(Block.of(arguments[0], arguments[1], results))
         return future
 
@@ -63,9 +64,20 @@ def test_tasks_take_about_a_second(pace, engine, size):
     worked(many(3000, engine), executor)
     sizes = [len(task) for task in executor.tasks]
     filled = size if engine == "mujoco" or size == 1 else -(-size // FILL) * FILL
-    assert sizes[0] == FILL and sizes[2 * PER_WORKER] == min(filled, LARGEST)
+    # A first single run of MuJoCo tells how long the sweep takes.
+    assert sizes[0] == (FILL if engine == "reduced" else 1) and sizes[2 * PER_WORKER] == min(filled, LARGEST)
     # Towards the end tasks become smaller, so that all workers finish at the same time.
     assert sum(sizes) == 3000 and sizes[-1] <= FILL
+
+
+def test_a_single_car_takes_the_reduced_engine_as_long_as_a_vector():
+    """After the single runs that begin a sweep its tasks are full vectors, not one car after the other."""
+    executor = Paced(0.6 * TASK_S)
+    executor.ran = "reduced"
+    worked(many(400), executor)
+    sizes = [len(task) for task in executor.tasks]
+    # 1 s over 0.6 s / 8 cars: 13 cars, in full vectors 16.
+    assert sizes[0] == 1 and sizes[2 * PER_WORKER] == 2 * FILL
 
 
 def test_tasks_contain_full_vectors_of_cars_with_all_their_inputs():
@@ -79,12 +91,12 @@ def test_tasks_contain_full_vectors_of_cars_with_all_their_inputs():
 
 def test_few_cases_are_shared_by_all_workers():
     executor = Paced()
-    worked(many(6), executor)
+    worked(many(6, "reduced"), executor)
     assert [len(task) for task in executor.tasks] == [3, 2, 1]
 
 
 def test_only_the_deadly_case_fails():
-    todo = many(40)
+    todo = many(40, "reduced")
     deadly = todo[13].label
     executor = Paced(deadly=deadly)
     results = worked(todo, executor)

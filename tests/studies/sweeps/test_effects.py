@@ -59,14 +59,14 @@ def test_error_of_a_change_is_that_of_the_differences_of_the_sweep():
     assert without == () and changes[0] == ()
     table = plan_sweep(car, changes, road("B", 80, duration=6), SweepSettings(engine="reduced")).run()
     file, paths = io.StringIO(), table.paths()
-    writer = DifferencesWriter(file, paths)
+    writer = DifferencesWriter(file, paths, table.units)
     for case, row in zip(table.cases, table.rows(), strict=True):
         writer.add(case, parameter_cells(case, paths), row)
     writer.finish()
     rows = list(csv.DictReader(io.StringIO(file.getvalue())))
-    widths = [float(row["half_width_95 [m/s2]"]) for row in rows[1:]]
+    widths = [float(row["weighted_half_width_95 [m/s2]"]) for row in rows[1:]]
     (effect,) = effects_of(table, parameters, 0.2).effects
-    expected = 100.0 * max(widths) / float(rows[0]["unweighted [m/s2]"])
+    expected = 100.0 * max(widths) / float(rows[0]["weighted [m/s2]"])
     assert effect.half_width == pytest.approx(expected, rel=1e-4)
 
 

@@ -20,7 +20,7 @@ from tests.patience import HANG
 from tests.studies.sweeps.sweep_samples import Peak, ShortRoad, Worker, grid, threads
 from vehicle.errors import ConfigurationError, DataError, MissingPartError
 from vehicle.runs.car import Car
-from vehicle.signals.analysis.ride_comfort import WAVE_NAMES
+from vehicle.signals.analysis.ride_comfort import UNWEIGHTED, WEIGHTED, wave_names
 from vehicle.studies.sweeps.case import SignalFile
 from vehicle.studies.sweeps.case_keys import case_keys
 from vehicle.studies.sweeps.case_table import table_cases
@@ -64,7 +64,7 @@ def test_numbers_are_those_of_the_run():
     run = Car.load(None, ["damper.coulomb_friction=80"]).run(source, engine="reduced")
     (swept,) = [result.values for result in table.results]
     values = measure(run)
-    assert set(values) == set(swept) == {*measure.units, *WAVE_NAMES}
+    assert set(values) == set(swept) == {*measure.units, *wave_names(UNWEIGHTED), *wave_names(WEIGHTED)}
     # A sweep uses a longer time step (`tests/studies/sweeps/test_case_evaluation.py`).
     assert swept["unweighted"] == pytest.approx(values["unweighted"], rel=2e-3)
     rate = 1.0 / run.recording.timestep
@@ -117,8 +117,8 @@ def test_finished_rows_are_not_computed_again(tmp_path):
     seen: list[float] = []
     first = sweep(cases[:2], Peak(), executor=in_threads, folder=tmp_path)
     whole = sweep(cases, Peak(), executor=in_threads, folder=tmp_path, progress=seen.append)
-    # Stored rows are finished runs.
-    assert seen == [0.75, 1.0]
+    # Stored rows are finished runs; the other two are one task.
+    assert seen == [0.5, 1.0]
     assert [r.values for r in whole.results[:2]] == [r.values for r in first.results]
     assert len((tmp_path / "rows.jsonl").read_text(encoding="utf-8").splitlines()) == 4
     # Another measure has other rows.
@@ -238,7 +238,7 @@ def test_a_killed_sweep_keeps_its_rows_leaves_no_worker_and_goes_on(tmp_path):
     counted: list[float] = []
     table = sweep(cases, Peak(), executor=in_threads, folder=folder, progress=counted.append)
     # Two workers finish in any order: at most the submitted tasks and the additional case are missing.
-    assert 1 <= len(counted) <= kept
+    assert 1 <= len(counted[1:]) <= kept
     assert not table.failed
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 
 import pytest
 
@@ -139,9 +140,15 @@ def test_the_engine_and_its_reason_are_told_before_the_runs():
     roads = [Road("A", speed=80.0, duration=4.0), Road("C", speed=50.0, duration=4.0)]
     (note,) = plan_sweep(car, change, roads).engine_notes()
     assert note.startswith("engine mujoco on road_C_50 (1 of 2 inputs), at least for the first car: ")
-    assert "is valid up to 0.05 rad; --engine reduced is many times faster (on class C comfort within 0.4 %" in note
+    assert re.search(
+        r"is valid up to 0\.05 rad; --engine reduced takes about \d+ s for all 2 runs \(on class C comfort", note
+    )
     assert plan_sweep(car, change, roads[:1]).engine_notes() == ()
     assert plan_sweep(car, change, roads, SweepSettings(engine="reduced")).engine_notes() == ()
+    # Whoever asks for MuJoCo hears what the other engine costs, and whether it applies.
+    for inputs, means in ((roads[:1], "inside its valid range (comfort within 0.1 %)"), (roads, "outside its valid")):
+        (note,) = plan_sweep(car, change, inputs, SweepSettings(engine="mujoco")).engine_notes()
+        assert note.startswith("engine mujoco as asked; --engine reduced takes about ") and means in note
     # The stated difference, and the engine that the note names.
     (chosen,), (reduced,) = (
         plan_sweep(car, change, roads[1], SweepSettings(engine=engine)).run().results for engine in ("auto", "reduced")

@@ -9,6 +9,7 @@ import pytest
 from matplotlib import pyplot
 
 from vehicle.errors import ConfigurationError
+from vehicle.signals.analysis.ride_comfort import wave_names
 from vehicle.studies.sweeps.case import Case, SignalFile
 from vehicle.studies.sweeps.case_result import Result
 from vehicle.studies.sweeps.sweep_picture import can_be_drawn, draw_ranked
@@ -69,6 +70,28 @@ def test_a_failed_run_takes_its_car_out():
     assert ranking_lines(cars)[1].split() == ["10", "3", "-", "6"]
     everything = [replace(result, values={}, reason="stopped") for result in table.results]
     assert ranked_cars(replace(table, results=everything)) is None
+
+
+def test_the_error_of_the_ranking_is_that_of_the_weighted_value():
+    """Over two inputs with the errors e and 2 e of a change: t(12) sqrt(5) e / 2, relative to the first car."""
+    table, names = table_of([("30",), ("10",)], ["front.spring"]), wave_names("weighted")
+    sizes = [0.0, 0.0, 0.1, 0.2]  # of the waves of each row: the first car, then the second
+    results = [
+        replace(result, values=result.values | dict.fromkeys(names, size / math.sqrt(2.0)))
+        for result, size in zip(table.results, sizes, strict=True)
+    ]
+    cars = ranked(replace(table, results=results))
+    expected = 100.0 * 2.1788 * math.sqrt(5.0) * 0.1 / 2.0 / 2.0  # the first car has 2 m/s2
+    assert cars.half_width[1] == pytest.approx(expected, rel=1e-4)
+    lines = ranking_lines(cars)
+    assert lines[0].split()[3:5] == ["change", "+-"] and lines[2].split()[2:5] == ["+50.00", "%", f"{expected:.2f}"]
+    assert "+-: half width of the 95 % interval" in lines[3]
+    large = [replace(each, values=each.values | dict.fromkeys(names, 9.0)) if size else each
+             for each, size in zip(results, sizes, strict=True)]  # fmt: skip
+    falling = [replace(r, values=r.values | {"weighted": 10.0 - r.values["weighted"]}) for r in large]
+    assert ranking_lines(ranked(replace(table, results=falling)))[-1].endswith(
+        "% weighted, not more than its error: take a longer road)"
+    )
 
 
 def test_many_cars_are_cut_and_the_first_stays():

@@ -42,11 +42,15 @@ def forced_response(
         slopes = np.array([float(damper_curve(law).slope(0.0)) for law in dampers]) - matrices.viscous
         damping = system.damping + system.slide_rows.T @ (slopes[:, None] * system.slide_rows)
         matrices = replace(matrices, system=replace(system, damping=damping))
-    frequencies = matrices.lines.frequencies
-    constant = matrices.coefficients[:, : 2 * len(frequencies)]
-    amplitudes = constant[:, ::2] - 1j * constant[:, 1::2]
+    frequencies, amplitudes = matrices.lines.frequencies, force_amplitudes(matrices)
     unit = unit_response(matrices, channels, frequencies, np.arange(len(amplitudes)), stuck=stuck)
     return np.asarray(unit * amplitudes[:, None, :])
+
+
+def force_amplitudes(matrices: CarMatrices) -> npt.NDArray[np.complex128]:
+    """Return the complex amplitudes Z of Re(Z exp(jWt)) of the applied forces, (forces, constant frequencies)."""
+    constant = matrices.coefficients[:, : 2 * len(matrices.lines.frequencies)]
+    return np.asarray(constant[:, ::2] - 1j * constant[:, 1::2])
 
 
 def unit_response(

@@ -1,4 +1,4 @@
-"""Shares of the modes of a linear car in an acceleration that its plates cause.
+"""Shares of the modes of a linear car in an acceleration that its plates or its applied forces cause.
 
 With the first-order form x' = A x + (b0 + s b1) z and A = V diag(s_k) V^-1, an acceleration is a sum over the poles,
 
@@ -8,7 +8,8 @@ exact at each line. A mode is a pair of conjugate poles; its share is its part i
 
     share_k = sum over lines of Re(a_k conj(a)) / sum over lines of |a|^2.
 
-All shares, with those of the real poles and of the direct term g, add up to 1.
+All shares, with those of the real poles and of the direct term g, add up to 1. Applied forces of one frequency drive
+the states by f (`vehicle.engines.linear.forced_response`), and a_k = (jw)^2 c V_k (V^-1 f)_k / (jw - s_k).
 """
 
 from __future__ import annotations
@@ -18,7 +19,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.linear.first_order import first_order
+from vehicle.engines.linear.car_matrices import CarMatrices
+from vehicle.engines.linear.first_order import FirstOrder, first_order
 from vehicle.engines.linear.system import LinearSystem
 
 Vector = npt.NDArray[np.float64]
@@ -54,14 +56,51 @@ def mode_shares(
     """
     form = first_order(system, stuck=stuck)
     lines, driven = 2j * np.pi * np.asarray(frequency, dtype=float), np.asarray(plates, dtype=complex)
-    row, direct = form.output(channel)
     poles, vectors = np.linalg.eig(form.state)
-    weights = row @ vectors[: row.shape[0]]
     inputs = np.linalg.solve(vectors, np.hstack([form.input, form.input_rate]).astype(complex))
     w = driven.shape[0]
-    residues = weights[:, None] * (inputs[:, :w] + poles[:, None] * inputs[:, w:])
-    parts = lines**2 * (residues @ driven) / (lines - poles[:, None])
-    acceleration = parts.sum(axis=0) + lines**2 * (direct @ driven)
+    residues = inputs[:, :w] + poles[:, None] * inputs[:, w:]
+    return _shares(form, channel, lines, poles, vectors, residues @ driven, driven)
+
+
+def forced_mode_shares(
+    matrices: CarMatrices, channel: str, frequency: float, forces: npt.ArrayLike, *, stuck: bool
+) -> ModeShares:
+    """Return the shares of the modes in an acceleration channel that applied forces of one frequency cause.
+
+    Args:
+        matrices: matrices of the car.
+        channel: acceleration channel.
+        frequency: the frequency [Hz].
+        forces: complex amplitudes of the forces in the order of `matrices.force_rows` [N, N m, m or m/s]; (f,).
+        stuck: True for locked dampers, False for their viscous part without friction.
+    """
+    system, form, s = matrices.system, first_order(matrices.system, stuck=stuck), 2j * np.pi * frequency
+    rows, slips, runouts = (
+        part.T @ np.asarray(forces) for part in (matrices.force_rows, matrices.force_slips, matrices.force_heights)
+    )
+    tyres = system.input_stiffness + s * matrices.level_damping
+    pushed = np.linalg.solve(form.basis.T @ system.mass @ form.basis, form.basis.T @ (rows + tyres @ runouts))
+    states = np.concatenate([np.zeros(form.placed), pushed, system.branch_stiffness * slips])
+    poles, vectors = np.linalg.eig(form.state)
+    return _shares(form, channel, np.array([s]), poles, vectors, np.linalg.solve(vectors, states)[:, None])
+
+
+def _shares(
+    form: FirstOrder,
+    channel: str,
+    lines: Complex,
+    poles: Complex,
+    vectors: Complex,
+    residues: Complex,
+    plates: Complex | None = None,
+) -> ModeShares:
+    """Return the shares from what drives each pole (s, m) at the lines jw (m,), and from the plates (w, m)."""
+    row, direct = form.output(channel)
+    parts = lines**2 * (row @ vectors[: row.shape[0]])[:, None] * residues / (lines - poles[:, None])
+    acceleration = parts.sum(axis=0)
+    if plates is not None:
+        acceleration = acceleration + lines**2 * (direct @ plates)
     power = float(np.sum(np.abs(acceleration) ** 2)) or 1.0
     in_phase = (parts * np.conj(acceleration)).real.sum(axis=1) / power
     upper = np.flatnonzero(poles.imag > 0.0)

@@ -166,7 +166,8 @@ def convert(hint: Any, value: Any, path: str) -> Any:
     """Convert a TOML value to the type of its field.
 
     Args:
-        hint: float, str, bool, dict, a tuple, a mapping, a parameter class, or a union of one of these and None.
+        hint: float, str, bool, dict, a tuple, a mapping, a parameter class, or a union of one of these with None
+            or with a mapping.
         value: value in the file.
         path: path of the parameter, shown in messages.
 
@@ -177,7 +178,9 @@ def convert(hint: Any, value: Any, path: str) -> Any:
         return _number(value, path)
     origin, arguments = _parts_of(hint)
     if origin in (types.UnionType, typing.Union):
-        return convert(next(option for option in arguments if option is not type(None)), value, path)
+        first, *others = (option for option in arguments if option is not type(None))
+        table = isinstance(value, Mapping) and any(typing.get_origin(option) is Mapping for option in others)
+        return convert(others[-1] if table else first, value, path)
     if hint is dict and not isinstance(value, Mapping):
         raise ConfigurationError(f"{path}: found {value!r}, must be a table")
     if dataclasses.is_dataclass(hint):

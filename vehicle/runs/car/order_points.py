@@ -7,6 +7,7 @@ The amplitudes of the linear car with locked dampers and with dampers without fr
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -16,7 +17,8 @@ import numpy.typing as npt
 
 from vehicle.drawing.notebook.frames import plain_frame
 from vehicle.engines.linear.car_modes import Mode
-from vehicle.engines.linear.forced_response import forced_response
+from vehicle.engines.linear.forced_response import force_amplitudes, forced_response
+from vehicle.engines.linear.mode_shares import forced_mode_shares
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.applied_force import CRANK
 from vehicle.model.parameters.channel_words import channels_named
@@ -35,6 +37,9 @@ MOST = 400
 SEGMENT = 2.0
 """Length of the Hann windows of the map [s]: lines 1 Hz wide."""
 
+RESONANT = 0.2
+"""Minimum share of a mode in resonance that is named beside the largest share [-]."""
+
 NAMED = 8
 """Maximum number of modes that are named."""
 
@@ -47,11 +52,13 @@ class NamedMode:
         frequency: natural frequency with locked dampers [Hz].
         damping_ratio: damping ratio [-].
         name: its main motion.
+        share: its share in the amplitude of an order, see `vehicle.engines.linear.mode_shares`; NaN in the map [-].
     """
 
     frequency: float
     damping_ratio: float
     name: str
+    share: float = math.nan
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
@@ -72,6 +79,8 @@ class OrderPoints:
         frequency: frequencies of the map [Hz]; (f,).
         spectrum: amplitude spectrum at each point, for the map; (k, f).
         modes: modes that the forces excite at this channel, in the range of the orders, by frequency.
+        parts: mode with the largest share in each order where that is largest, with the dampers as in most of that
+            run, then a mode in resonance there, if it is another; empty for an order without a force.
     """
 
     angle: str
@@ -88,6 +97,7 @@ class OrderPoints:
     frequency: Vector
     spectrum: Vector
     modes: tuple[NamedMode, ...]
+    parts: tuple[tuple[NamedMode, ...], ...]
 
     def __repr__(self) -> str:
         """Return the peak of each order."""
@@ -103,11 +113,6 @@ class OrderPoints:
     def point_unit(self) -> str:
         """Unit of the points: 1/min or km/h."""
         return "1/min" if self.angle == CRANK else "km/h"
-
-    def nearest_mode(self, frequency: float) -> NamedMode | None:
-        """Return the named mode nearest to a frequency [Hz], within a tenth of it."""
-        near = min(self.modes, key=lambda mode: abs(mode.frequency - frequency), default=None)
-        return near if near is not None and abs(near.frequency - frequency) < 0.1 * frequency else None
 
     def columns(self) -> tuple[list[str], list[Vector]]:
         """Return the columns of a table with a row for each order and point, and their heads with units."""
@@ -172,6 +177,27 @@ def order_points(
         ConfigurationError: no points or both kinds, a value out of range, no force, or nothing of this name turns.
         DataError: a run is too short for its orders.
     """
+    options = {"rpm": rpm, "speed": speed, "orders": orders, "angle": angle, "surface": surface, "duration": duration}
+    return order_points_at(car, [channel], engine=engine, **options)[0]
+
+
+def order_points_at(
+    car: Car,
+    channels: Sequence[str],
+    *,
+    rpm: Sequence[float] = (),
+    speed: Sequence[float] = (),
+    orders: Sequence[float] = (1.0, 2.0),
+    angle: str | None = None,
+    surface: str = "level",
+    duration: float = 10.0,
+    engine: str = "reduced",
+) -> tuple[OrderPoints, ...]:
+    """Return the amplitudes of several channels from the same runs; arguments and errors as in `order_points`.
+
+    Args:
+        channels: names or words of acceleration channels.
+    """
     if bool(len(rpm)) == bool(len(speed)):
         raise ConfigurationError(
             "orders: needed are speeds of the crankshaft [1/min] or of the car [km/h], one of both"
@@ -179,43 +205,38 @@ def order_points(
     points = np.array(rpm if len(rpm) else speed, dtype=float)
     if len(points) > MOST:
         raise ConfigurationError(f"orders: {len(points)} points; at most {MOST}: take a larger step")
-    (name,) = channels_named(channel, car.vehicle.acceleration_channels)
+    names = list(dict.fromkeys(channels_named(each, car.vehicle.acceleration_channels)[0] for each in channels))
     chosen = angle or (CRANK if len(rpm) else None)
     if len(rpm) and chosen != CRANK:
         raise ConfigurationError(f"orders: {chosen} does not turn with the crankshaft; set speeds of the car")
-    drive, results = 3.6 * car.vehicle.driving.speed, list[_Point]()
+    drive, results = 3.6 * car.vehicle.driving.speed, list[list[_Point]]()
+    # Channel and order to the largest amplitude, the car there, and the share of its time in slip.
+    largest: dict[tuple[int, int], tuple[float, Car, float]] = {}
     for value in points:
         if len(rpm):
-            run = _run(car.with_({"crank.rpm": float(value)}), surface, drive, duration, engine, name)
+            run = _run(car.with_({"crank.rpm": float(value)}), surface, drive, duration, engine, names)
         else:
-            run = _run(car, surface, float(value), duration, engine, name)
-        results.append(_point(run, name, chosen, orders))
-    first = results[0]
-    if not any(first.angle in (force.law.angle, force.name) for force in run.car.vehicle.composition.forces):
-        raise ConfigurationError(
-            f"orders: no force of {car.vehicle.name} turns with {first.angle}; add a table [engine.orders], "
-            "[front.imbalance] or [force.NAME]"
-        )
-    highest = 1.1 * float(np.max([point.turns for point in results])) * max(orders)
-    shown = first.frequency <= highest
-    lowest = 0.9 * float(np.min([point.turns for point in results])) * min(orders)
-    modes = _excited_modes(run, name, lowest, highest)
-    return OrderPoints(
-        angle=first.angle,
-        points=points,
-        turns=np.array([point.turns for point in results]),
-        orders=np.array(orders, dtype=float),
-        channel=name,
-        unit="m/s2",
-        amplitude=np.array([point.amplitude for point in results]).T,
-        error=np.array([point.error for point in results]).T,
-        stuck=np.array([point.stuck for point in results]).T,
-        free=np.array([point.free for point in results]).T,
-        slip=np.array([point.slip for point in results]),
-        frequency=first.frequency[shown],
-        spectrum=np.array([point.spectrum[shown] for point in results]),
-        modes=modes,
-    )
+            run = _run(car, surface, float(value), duration, engine, names)
+        results.append([_point(run, name, chosen, orders) for name in names])
+        for channel, point in enumerate(results[-1]):
+            for order, size in enumerate(np.abs(point.amplitude).tolist()):
+                if size > largest.get((channel, order), (-1.0, run.car, 0.0))[0]:
+                    largest[channel, order] = size, run.car, point.slip
+        if len(results) == 1 and not any(
+            results[0][0].angle in (force.law.angle, force.name) for force in run.car.vehicle.composition.forces
+        ):
+            raise ConfigurationError(
+                f"orders: no force of {car.vehicle.name} turns with {results[0][0].angle}; add a table "
+                "[engine.orders], [front.imbalance] or [force.NAME]"
+            )
+    joined = []
+    for channel, name in enumerate(names):
+        tops = (largest[channel, order] for order in range(len(orders)))
+        parts = [_main_modes(there, name, results[0][0].angle, order, slip < 0.5)
+                 for order, (_, there, slip) in zip(orders, tops, strict=True)]  # fmt: skip
+        each = [points_of[channel] for points_of in results]
+        joined.append(_joined(run, name, points, np.array(orders, dtype=float), each, tuple(parts)))
+    return tuple(joined)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -233,8 +254,39 @@ class _Point:
     spectrum: Vector
 
 
-def _run(car: Car, surface: str, speed: float, duration: float, engine: str, channel: str) -> Run:
-    channels = [channel, *(f"damper_{wheel}_velocity" for wheel in car.vehicle.damped_wheels)]
+def _joined(
+    run: Run,
+    name: str,
+    points: Vector,
+    orders: Vector,
+    results: Sequence[_Point],
+    parts: tuple[tuple[NamedMode, ...], ...],
+) -> OrderPoints:
+    """Return the amplitudes of a channel at all points; `run` is the last of them."""
+    first, turns = results[0], np.array([point.turns for point in results])
+    highest, lowest = 1.1 * float(np.max(turns)) * orders.max(), 0.9 * float(np.min(turns)) * orders.min()
+    shown = first.frequency <= highest
+    return OrderPoints(
+        angle=first.angle,
+        points=points,
+        turns=turns,
+        orders=orders,
+        channel=name,
+        unit="m/s2",
+        amplitude=np.array([point.amplitude for point in results]).T,
+        error=np.array([point.error for point in results]).T,
+        stuck=np.array([point.stuck for point in results]).T,
+        free=np.array([point.free for point in results]).T,
+        slip=np.array([point.slip for point in results]),
+        frequency=first.frequency[shown],
+        spectrum=np.array([point.spectrum[shown] for point in results]),
+        modes=_excited_modes(run, name, lowest, highest),
+        parts=parts,
+    )
+
+
+def _run(car: Car, surface: str, speed: float, duration: float, engine: str, names: Sequence[str]) -> Run:
+    channels = [*names, *(f"damper_{wheel}_velocity" for wheel in car.vehicle.damped_wheels)]
     return car.run(Road(surface, speed, duration=duration), engine=engine, channels=channels)
 
 
@@ -245,12 +297,11 @@ def _point(run: Run, channel: str, angle: str | None, orders: Sequence[float]) -
     turns = speed / (2.0 * np.pi)
     lines = order_lines(run.time, run[channel][None], turns, orders, begin=run.skip)
     dampers = [damper.law for damper in vehicle.composition.dampers]
-    forced = np.array(run.car.matrices.lines.frequencies)
     limits = []
     for stuck in (True, False):
         of_forces = forced_response(run.car.matrices, [channel], dampers, stuck=stuck)
         amplitudes = np.abs(of_forces.sum(axis=0)[0])
-        columns = [np.flatnonzero(np.abs(forced - order * speed) < 1e-9 * forced) for order in orders]
+        columns = [_line(run.car, order * speed) for order in orders]
         limits.append(np.array([amplitudes[each[0]] if each.size else np.nan for each in columns]))
     frequency, spectrum = _amplitudes(run[channel][run.evaluated], run.recording.timestep)
     return _Point(
@@ -264,6 +315,36 @@ def _point(run: Run, channel: str, angle: str | None, orders: Sequence[float]) -
         frequency=frequency,
         spectrum=spectrum,
     )
+
+
+def _line(car: Car, frequency: float) -> npt.NDArray[np.intp]:
+    """Return the position of a frequency [rad/s] among those of the applied forces; empty if none has it."""
+    forced = np.array(car.matrices.lines.frequencies)
+    return np.flatnonzero(np.abs(forced - frequency) < 1e-9 * forced)
+
+
+def _main_modes(car: Car, channel: str, angle: str, order: float, stuck: bool) -> tuple[NamedMode, ...]:
+    """Return the mode with the largest share in an order and one in resonance there, see `OrderPoints.parts`."""
+    circular = order * car.vehicle.composition.turning(angle)[1]
+    line, frequency = _line(car, circular), circular / (2.0 * np.pi)
+    if not line.size:
+        return ()
+    forces = force_amplitudes(car.matrices)[:, line[0]]
+    result = forced_mode_shares(car.matrices, channel, frequency, forces, stuck=stuck)
+    natural = np.abs(result.poles) / (2.0 * np.pi)
+    width = 2.0 * np.abs(result.poles.real) / (2.0 * np.pi)  # full width at half power
+    near = np.flatnonzero((np.abs(natural - frequency) < width) & (result.shares > RESONANT))
+    modes = car.modes("stuck" if stuck else "sliding", highest=1.01 * float(natural.max()))
+    parts = {}
+    for at in (int(np.argmax(result.shares)), *near[np.argsort(-result.shares[near])][:1].tolist()):
+        mode = min(modes, key=lambda each: abs(each.frequency - natural[at]))
+        parts[at] = _named(mode, float(result.shares[at]))
+    return tuple(parts.values())
+
+
+def _named(mode: Mode, share: float = math.nan) -> NamedMode:
+    name = mode.description.split(" with ")[0].rpartition(" (")[0] or mode.description
+    return NamedMode(frequency=mode.frequency, damping_ratio=mode.damping_ratio, name=name, share=share)
 
 
 def _amplitudes(record: Vector, interval: float) -> tuple[Vector, Vector]:
@@ -285,14 +366,7 @@ def _excited_modes(run: Run, channel: str, lowest: float, highest: float) -> tup
     modes = [mode for mode in run.car.modes(highest=highest) if mode.frequency > lowest and not mode.grows]
     sizes = [(_peak(mode, matrices.force_rows, row), mode) for mode in modes]
     largest = sorted(sizes, key=lambda entry: -entry[0])[:NAMED]
-    return tuple(
-        NamedMode(
-            frequency=mode.frequency,
-            damping_ratio=mode.damping_ratio,
-            name=mode.description.split(" with ")[0].rpartition(" (")[0] or mode.description,
-        )
-        for _, mode in sorted(largest, key=lambda entry: entry[1].frequency)
-    )
+    return tuple(_named(mode) for _, mode in sorted(largest, key=lambda entry: entry[1].frequency))
 
 
 def _peak(mode: Mode, force_rows: Vector, row: Vector) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ from vehicle.digits import number
 from vehicle.drawing.rendering.order_plot import plot_campbell, plot_order_cuts
 from vehicle.model.parameters.applied_force import CRANK
 from vehicle.names import channel_words
-from vehicle.runs.car.order_points import OrderPoints
+from vehicle.runs.car.order_points import NamedMode, OrderPoints
 from vehicle.runs.report.markup import templates
 from vehicle.runs.report.page import document, head_line
 from vehicle.runs.report.svg_figure import drawing
@@ -19,6 +20,9 @@ from vehicle.runs.report.svg_figure import drawing
 fill = templates(__file__)
 
 HEADS = ("order", "largest [m/s²]", "at", "frequency [Hz]", "dampers stick [m/s²]", "without friction [m/s²]", "slip")
+
+LARGEST_SHARE = 1.5
+"""Share of a mode above which it is not named: others cancel a third of it or more."""
 
 
 def order_rows(orders: OrderPoints) -> list[tuple[str, ...]]:
@@ -53,20 +57,28 @@ def order_points_sentences(orders: OrderPoints) -> list[str]:
         frequency = order * float(orders.turns[top])
         single = len(orders.points) == 1
         edge = top in (0, len(orders.points) - 1)
-        # The largest amplitude of a range that ends there is no peak of a mode.
-        mode = None if edge else orders.nearest_mode(frequency)
-        near = f"; nearest natural frequency {number(mode.frequency)} Hz, {mode.name}" if mode is not None else ""
+        mode = _part_words(orders.parts[row])
         slip = f"a damper slips {100.0 * orders.slip[top]:.0f} % of the time" if orders.slip[top] else "no damper slips"
         error = float(orders.error[row, top])
         size = number(float(peaks[row])) + (f" ± {number(error, 2)}" if error > 0.01 * peaks[row] else "")
         sentences.append(
             f"Order {order:g}{'' if single else ' is largest'} at {orders.points[top]:g} {orders.point_unit} "
-            f"({number(frequency)} Hz{near}){', the end of the range' if edge and not single else ''}: "
+            f"({number(frequency)} Hz{mode}){', the end of the range' if edge and not single else ''}: "
             f"{where} {size} m/s² (amplitude). "
             f"There {slip}; dampers that stick would give {number(float(orders.stuck[row, top]))} m/s², dampers "
             f"without friction {number(float(orders.free[row, top]))} m/s²."
         )
     return sentences
+
+
+def _part_words(parts: Sequence[NamedMode]) -> str:
+    """Return text on the mode with the largest share and the one in resonance; empty without one."""
+    text = ""
+    for name, part in zip(("largest part", "in resonance"), parts, strict=False):
+        against = ", others act against it" if part.share > 1.0 else ""
+        share = f"{100.0 * part.share:.0f} %{against}"
+        text += f"; {name}, {share}: {part.name}, natural frequency {number(part.frequency)} Hz"
+    return "; no mode decides, large parts cancel" if parts and parts[0].share > LARGEST_SHARE else text
 
 
 def draw_cuts(path: Path, orders: OrderPoints, name: str, caption: str) -> None:
@@ -94,21 +106,29 @@ def _of(orders: OrderPoints) -> str:
 
 
 def order_page(
-    orders: OrderPoints, name: str, caption: str, *, command: str, author: str = "", project: str = ""
+    channels: Sequence[OrderPoints], name: str, caption: str, *, command: str, author: str = "", project: str = ""
 ) -> str:
     """Return the report of orders over speed as one HTML document.
 
     Args:
-        orders: the amplitudes; at least two points.
+        channels: the amplitudes of each channel; at least two points.
         caption: road, length of the runs and engine.
         command: command line that made them.
         author, project: names in the head of the page; may be empty.
     """
+    repeat = Markup("<p>{}</p><pre>{}</pre>").format(caption, command)
+    parts = [_part(orders, name, caption, several=len(channels) > 1) for orders in channels]
+    parts.append(("How to repeat it", "repeat", repeat))
+    return document(f"Orders of {name}", (f"{name}; {caption}", head_line(author, project)), parts)
+
+
+def _part(orders: OrderPoints, name: str, caption: str, *, several: bool) -> tuple[str, str, Markup]:
+    """Return title, anchor and content of the part of a channel."""
     cuts = drawing(lambda path: draw_cuts(path, orders, name, caption), "Order cuts")
     campbell = drawing(lambda path: draw_map(path, orders, name, caption), "Campbell map")
     modes = [(number(mode.frequency), number(100.0 * mode.damping_ratio, 2), mode.name) for mode in orders.modes]
     result = fill("orders", sentences=order_points_sentences(orders), cuts=cuts, campbell=campbell, heads=HEADS,
                   rows=order_rows(orders), modes=modes)  # fmt: skip
-    repeat = Markup("<p>{}</p><pre>{}</pre>").format(caption, command)
-    parts = [("Orders", "orders", result), ("How to repeat it", "repeat", repeat)]
-    return document(f"Orders of {name}", (f"{name}; {caption}", head_line(author, project)), parts)
+    if not several:
+        return "Orders", "orders", result
+    return f"Orders, {channel_words(orders.channel)}", f"orders_{orders.channel}", result

@@ -11,6 +11,9 @@ holds for a Gaussian road, and for a road whose lines have fixed amplitudes and 
 squares |X_k|^4 have half the expectation. With rms = sqrt(W), the normalised standard error is
 sqrt(Var W) / (2 W).
 
+A weighted RMS, sqrt(sum k_i^2 a_i^2) over the axes with the factors k_i of ISO 2631-1, is that of the weighted records
+times k_i: X_k are then their lines (`weighted_lines`).
+
 For two cars on the same road, Z = [X_a; X_b] and J = diag(1, -1) give Var(W_a - W_b) = tr(J S J S) df^2 likewise: the
 products of neighbours are subtracted before they are squared. A sum of products at the distance m,
 
@@ -26,13 +29,33 @@ Sources: Bendat and Piersol, Random Data, 4th ed., chapter 8; Heidelberger and W
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from vehicle.signals.analysis.samples import Complex, Vector
+from vehicle.signals.analysis.spectra import band_periodogram
 
 WAVES = 3
 """Number of stored C_m. They reach 3/T, 0.4 Hz for 8 s: about the half-power bandwidth of the modes from 2 Hz on. With
 6 it is 0.75 Hz, and the error of a difference in records of 8 s is a third too small (`tests.benchmarks.coverage`)."""
+
+
+def weighted_lines(time_step: float, weighted: Vector, factors: Sequence[float]) -> Complex:
+    """Return the lines of weighted records, of which an overall weighted RMS consists.
+
+    Args:
+        time_step: sampling interval [s].
+        weighted: weighted accelerations in x, y, z [m/s2], (3, n).
+        factors: multiplying factors k of the axes [-].
+
+    Returns:
+        Complex lines from the first to 0.8 of the Nyquist frequency, as all weightings end far below; (3, m).
+    """
+    band = (1.0 / (weighted.shape[1] * time_step), 0.4 / time_step)
+    lines = band_periodogram(time_step, np.array(factors)[:, None] * weighted, band).lines
+    assert lines is not None  # a periodogram
+    return lines
 
 
 def overall_error(lines: Complex) -> Vector:

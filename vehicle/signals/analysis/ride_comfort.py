@@ -16,10 +16,11 @@ import numpy as np
 
 from vehicle.names import AXES
 from vehicle.signals.analysis.comfort import COMFORT_BAND, comfort_values
-from vehicle.signals.analysis.comfort_error import WAVES
+from vehicle.signals.analysis.comfort_error import WAVES, overall_error, overall_waves, weighted_lines
 from vehicle.signals.analysis.evaluation import application
-from vehicle.signals.analysis.samples import Vector
-from vehicle.signals.analysis.seat_value import seat_value, weighted_rms_of
+from vehicle.signals.analysis.exposure import vector_sum, weighted_rms
+from vehicle.signals.analysis.samples import Complex, Vector
+from vehicle.signals.analysis.seat_value import seat_value, weighted_axes
 
 UNWEIGHTED, WEIGHTED = "unweighted", "weighted"
 """The two names of comfort."""
@@ -32,11 +33,19 @@ RIM = "steering_wheel_rim"
 
 ISO_2631 = "ISO 2631-1"
 
-ERROR = "unweighted_error"
-"""Name of the relative standard error of `unweighted`, see `vehicle.signals.analysis.comfort_error`."""
+ERROR = "_error"
+"""Suffix of the relative standard error of `unweighted` or `weighted`, see `vehicle.signals.analysis.comfort_error`."""
 
-WAVE_NAMES = tuple(f"unweighted_wave_{number}_{part}" for number in range(1, WAVES + 1) for part in ("re", "im"))
-"""Names of the values C_m of `vehicle.signals.analysis.comfort_error`, which have no column in a table."""
+
+def wave_names(name: str) -> tuple[str, ...]:
+    """Return the names of the values C_m of a comfort value, which have no column in a table.
+
+    Args:
+        name: `UNWEIGHTED` or `WEIGHTED`, with the prefix of its point; for C_m see
+            `vehicle.signals.analysis.comfort_error`.
+    """
+    return tuple(f"{name}_wave_{number}_{part}" for number in range(1, WAVES + 1) for part in ("re", "im"))
+
 
 MEANING = {
     UNWEIGHTED: "RMS in 2 to 50 Hz",
@@ -46,7 +55,7 @@ MEANING = {
 
 
 def comfort_units(*, seated: bool) -> dict[str, str]:
-    """Return the name of each value of `comfort_columns` to its unit, without `WAVE_NAMES`.
+    """Return the name of each value of `comfort_columns` to its unit, without `wave_names`.
 
     Args:
         seated: True for a car with a seat: its cushion and the SEAT value are added.
@@ -55,7 +64,8 @@ def comfort_units(*, seated: bool) -> dict[str, str]:
     for prefix in ("", SEAT_PREFIX) if seated else ("",):
         for name in (UNWEIGHTED, WEIGHTED):
             units |= dict.fromkeys((f"{prefix}{name}_{axis}" for axis in AXES), "m/s2") | {f"{prefix}{name}": "m/s2"}
-    return units | ({SEAT_VALUE: "-"} if seated else {}) | {ERROR: "-"}
+    errors = (UNWEIGHTED, WEIGHTED, *([f"{SEAT_PREFIX}{WEIGHTED}"] if seated else []))
+    return units | ({SEAT_VALUE: "-"} if seated else {}) | {f"{name}{ERROR}": "-" for name in errors}
 
 
 def comfort_columns(
@@ -67,6 +77,7 @@ def comfort_columns(
     band: tuple[float, float] = COMFORT_BAND,
     names: Collection[str] = (UNWEIGHTED, WEIGHTED),
     contact: str = "seat",
+    errors: bool = True,
 ) -> dict[str, Vector]:
     """Return the comfort values of r runs; the values of a run are bitwise independent of the other runs.
 
@@ -78,20 +89,23 @@ def comfort_columns(
         band: band of the unweighted value [Hz].
         names: `UNWEIGHTED`, `WEIGHTED` or both.
         contact: point of contact at `rail`, see `vehicle.signals.analysis.evaluation`.
+        errors: False leaves out the standard errors and `wave_names`.
 
     Returns:
-        Name to values, (r,) each: those of `comfort_units` with these names, with `UNWEIGHTED` the error and
-        `WAVE_NAMES`. `seat_value` is NaN for a rail at rest.
+        Name to values, (r,) each: those of `comfort_units` with these names, and their `wave_names`. `seat_value` is
+        NaN for a rail at rest.
 
     Raises:
         DataError: a record that is too short or not finite.
     """
-    columns = _point(time_step, rail, skip, band, names, contact)
+    columns = _point(time_step, rail, skip, band, names, contact, errors)
     if cushion is not None:
         on_seat = {
-            f"{SEAT_PREFIX}{name}": values for name, values in _point(time_step, cushion, skip, band, names).items()
+            f"{SEAT_PREFIX}{name}": values
+            for name, values in _point(time_step, cushion, skip, band, names, errors=errors).items()
         }
-        columns |= {name: values for name, values in on_seat.items() if name in comfort_units(seated=True)}
+        kept = {*comfort_units(seated=True), *wave_names(f"{SEAT_PREFIX}{WEIGHTED}")}
+        columns |= {name: values for name, values in on_seat.items() if name in kept}
         columns[SEAT_VALUE] = np.array(
             [
                 seat_value(time_step, above[2], below[2], skip=skip).rms if np.any(below[2]) else np.nan
@@ -108,19 +122,36 @@ def _point(
     band: tuple[float, float],
     names: Collection[str],
     contact: str = "seat",
+    errors: bool = True,
 ) -> dict[str, Vector]:
     """Return the values at one point."""
     columns: dict[str, Vector] = {}
     if UNWEIGHTED in names:
         value = comfort_values(time_step, records[:, :, round(skip / time_step) :], band)
         columns |= {f"{UNWEIGHTED}_{axis}": value.axes[:, number] for number, axis in enumerate(AXES)}
-        columns |= {UNWEIGHTED: value.overall, ERROR: value.error}
-        columns |= dict(zip(WAVE_NAMES, value.waves.view(np.float64).T, strict=True))
+        columns[UNWEIGHTED] = value.overall
+        if errors:
+            columns |= _errors(UNWEIGHTED, value.error, value.waves)
     if WEIGHTED in names:
-        weighted = np.array([weighted_rms_of(time_step, xyz, contact=contact, skip=skip) for xyz in records])
-        columns |= {f"{WEIGHTED}_{axis}": weighted[:, number] for number, axis in enumerate(AXES)}
-        columns[WEIGHTED] = weighted[:, 3]
+        factors, rms, pairs = application(contact).comfort_factors, [], []
+        for xyz in records:
+            rows = weighted_axes(time_step, xyz, contact=contact, skip=skip)
+            axes = [weighted_rms(row) for row in rows]
+            rms.append((*axes, vector_sum(axes, factors)))
+            if errors:
+                lines = weighted_lines(time_step, rows, factors)[None]
+                pairs.append((overall_error(lines), overall_waves(lines)))
+        columns |= {f"{WEIGHTED}_{axis}": values for axis, values in zip(AXES, np.array(rms).T, strict=False)}
+        columns[WEIGHTED] = np.array(rms)[:, 3]
+        if errors:
+            columns |= _errors(WEIGHTED, *map(np.concatenate, zip(*pairs, strict=True)))
     return columns
+
+
+def _errors(name: str, error: Vector, waves: Complex) -> dict[str, Vector]:
+    """Return the columns of the error of a comfort value, (r,), and of its waves, (r, `WAVES`)."""
+    parts = zip(wave_names(name), waves.view(np.float64).T, strict=True)
+    return {f"{name}{ERROR}": error, **dict(parts)}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

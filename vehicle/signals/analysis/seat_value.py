@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 from numpy.typing import ArrayLike
 
 from vehicle.errors import ConfigurationError, DataError
@@ -60,9 +61,14 @@ def weighted_rms_of(
 
     Source: ISO 2631-1:1997, 6.1 and 6.5.
     """
-    contact_point, records = application(contact), np.asarray(xyz, dtype=np.float64)
-    x, y, z = (
-        weighted_rms(weighted_record(time_step, record, name)[round(skip / time_step) :])
-        for record, name in zip(records, contact_point.weightings, strict=True)
-    )
-    return x, y, z, vector_sum((x, y, z), contact_point.comfort_factors)
+    x, y, z = map(weighted_rms, weighted_axes(time_step, xyz, contact=contact, skip=skip))
+    return x, y, z, vector_sum((x, y, z), application(contact).comfort_factors)
+
+
+def weighted_axes(
+    time_step: float, xyz: ArrayLike, *, contact: str = "seat", skip: float = 0.0
+) -> npt.NDArray[np.float64]:
+    """Return the weighted records of x, y and z [m/s2], (3, n), as in `weighted_rms_of`."""
+    records, names = np.asarray(xyz, dtype=np.float64), application(contact).weightings
+    rows = (weighted_record(time_step, record, name) for record, name in zip(records, names, strict=True))
+    return np.stack([row[round(skip / time_step) :] for row in rows])

@@ -171,6 +171,11 @@ class RoadDrive:
         speed = () if self.driving is None else (f"driving.speed={self.driving!r}",)
         return (*speed, *(f"{path}.one_sided=true" for path in self.lifting))
 
+    @property
+    def random(self) -> bool:
+        """Return True for a class or a profile, False for an obstacle or a level road; see `Signal`."""
+        return self.road != LEVEL and self.obstacle is None
+
     def signal(self) -> Signal:
         """Generate the plate signals.
 
@@ -182,8 +187,8 @@ class RoadDrive:
         road, duration = self._road()
         wheels = {name: (behind, side) for name, behind, side in self.wheels}
         signal = drive(road, speed=self.speed / 3.6, wheels=wheels, duration=duration, rate=self.rate)
-        if isinstance(road, IsoRoad) or self.obstacle is not None:
-            return signal
+        if isinstance(road, IsoRoad) or not self.random:
+            return replace(signal, random=self.random)
         return replace(signal, notices=(*road.notices, *acceleration_events(signal.displacement, signal.timestep)))
 
     def _road(self) -> tuple[IsoRoad | MeasuredRoad, float]:
@@ -239,7 +244,9 @@ class RoadDrive:
         """Return plates at rest."""
         time = uniform_time(samples=samples_of(duration, self.rate) + 1, timestep=1.0 / self.rate)
         height = {name: np.zeros(time.size) for name, _, _ in self.wheels}
-        return Signal(time=time, displacement=height, source=f"level road; {self.speed:.6g} km/h", profile=height)
+        return Signal(
+            time=time, displacement=height, source=f"level road; {self.speed:.6g} km/h", profile=height, random=False
+        )
 
     def slopes(self, signal: Signal) -> dict[str, NDArray[np.float64]]:
         """Return the slope of the road that each wheel takes, tan(beta) [-], (n,): that of the cams, or w'/V."""
@@ -273,7 +280,7 @@ class RoadDrive:
     def summary(self, signal: Signal) -> dict[str, object]:
         """Return the description of the road for the summary of a run."""
         measured, obstacle = isinstance(self.road, Path), self.obstacle
-        no_class = measured or obstacle is not None or self.road == LEVEL
+        no_class = measured or not self.random
         return {
             "class": None if no_class else self.road,
             "profile": str(self.road) if measured else None,

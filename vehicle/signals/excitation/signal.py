@@ -55,6 +55,7 @@ class Signal:
             or, by default, for none: then rolling tyres take z', the slope of the displacement.
         profile: wheel -> height of the road itself below the wheel [m], shape (n,), of which the displacement is what
             the tyre takes; for pictures only, by default for no wheel.
+        random: False for one event or a level road: its values are no estimates and have no standard error.
 
     Raises:
         DataError: shapes differ, a value is not finite, the grid is not uniform, a wheel is unknown.
@@ -68,6 +69,7 @@ class Signal:
     highest: float | None = None
     slope_velocity: Mapping[str, Vector] = field(default_factory=dict)
     profile: Mapping[str, Vector] = field(default_factory=dict)
+    random: bool = True
 
     def __repr__(self) -> str:
         """Return source, length and wheels in a line."""

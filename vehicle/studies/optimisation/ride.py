@@ -96,7 +96,8 @@ class RideMeasure:
             seated = any(quantity.startswith(SEAT_PREFIX) for quantity in quantities)
             cushion = runs.stacked(*SEAT) if seated else None
             names = {quantity.removeprefix(SEAT_PREFIX) for quantity in quantities}
-            columns = comfort_columns(runs.timestep, runs.stacked(*RAIL), cushion, skip=self.skip, names=names)
+            rail = runs.stacked(*RAIL)
+            columns = comfort_columns(runs.timestep, rail, cushion, skip=self.skip, names=names, errors=False)
         return {
             number: columns[number] if number in columns else self._number(runs, *split_name(number))
             for number in self.numbers

@@ -34,6 +34,12 @@ MARGIN = 2e-4
 ACTIVE = 2e-3
 """Relative distance from the largest excess within which a figure is active; from a bound, a parameter."""
 
+SAMPLE = 64
+"""Default number of cars for the quadratic surfaces."""
+
+SAMPLE_SHARE = 0.4
+"""Share of the computing time that they take: 2 parameters need about as many steps as the sample has vectors."""
+
 STARTS = 32
 """Random starts on the quadratic surfaces; they cost no runs."""
 
@@ -104,7 +110,7 @@ def smallest_change(
     high: Vector,
     costs: Vector,
     *,
-    sample: int = 64,
+    sample: int = SAMPLE,
     progress: Callable[[float], None] | None = None,
 ) -> SmallestChange:
     """Return the smallest change for which all limits are met.
@@ -122,7 +128,7 @@ def smallest_change(
         return _result(cars, present, low, high, costs)
     positions = low + (high - low) * scipy.stats.qmc.Sobol(low.size, rng=1).random(sample)
     values = cars.at(np.vstack([present, positions]))
-    done(0.4)
+    done(SAMPLE_SHARE)
     surfaces = _Surfaces(np.vstack([present, positions]), values)
     starts = [present, *_predicted(surfaces, low, high, costs)]
     tried = np.vstack([present, positions, *(start[None] for start in starts)])
@@ -138,7 +144,7 @@ def smallest_change(
         position = _least_cost(lambda u: cars.with_slopes(u, low, high), start, low, high, costs)
         if np.all(cars.at(position[None])[0] <= 0.0):
             met.append(position)
-        done(0.4 + 0.5 * (number + 1) / len(starts))
+        done(SAMPLE_SHARE + 0.5 * (number + 1) / len(starts))
     # A search may end outside the limits; the cars that it met inside them count too.
     met += list(cars.inside())
     best = min(met, key=lambda position: float(np.sum((costs * position) ** 2)))

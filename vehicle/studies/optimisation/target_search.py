@@ -11,89 +11,28 @@ from typing import Any
 import numpy as np
 
 from vehicle.digits import number
-from vehicle.errors import ConfigurationError, DataError, VehicleError
-from vehicle.model.parameters.channel_words import channels_named
+from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.paths import value_of as parameter_value
 from vehicle.model.parameters.ranges import Range
 from vehicle.model.parameters.vehicle import Vehicle
-from vehicle.runs.car import Car, Run
-from vehicle.runs.car.road import Road
+from vehicle.runs.car import Car
 from vehicle.runs.targets.figure import Figure
-from vehicle.runs.targets.values import Histories, value_of
-from vehicle.runs.targets.verdict import state_of
+from vehicle.runs.targets.verdict import CONFIDENCE, UNDECIDED, state_of
+from vehicle.signals.analysis.ride_comfort import ERROR
 from vehicle.studies.optimisation.problem import Vector
-from vehicle.studies.optimisation.smallest_change import SmallestChange, smallest_change
+from vehicle.studies.optimisation.smallest_change import SAMPLE, SAMPLE_SHARE, SmallestChange, smallest_change
+from vehicle.studies.optimisation.target_measure import measures_of
 from vehicle.studies.sweeps.executors import StandingExecutor, ThisProcess, process_pool
-from vehicle.studies.sweeps.measure import STEP, of_one
 from vehicle.studies.sweeps.plan import plan_sweep
-from vehicle.studies.sweeps.run_batch import Runs
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
 
 MOST_PARAMETERS = 8
 """Maximum number of varied parameters: the quadratic surfaces need a sample of about their square."""
 
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class TargetMeasure:
-    """Measure of the figures of one input.
-
-    Attributes:
-        figures: name and figure, with channels by name.
-        wheels: wheels of the car.
-        dampers: wheels with a damper.
-        skip: excluded time at the beginning [s].
-        left_obstacle: time at which the last wheel leaves an obstacle [s]; None without an obstacle.
-        timestep: maximum step of the reduced engine [s].
-    """
-
-    figures: tuple[tuple[str, Figure], ...]
-    wheels: tuple[str, ...]
-    dampers: tuple[str, ...]
-    skip: float
-    left_obstacle: float | None = None
-    timestep: float = STEP
-
-    @property
-    def channels(self) -> tuple[str, ...]:
-        """Return the required channels."""
-        names: list[str] = []
-        for _, figure in self.figures:
-            names += [*figure.channels, *figure.over]
-            if figure.quantity == "tyre_load":
-                names += [f"tyre_{wheel}_force_z" for wheel in figure.wheels or self.wheels]
-            elif figure.quantity in ("stick_share", "travel"):
-                names += [f"damper_{wheel}_velocity" for wheel in figure.wheels or self.dampers]
-        return tuple(dict.fromkeys(names))
-
-    @property
-    def units(self) -> Mapping[str, str]:
-        """Return name of each figure to its unit."""
-        return {name: figure.unit for name, figure in self.figures}
-
-    def __call__(self, run: Run) -> dict[str, float]:
-        """Return the figures of a run."""
-        return of_one(self, run)
-
-    def of(self, runs: Runs) -> dict[str, Vector]:
-        """Return the figures of r runs, (r,) each."""
-        columns: dict[str, list[float]] = {name: [] for name, _ in self.figures}
-        for row, limit in enumerate(runs.slip_velocity if self.dampers else np.zeros(len(runs.vehicles))):
-            samples = {channel: runs[channel][row] for channel in self.channels}
-            ride = Histories(
-                time=runs.time,
-                of=samples.__getitem__,
-                unit=str,
-                named=tuple,
-                skip=self.skip,
-                tyre_load={wheel: float(loads[row]) for wheel, loads in runs.tyre_load.items()},
-                dampers=self.dampers,
-                slip_velocity=float(limit),
-                left_obstacle=self.left_obstacle,
-            )
-            for name, figure in self.figures:
-                # The unit was compared with the run of the unchanged car.
-                columns[name].append(value_of(figure, ride, checked=True)[0])
-        return {name: np.array(values) for name, values in columns.items()}
+ERROR_WORDS = (
+    "+-: two standard errors, over random roads of this class and length; within +-: another may decide otherwise"
+)
+"""Line below figures with errors."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -106,6 +45,7 @@ class TargetSearch:
         values: their values in the changed car.
         figures: figures by name.
         before, after: values of the figures of the unchanged and of the changed car.
+        before_error, after_error: their standard errors on random roads; NaN without one.
         change: result of the search.
         inputs: names of the inputs.
     """
@@ -116,6 +56,8 @@ class TargetSearch:
     figures: Mapping[str, Figure]
     before: tuple[float, ...]
     after: tuple[float, ...]
+    before_error: tuple[float, ...]
+    after_error: tuple[float, ...]
     change: SmallestChange
     inputs: tuple[str, ...]
 
@@ -154,17 +96,28 @@ class TargetSearch:
         return text + (f"; the bound of {' and '.join(bound)} stops the search." if bound else ".")
 
     def rows(self) -> list[tuple[str, str, str, str, str, str]]:
-        """Return name, input, limit with unit, both values and the state of each figure as texts."""
+        """Return name, input, limit with unit, both values with two standard errors, and the state as texts."""
+
+        def text(value: float, error: float) -> str:
+            if not math.isfinite(value):
+                return "not settled"
+            return number(value) + (f" +- {number(CONFIDENCE * error, 2)}" if error > 0.0 else "")
+
+        def state(figure: Figure, value: float, error: float) -> str:
+            certain = state_of(figure, value, error if error > 0.0 else None) != UNDECIDED
+            return state_of(figure, value, None) + ("" if certain else " within +-")
+
+        both = [zip(*pair, strict=True) for pair in ((self.before, self.before_error), (self.after, self.after_error))]
         return [
             (
                 figure.words or name.replace("_", " "),
                 figure.where,
                 f"{'<=' if figure.sense > 0 else '>='} {number(figure.limit)} {figure.unit}",
-                number(before) if math.isfinite(before) else "not settled",
-                number(after) if math.isfinite(after) else "not settled",
-                state_of(figure, after, None),
+                text(*before),
+                text(*after),
+                state(figure, *after),
             )
-            for (name, figure), before, after in zip(self.figures.items(), self.before, self.after, strict=True)
+            for (name, figure), before, after in zip(self.figures.items(), *both, strict=True)
         ]
 
     def lines(self) -> list[str]:
@@ -181,10 +134,12 @@ class TargetSearch:
             for each, value in zip(self.ranges, self.values, strict=True)
         ]
         figures = [("target", "input", "limit", "before", "after", "now"), *self.rows()]
-        return [*_aligned(parameters), *_aligned(figures), self.sentence]
+        errors = [ERROR_WORDS] if any(error > 0.0 for error in self.after_error) else []
+        return [*_aligned(parameters), *_aligned(figures), *errors, self.sentence]
 
     def summary(self) -> dict[str, Any]:
         """Return the result for `summary.json`."""
+        keys = ("before", "after", "before_error", "after_error")
         return {
             "feasible": self.change.feasible,
             "sentence": self.sentence,
@@ -195,8 +150,10 @@ class TargetSearch:
                 for each, value in zip(self.ranges, self.values, strict=True)
             },
             "figures": {
-                name: {"limit": figure.limit, "unit": figure.unit, "before": _finite(before), "after": _finite(after)}
-                for (name, figure), before, after in zip(self.figures.items(), self.before, self.after, strict=True)
+                name: {"limit": figure.limit, "unit": figure.unit, **dict(zip(keys, map(_finite, values), strict=True))}
+                for (name, figure), *values in zip(
+                    self.figures.items(), *(getattr(self, key) for key in keys), strict=True
+                )
             },
         }
 
@@ -232,7 +189,7 @@ def meet_targets(
     started = tuple(_with_start(car.vehicle, each) for each in ranges)
     if not 1 <= len(started) <= MOST_PARAMETERS:
         raise ConfigurationError(f"--vary: {len(started)} parameters; must be 1 to {MOST_PARAMETERS}")
-    measures = dict(_measures(car, figures, duration))
+    measures = dict(measures_of(car, figures, duration))
     names = list(figures)
     scale = np.array([figure.weight / (abs(figure.limit) or 1.0) for figure in figures.values()])
     limits, senses = (np.array([getattr(each, key) for each in figures.values()]) for key in ("limit", "sense"))
@@ -240,35 +197,65 @@ def meet_targets(
     def values(positions: Vector, executor: StandingExecutor) -> Vector:
         changes = [_texts(started, position) for position in positions]
         columns: dict[str, Vector] = {}
-        for source, measure in measures.items():
+        for index, (source, measure) in enumerate(measures.items()):
             settings = SweepSettings(engine="reduced", measure=measure, skip=measure.skip, executor=executor)
-            table = plan_sweep(car, changes, source, settings).run()
+            plan = plan_sweep(car, changes, source, settings)
+            # The cars of the sample take long; those of a step are few.
+            begun, part = index / len(measures), SAMPLE_SHARE / len(measures)
+            each = partial(_within, progress, SAMPLE_SHARE * begun, part) if len(changes) >= SAMPLE else None
+            table = plan.run(progress=each)
             # With one change the sweep runs the unchanged car first.
             columns |= {name: table.column(name)[-len(changes) :] for name in measure.units}
-        return np.stack([columns[name] for name in names], axis=1)
+        return np.stack([columns[f"{name}{suffix}"] for suffix in ("", ERROR) for name in names], axis=1)
 
     low, high = (np.log([getattr(each, key) / each.start for each in started]) for key in ("low", "high"))
     # The processes of all batches of cars: each imports the program and builds the reference car once.
     with StandingExecutor(partial(process_pool, jobs) if jobs > 1 else ThisProcess) as executor:
         change = smallest_change(
-            lambda positions: scale * senses * (values(positions, executor) - limits),
+            lambda positions: scale * senses * (values(positions, executor)[:, : len(names)] - limits),
             low,
             high,
             np.array([(costs or {}).get(each.path, 1.0) for each in started]),
             progress=progress,
         )
-        before, after = values(np.stack([np.zeros(len(started)), change.position]), executor)
+        ends = values(np.stack([np.zeros(len(started)), change.position]), executor).reshape(2, 2, -1).tolist()
+    (before, before_error), (after, after_error) = (tuple(map(tuple, end)) for end in ends)
     changed = {each.path: each.start * math.exp(u) for each, u in zip(started, change.position, strict=True)}
     return TargetSearch(
         car=car.with_(changed),
         ranges=started,
         values=tuple(changed.values()),
         figures=figures,
-        before=tuple(before.tolist()),
-        after=tuple(after.tolist()),
+        before=before,
+        after=after,
+        before_error=before_error,
+        after_error=after_error,
         change=replace(change, excess=change.excess / np.array([figure.weight for figure in figures.values()])),
         inputs=tuple(str(source) for source in measures),
     )
+
+
+def _within(progress: Callable[[float], None] | None, begun: float, part: float, finished: float) -> None:
+    """Report a finished fraction of a part of the search that began at a fraction `begun`."""
+    if progress is not None:
+        progress(begun + part * finished)
+
+
+def outlook(ranges: int, figures: Mapping[str, Figure], duration: float) -> str:
+    """Return text on the cars of a search before it begins; it has no time limit.
+
+    Args:
+        ranges: number of varied parameters.
+        figures: figures with their inputs.
+        duration: length of a road class [s].
+    """
+    inputs = {(each.road or each.obstacle or each.signal, each.speed) for each in figures.values()}
+    text = f"{SAMPLE} cars, then steps of {ranges + 1} cars from up to 3 starts, on {len(inputs)} input"
+    text += "" if len(inputs) == 1 else "s"
+    if not any(len(each.road) == 1 for each in figures.values()):
+        return text
+    shorter = "a quarter of --duration takes a quarter of the time and doubles the errors"
+    return f"{text}; roads of {number(duration)} s: {shorter}"
 
 
 def _texts(ranges: Sequence[Range], position: Vector) -> tuple[str, ...]:
@@ -290,63 +277,6 @@ def _with_start(vehicle: Vehicle, bounds: Range) -> Range:
     # A present value at a bound is allowed: the search then goes one way. A range needs a start strictly inside.
     low, high = min(bounds.low, start * (1.0 - 1e-12)), max(bounds.high, start * (1.0 + 1e-12))
     return replace(bounds, low=low, high=high, start=start)
-
-
-def _measures(
-    car: Car, figures: Mapping[str, Figure], duration: float | None
-) -> list[tuple[str | Road, TargetMeasure]]:
-    """Return each input of the figures and the measure of its figures."""
-    groups: dict[tuple[str, float | None], list[tuple[str, Figure]]] = {}
-    for name, figure in figures.items():
-        if figure.run or not (figure.road or figure.obstacle or figure.signal):
-            raise ConfigurationError(
-                f"{name}: a search needs the input of the target; set road or obstacle with speed, or signal, "
-                "and remove run"
-            )
-        if not figure.signal and figure.speed is None:
-            raise ConfigurationError(f"{name}: speed [km/h] is missing; a search needs it")
-        groups.setdefault((figure.road or figure.obstacle or figure.signal, figure.speed), []).append((name, figure))
-    measures = []
-    for (source_name, speed), group in groups.items():
-        source: str | Road = source_name
-        if speed is not None:
-            source = Road(source_name, speed, duration=duration if len(source_name) == 1 else None)
-        try:
-            run = car.run(source, engine="reduced")
-            chosen = tuple((name, _checked(name, figure, run)) for name, figure in group)
-        except DataError as error:
-            raise ConfigurationError(f"{source_name}: {error}") from None
-        times = (run.road or {}).get("obstacle_s")
-        measures.append(
-            (
-                source,
-                TargetMeasure(
-                    figures=chosen,
-                    wheels=car.vehicle.wheels,
-                    dampers=car.vehicle.damped_wheels,
-                    skip=run.skip,
-                    left_obstacle=float(times[1]) if isinstance(times, Sequence) else None,
-                ),
-            )
-        )
-    return measures
-
-
-def _checked(name: str, figure: Figure, run: Run) -> Figure:
-    """Return a figure with its channels by name.
-
-    Raises:
-        ConfigurationError: a channel is not recorded, or the unit is wrong.
-    """
-    recorded = tuple(run.recording.channels)
-    try:
-        channels, over = (channels_named(texts, recorded) for texts in (figure.channels, figure.over))
-    except VehicleError as error:
-        raise ConfigurationError(f"{name}: {error}") from None
-    units = {run.recording.units[channel] for channel in channels}
-    if figure.quantity in ("rms", "peak", "peak_to_peak") and units != {figure.unit}:
-        raise ConfigurationError(f"{name}: unit: found {figure.unit!r}, the channels have {', '.join(sorted(units))!r}")
-    return replace(figure, channels=channels, over=over)
 
 
 def _finite(value: float) -> float | None:

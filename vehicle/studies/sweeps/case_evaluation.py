@@ -68,7 +68,7 @@ def evaluate(cases: Sequence[Case], measure: Measure) -> list[Result]:
     return [results[number] if number in results else _single(case, measure) for number, case in enumerate(cases)]
 
 
-def reason_for_mujoco(case: Case, measure: BatchMeasure) -> str:
+def reason_for_mujoco(case: Case, measure: BatchMeasure) -> str | None:
     """Return the reason why "auto" runs a case with MuJoCo, from a run with the reduced engine.
 
     Args:
@@ -76,15 +76,15 @@ def reason_for_mujoco(case: Case, measure: BatchMeasure) -> str:
         measure: measure of the run.
 
     Returns:
-        The first warning of the reduced engine; empty inside its valid range, or if the run fails, whose row then has
-        the error message.
+        The first warning of the reduced engine; empty inside its valid range; None if the run fails, whose row then
+        has the error message.
     """
     try:
         car, signal = _car_of(case), signal_of(case.source)
         _require(car.vehicle, signal, measure)
         statistics = _simulated([car], signal, measure.channels, measure.timestep).statistics[0]
     except OF_A_RUN:
-        return ""
+        return None
     return "" if statistics.within_validity else statistics.warnings[0].removesuffix(REMEDY)
 
 
@@ -211,13 +211,15 @@ def measured_batch(
             except SimulationError as error:
                 results[row] = _failed(error)
     if good:
-        for row, result in zip(good, _measured(cars, simulated, good, measure), strict=True):
+        for row, result in zip(good, _measured(cars, simulated, good, measure, signal.random), strict=True):
             results[row] = result
     return results
 
 
-def _measured(cars: Sequence[Car], simulated: BatchRuns, rows: list[int], measure: BatchMeasure) -> list[Result]:
-    """Return the values of selected rows of a simulated batch."""
+def _measured(
+    cars: Sequence[Car], simulated: BatchRuns, rows: list[int], measure: BatchMeasure, random: bool
+) -> list[Result]:
+    """Return the values of selected rows of a simulated batch; `random` as in `Runs`."""
     whole = len(rows) == len(cars)
     runs = Runs(
         time=simulated.time,
@@ -226,11 +228,12 @@ def _measured(cars: Sequence[Car], simulated: BatchRuns, rows: list[int], measur
         tyre_load={
             wheel: np.array([cars[row].static.tyre_load[wheel] for row in rows]) for wheel in cars[0].vehicle.wheels
         },
+        random=random,
     )
     try:
         columns = measure.of(runs)
     except OF_A_RUN as error:
-        return _retry_each(rows, error, lambda row: _measured(cars, simulated, [row], measure)[0])
+        return _retry_each(rows, error, lambda row: _measured(cars, simulated, [row], measure, random)[0])
     results = []
     for index, row in enumerate(rows):
         try:

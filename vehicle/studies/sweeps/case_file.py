@@ -19,6 +19,7 @@ from vehicle.model.parameters.paths import assignments
 from vehicle.model.parameters.toml_file import build, read_table
 from vehicle.runs.car.road import Road
 from vehicle.signals.analysis.ride_comfort import UNWEIGHTED, WEIGHTED
+from vehicle.studies.sweeps.change_error import MEANING_OF_ERROR, NO_ERROR, change_errors, half_width
 from vehicle.studies.sweeps.sweep_ranking import RANKED_BY, SweptCases
 
 CASES = "cases.csv"
@@ -34,7 +35,7 @@ class CaseFile:
 
     Attributes:
         roads: classes of ISO 8608 and obstacles, as "C" and "cleat:20x50".
-        speeds: speeds on each of them [km/h].
+        speeds: speeds on each of them [km/h]; or a table of each road to its speeds, as {C = [80], D = [50]}.
         signals: signal files, or names of shipped ones.
         duration: length of a class [s]; by default that of a run.
         vehicle: name or file of the car; by default that of the command.
@@ -42,11 +43,11 @@ class CaseFile:
         variants: name of a variant to its changed parameters.
 
     Raises:
-        ConfigurationError: no input, or roads without speeds.
+        ConfigurationError: no input, or roads without speeds, or speeds of a road that is not among them.
     """
 
     roads: tuple[str, ...] = ()
-    speeds: tuple[float, ...] = ()
+    speeds: tuple[float, ...] | Mapping[str, tuple[float, ...]] = ()
     signals: tuple[str, ...] = ()
     duration: float | None = None
     vehicle: str = ""
@@ -58,6 +59,11 @@ class CaseFile:
             raise ConfigurationError('CaseFile.roads: no input; set roads = ["C"] and speeds = [80], or signals')
         if bool(self.roads) != bool(self.speeds):
             raise ConfigurationError("CaseFile.speeds: set roads and speeds [km/h] together")
+        for name in (*self.speeds, *self.roads) if isinstance(self.speeds, Mapping) else ():
+            if name not in self.roads:
+                raise ConfigurationError(f"CaseFile.speeds: {name!r} is not among roads; add it there, or remove it")
+            if not dict(self.speeds).get(name):
+                raise ConfigurationError(f"CaseFile.speeds: no speed on {name!r}; add {name!r} = [80], in km/h")
 
     @property
     def inputs(self) -> list[Road | str]:
@@ -65,7 +71,8 @@ class CaseFile:
         return [
             *(
                 Road(name, speed, duration=self.duration if len(name) == 1 else None)
-                for name, speed in itertools.product(self.roads, self.speeds)
+                for name in self.roads
+                for speed in (self.speeds[name] if isinstance(self.speeds, Mapping) else self.speeds)
             ),
             *self.signals,
         ]
@@ -121,6 +128,7 @@ class CaseResults:
         inputs: names of the inputs.
         name: comfort value, as "weighted".
         weighted, unweighted: comfort [m/s2], NaN for a failed run; (inputs, cars).
+        errors: standard errors of the changes from the unchanged car, 0 on one event [m/s2]; (inputs, cars).
     """
 
     cars: tuple[str, ...]
@@ -128,23 +136,41 @@ class CaseResults:
     name: str
     weighted: npt.NDArray[np.float64]
     unweighted: npt.NDArray[np.float64]
+    errors: npt.NDArray[np.float64]
+
+    @property
+    def half_widths(self) -> npt.NDArray[np.float64]:
+        """Return the half width of the 95 % interval of each change [%], NaN on one event, (inputs + 1, cars).
+
+        The last row is that of the mean change.
+        """
+        relative = 100.0 * (self.errors / self.weighted[:, :1]).T
+        each = [half_width(relative[:, [number]]) for number in range(len(self.inputs))]
+        return np.array([*each, half_width(relative)])
 
     @property
     def changes(self) -> npt.NDArray[np.float64]:
         """Return the change of the weighted value from the unchanged car on the same input [%], (inputs, cars)."""
         return np.asarray(100.0 * (self.weighted / self.weighted[:, :1] - 1.0))
 
-    def rows(self) -> list[list[str]]:
-        """Return the head and a row for each car as texts: weighted value and change on each input, mean change."""
+    def rows(self, sign: str = "+-") -> list[list[str]]:
+        """Return the head and a row for each car as texts: weighted value and change on each input, mean change.
+
+        Args:
+            sign: sign before the half width of the mean change.
+        """
         heads = ["car", *(f"{name} [m/s2]" for name in self.inputs), "mean change"]
-        rows = [heads]
+        rows, widths = [heads], self.half_widths[-1]
         for number, car in enumerate(self.cars):
             cells = []
             for value, change in zip(self.weighted[:, number], self.changes[:, number], strict=True):
                 cell = f"{value:.4g}" if math.isfinite(value) else "failed"
                 cells.append(f"{cell} ({change:+.1f} %)" if number and math.isfinite(change) else cell)
             mean = float(np.mean(self.changes[:, number]))
-            rows.append([car, *cells, "base" if not number else f"{mean:+.1f} %" if math.isfinite(mean) else "-"])
+            error = f" {sign} {widths[number]:.1f}" if widths[number] > 0.0 else ""
+            rows.append(
+                [car, *cells, "base" if not number else f"{mean:+.1f}{error} %" if math.isfinite(mean) else "-"]
+            )
         return rows
 
     def lines(self) -> list[str]:
@@ -158,7 +184,13 @@ class CaseResults:
             ).rstrip()
             for row in rows
         ]
-        return [*table, f"{self.name}: RMS after the weightings of a seat (ISO 2631-1)", self.sentence]
+        meaning = f"{self.name}: RMS after the weightings of a seat (ISO 2631-1); {self.error_words}"
+        return [*table, meaning, self.sentence]
+
+    @property
+    def error_words(self) -> str:
+        """Meaning of the half widths, or the reason why an event has no error."""
+        return MEANING_OF_ERROR if np.any(self.half_widths > 0.0) else NO_ERROR
 
     @property
     def sentence(self) -> str:
@@ -189,6 +221,7 @@ def case_results(table: SweptCases, cars: Sequence[str]) -> CaseResults:
         name=name,
         weighted=table.column(name).reshape(len(inputs), -1),
         unweighted=table.column(name.replace(WEIGHTED, UNWEIGHTED)).reshape(len(inputs), -1),
+        errors=change_errors(table, np.arange(len(table.cases)).reshape(len(inputs), -1).T.tolist(), name).T,
     )
 
 
@@ -201,13 +234,16 @@ def write_cases(path: Path, results: CaseResults) -> None:
     """
     with path.open("w", encoding="utf-8", newline="") as file:
         rows = csv.writer(file, lineterminator="\n")
-        rows.writerow(["input", "car", f"{results.name} [m/s2]", "change [%]", "unweighted [m/s2]"])
+        rows.writerow(
+            ["input", "car", f"{results.name} [m/s2]", "change [%]", "unweighted [m/s2]", "half_width_95 [%]"]
+        )
         for number, source in enumerate(results.inputs):
             for car, *values in zip(
                 results.cars,
                 results.weighted[number],
                 results.changes[number],
                 results.unweighted[number],
+                results.half_widths[number],
                 strict=True,
             ):
                 rows.writerow([source, car, *(f"{value:.6g}" if math.isfinite(value) else "" for value in values)])

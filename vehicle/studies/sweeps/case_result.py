@@ -35,11 +35,13 @@ class Block:
         rows: a line for each case, see `row_text`.
         seconds: computing time of all cases [s].
         failed: positions of the failed cases.
+        reduced: True if the reduced engine ran all cases.
     """
 
     rows: bytes
     seconds: float
     failed: tuple[int, ...] = ()
+    reduced: bool = False
 
     @classmethod
     def of(cls, cases: Sequence[Case], keys: Sequence[str], results: Sequence[Result]) -> Block:
@@ -55,6 +57,7 @@ class Block:
             rows="".join(rows).encode(),
             seconds=sum(result.seconds for result in results),
             failed=tuple(position for position, result in enumerate(results) if result.reason),
+            reduced=all(result.engine == "reduced" for result in results),
         )
 
     def results(self) -> list[Result]:

@@ -1,16 +1,18 @@
 """Difference in comfort between each car of a sweep and the first car, with the standard error on the same roads.
 
-All cars drive on the same road, so the random errors of their comfort values are correlated, and the error of a
-difference (`vehicle.signals.analysis.comfort_error`) is far below the errors of both values. It is the standard error
-over Gaussian roads of the class; seeds of a generated road, whose lines have fixed amplitudes, scatter less. For a road
-with two or more seeds the mean over the seeds is also given, with the error estimated from the scatter.
+The values are the unweighted one, and after it the weighted one by which the cars are ranked. All cars drive on the
+same road, so the random errors of their comfort values are correlated, and the error of a difference
+(`vehicle.signals.analysis.comfort_error`) is far below the errors of both values. It is the standard error over
+Gaussian roads of the class; one event, as an obstacle, has none. Seeds of a generated road, whose lines have fixed
+amplitudes, scatter less. For a road with two or more seeds the mean over the seeds is also given, with the error
+estimated from the scatter.
 """
 
 from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from itertools import islice
 from typing import TextIO
@@ -19,33 +21,34 @@ import numpy as np
 from scipy.special import stdtrit
 
 from vehicle.signals.analysis.comfort_error import WAVES, difference_error
-from vehicle.signals.analysis.ride_comfort import ERROR, UNWEIGHTED, WAVE_NAMES
+from vehicle.signals.analysis.ride_comfort import ERROR, UNWEIGHTED, wave_names
 from vehicle.signals.excitation.road_drive import RoadDrive
-from vehicle.studies.sweeps.case import Case, Input
+from vehicle.studies.sweeps.case import Case, Input, is_random
 from vehicle.studies.sweeps.case_result import Row
+from vehicle.studies.sweeps.sweep_ranking import RANKED_BY
 from vehicle.studies.sweeps.sweep_table import SweepTable
 
 DIFFERENCES = "differences.csv"
 """Name of the file in the folder of a sweep."""
 
 CLASS, SEEDS = "Gaussian roads of this class", "seeds of the generated road"
-"""Populations for which an error is stated."""
+RECORDS, EVENT = "Gaussian records with this spectrum", "one event: no random error"
+"""Populations for which an error is stated: of a road, of its seeds, of a file; and an input without an error."""
 
 HEADS = (
-    "cars differ on",
-    "unweighted [m/s2]",
-    "standard_error [m/s2]",
-    "difference [m/s2]",
-    "standard_error_of_difference [m/s2]",
-    "half_width_95 [m/s2]",
+    "{} [m/s2]",
+    "{}standard_error [m/s2]",
+    "{}difference [m/s2]",
+    "{}standard_error_of_difference [m/s2]",
+    "{}half_width_95 [m/s2]",
 )
+"""Heads of the columns of a comfort value; those of the weighted value have its name before them."""
 
-
-VALUES = (UNWEIGHTED, ERROR, *WAVE_NAMES)
-"""Names of the values of a row that the differences need."""
+PER_VALUE = 2 + 2 * WAVES
+"""Numbers of a comfort value in a row: value, relative error and C_m."""
 
 Numbers = tuple[float, ...]
-"""The `VALUES` of a row."""
+"""Value, relative error and C_m of each comfort value of a row."""
 
 ROWS_AT_ONCE = 1024
 """Number of rows whose errors are computed together."""
@@ -59,7 +62,7 @@ def has_differences(table: SweepTable) -> bool:
     return (
         UNWEIGHTED in table.units
         and any(car != first for car in cars)
-        and any(WAVE_NAMES[0] in result.values for result in islice(good, 1))
+        and any(wave_names(UNWEIGHTED)[0] in result.values for result in islice(good, 1))
     )
 
 
@@ -69,18 +72,23 @@ class DifferencesWriter:
     Args:
         file: the open file.
         paths: the modified parameter paths of all cases.
+        units: names of the values of the table.
     """
 
-    def __init__(self, file: TextIO, paths: Sequence[str]) -> None:
+    def __init__(self, file: TextIO, paths: Sequence[str], units: Collection[str]) -> None:
+        names = [UNWEIGHTED, *[name for name in RANKED_BY if name in units][:1]]
+        self._values = [each for name in names for each in (name, f"{name}{ERROR}", *wave_names(name))]
+        heads = [head.format(name if head == HEADS[0] else "" if name == UNWEIGHTED else f"{name}_")
+                 for name in names for head in HEADS]  # fmt: skip
         self._writer = csv.writer(file, lineterminator="\n")
-        self._writer.writerow(["input", *paths, *HEADS])
+        self._writer.writerow(["input", *paths, "cars differ on", *heads])
         self._factor = float(stdtrit(2 * WAVES, 0.975))
         self._first: dict[Input, Numbers] = {}
         self._seeds: dict[str, dict[tuple[str, ...], tuple[Sequence[str], list[float]]]] = {}
         self._source: Input | None = None
         self._base: Numbers = ()
         self._road = ""
-        self._waiting: list[tuple[str, Sequence[str], Numbers, Numbers]] = []
+        self._waiting: list[tuple[str, Sequence[str], str, Numbers, Numbers]] = []
 
     def add(self, case: Case, parameters: Sequence[str], row: Row) -> None:
         """Add the row of a case.
@@ -91,16 +99,18 @@ class DifferencesWriter:
             row: its values.
         """
         values = row["values"]
-        numbers = tuple([float(values.get(name, math.nan)) for name in VALUES])
+        numbers = tuple([float(values.get(name, math.nan)) for name in self._values])
         if case.source is not self._source:
             self._source, self._road = case.source, ""
             self._base = self._first.setdefault(case.source, numbers)
             if isinstance(case.source, RoadDrive) and case.source.tagged:
                 self._road = replace(case.source, tagged=False).name
-        self._waiting.append((case.source.name, parameters, numbers, self._base))
+        kind = CLASS if isinstance(case.source, RoadDrive) else RECORDS
+        population = kind if is_random(case.source) else EVENT
+        self._waiting.append((case.source.name, parameters, population, numbers, self._base))
         if self._road:
             cars = self._seeds.setdefault(self._road, {})
-            cars.setdefault(case.overrides, (parameters, []))[1].append(numbers[0])
+            cars.setdefault(case.overrides, (parameters, []))[1].append(numbers[::PER_VALUE])
         if len(self._waiting) == ROWS_AT_ONCE:
             self._flush()
 
@@ -110,26 +120,26 @@ class DifferencesWriter:
         for name, cars in self._seeds.items():
             base = np.array(next(iter(cars.values()))[1])
             for parameters, listed in cars.values():
-                comfort = np.array(listed)
+                comfort = np.array(listed)  # (seeds, values)
                 count, apart = len(comfort), comfort - base
-                error, spread = (float(np.std(values, ddof=1)) / math.sqrt(count) for values in (comfort, apart))
+                error, spread = (np.std(values, axis=0, ddof=1) / math.sqrt(count) for values in (comfort, apart))
                 width = float(stdtrit(count - 1, 0.975)) * spread
-                numbers = [float(np.mean(comfort)), error, float(np.mean(apart)), spread, width]
-                self._write(f"{name}, mean of {count} seeds", parameters, SEEDS, numbers)
+                numbers = np.array([np.mean(comfort, axis=0), error, np.mean(apart, axis=0), spread, width])
+                self._write(f"{name}, mean of {count} seeds", parameters, SEEDS, numbers.T.ravel().tolist())
 
     def _flush(self) -> None:
         """Write the waiting rows."""
         if not self._waiting:
             return
-        names, parameters, numbers, base = zip(*self._waiting, strict=True)
-        (comfort, relative, *waves), (base_comfort, _, *base_waves) = np.array(numbers).T, np.array(base).T
-        first, second = (
-            np.stack(parts[0::2], axis=1) + 1j * np.stack(parts[1::2], axis=1) for parts in (waves, base_waves)
-        )
-        errors = difference_error(first, second)
-        columns = [comfort, relative * comfort, comfort - base_comfort, errors, self._factor * errors]
-        for name, cells, row in zip(names, parameters, np.stack(columns, axis=1).tolist(), strict=True):
-            self._write(name, cells, CLASS, row)
+        names, parameters, populations, numbers, base = zip(*self._waiting, strict=True)
+        cars, bases = (np.array(values).reshape(len(names), -1, PER_VALUE) for values in (numbers, base))
+        comfort, relative = cars[..., 0], cars[..., 1]
+        waves, base_waves = (values[..., 2::2] + 1j * values[..., 3::2] for values in (cars, bases))
+        errors = difference_error(waves, base_waves)
+        columns = [comfort, relative * comfort, comfort - bases[..., 0], errors, self._factor * errors]
+        rows = np.stack(columns, axis=2).reshape(len(names), -1).tolist()
+        for row in zip(names, parameters, populations, rows, strict=True):
+            self._write(*row)
         self._waiting.clear()
 
     def _write(self, name: str, parameters: Sequence[str], population: str, numbers: Sequence[float]) -> None:

@@ -214,7 +214,9 @@ class Dispatcher:
                 error = future.exception()
                 if error is None:
                     block = future.result()
-                    self.pace = block.seconds / len(task)
+                    # The computing time of a vector of cars with the reduced engine is that of a single car.
+                    cars = len({cases[number].overrides for number in task.tolist()}) if block.reduced else FILL
+                    self.pace = block.seconds / len(task) * min(cars / FILL, 1.0)
                     keep(task, block)
                 elif isinstance(error, BrokenExecutor):
                     lost.append(task)
@@ -289,8 +291,8 @@ class Dispatcher:
             at_once: number of tasks submitted at once.
         """
         if self.pace is None:
-            # With a time limit the first tasks are single runs, whose time is limited exactly.
-            paced = 1.0 if self.time_limit is not None else float(FILL)
+            # Single runs of MuJoCo tell early how long the sweep takes; with a time limit they are limited exactly.
+            paced = 1.0 if self.time_limit is not None or first.engine != "reduced" else float(FILL)
         else:
             paced = max(TASK_S, at_once / PER_WORKER / TASKS_PER_S) / max(self.pace, 1e-9)
         even = len(waiting) / at_once  # so that all workers finish at the same time

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from vehicle.digits import number
 from vehicle.drawing.rendering.tornado_plot import draw_tornado, plot_tornado
+from vehicle.studies.sweeps.change_error import MEANING_OF_ERROR, NO_ERROR
 
 EFFECTS, TORNADO = "effects.csv", "effects.png"
 """Names of the files in the folder of a sweep."""
@@ -102,6 +103,11 @@ class Effects:
         plot_tornado(path, *self.bars, title=title, caption=caption)
 
     @property
+    def error_words(self) -> str:
+        """Meaning of the half widths, or the reason why an event has no error."""
+        return MEANING_OF_ERROR if any(math.isfinite(each.half_width) for each in self.effects) else NO_ERROR
+
+    @property
     def shown(self) -> tuple[Effect, ...]:
         """Effects in table and picture."""
         return self.effects[:MOST_SHOWN]
@@ -142,10 +148,7 @@ def effect_lines(effects: Effects) -> list[str]:
     ]
     if len(effects.effects) > len(rows):
         lines.append(f"and {len(effects.effects) - len(rows)} parameters with smaller effects in {EFFECTS}")
-    lines.append(
-        f"change of {effects.name!r}, {effects.base:.4g} m/s2 of the unchanged car; +-: half width of the 95 % "
-        "interval on roads of this class"
-    )
+    lines.append(f"change of {effects.name!r}, {effects.base:.4g} m/s2 of the unchanged car; {effects.error_words}")
     if effects.without:
         shown = ", ".join(effects.without[:3]) + (" ..." if len(effects.without) > 3 else "")
         lines.append(f"without effect here: {len(effects.without)} parameters ({shown})")

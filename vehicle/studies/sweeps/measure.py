@@ -102,15 +102,18 @@ class ComfortMeasure:
     def of(self, runs: Runs) -> dict[str, Vector]:
         """Return both comfort values and slip.
 
-        `unweighted_error` is the relative standard error for Gaussian roads of this class and length; weighted values,
-        SEAT value and slip have no standard error. Slip is motion above `damper.slip_velocity`, the saturated share is
-        above 1 mm/s. The first slip refers to the whole run, as in `summary.json`; NaN without slip.
+        `unweighted_error` and `weighted_error` are the relative standard errors for Gaussian roads of this class and
+        length, NaN for one event; SEAT value and slip have no standard error. Slip is motion above
+        `damper.slip_velocity`, the saturated share is above 1 mm/s. The first slip refers to the whole run, as in
+        `summary.json`; NaN without slip.
         """
         kept = slice(round(self.skip / runs.timestep), None)
         rail = runs.stacked(*(f"seat_rail_acc_{axis}" for axis in AXES))
         cushion = runs.stacked(*(f"seat_acc_{axis}" for axis in AXES)) if self.seat else None
         # The waves are not in `units`, so in no table: they are for the error of the difference of two cars.
         numbers = comfort_columns(runs.timestep, rail, cushion, skip=self.skip)
+        if not runs.random:
+            numbers |= {name: np.full(len(rail), np.nan) for name in numbers if "_error" in name or "_wave_" in name}
         velocity = {wheel: runs[f"damper_{wheel}_velocity"] for wheel in self.wheels}
         limit = runs.slip_velocity if self.wheels else np.zeros(len(runs.vehicles))
         for share, above in (("slip_share", limit), ("saturated_share", np.full_like(limit, SATURATED_VELOCITY))):

@@ -1,18 +1,15 @@
 """Effects of the single parameters of a car: each is changed alone, down and up, in one sweep.
 
 All cars drive on the same road, so a change has a far smaller error than the comfort values themselves
-(`vehicle.signals.analysis.comfort_error`); it is that of the unweighted RMS, relative to it.
+(`vehicle.studies.sweeps.change_error`).
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
-from scipy.special import stdtrit
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.idle import idle_parameters
@@ -22,8 +19,7 @@ from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import AXES
 from vehicle.runs.car import Car
 from vehicle.settings import with_settings
-from vehicle.signals.analysis.comfort_error import WAVES, difference_error
-from vehicle.signals.analysis.ride_comfort import UNWEIGHTED, WAVE_NAMES
+from vehicle.studies.sweeps.change_error import change_errors, half_width
 from vehicle.studies.sweeps.effects import Effect, Effects
 from vehicle.studies.sweeps.plan import plan_sweep
 from vehicle.studies.sweeps.sweep_inputs import Source
@@ -152,19 +148,11 @@ def effects_of(
     """
     inputs = len({id(case.source) for case in table.cases})
     name = next(each for each in RANKED_BY if each in table.units)
-
-    def over_inputs(values: npt.NDArray[Any]) -> npt.NDArray[Any]:
-        # The inputs vary slowest.
-        return values.reshape(inputs, -1, *values.shape[1:])
-
-    means = over_inputs(table.column(name)).mean(axis=0)
-    rows = np.array(
-        [[result.values.get(each, math.nan) for each in (UNWEIGHTED, *WAVE_NAMES)] for result in table.results]
-    )
-    unweighted, waves = over_inputs(rows[:, 0]), over_inputs(rows[:, 1::2] + 1j * rows[:, 2::2])
-    errors = np.sqrt(np.sum(difference_error(waves, waves[:, :1]) ** 2, axis=0)) / inputs
-    widths = 100.0 * stdtrit(2 * WAVES * inputs, 0.975) * errors / unweighted[:, 0].mean()
+    # The inputs vary slowest.
+    rows = np.arange(len(table.cases)).reshape(inputs, -1)
+    means = table.column(name)[rows].mean(axis=0)
     changes = 100.0 * (means / means[0] - 1.0)
+    widths = 100.0 * half_width(change_errors(table, rows.T.tolist(), name)) / means[0]
     varied = [path for path in parameters if path not in without]
     effects = []
     for index, path in enumerate(varied):

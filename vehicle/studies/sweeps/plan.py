@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
+import time as clock
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from vehicle.engines.reduced.validity import ERROR_ON_CLASS_C
+from vehicle.digits import duration
+from vehicle.engines.reduced.validity import ERROR_IN_RANGE, ERROR_ON_CLASS_C
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.body_notices import body_rules
 from vehicle.model.parameters.idle import idle_parameters
@@ -19,6 +22,7 @@ from vehicle.settings import with_settings
 from vehicle.studies.sweeps.case import all_tyre_words
 from vehicle.studies.sweeps.case_evaluation import reason_for_mujoco
 from vehicle.studies.sweeps.case_table import Cases, Combinations, RowChanges
+from vehicle.studies.sweeps.dispatcher import FILL
 from vehicle.studies.sweeps.measure import BatchMeasure, Measure, comfort_measure
 from vehicle.studies.sweeps.sweep import sweep_cases
 from vehicle.studies.sweeps.sweep_inputs import Source, common_start, file_of, inputs_of
@@ -57,26 +61,38 @@ class SweepPlan:
         return all_tyre_words(self.cases)
 
     def engine_notes(self) -> tuple[str, ...]:
-        """Return a message on the inputs on which "auto" runs the first or the last car with MuJoCo, with the reason.
+        """Return a message on the inputs on which MuJoCo runs the first or the last car, with the reason.
 
         For this both cars, in which the varied values have their first and their last value, are run on each input with
-        the reduced engine.
+        the reduced engine; from their computing time the message says how long that engine takes for all runs.
         """
-        if self.cases[0].engine != "auto" or not isinstance(self.measure, BatchMeasure):
+        engine = self.cases[0].engine
+        if engine == "reduced" or not isinstance(self.measure, BatchMeasure):
             return ()
-        count, reasons = len(self.cases.changes), {}
+        count, reasons, states, seconds = len(self.cases.changes), {}, [], 0.0
         for number, (source, _) in enumerate(self.cases.inputs):
             for car, which in {count - 1: "last", 0: "first"}.items():
-                if reason := reason_for_mujoco(self.cases[number * count + car], self.measure):
+                began = clock.perf_counter()
+                states.append(reason := reason_for_mujoco(self.cases[number * count + car], self.measure))
+                taken = clock.perf_counter() - began
+                if reason:
                     reasons[source.name] = which, reason
+            # A vector of cars takes as long as one car; the last run found the program compiled.
+            seconds += taken * math.ceil(count / FILL)
+        reduced = f"--engine reduced takes about {duration(max(seconds, 1.0))} for all {len(self.cases)} runs"
+        asked = f"engine mujoco as asked; {reduced}"
         if not reasons:
-            return ()
+            inside = engine == "mujoco" and None not in states
+            return (f"{asked}, inside its valid range ({ERROR_IN_RANGE})",) if inside else ()
         names = ", ".join(list(reasons)[:MOST_NAMED]) + (" ..." if len(reasons) > MOST_NAMED else "")
         which, reason = next(iter(reasons.values()))
-        return (
-            f"engine mujoco on {names} ({len(reasons)} of {len(self.cases.inputs)} inputs), at least for the {which} "
-            f"car: {reason}; --engine reduced is many times faster (on class C {ERROR_ON_CLASS_C})",
+        where = (
+            f"on {names} ({len(reasons)} of {len(self.cases.inputs)} inputs), at least for the {which} car: {reason}"
         )
+        error = f"(on class C {ERROR_ON_CLASS_C})"
+        if engine == "mujoco":
+            return (f"{asked} {error}, outside its valid range {where}",)
+        return (f"engine mujoco {where}; {reduced} {error}",)
 
     def run(self, **changed: Any) -> SweepTable:
         """Run the sweep, see `vehicle.studies.sweeps.sweep.sweep_cases`; `changed` replaces settings."""

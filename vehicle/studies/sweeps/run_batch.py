@@ -23,12 +23,14 @@ class Runs:
         channels: name to samples of all runs, contiguous for each run; (r, n).
         vehicles: parameters of each car.
         tyre_load: wheel to static tyre loads [N]; (r,).
+        random: False for one event, whose values have no standard error, see `Signal`.
     """
 
     time: Vector
     channels: Mapping[str, Vector]
     vehicles: tuple[Vehicle, ...]
     tyre_load: Mapping[str, Vector]
+    random: bool = True
 
     def __getitem__(self, channel: str) -> Vector:
         """Return the samples of a channel; (r, n)."""
@@ -57,4 +59,5 @@ def single(run: Run) -> Runs:
         channels={name: values[None] for name, values in recording.channels.items()},
         vehicles=(run.car.vehicle,),
         tyre_load={wheel: np.array([load]) for wheel, load in run.car.static.tyre_load.items()},
+        random=run.signal.random,
     )

@@ -67,12 +67,13 @@ def sweep_cases(cases: Sequence[Case], measure: Measure, settings: RunSettings) 
         def keep(numbers: Indices, block: Block) -> None:
             nonlocal done
             rows.append(numbers, block)
+            done += len(numbers)
             if progress is not None:
-                for _ in numbers:
-                    done += 1
-                    progress(done / len(cases))
+                progress(done / len(cases))
 
         if len(todo):
+            if progress is not None:
+                progress(done / len(cases))
             # A run in this process cannot be stopped.
             apart = settings.jobs > 1 or settings.time_limit is not None
             dispatcher = Dispatcher(

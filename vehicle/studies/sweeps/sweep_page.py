@@ -6,6 +6,7 @@ import math
 import shlex
 from collections.abc import Sequence
 
+import numpy as np
 from markupsafe import Markup
 
 from vehicle.digits import number
@@ -82,8 +83,8 @@ def best_sentences(cars: RankedCars) -> list[str]:
         return [f"All {len(cars.order)} cars are equally comfortable: the varied parameters have no effect here.", base]
     if cars.best == 0:
         return [f"The base car is the most comfortable of {len(cars.order)} cars.", base]
-    change = cars.change(cars.best)
-    against = f", {change:+.2f} % against the base car" if math.isfinite(change) else ""
+    text = cars.change_text(cars.best).replace("+-", "±")
+    against = f", {text} % against the base car{cars.doubt}" if math.isfinite(cars.change(cars.best)) else ""
     return [f"Most comfortable of {len(cars.order)} cars: {parameters(cars.best)}: {values(cars.best)}{against}.", base]
 
 
@@ -113,7 +114,9 @@ def _effects(effects: Effects, caption: str) -> Markup:
 def _cars(cars: RankedCars) -> Markup:
     heads = cars.headings()
     count = len(heads)
-    heads += [f"{cars.prefix}{WEIGHTED} [m/s²]", "change [%]", f"{cars.prefix}{UNWEIGHTED} [m/s²]"]
+    with_errors = bool(np.any(cars.half_width > 0.0))
+    heads += [f"{cars.prefix}{WEIGHTED} [m/s²]", "change [%]", *(["± 95 % [%]"] if with_errors else [])]
+    heads += [f"{cars.prefix}{UNWEIGHTED} [m/s²]"]
     heads += [] if cars.seat_value is None else [f"{SEAT_VALUE} [-]"]
     rows = []
     for car in cars.order:
@@ -123,6 +126,7 @@ def _cars(cars: RankedCars) -> Markup:
                 *cars.cells[car],
                 number(cars.weighted[car], 4),
                 "base" if car == 0 else f"{change:+.2f}" if math.isfinite(change) else "–",
+                *([number(cars.half_width[car] or None, 2).replace("nan", "–")] if with_errors else []),
                 number(cars.unweighted[car], 4),
                 *([] if cars.seat_value is None else [number(cars.seat_value[car], 4)]),
             ]

@@ -10,12 +10,14 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.digits import number as number_text
 from vehicle.model.parameters.parameter_list import value_text
 from vehicle.model.parameters.paths import unit_of_override, values_of_override
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.signals.analysis.ride_comfort import MEANING, SEAT_PREFIX, SEAT_VALUE, UNWEIGHTED, WEIGHTED
-from vehicle.studies.sweeps.case import Case, parameter_cells
+from vehicle.studies.sweeps.case import Case, is_random, parameter_cells
 from vehicle.studies.sweeps.case_result import Row
+from vehicle.studies.sweeps.change_error import MEANING_OF_ERROR, NO_ERROR, change_errors, half_width
 
 Vector = npt.NDArray[np.float64]
 
@@ -71,6 +73,8 @@ class RankedCars:
         unweighted: unweighted RMS there, 2 to 50 Hz [m/s2]; (cars,).
         seat_value: SEAT value [-]; (cars,), None for cars without a seat.
         order: cars with a value, most comfortable first.
+        half_width: half width of the 95 % interval of each change from the first car [%], NaN without one; (cars,).
+        error_words: meaning of the half widths, or the reason why an event has no error; may be empty.
         inputs: number of inputs.
         units: varied parameter to its unit; empty for a text.
     """
@@ -82,6 +86,8 @@ class RankedCars:
     unweighted: Vector
     seat_value: Vector | None
     order: Sequence[int]
+    half_width: Vector
+    error_words: str
     inputs: int
     units: Mapping[str, str]
 
@@ -104,6 +110,17 @@ class RankedCars:
     def change(self, car: int) -> float:
         """Return the change of the weighted value from the first car [%]; NaN without a value of the first car."""
         return 100.0 * (float(self.weighted[car]) / float(self.weighted[0]) - 1.0)
+
+    @property
+    def doubt(self) -> str:
+        """Words for a best car whose change is not larger than its error; empty otherwise."""
+        unsure = abs(self.change(self.best)) <= self.half_width[self.best]
+        return ", not more than its error: take a longer road" if unsure else ""
+
+    def change_text(self, car: int) -> str:
+        """Return the change from the first car [%] with its half width, as "-2.1 +- 0.4"; without one, "-2.10"."""
+        width = self.half_width[car]
+        return f"{self.change(car):+.2f}" + (f" +- {number_text(width, 2)}" if math.isfinite(width) else "")
 
     def headings(self) -> list[str]:
         """Return the varied parameters with their units."""
@@ -157,6 +174,10 @@ def ranked_cars(table: SweptCases) -> RankedCars | None:
     order = [int(car) for car in np.argsort(weighted, kind="stable") if math.isfinite(weighted[car])]
     if not order:
         return None
+    rows_of_cars = list(cars.values())
+    errors = change_errors(table, rows_of_cars, ranked_by)
+    event = not any(is_random(table.cases[number].source) for number in rows_of_cars[0])
+    widths = 100.0 * half_width(errors) / weighted[0]
     return RankedCars(
         prefix=prefix,
         paths=names,
@@ -165,6 +186,8 @@ def ranked_cars(table: SweptCases) -> RankedCars | None:
         unweighted=unweighted,
         seat_value=seat_values[0] if seat_values else None,
         order=order,
+        half_width=widths,
+        error_words=NO_ERROR if event else MEANING_OF_ERROR if np.any(widths > 0.0) else "",
         inputs=len({case.source for case in table.cases}),
         units={path: unit_of_override(vehicle, path) for path in names},
     )
@@ -175,13 +198,16 @@ def ranking_lines(cars: RankedCars) -> list[str]:
     shown = list(cars.order[:SHOWN])
     if 0 in cars.order and 0 not in shown:
         shown.append(0)
-    heads = [*cars.headings(), f"{cars.prefix}{WEIGHTED} [m/s2]", "change", f"{cars.prefix}{UNWEIGHTED} [m/s2]"]
+    heads = [*cars.headings(), f"{cars.prefix}{WEIGHTED} [m/s2]", "change"]
+    with_errors = bool(np.any(cars.half_width > 0.0))
+    heads += [*(["+-"] if with_errors else []), f"{cars.prefix}{UNWEIGHTED} [m/s2]"]
     heads += [] if cars.seat_value is None else [f"{SEAT_VALUE} [-]"]
     rows = [
         [
             *cars.cells[car],
             f"{cars.weighted[car]:.4g}",
             "base" if car == 0 else f"{cars.change(car):+.2f} %" if math.isfinite(cars.change(car)) else "-",
+            *([f"{cars.half_width[car]:.2f}" if cars.half_width[car] > 0.0 else "-"] if with_errors else []),
             f"{cars.unweighted[car]:.4g}",
             *([] if cars.seat_value is None else [f"{cars.seat_value[car]:.4g}"]),
         ]
@@ -194,12 +220,12 @@ def ranking_lines(cars: RankedCars) -> list[str]:
         lines.append(f"and {left} more cars in table.csv")
     over = f", mean of {cars.inputs} inputs" if cars.inputs > 1 else ""
     definitions = ", ".join(f"{cars.prefix}{name}: {MEANING[name]}" for name in (WEIGHTED, UNWEIGHTED))
-    lines.append(f"{definitions}; {cars.point}{over}")
+    lines.append("; ".join(filter(None, (definitions, f"{cars.point}{over}", cars.error_words))))
     best = ", ".join(f"{path} = {cell}" for path, cell in zip(cars.paths, cars.cells[cars.best], strict=True))
     if cars.alike and len(cars.order) > 1:
         lines.append(f"all {len(cars.order)} cars are equally comfortable: the varied parameters have no effect here")
     elif best and cars.best == 0:
         lines.append(f"most comfortable is the first car: {best}")
     elif best:
-        lines.append(f"most comfortable: {best} ({cars.change(cars.best):+.2f} % weighted)")
+        lines.append(f"most comfortable: {best} ({cars.change_text(cars.best)} % weighted{cars.doubt})")
     return lines

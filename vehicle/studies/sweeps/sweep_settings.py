@@ -60,7 +60,9 @@ class PoolSettings(Settings):
     folder: Path | None = setting(
         "existing folder in which finished runs are stored, for the next call to reuse; None stores none"
     )
-    progress: Callable[[float], None] | None = setting("called with the finished fraction, stored runs among them")
+    progress: Callable[[float], None] | None = setting(
+        "called with the finished fraction, stored runs among them, before the first run and after each task"
+    )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

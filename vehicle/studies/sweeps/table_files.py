@@ -32,7 +32,7 @@ def write_table(table: SweepTable, folder: Path, computed: str) -> None:
 
         paths, timing = table.paths(), opened("timing.csv")
         rows = TableWriter(opened("table.csv"), paths, table.units)
-        differences = DifferencesWriter(opened(DIFFERENCES), paths) if has_differences(table) else None
+        differences = DifferencesWriter(opened(DIFFERENCES), paths, table.units) if has_differences(table) else None
         timing.write("case,seconds [s]\n")
         for number, (case, row) in enumerate(zip(table.cases, table.rows(), strict=True)):
             parameters = parameter_cells(case, paths)
