@@ -81,13 +81,17 @@ def test_the_file_holds_the_road_beside_what_the_tyre_takes(tmp_path, capsys):
     ("arguments", "code", "message"),
     [
         (["--speed", "80"], 2, "one of --class, --profile and --obstacle"),
-        (["--class", "A"], 2, "a road needs --speed KM/H"),
+        (["--class", "A"], 2, "the speed on the road is missing"),
         (["--class", "K", "--speed", "80"], 2, "road class 'K': must be one of A, B"),
         (["--class", "A", "--speed", "0"], 2, "--speed 0 km/h: must be above 0"),
         (["--class", "A", "--speed", "nan"], 2, "--speed nan km/h"),
         (["--class", "A", "--speed", "80", "--coherence", "2"], 2, "coherence 2.0; allowed: 0 to 1"),
         (["--profile", "missing.csv", "--speed", "80"], 2, "missing.csv"),
-        (["--profile", "p.csv", "--speed", "80", "--duration", "9"], 3, "the road ends after 30 m, 200 m are driven"),
+        (
+            ["--profile", "p.csv", "--speed", "80", "--duration", "9"],
+            3,
+            ("the road is 30 m long, but the car drives 200 m"),
+        ),
         (["--profile", "q.csv", "--speed", "80"], 3, "q.csv:4: the distance must increase"),
         (["--profile", "r.csv", "--speed", "80"], 3, "r.csv:1: found 'distance [m]', 'left [m]'; needed are"),
     ],
@@ -128,5 +132,5 @@ def test_roughness_index_of_a_profile(tmp_path, capsys):
 def test_roughness_index_of_a_short_road_is_refused(tmp_path, capsys):
     arguments = ["--obstacle", "cleat:20x50@2", "--speed", "10", "--duration", "2", "--output", str(tmp_path / "r.csv")]
     assert main([*arguments, "--iri", "--no-figures"]) == 3
-    assert "the road is 5.55 m long; needed are 11 m or more" in capsys.readouterr().err
+    assert "the road is 5.55 m long, must be at least 11 m" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())

@@ -177,11 +177,11 @@ BAD = [
     ({"velocity": VELOCITY, "force": FORCE[1:]}, "front.damper.force: found 6 numbers for 7 of velocity"),
     ({}, "front.damper.velocity: found 0 points, must be 2 to 40"),
     ({"velocity": [-1, 1, 1], "force": [-1, 0, 1]}, "front.damper.velocity: found 1.0 after 1.0, must be ascending"),
-    ({"velocity": [-1, 1], "force": [1, -1]}, "front.damper.force: found -1.0 N after 1.0 N, must not fall"),
+    ({"velocity": [-1, 1], "force": [1, -1]}, "front.damper.force: found -1.0 N after 1.0 N, must not decrease"),
     ({"velocity": [0, 1], "force": [0, 1]}, "front.damper.velocity: found 0.0 to 1.0, must lie on both sides of 0"),
     ({"velocity": [-11, 1], "force": [0, 1]}, "front.damper.velocity: found -11.0 m/s, must be at least -10.0"),
     ({"curve": "none.csv"}, "front.damper.curve: "),
-    ({"curve": "a.csv", "force": FORCE}, "front.damper.curve: found 'a.csv'; must be the name of a file, without"),
+    ({"curve": "a.csv", "force": FORCE}, "front.damper.curve: found 'a.csv', must be the name of a file, without"),
     ({"gas_force": -1.0, "velocity": VELOCITY, "force": FORCE}, "front.damper.gas_force: found -1.0 N, must be at"),
 ]
 

@@ -119,7 +119,7 @@ def test_both_roads_and_both_measures_are_reported(results):
 
 def test_existing_results_are_not_overwritten_without_force(results, capsys):
     assert main(["--output", str(results), "--quick"]) == 2
-    assert "holds files already; give another folder, or --force to overwrite" in capsys.readouterr().err
+    assert "holds files; give another folder, or --force to overwrite" in capsys.readouterr().err
 
 
 def test_bad_parameter_is_refused_by_name(tmp_path, capsys):

@@ -126,7 +126,7 @@ def test_base_case_is_tabled_for_every_point(results):
 def test_existing_results_are_not_overwritten_without_force(results, capsys):
     assert main(["--output", str(results), "--quick"]) == 2
     assert capsys.readouterr().err == (
-        f"error: --output {results}: holds files already; give another folder, or --force to overwrite\n"
+        f"error: --output {results}: holds files; give another folder, or --force to overwrite\n"
     )
 
 

@@ -28,7 +28,7 @@ def parser() -> Parser:
         "files",
         nargs="+",
         metavar="FILE",
-        help="file of any format, recognised by its content, a shipped input, or a folder. Several give one table",
+        help="measurement file (format recognised by its content), shipped input, or folder. Several give one table",
     )
     database_option(parser)
     parser.add_argument("--json", action="store_true", help="print JSON")
@@ -194,7 +194,7 @@ def report(content: dict[str, Any]) -> str:
         if channel["remark"]:
             lines.append(f"{'':>6}{channel['remark']}")
     if len(content["channels"]) > SHOWN:
-        lines.append(f"{'':>6}{len(content['channels']) - SHOWN} more; --json lists all")
+        lines.append(f"{'':>6}{len(content['channels']) - SHOWN} more channels; --json lists all")
     if content["modes"]:
         lines.append(f"{'mode':>6} {'[Hz]':>10} {'damping':>9} {'modal mass':>12} {'points':>7}")
     for mode in content["modes"]:
@@ -210,7 +210,8 @@ def report(content: dict[str, Any]) -> str:
     else:
         lines.append(f"no command: {content['command_reason']}")
     if content["comparison"]:
-        lines += ["compares the accelerations with the run RUN of that command; tune takes the same --map:",
+        lines += ["to compare the measured accelerations with the run of that command (replace RUN by its folder; "
+            "`tune` accepts the same --map):",
                   f"  {content['comparison']}"]  # fmt: skip
     return "\n".join(lines)
 

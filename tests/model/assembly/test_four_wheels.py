@@ -284,5 +284,5 @@ def test_both_engines_drive_four_plates(road):
     for channel in ("seat_rail_acc_z", *(f"tyre_{wheel}_force_z" for wheel in WHEELS)):
         stepped, reduced = (run[channel] for run in runs)
         assert np.std(reduced - stepped) < 0.03 * np.std(stepped), channel
-    with pytest.raises(ConfigurationError, match=r"wheel rr \(rear_right\): focus does not have it"):
+    with pytest.raises(ConfigurationError, match=r"wheel rr \(rear_right\): focus has no such wheel; choose"):
         Car.load().run(Signal(time=time, displacement=plates))

@@ -36,7 +36,7 @@ def test_doubling_the_acceleration_doubles_the_comfort_value():
 
 
 def test_comfort_needs_three_axes():
-    with pytest.raises(DataError, match=r"found shape \(1, 2, 1000\), must be \(r, 3, n\) with the three axes"):
+    with pytest.raises(DataError, match=r"found shape \(1, 2, 1000\), must be \(r, 3, n\): r signals"):
         comfort_values(STEP, np.ones((1, 2, 1000)))
 
 

@@ -30,7 +30,7 @@ def write_files(folder: Path, force: bool, model: Superelement, levels: Mapping[
     modes = ["mode,frequency [Hz],damping ratio [-],name"]
     for i, (frequency, ratio) in enumerate(zip(model.frequencies, model.damping_ratio, strict=True)):
         modes.append(f'{i + 1},{frequency:.9g},{ratio:.6g},"{model.mode_names[i]}"')
-    taking = ["# shape at each attachment and place over its mean in the body, sqrt(m) Phi"]
+    taking = ["# mode shape at each attachment and point, relative to the mean of the body: sqrt(m) Phi"]
     taking.append("attachment,axis" + "".join(f",mode_{number + 1} [-]" for number in range(count)))
     for name, values in levels.items():
         taking += [
@@ -47,7 +47,9 @@ def write_files(folder: Path, force: bool, model: Superelement, levels: Mapping[
         for i, (frequency, ratio) in enumerate(zip(model.frequencies, model.damping_ratio, strict=True))
     ]
     more = f"; the first {MOST} of {count} modes" if count > MOST else ""
-    caption = f"grey: at rest; colour: displacement, each mode at its own scale; dots: attachments and places{more}"
+    caption = (
+        f"grey: at rest; colour: displacement, each mode at its own scale; dots: attachments and output points{more}"
+    )
     with output_folder(folder, force=force) as output:
         for name, lines in (("modes.csv", modes), ("attachments.csv", taking), ("residuals.csv", residuals)):
             write_text(output / name, "\n".join(lines) + "\n")

@@ -137,7 +137,9 @@ class Shot:
         record = float(recording.time[-1])
         self.slip = vehicle.damper.slip_velocity if self.dampers else 0.0
         if take.start is not None and not 0.0 <= take.start < record:
-            raise ConfigurationError(f"film, start: found {take.start:g} s, the record goes from 0 to {record:g} s")
+            raise ConfigurationError(
+                f"film, start: found {take.start:g} s, must be 0 to {record:g} s, within the record"
+            )
         excerpt = choose_excerpt(
             recording, run.wheel, self.hub, self.slip, start=take.start, duration=take.duration, slow=take.slow
         )
@@ -236,7 +238,7 @@ class Shot:
         if self.road is not None:
             road = [
                 f"road passes at {3.6 * self.road.speed:.4g} km/h, a stripe is {self.road.stripe:g} m long; "
-                "heights in numbers: effective, as the tyre takes them"
+                "heights in numbers: after averaging by the tyre"
             ]
             exaggerated = "motion and road"
         return [

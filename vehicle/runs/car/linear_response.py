@@ -22,7 +22,7 @@ def is_stuck(damper: str) -> bool:
         ConfigurationError: another word.
     """
     if damper not in ("stuck", "sliding"):
-        raise ConfigurationError(f"damper: found {damper!r}, allowed are stuck, sliding")
+        raise ConfigurationError(f"damper: found {damper!r}, must be stuck or sliding")
     return damper == "stuck"
 
 

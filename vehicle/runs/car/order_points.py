@@ -93,7 +93,10 @@ class OrderPoints:
         texts = []
         for row, order in enumerate(self.orders):
             top = int(np.argmax(np.abs(self.amplitude[row])))
-            texts.append(f"{np.abs(self.amplitude[row, top]):.3g} in order {order:g} at {self.points[top]:g}")
+            texts.append(
+                f"order {order:g} largest at {self.points[top]:g} {self.point_unit} with "
+                f"{np.abs(self.amplitude[row, top]):.3g} {self.unit}"
+            )
         return (
             f"Orders of {self.angle} over {len(self.points)} points, {self.channel} [{self.unit}]: {', '.join(texts)}"
         )
@@ -174,16 +177,14 @@ def order_points(
         DataError: a run is too short for its orders.
     """
     if bool(len(rpm)) == bool(len(speed)):
-        raise ConfigurationError(
-            "orders: needed are speeds of the crankshaft [1/min] or of the car [km/h], one of both"
-        )
+        raise ConfigurationError("orders: give either speeds of the crankshaft [1/min] or speeds of the car [km/h]")
     points = np.array(rpm if len(rpm) else speed, dtype=float)
     if len(points) > MOST:
-        raise ConfigurationError(f"orders: {len(points)} points; at most {MOST}: take a larger step")
+        raise ConfigurationError(f"orders: found {len(points)} points, must be at most {MOST}; use a larger step")
     (name,) = channels_named(channel, car.vehicle.acceleration_channels)
     chosen = angle or (CRANK if len(rpm) else None)
     if len(rpm) and chosen != CRANK:
-        raise ConfigurationError(f"orders: {chosen} does not turn with the crankshaft; set speeds of the car")
+        raise ConfigurationError(f"orders: {chosen} does not turn with the crankshaft; give speeds of the car")
     drive, results = 3.6 * car.vehicle.driving.speed, list[_Point]()
     for value in points:
         if len(rpm):
@@ -194,8 +195,8 @@ def order_points(
     first = results[0]
     if not any(first.angle in (force.law.angle, force.name) for force in run.car.vehicle.composition.forces):
         raise ConfigurationError(
-            f"orders: no force of {car.vehicle.name} turns with {first.angle}; add a table [engine.orders], "
-            "[front.imbalance] or [force.NAME]"
+            f"orders: {car.vehicle.name} has no force that turns with {first.angle}; add a section "
+            "[engine.orders], [front.imbalance] or [force.NAME] to the vehicle file"
         )
     highest = 1.1 * float(np.max([point.turns for point in results])) * max(orders)
     shown = first.frequency <= highest

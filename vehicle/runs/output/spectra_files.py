@@ -54,7 +54,7 @@ def third_octaves_text(runs: Mapping[str, RecordSpectra], caption: str) -> str:
     heads = ("run", "channel", "weighting", "midband [Hz]", "from [Hz]", "to [Hz]", "RMS [m/s2]", "standard error [-]")
     return _text(
         caption
-        + "; third octaves of IEC 61260-1 (base ten), rectangular; empty: the record is shorter than 1/bandwidth",
+        + "; third octaves of IEC 61260-1 (base ten), rectangular; empty where the record is shorter than 1/bandwidth",
         heads,
         (
             (name, spectrum.name, spectrum.weighting, *numbers)

@@ -22,5 +22,7 @@ def evaluation_start(durations: Mapping[str, float], skip: float | None, default
     for name, duration in durations.items():
         if not 0.0 <= start < duration:
             remark = " (the default)" if skip is None else ""
-            raise ConfigurationError(f"--skip {start:g} s{remark}: allowed is 0 s to less than {name}, {duration:g} s")
+            raise ConfigurationError(
+                f"--skip {start:g} s{remark}: must be at least 0 s and less than {name}, {duration:g} s"
+            )
     return float(start)

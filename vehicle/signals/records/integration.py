@@ -42,8 +42,8 @@ def displacement(chosen: Chosen, choice: Choice, where: str) -> tuple[dict[str, 
         if choice.highpass is None:
             if orders[quantity]:
                 raise DataError(
-                    f"{where}: {role} is {'an' if quantity[0] == 'a' else 'a'} {quantity}: the plate needs a "
-                    "displacement; set --highpass HZ below the band of interest to integrate the channel"
+                    f"{where}: {role} is {'an' if quantity[0] == 'a' else 'a'} {quantity}: but the plate needs a "
+                    "displacement; to integrate it, set --highpass HZ below the band of interest"
                 )
             displacements[role] = values
             continue
@@ -51,8 +51,8 @@ def displacement(chosen: Chosen, choice: Choice, where: str) -> tuple[dict[str, 
         displacements[role] = integrate(values, step, orders[quantity], choice.highpass)
         process = f"{quantity} integrated in the frequency domain, " if orders[quantity] else ""
         notices.append(
-            f"{role}: {process}high-pass {choice.highpass:g} Hz on request (Butterworth, order {ORDER}, forwards and "
-            "backwards)"
+            f"{role}: {process}high-pass {choice.highpass:g} Hz, as requested (Butterworth, order "
+            f"{ORDER}, forwards and backwards)"
         )
     return displacements, tuple(notices)
 
@@ -67,7 +67,7 @@ def filtered(chosen: Chosen, corner: float) -> tuple[dict[str, Vector], tuple[st
         DataError: see `integrate`.
     """
     step = float(chosen.time[-1] - chosen.time[0]) / (chosen.time.size - 1)
-    notice = f"high-pass {corner:g} Hz on request (Butterworth, order {ORDER}, forwards and backwards)"
+    notice = f"high-pass {corner:g} Hz, as requested (Butterworth, order {ORDER}, forwards and backwards)"
     return {role: integrate(values, step, 0, corner) for role, values in chosen.values.items()}, (
         *chosen.notices,
         notice,

@@ -32,21 +32,21 @@ class StatedNumbers:
     """
 
     kerb_mass: float | None = quantity(
-        "kg", "mass of the car without the loads of [load]", above=0.0, at_most=2e4, default=None
+        "kg", "mass of the car without driver and loads ([load])", above=0.0, at_most=2e4, default=None
     )
     front_axle_load: float | None = quantity(
-        "kg", "load of the front axle on the scales, without [load]", above=0.0, at_most=2e4, default=None
+        "kg", "axle load of the front axle, without driver and loads ([load])", above=0.0, at_most=2e4, default=None
     )
     rear_axle_load: float | None = quantity(
-        "kg", "load of the rear axle on the scales, without [load]", above=0.0, at_most=2e4, default=None
+        "kg", "axle load of the rear axle, without driver and loads ([load])", above=0.0, at_most=2e4, default=None
     )
     cog_x: float | None = quantity(
         "m", "centre of gravity behind the front axle, instead of an axle load", above=0.0, default=None
     )
     cog_height: float | None = quantity("m", "centre of gravity above the ground", above=0.0, at_most=3.0, default=None)
-    wheelbase: float | None = quantity("m", "distance of the axles", above=0.0, default=None)
-    track_front: float | None = quantity("m", "distance of the front wheels", above=0.0, default=None)
-    track_rear: float | None = quantity("m", "distance of the rear wheels", above=0.0, default=None)
+    wheelbase: float | None = quantity("m", "wheelbase", above=0.0, default=None)
+    track_front: float | None = quantity("m", "track of the front wheels", above=0.0, default=None)
+    track_rear: float | None = quantity("m", "track of the rear wheels", above=0.0, default=None)
     tyre_radius: float | None = quantity("m", "loaded radius: wheel centre above the ground", above=0.0, default=None)
     roll_inertia: float | None = quantity(
         "kg m2", "Ixx of the car about its centre of gravity, without [load]", above=0.0, default=None
@@ -59,20 +59,21 @@ class StatedNumbers:
     )
     inertia: str = quantity(
         "-",
-        "moments that are not stated: radii of gyration in proportion to those of the template, or means of 73 cars",
+        "estimate of moments of inertia that are not stated: from the radii of gyration of the template, or "
+        "from the means of 73 cars",
         choices=("template", "survey"),
         default="template",
     )
     ride_frequency_front: float | None = quantity("Hz", "ride frequency of the front axle", default=None, **BODY)
     ride_frequency_rear: float | None = quantity("Hz", "ride frequency of the rear axle", default=None, **BODY)
     pitch_frequency: float | None = quantity(
-        "Hz", "pitch of the sprung mass on its ride rates; gives the pitch inertia", default=None, **BODY
+        "Hz", "pitch frequency of the sprung mass; sets the pitch inertia", default=None, **BODY
     )
     wheel_hop_front: float | None = quantity(
-        "Hz", "hop of the front wheels on suspension and tyres; gives the tyre stiffness", default=None, **HOP
+        "Hz", "hop frequency of the front wheels; sets the tyre stiffness", default=None, **HOP
     )
     wheel_hop_rear: float | None = quantity(
-        "Hz", "hop of the rear wheels on suspension and tyres; gives the tyre stiffness", default=None, **HOP
+        "Hz", "hop frequency of the rear wheels; sets the tyre stiffness", default=None, **HOP
     )
     damping_ratio_front: float | None = quantity(
         "-", "damping ratio of the front axle, dampers at 0.1 m/s", above=0.0, at_most=3.0, default=None
@@ -87,24 +88,24 @@ class StatedNumbers:
         "-", "damper test of the rear axle: table of velocity and force", is_file=True, default=None
     )
     roll_stiffness_front: float | None = quantity(
-        "N m/deg", "roll stiffness of the front axle without the tyres; gives the stabilizer", above=0.0, default=None
+        "N m/deg", "roll stiffness of the front axle without the tyres; sets the stabilizer", above=0.0, default=None
     )
     roll_stiffness_rear: float | None = quantity(
         "N m/deg",
-        "roll stiffness of the rear axle without the tyres; gives the stabilizer, or the torsion of the beam",
+        "roll stiffness of the rear axle without the tyres; sets the stabilizer, or the torsion of the beam",
         above=0.0,
         default=None,
     )
-    car_class: str | None = quantity("-", "class of the car, for default numbers", default=None)
+    car_class: str | None = quantity("-", "class of the car, which sets default values", default=None)
     of_class: tuple[str, ...] = ()
     load: Mapping[str, dict] = field(default_factory=dict)  # type: ignore[type-arg]
 
     def __post_init__(self) -> None:
         validate(self)
         for first, second, why in (
-            ("pitch_frequency", "pitch_inertia", "either gives the other"),
-            ("damping_ratio_front", "damper_curve_front", "the curve is the damping"),
-            ("damping_ratio_rear", "damper_curve_rear", "the curve is the damping"),
+            ("pitch_frequency", "pitch_inertia", "each follows from the other"),
+            ("damping_ratio_front", "damper_curve_front", "the curve sets the damping"),
+            ("damping_ratio_rear", "damper_curve_rear", "the curve sets the damping"),
             ("cog_x", "front_axle_load", "both give the position of the centre of gravity"),
             ("cog_x", "rear_axle_load", "both give the position of the centre of gravity"),
         ):

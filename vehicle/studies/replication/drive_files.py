@@ -149,5 +149,5 @@ def _table(replication: Replication, channels: tuple[str, ...], description: str
         for step in replication.steps
     ]
     heads = ",".join(["iteration", "gain", "kept", "error", *(f"error_{name}" for name in channels)])
-    error = "error: RMS of target minus response over RMS of target, in the band [-]"
+    error = "error: RMS of target minus response, divided by RMS of target, in the band [-]"
     return "\n".join([f"# {description}", f"# {error}", heads, *rows, ""])

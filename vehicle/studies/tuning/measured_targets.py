@@ -72,7 +72,10 @@ def measured_responses(car: Car, file: Path | str, settings: ResponseSettings) -
     path = Path(file)
     signal = settings.signal
     if isinstance(signal, Road):
-        raise ConfigurationError(f"{path}: a road belongs to time histories; FRFs need the signal of a plate")
+        raise ConfigurationError(
+            f"{path}: contains FRFs, which need the signal of a plate, but a road is given; give --signal FILE, "
+            "or time histories"
+        )
     asked, plates = plate_choices(_asked(settings), path, signal)
     measured = _read(car, path, asked, settings.inverted, settings.window)
     frf = measured.frf
@@ -181,7 +184,9 @@ def _histories(
     held = measured.record
     names = [] if held is None else [channel for channel in held.channels if not channel.startswith("plate_")]
     if held is None or not names:
-        raise DataError(f"{path}: contains no time history except that of a plate; choose with --map CHANNEL=NAME")
+        raise DataError(
+            f"{path}: contains no time history except that of a plate; name channels with --map CHANNEL=NAME"
+        )
     if contained and (begin, drift) != (0.0, 0.0):
         raise ConfigurationError(
             f"{path}: --delay S and --drift correct the clock against a signal of another file; this record contains "
@@ -211,8 +216,9 @@ def _histories(
     inside = np.flatnonzero((grid >= times[0] - 1e-9) & (grid <= times[-1] + 1e-9))
     if inside.size < 3:
         raise DataError(
-            f"{path}: measured from {times[0]:.6g} to {times[-1]:.6g} s of the signal {signal.source}, which ends at "
-            f"{signal.duration:.6g} s: no overlap; set --delay S, which is added to the measured times"
+            f"{path}: measured from {times[0]:.6g} to {times[-1]:.6g} s of the signal {signal.source}, which "
+            f"ends at {signal.duration:.6g} s, so they do not overlap; set --delay S, which is added to the "
+            "measured times"
         )
     histories = {}
     for channel in names:
@@ -232,7 +238,7 @@ def _histories(
     length = max(window_s[1] - window_s[0], 0.0)
     if length < shortest:
         raise DataError(
-            f"{path}: {length:.3g} s of the record count, must be at least {shortest:.3g} s "
+            f"{path}: {length:.3g} s of the record are evaluated, must be at least {shortest:.3g} s "
             f"({LEAST_VALUES} independent values below {lowpass:g} Hz); use a longer record or --stretch FROM:TO"
         )
     units = {channel: held.units[channel] for channel in names}

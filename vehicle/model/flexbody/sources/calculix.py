@@ -32,13 +32,15 @@ def read_calculix(path: Path) -> BodyMatrices:
     for suffix, file in files.items():
         if not file.is_file():
             raise DataError(
-                f"{file}: no such file. CalculiX writes .sti, .mas and .dof with *FREQUENCY,SOLVER=MATRIXSTORAGE; the "
-                f"input deck .inp contains the node positions ({suffix} is missing)."
+                f"{file}: {suffix} is missing. CalculiX writes .sti, .mas and .dof with "
+                "*FREQUENCY,SOLVER=MATRIXSTORAGE; the node positions are in the input deck .inp."
             )
     numbers = rows_of_numbers(files["dof"], 1, separator=".", columns=2)
     identity, direction = (whole_numbers(files["dof"], numbers[:, i]) - i for i in (0, 1))
     if direction.min() < 0 or direction.max() > 5:
-        raise DataError(f"{files['dof']}: directions {direction.min() + 1} to {direction.max() + 1}, must be 1 to 6.")
+        raise DataError(
+            f"{files['dof']}: found directions {direction.min() + 1} to {direction.max() + 1}, must be 1 to 6."
+        )
     deck = read_deck(files["inp"])
     size = len(identity)
     stiffness, mass = (coordinate_matrix(files[suffix], size) for suffix in ("sti", "mas"))
@@ -72,9 +74,9 @@ def assembled(
         missing = []
     if missing:
         raise DataError(
-            f"{path}: node {missing[0]} of the matrices has no position in the list of nodes ({len(missing)} such "
-            "nodes). Specify the list of all nodes; CalculiX expands shells and beams to solids with additional nodes "
-            "and constraints, so only matrices of solid elements describe a free body."
+            f"{path}: {len(missing)} nodes of the matrices have no position in the list of nodes, the first is "
+            f"{missing[0]}. Give the list of all nodes; CalculiX expands shells and beams to solids with "
+            "additional nodes and constraints, so only matrices of solid elements describe a free body."
         )
     index = {int(number): i for i, number in enumerate(numbers)}
     edges = sorted({(index[a], index[b]) for a, b in deck.edges if a in index and b in index})

@@ -35,7 +35,7 @@ def read_dofs(path: Path) -> tuple[IntArray, IntArray]:
         listed = rows_of_numbers(path, 1, columns=2)
         node, direction = (whole_numbers(path, listed[:, i]) - i for i in (0, 1))
         if direction.min() < 0 or direction.max() > 5:
-            raise DataError(f"{path}: directions {direction.min() + 1} to {direction.max() + 1}, must be 1 to 6.")
+            raise DataError(f"{path}: found directions {direction.min() + 1} to {direction.max() + 1}, must be 1 to 6.")
         return node, direction
     rows = [row for row in table[labelled[0] :] if row]
     try:
@@ -48,5 +48,7 @@ def read_dofs(path: Path) -> tuple[IntArray, IntArray]:
             "pressures and other degrees of freedom are not supported."
         ) from error
     if equations and equations != list(range(1, len(rows) + 1)):
-        raise DataError(f"{path}: equations are not 1 to {len(rows)} in this order. Specify the complete mapping file.")
+        raise DataError(
+            f"{path}: the equations must be 1 to {len(rows)} in this order. Give the complete mapping file."
+        )
     return np.array(nodes), np.array(directions)
