@@ -16,7 +16,7 @@ class CarRuns:
     """Cars and finished runs behind one or several scenarios.
 
     Args:
-        vehicle: TOML file; the car of Bommer 2006 by default.
+        vehicle: TOML file; default: the car of Bommer 2006.
         overrides: of every car, before those of a case.
         engine: "mujoco", "reduced" or "auto".
         jobs: worker processes.

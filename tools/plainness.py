@@ -156,11 +156,15 @@ def shown_texts(path: Path) -> list[tuple[int, str]]:
     return [(line, text) for line, text in texts if prose(text)]
 
 
+PATTERN = re.compile(r"\\[bdws]|\n {4}|:root|\.\*(?!\.)|\(\?|\)\?|->|</|-src 'none'|^complete -|^autoload ")
+"""Texts that a program reads: search patterns, styles, sums of products over indices, markup, and shell scripts."""
+
+
 def prose(text: str) -> bool:
-    """True if a text is a sentence or part of one, and no formula, pattern or list of names."""
-    return len(re.findall(r"(?<![\w{.])[A-Za-z][a-z'-]+(?![\w}(=])", text)) >= 4 and not re.search(
-        r"\\[dws]|\n {4}|:root", text
-    )
+    """True if a text is a sentence or part of one, and no formula, pattern or list of names; {name} is a value."""
+    words = re.sub(r"\{[^{}]*(?:\{[^{}]*\}[^{}]*)*\}", "{}", text)
+    count = len(re.findall(r"(?<![\w{.])[A-Za-z][a-z'-]+(?![\w}(=])", words))
+    return count >= (3 if "{}" in words else 4) and not PATTERN.search(text)
 
 
 def reader(files: list[Path]) -> tuple[float, dict[str, list[str]], list[str]]:

@@ -55,13 +55,15 @@ def _print(typed: Sequence[str]) -> None:
     if typed and typed[0] not in ("-h", "--help"):
         close = get_close_matches(typed[0], COMMANDS, n=1)
         nearest = f"; did you mean {close[0]}?" if close else ""
-        raise ConfigurationError(f"no command {typed[0]!r}; must be one of {', '.join(COMMANDS)}{nearest}")
+        raise ConfigurationError(f"unknown command {typed[0]!r}; must be one of {', '.join(COMMANDS)}{nearest}")
     print("usage: python -m vehicle COMMAND [options]; `COMMAND --help` lists the options of a command\n")
     for name in COMMANDS:
         print(f"  {name:<11} {import_module(module_of(name)).parser().description}")
     print("\nfirst run: python -m vehicle shaker --input low.csv --report, then open runs/low/report.html")
-    print("--version prints the version; --print-completion bash|zsh a script that completes commands and options")
-    print("--schema prints the JSON Schema of a vehicle file, --schema template that of a template")
+    print(
+        "--version prints the version; --print-completion bash|zsh prints a script that completes commands and options"
+    )
+    print("--schema prints the JSON Schema of a vehicle file; --schema template prints the schema of a template")
 
 
 if __name__ == "__main__":

@@ -147,8 +147,8 @@ def channel_units(channels: Iterable[str]) -> dict[str, str]:
         unit = next((unit for form, unit in _UNITS.items() if re.fullmatch(form, channel)), None)
         if unit is None:
             raise ConfigurationError(
-                f"no channel {channel!r}; channels are called as seat_rail_acc_z, damper_fr_velocity, damper_fr_force, "
-                "tyre_fr_force_z, plate_fr_displacement"
+                f"no channel {channel!r}; names of channels look like seat_rail_acc_z, damper_fr_velocity, "
+                "damper_fr_force, tyre_fr_force_z, plate_fr_displacement"
             )
         units[channel] = unit
     return units

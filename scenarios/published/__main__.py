@@ -47,7 +47,7 @@ def parser() -> Parser:
         prog="python -m scenarios.published",
         description="Compare all results of the thesis and the two papers with ours.",
     )
-    output_options(result, None, default=f"{HOME} with the page {PAGE}, or {QUICK_HOME} with --quick,")
+    output_options(result, None, default=f"{HOME} with the page {PAGE}, or {QUICK_HOME} with --quick")
     result.add_argument(
         "--runs", type=Path, default=Path("runs/published"), metavar="DIR", help="folder of the studies' own results"
     )

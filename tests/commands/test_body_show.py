@@ -80,7 +80,7 @@ def test_a_model_of_another_mass_is_named_in_every_run(capsys):
     printed = capsys.readouterr().out
     assert "and a CoG 24 mm away" in printed
     # What it says to write is what the model has.
-    lines = printed.partition("[body] of this model:\n")[2].splitlines()[:3]
+    lines = printed.partition("lines for the section [body] of a vehicle file:\n")[2].splitlines()[:3]
     table = tomllib.loads("\n".join(lines))
     table |= {f"inertia.{key}": value for key, value in table.pop("inertia").items()} | {"inertia.about": "cog"}
     mended = Car.load(overrides=[STORED, *(f"body.{key}={value}" for key, value in table.items())])

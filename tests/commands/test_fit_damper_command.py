@@ -47,8 +47,13 @@ def test_files_and_summary(tmp_path, capsys):
     folder = tmp_path / "out"
     assert main([*records(tmp_path), "--output", str(folder)]) == 0
     said = capsys.readouterr().out
-    assert "chosen: linear damping + Coulomb friction, the fewest parameters within one standard error" in said
-    assert "no test below 10 mm/s: friction at rest is not determined; the slowest test reaches 126 mm/s" in said
+    assert (
+        "chosen: linear damping + Coulomb friction, the simplest law whose error on left-out tests is within "
+        "one standard error"
+    ) in said
+    assert (
+        "the friction at rest is not determined, because the slowest test reaches 126 mm/s, must be below 10 mm/s"
+    ) in said
     damper = build(Damper, tomllib.loads((folder / "damper.toml").read_text()), "damper")
     assert damper.viscous == pytest.approx(1200.0, rel=0.02) and damper.coulomb_friction == pytest.approx(60.0, abs=3.0)
     assert damper.gas_force == pytest.approx(150.0, abs=2.0) and damper.friction_law == "coulomb"
@@ -80,7 +85,7 @@ def test_typed_conditions(tmp_path):
         {"current": current, "temperature": 20.0} for current in (0.0, 1.5)
     ]
     assert [each.curve_damping() for each in fits] == pytest.approx([800.0, 2400.0], rel=0.02)
-    with pytest.raises(ConfigurationError, match="3 values for 4 files; give one for all, or one for each"):
+    with pytest.raises(ConfigurationError, match="found 3 values for 4 files; give a single value for all files"):
         fit_damper(files, conditions={"current": "0,1,2"})
 
 
@@ -120,7 +125,7 @@ def test_the_lines_are_the_fitted_law(law, tmp_path):
 def test_wrong_files_are_named(tmp_path, capsys):
     path = records(tmp_path)[0]
     assert main([path, path, "--output", str(tmp_path / "out")]) == 2
-    assert "2 files of tests: name one or more, each once" in capsys.readouterr().err
+    assert "found 2 files of tests; name at least one, each once" in capsys.readouterr().err
 
 
 def headless(folder, columns, factor=1e3):
@@ -150,7 +155,10 @@ def test_files_without_a_header(tmp_path, capsys, columns):
     assert values["damper.damping_1"]["value"] == pytest.approx(1200.0, rel=0.05)
     assert values["damper.damping_1"]["unit"] == "N s/m" and values["damper.damping_1"]["standard_error"] > 0.0
     assert any(text.startswith("damper.coulomb_friction=") for text in found["set"]) and found["chosen"]
-    assert any("no header: columns taken as time [s], displacement [mm]" in text for text in found["notices"])
+    assert any(
+        ("the file has no header; the columns are read as time [s], displacement [mm]") in text
+        for text in found["notices"]
+    )
 
 
 def test_units_of_columns_and_metres_without_a_unit(tmp_path, capsys):
@@ -158,11 +166,13 @@ def test_units_of_columns_and_metres_without_a_unit(tmp_path, capsys):
     paths = headless(tmp_path, [0, 1, 2, 3], factor=1.0)
     words = [*paths, "--output", str(tmp_path / "out")]
     assert main(words) == 3
-    assert "in m or in mm; set --unit displacement=m or --unit displacement=mm" in capsys.readouterr().err
+    assert (
+        "in m or mm? The file has no header; set --unit displacement=m or --unit displacement=mm"
+    ) in capsys.readouterr().err
     by_role = fitted(capsys, [*words, "--unit", "displacement=m", "--unit", "velocity=m/s"])
     by_column = fitted(capsys, [*words, "--unit", "2=m", "--unit", "column 3=m/s"])
     assert by_column == by_role
     values = {each["path"]: each["value"] for each in by_role["parameters"]}
     assert values["damper.damping_1"] == pytest.approx(1200.0, rel=0.05)
     assert main([*words, "--unit", "displacement=m", "--unit", "load=N"]) == 2
-    assert "'load' is neither a column of the test nor a role" in capsys.readouterr().err
+    assert "'load' is neither a column of the test nor one of time" in capsys.readouterr().err

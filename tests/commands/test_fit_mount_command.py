@@ -29,7 +29,7 @@ def test_the_lines_are_those_of_a_vehicle_file(tmp_path, capsys):
     folder = tmp_path / "out"
     assert main([str(table(tmp_path / "points.csv", track=True)), "--output", str(folder)]) == 0
     said = capsys.readouterr().out
-    assert "chosen: hydromount with inertia track, the least BIC" in said
+    assert "chosen: hydromount with inertia track, the best fit for its number of parameters" in said
     assert "points.csv: 30 points, amplitudes 0.1 and 1 mm peak, 2 to 30 Hz" in said
     law = build(Hydromount, tomllib.loads((folder / "mount.toml").read_text()), "mount")
     assert (law.chamber_stiffness, law.track_mass, law.track_damping) == (3e5, 60.0, 900.0)

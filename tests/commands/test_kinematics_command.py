@@ -52,17 +52,17 @@ def test_files(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["--axle", "middle"], "--axle 'middle': no axle with wheels; focus has front"),
-        (["--axle", "rear"], "--axle 'rear': no axle with wheels"),
-        (["--travel", "50:10"], "--travel '50:10': needed is A:B or A:B:STEP in mm"),
-        (["--travel", "a:b"], "--travel 'a:b': needed is A:B"),
-        (["--travel", "0:100:0.001"], "100001 positions; at most 2001"),
-        (["--contact-force", "w=1"], "--contact-force 'w=1': needed is AXIS=VALUE"),
-        (["--force", "w=1"], "a force on the wheels is given by --contact-force"),
-        (["--replace"], "files are replaced by --force"),
+        (["--axle", "middle"], "--axle 'middle': is not an axle with wheels; choose from front"),
+        (["--axle", "rear"], "--axle 'rear': is not an axle with wheels"),
+        (["--travel", "50:10"], "--travel '50:10': must be A:B or A:B:STEP [mm]"),
+        (["--travel", "a:b"], "--travel 'a:b': must be A:B"),
+        (["--travel", "0:100:0.001"], "gives 100001 positions, must be at most 2001"),
+        (["--contact-force", "w=1"], "--contact-force 'w=1': must be AXIS=VALUE"),
+        (["--force", "w=1"], "set a force on the wheels with --contact-force"),
+        (["--replace"], "use --force to replace files"),
         (["--force"], "--force: belongs to --output DIR"),
-        (["--moment", "x=nan"], "--moment 'x=nan': needed is AXIS=VALUE"),
-        (["--ideal", "--contact-force", "x=1"], "--contact-force: belongs to bushings that yield"),
+        (["--moment", "x=nan"], "--moment 'x=nan': must be AXIS=VALUE"),
+        (["--ideal", "--contact-force", "x=1"], "--contact-force: belongs to elastic bushings"),
     ],
 )
 def test_refusals(arguments, message, capsys):

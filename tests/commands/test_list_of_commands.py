@@ -38,7 +38,7 @@ def test_the_list_has_a_line_for_each_command(capsys):
         )
     assert main(["mode"]) == 2
     said = capsys.readouterr()
-    assert said.err == f"error: no command 'mode'; must be one of {', '.join(COMMANDS)}; did you mean modes?\n"
+    assert said.err == f"error: unknown command 'mode'; must be one of {', '.join(COMMANDS)}; did you mean modes?\n"
     assert said.out == ""
 
 

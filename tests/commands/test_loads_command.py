@@ -67,7 +67,7 @@ def test_a_class_holds_its_upper_edge():
     [
         (["--slope", "0"], "--slope 0: must be at least 1"),
         (["--classes", "0"], "--classes 0: must be 1 to 10000"),
-        (["--channels", "tyre_fr"], "has no channel 'tyre_fr'; it has tyre_fr_force_z"),
+        (["--channels", "tyre_fr"], "has no channel 'tyre_fr'; choose from tyre_fr_force_z"),
     ],
 )
 def test_bad_options(folder, capsys, arguments, said):
@@ -78,14 +78,14 @@ def test_bad_options(folder, capsys, arguments, said):
 def test_bad_runs(folder, capsys, monkeypatch):
     (folder / "empty").mkdir()
     assert main([str(folder / "empty")]) == 2
-    assert "holds no time.npz or time.csv" in capsys.readouterr().err
+    assert "contains no time.npz or time.csv" in capsys.readouterr().err
     (folder / "loads.csv").write_text("mine")
     assert main([str(folder), "--force"]) == 2
-    assert "is not as this program wrote it there" in capsys.readouterr().err
+    assert "was not written by this program, or was changed since" in capsys.readouterr().err
     (folder / "loads.csv").unlink()
     monkeypatch.setitem(__import__("sys").modules, "rainflow", None)
     assert main([str(folder)]) == 5
-    assert "needs rainflow, of the extra 'loads'" in capsys.readouterr().err
+    assert "the Python package rainflow is missing" in capsys.readouterr().err
     assert not (folder / "loads.csv").exists()
 
 

@@ -85,7 +85,7 @@ def test_modes_at_a_speed(capsys: pytest.CaptureFixture[str]) -> None:
             [*ROAD, "--tyre", "standing", "--set", "driving.speed=3", "--vehicle", "sedan"],
             "--tyre standing and --set driving.speed",
         ),
-        ([*ROAD, "--tyre", "rolling"], "has other ground contacts than wheels"),
+        ([*ROAD, "--tyre", "rolling"], "also stands on the ground without wheels"),
     ],
 )
 def test_what_does_not_go_together_is_refused(

@@ -35,7 +35,7 @@ def test_files(tmp_path, capsys):
 
 def test_a_change_without_effect_is_said_beside_a_search_too(capsys):
     assert main(["focus", "--search", "smoothing", "--set", "damper.presliding_stiffness=5e5"]) == 0
-    assert "note: damper.presliding_stiffness=5e5: without effect; it belongs to " in capsys.readouterr().out
+    assert "note: damper.presliding_stiffness=5e5: has no effect; it acts only with " in capsys.readouterr().out
 
 
 def test_search(capsys):
@@ -50,10 +50,10 @@ def test_search(capsys):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["sedan", "--search", "nowhere"], "no parameter of sedan has 'nowhere' in its path"),
-        (["sedan", "--search", "mass", "--output", "x"], "--search: prints parameters only"),
-        (["--vehicle", "sedan"], "--vehicle: the car comes first"),
-        (["lorry"], "lorry: no such file, and no shipped car"),
+        (["sedan", "--search", "nowhere"], "no parameter of sedan contains 'nowhere' in its path"),
+        (["sedan", "--search", "mass", "--output", "x"], "--search and --output exclude each other"),
+        (["--vehicle", "sedan"], "--vehicle is not an option here; name the car first"),
+        (["lorry"], "lorry: is neither a file nor a shipped car"),
         (["sedan", "--force"], "--force: belongs to --output DIR"),
     ],
 )

@@ -106,7 +106,7 @@ def test_console_says_the_values_first(record, tmp_path, capsys):
     assert lines[0].startswith("damper.viscous ") and "start 2250, bounds 800 to 4000" in lines[0]
     assert lines[2].startswith("--set damper.viscous=2250 --set suspension_mount.stiffness.z=")
     (text,) = [line for line in lines if line.startswith("not determined: damper.viscous")]
-    assert "the data do not identify this parameter" in text
+    assert "the data do not determine this parameter" in text
 
 
 def test_posterior_of_the_record_and_a_rival_law(record, tmp_path, capsys):
@@ -133,17 +133,17 @@ def test_posterior_of_the_record_and_a_rival_law(record, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("arguments", "message", "code"),
     [
-        ([], "no measurement: add --frf FILE or --record FILE", 2),
-        (["--signal", "low.csv"], "--signal: belongs to the --frf or --record before it", 2),
+        ([], "the measurement is missing; add --frf FILE or --record FILE", 2),
+        (["--signal", "low.csv"], "--signal: must follow the --frf or --record that it belongs to", 2),
         (["--record", "FILE", "--stuck"], "--stuck: belongs to --frf", 2),
         (["--band", "3:45"], "belongs to --frf", 2),
         (["--samples", "64"], "belongs to --posterior", 2),
-        (["--record", "FILE", *MAP, *("--parameters", BOUNDS[0]), "--posterior"], "--posterior: no FRFs", 3),
-        (["--record", "FILE", *MAP], "no parameter to fit", 2),
-        (["--record", "FILE", *MAP, "--parameters", "damper.viscous=1,2"], "contains values; needed are two bounds", 2),
+        (["--record", "FILE", *MAP, *("--parameters", BOUNDS[0]), "--posterior"], "--posterior needs measured FRFs", 3),
+        (["--record", "FILE", *MAP], "the parameters to fit are missing", 2),
+        (["--record", "FILE", *MAP, "--parameters", "damper.viscous=1,2"], "contains values, must be two bounds", 2),
         (["--record", "FILE", *MAP, "--parameters", "damper.viscous=3e3:4e3"], "0 < lower < start < upper", 2),
-        (["--record", "FILE", *MAP[2:], *("--parameters", BOUNDS[0])], "contains no input: no moving plate", 3),
-        (["--record", "FILE", *("--parameters", BOUNDS[0])], "no channel has the name of a model channel", 3),
+        (["--record", "FILE", *MAP[2:], *("--parameters", BOUNDS[0])], "contains no moving plate", 3),
+        (["--record", "FILE", *("--parameters", BOUNDS[0])], "no channel has the name of a channel of the model", 3),
         (["--record", "FILE", *MAP, "--to", "100.01", *("--parameters", BOUNDS[0])], "rows, must be at least 32", 3),
         (
             ["--record", "FILE", *MAP, "--unit", "seat_rail_acc_z=V", *("--parameters", BOUNDS[0])],

@@ -38,10 +38,18 @@ def test_without_library_and_compiler_it_is_said(monkeypatch, tmp_path):
     monkeypatch.setattr(library, "COMPILERS", ())
     monkeypatch.setattr(library, "cache_folder", lambda: tmp_path)
     monkeypatch.delenv("CC", raising=False)
-    with pytest.raises(MissingPartError, match=r"no compiled core for .*, and no C compiler .*; install gcc or clang"):
+    with pytest.raises(
+        MissingPartError,
+        match=r"the compiled core for .* is missing or outdated, and "
+        r"no C compiler .*; install gcc or clang",
+    ):
         library.core.__wrapped__()
     monkeypatch.setenv("CC", "false")
-    with pytest.raises(MissingPartError, match=r"the core cannot be compiled with false: .*; set CC to"):
+    with pytest.raises(
+        MissingPartError,
+        match=r"the core cannot be compiled with false: .*; set the "
+        r"environment variable CC to",
+    ):
         library.core.__wrapped__()
 
 

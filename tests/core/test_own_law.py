@@ -137,15 +137,15 @@ def test_laws_that_are_refused():
             register_law(name, LAW(force))
 
     refused("spring", lambda memory, x, v: 2000.0 * v + 1e4 * x, "must be zero at every displacement")
-    refused("motor", lambda memory, x, v: -2000.0 * v, "falls at rest, by 2000 N s/m")
+    refused("motor", lambda memory, x, v: -2000.0 * v, "falls with velocity, by 2000 N s/m")
     refused("nothing", lambda memory, x, v: float("nan"), "not a finite number")
-    refused("two words", lambda memory, x, v: v, "a name has letters")
+    refused("two words", lambda memory, x, v: v, "a name must consist of letters")
     refused("line", lambda memory, x, v: 1.0 * v, "belongs to another function")
     assert register_law("line", line).viscous == 2250.0  # the same again
     for wrong in ("text", 0, True, print):
         with pytest.raises(ConfigurationError, match="without an address"):
             register_law("wrong", wrong)
-    with pytest.raises(ConfigurationError, match="'missing': not registered in this process, which knows line"):
+    with pytest.raises(ConfigurationError, match=r"'missing': is not registered in this process \(registered: line"):
         car_with("missing").run(ROAD, engine="reduced", skip=0.5)
     with pytest.raises(ConfigurationError, match=r"damper\.function: found 'line' with control\.law = sky"):
         car_with("line", **{"front.damper.control.law": "skyhook"})

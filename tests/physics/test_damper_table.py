@@ -153,7 +153,7 @@ BAD = [
     ({}, "front.damper.velocity: found 0 points, must be 2 to 40"),
     ({"velocity": [-11, 1], "force": [0, 1]}, "front.damper.velocity: found -11.0 m/s, must be at least -10.0"),
     ({"curve": "none.csv"}, "front.damper.curve: "),
-    ({"curve": "a.csv", "force": FORCE}, "front.damper.curve: found 'a.csv'; must be the name of a file, without"),
+    ({"curve": "a.csv", "force": FORCE}, "front.damper.curve: found 'a.csv', must be the name of a file, without"),
     ({"gas_force": -1.0, "velocity": VELOCITY, "force": FORCE}, "front.damper.gas_force: found -1.0 N, must be at"),
 ]
 

@@ -213,15 +213,15 @@ REFUSED: dict[str, tuple[dict[str, object], str]] = {
     "unknown unit": ({"channel": "plain", "unit": "kp"}, "has the unknown unit 'kp'; set force.a.unit to N, kN or lbf"),
     "shorter": (
         {"channel": "push"},
-        "lasts 2 s, the run 3 s; set --duration 2, use a longer file, or set force.a.ends",
+        "the force lasts 2 s, less than the run, 3 s; set --duration 2, use a longer file, or set force.a.ends",
     ),
     "does not end": ({"channel": "jump", "ends_at_zero": True}, "force.a.ends_at_zero: the last value of"),
     "gap": ({"channel": "gap", "ends_at_zero": True}, "gap"),
-    "harmonics too": ({"harmonics": [[1, 1, 0]], "frequency": 5.0}, "a force has harmonics or a file"),
-    "no file": ({"file": "nowhere.csv"}, "nowhere.csv: no such file"),
+    "harmonics too": ({"harmonics": [[1, 1, 0]], "frequency": 5.0}, "found together with harmonics"),
+    "no file": ({"file": "nowhere.csv"}, "nowhere.csv: the file does not exist"),
     "too fast": (
         {"channel": "fast", "ends_at_zero": True},
-        "solver.record_rate: found 1000 Hz, which shows a force of",
+        "solver.record_rate: found 1000 Hz, must be at least",
     ),
 }
 
@@ -320,9 +320,12 @@ def test_a_wrong_speed_of_the_crankshaft_is_refused(tmp_path):
         ({"crank.file": str(file)}, "2 channels are in 1/min or rpm; set crank.channel to a number or name of: 1 'n'"),
         ({"crank.file": str(file), "crank.channel": "x"}, "0 channels match 'x'; set crank.channel"),
         ({"crank.file": str(file), "crank.channel": "m"}, "the speed 'm' is 0 to 100000, must be 0 to 10000 1/min"),
-        ({"crank.file": str(file), "crank.rpm": 700}, "crank.rpm: needed is either rpm or the file"),
-        ({"crank.rpm": 700, "crank.channel": "n"}, "crank.file: missing; channel belongs to a file"),
-        ({"crank.file": str(tmp_path / "no.csv")}, "no.csv: no such file"),
+        ({"crank.file": str(file), "crank.rpm": 700}, "crank.rpm: give either rpm or the file"),
+        (
+            {"crank.rpm": 700, "crank.channel": "n"},
+            ("crank.file: missing, although channel is set, which belongs to a file"),
+        ),
+        ({"crank.file": str(tmp_path / "no.csv")}, "no.csv: the file does not exist"),
     ):
         with pytest.raises(VehicleError) as error:
             Car.load("focus", changes)
@@ -342,9 +345,9 @@ def test_a_channel_of_the_input_is_the_speed_of_the_crankshaft(tmp_path, capsys)
     assert shaker([*words, *picks, "--channels", "speed_crank", "--output", str(out)]) == 0
     assert load_run(out)["speed_crank"] == pytest.approx(rpm[0] + 100.0 * np.arange(1501) / 1e3, rel=1e-6)
     for more, said in (
-        (["--rpm", "750"], "the crankshaft has one speed; leave --rpm and other channels out"),
-        (["--no-forces"], "turns the crankshaft of forces that --no-forces leaves out"),
-        (["--from", "0.1"], "names a channel of --input FILE, whose whole record is used"),
+        (["--rpm", "750"], "the crankshaft speed is given twice; leave out --rpm and other channels"),
+        (["--no-forces"], "--rpm has no effect with --no-forces"),
+        (["--from", "0.1"], "the speed must be a channel of --input FILE, used from its start"),
     ):
         assert shaker([*words, *picks, *more]) == 2
         assert said in capsys.readouterr().err

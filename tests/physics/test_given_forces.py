@@ -81,7 +81,7 @@ def test_a_force_from_python_is_that_of_a_file(tmp_path):
     assert precise.recording.statistics.energies is not None
     assert np.std(precise["seat_rail_acc_z"] - expected["seat_rail_acc_z"]) < 5e-3 * np.std(expected["seat_rail_acc_z"])
     # The vehicle file of the run cannot contain it.
-    assert any("force.a: history from Python" in text for text in precise.recording.statistics.notices)
+    assert any("force.a: comes from Python" in text for text in precise.recording.statistics.notices)
 
 
 @pytest.mark.parametrize("place", PLACES)
@@ -105,13 +105,19 @@ def test_a_frf_to_a_force_is_that_of_the_matrices(place):
 
 
 REFUSED: dict[str, tuple[dict[str, Any], str]] = {
-    "no such force": ({"b": np.zeros(501)}, "force: found 'b', no table [force.NAME] of this car; the nearest is a"),
-    "another length": ({"a": np.zeros(500)}, "has values of the shape (500,), needed is one for each of the 501 times"),
-    "a number": ({"a": lambda time: 3.0}, "has values of the shape (), needed is one for each"),
+    "no such force": (
+        {"b": np.zeros(501)},
+        ("force: unknown name 'b', no table [force.NAME] of this car; the most similar name is a"),
+    ),
+    "another length": (
+        {"a": np.zeros(500)},
+        ("has values of the shape (500,), must be a value for each of the 501 times"),
+    ),
+    "a number": ({"a": lambda time: 3.0}, "has values of the shape (), must be a value for each"),
     "not finite": ({"a": np.full(501, np.nan)}, "forces: force.a has a value that is not finite"),
     "too fast": (
         {"a": lambda time: np.sin(600.0 * np.pi * time) * np.sin(2.0 * np.pi * time) ** 2},
-        "solver.record_rate: found 1000 Hz, which shows a force of",
+        "solver.record_rate: found 1000 Hz, must be at least",
     ),
 }
 
@@ -129,7 +135,9 @@ def test_forces_that_are_not_there_are_refused():
     car, still = Car.load("focus", RAIL), Signal(time=np.arange(501) / 1e3, displacement={"fr": np.zeros(501)})
     with pytest.raises(VehicleError, match=r"force\.a\.enabled is false"):
         car.with_({"force.a.enabled": False}).run(still, engine="reduced", forces={"a": np.zeros(501)})
-    with pytest.raises(VehicleError, match="force: found 'shake', no force of this car; the nearest is a"):
+    with pytest.raises(
+        VehicleError, match="force: unknown name 'shake', no force of this car; the most similar name is a"
+    ):
         car.force_frf(["seat_rail_acc_z"], [5.0], force="shake")
     with pytest.raises(VehicleError, match="no channel 'force_a'"):
         car.run(still, engine="reduced", channels=["force_a"])  # it has no history
@@ -150,8 +158,8 @@ def test_a_run_without_the_forces_of_its_car(tmp_path, capsys):
     assert calm.car.vehicle.composition.forces == ()
     assert "apply_forces = false" in (calm_folder / "vehicle.toml").read_text(encoding="utf-8")
     for more, said in (
-        (["--road", "B", "--rpm", "750"], "--rpm: turns the crankshaft of forces that --no-forces leaves out"),
-        (["--road", "level"], "its own are left out by --no-forces"),
+        (["--road", "B", "--rpm", "750"], "--rpm has no effect with --no-forces"),
+        (["--road", "level"], "the forces of the vehicle file are left out by --no-forces"),
     ):
         assert shaker([*words, *more]) == 2
         assert said in capsys.readouterr().err

@@ -202,7 +202,7 @@ def test_both_engines_see_the_rotations_of_a_body_design(tmp_path, capsys):
     for file, notice in ((tmp_path / "turning.toml", "known at strut_top_fr"), (None, "unknown at strut_top_fr")):
         options = [] if file is None else ["--vehicle", str(write_vehicle(tmp_path, file.name))]
         assert body_command.main(["show", *options]) == 0
-        assert f"rotations of nodes under rotational stiffness: {notice}" in capsys.readouterr().out
+        assert f"rotation of the body at points with rotational stiffness: {notice}" in capsys.readouterr().out
 
 
 def write_vehicle(folder, body):

@@ -75,12 +75,12 @@ REFUSED: dict[str, tuple[dict[str, float], dict[str, Any], str]] = {
     "both": (
         IMBALANCE,
         {"rpm": [750.0], "speed": [80.0]},
-        "of the crankshaft [1/min] or of the car [km/h], one of both",
+        "of the crankshaft [1/min] or speeds of the car [km/h]",
     ),
     "no crank": (IMBALANCE, {"rpm": [750.0], "angle": "wheel_fr"}, "wheel_fr does not turn with the crankshaft"),
-    "not the crank": (IMBALANCE, {"rpm": [750.0]}, "no force of sedan turns with crank"),
-    "too many": (IMBALANCE, {"speed": np.linspace(60.0, 90.0, 500).tolist()}, "500 points; at most 400"),
-    "too short": (IMBALANCE, {"speed": [60.0], "duration": 2.5}, "turns; needed are 16"),
+    "not the crank": (IMBALANCE, {"rpm": [750.0]}, "sedan has no force that turns with crank"),
+    "too many": (IMBALANCE, {"speed": np.linspace(60.0, 90.0, 500).tolist()}, "gives 500 points, must be at most 400"),
+    "too short": (IMBALANCE, {"speed": [60.0], "duration": 2.5}, "turns, must be at least 16"),
 }
 
 
@@ -133,13 +133,19 @@ def test_several_channels_come_from_the_same_runs(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ([], "error: orders: set --rpm A:B:STEP, as 700:3000:50, or --speed A:B:STEP, as 60:160:5\n"),
-        (["--rpm", "700:3000"], "steady points need a step, as 700:3000:115; a run-up is one run"),
-        (["--rpm", "900:700:50"], "needed is A:B:STEP with 0 < A < B, as 700:3000:50"),
-        (["--rpm", "700:3000:1"], "2301 points; at most 400; take a larger step"),
-        (["--rpm", "700:900:50", "--speed", "60:80:5"], "vary one of them"),
-        (["--rpm", "700:900:50", "--orders", "2,2"], "needed are up to 12 whole or half orders, each once"),
-        (["--rpm", "700:900:50", "--orders", "1.3"], "needed are up to 12 whole or half orders, each once"),
+        (
+            [],
+            (
+                "error: orders: the speeds are missing; set --rpm A:B:STEP, for example 700:3000:50, or --speed "
+                "A:B:STEP, for example 60:160:5\n"
+            ),
+        ),
+        (["--rpm", "700:3000"], "the step between the speeds is missing, for example 700:3000:115; for a run-up type"),
+        (["--rpm", "900:700:50"], "must be A:B:STEP with 0 < A < B, for example 700:3000:50"),
+        (["--rpm", "700:3000:1"], "gives 2301 points, must be at most 400; use a larger step"),
+        (["--rpm", "700:900:50", "--speed", "60:80:5"], "only one of them can be a range"),
+        (["--rpm", "700:900:50", "--orders", "2,2"], "must be up to 12 whole or half orders, each once"),
+        (["--rpm", "700:900:50", "--orders", "1.3"], "must be up to 12 whole or half orders, each once"),
     ],
 )
 def test_wrong_options_are_refused(words, message, capsys):
@@ -148,8 +154,8 @@ def test_wrong_options_are_refused(words, message, capsys):
 
 
 SHAKER = {
-    "700:3000": "a run-up needs its length; set --duration S",
-    "x": "needed is a speed, as 750, or a run-up, as 700:3000",
+    "700:3000": "the length of the run-up is missing",
+    "x": "must be a speed, for example 750, or a run-up, for example 700:3000",
     "100": "crank.rpm: found 100.0 1/min, must be at least 300.0",
 }
 

@@ -34,7 +34,7 @@ def test_the_slope_of_a_drive_is_that_of_the_cams() -> None:
     assert np.sum(rise[start]) == pytest.approx(np.sum(mean[start]), abs=0.02 * np.sum(np.abs(rise[start])))
     assert signal.identity() != replace(signal, slope_velocity={}).identity()
     with pytest.raises(
-        DataError, match="slope velocity of fr; set it for the wheels of the displacements, fr, rr, or for none"
+        DataError, match="slope velocity of fr; set it for the wheels with a displacement, fr, rr, or leave it out"
     ):
         replace(signal, slope_velocity={"fr": np.zeros(signal.time.size)})
     with pytest.raises(DataError, match="slope velocity of fr has shape"):

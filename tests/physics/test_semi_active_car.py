@@ -95,12 +95,12 @@ def test_settings_are_recorded_only_on_request():
 def test_numbers_without_effect_are_said():
     notes = idle_parameters(load_vehicle(Path("focus_road")), ["front.damper.control.delay=0.01"])
     assert notes == (
-        "front.damper.control.delay=0.01: without effect; it belongs to front.damper.control.law = skyhook or "
+        "front.damper.control.delay=0.01: has no effect; it acts only with front.damper.control.law = skyhook or "
         "another law",
     )
     overrides = [*changes("skyhook"), "front.damper.viscous=2000"]
     notes = idle_parameters(load_vehicle(Path("focus_road"), overrides), overrides)
-    assert notes == ("front.damper.viscous=2000: without effect; it belongs to front.damper.control.law = passive",)
+    assert notes == ("front.damper.viscous=2000: has no effect; it acts only with front.damper.control.law = passive",)
     assert load_vehicle(Path("focus_road")).quantity_of("front.damper.control.delay")["unit"] == "s"
 
 
@@ -129,6 +129,6 @@ def test_a_template_without_ends_has_no_sensors(tmp_path):
     assert load_vehicle(file).wheels
     with pytest.raises(ConfigurationError) as caught:
         load_vehicle(file, changes("skyhook"))
-    assert "front.damper.control.law: found 'skyhook', but macpherson.toml has no positions of its sensors" in str(
+    assert "front.damper.control.law: found 'skyhook', but macpherson.toml does not state where its sensors are" in str(
         caught.value
     )

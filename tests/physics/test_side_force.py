@@ -167,6 +167,6 @@ def test_a_rod_without_a_bushing_is_refused():
     with pytest.raises(ConfigurationError) as caught:
         Rows(spec.compile())
     assert str(caught.value) == (
-        "damper_fr: side_force_coefficient is 0.2, but no bushing holds the rod, whose force it needs; set the "
-        "coefficient to 0, or give the mount of the rod a stiffness"
+        "damper_fr: side_force_coefficient is 0.2, but its side force is unknown, because no bushing holds the "
+        "rod; set the coefficient to 0, or give the mount of the rod a stiffness"
     )

@@ -156,14 +156,18 @@ def test_empty_folder_is_taken_and_a_full_one_refused(tmp_path):
     assert check_study(folder, force=False) == folder
     with study_folder(folder, force=False) as made:
         write_text(made / "a.txt", "a")
-    with pytest.raises(ConfigurationError, match="holds files already; give another folder, or --force to overwrite"):
+    with pytest.raises(ConfigurationError, match="holds files; give another folder, or --force to overwrite"):
         check_study(folder, force=False)
     assert check_study(folder, force=True) == folder
 
 
 def test_file_in_the_way_of_a_folder_is_an_output_error(tmp_path):
     (tmp_path / "file").write_text("")
-    with pytest.raises(OutputError, match=r"--output .*file: cannot be made: is a file; give another folder"):
+    with pytest.raises(
+        OutputError,
+        match=r"--output .*file: cannot be created, because a file has "
+        r"this name; give another folder",
+    ):
         check_study(tmp_path / "file", force=True)
 
 

@@ -63,5 +63,5 @@ def test_the_response_to_a_motion_is_the_sum_over_the_plates():
 
 def test_a_car_with_two_plates_is_refused(tmp_path, capsys):
     assert main(["--output", str(tmp_path / "out"), "--quick", "--vehicle", "focus"]) == 2
-    assert "wheel rr (rear_right): focus does not have it" in capsys.readouterr().err
+    assert "wheel rr (rear_right): focus has no such wheel" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()

@@ -77,7 +77,7 @@ def test_a_passage_that_failed_is_a_gap(passage):
         (["--speeds", "20,x"], "--speeds 20,x: must be speeds above 0 to 400 km/h"),
         (["--speeds", "-5"], "--speeds -5: must be"),
         (["--obstacle", "kerb"], "'kerb' must be one of cleat"),
-        (["--video", "film.avi"], "a film is written as .mp4"),
+        (["--video", "film.avi"], "must end in .mp4"),
     ],
 )
 def test_refusals(arguments, message, tmp_path, capsys):

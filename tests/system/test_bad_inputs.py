@@ -73,7 +73,7 @@ SETTINGS = [
     ("26 strut below ball", "hardpoints.strut_top=[0.877, 0.548, 0.5]", "hardpoints.strut_top: found z = 0.5 m"),
     ("26 collinear arm", "hardpoints.arm_rear=[0.842, 0.2, 0.612]", "lie on one line"),
     ("27 no such body", "body.superelement=nothing.toml", "body.superelement: no file 'nothing.toml'"),
-    ("30 unknown name", "damper.coulomb_fricton=100", "the nearest is front.damper.coulomb_friction"),
+    ("30 unknown name", "damper.coulomb_fricton=100", "the most similar path is front.damper.coulomb_friction"),
     ("31 a truth value", "damper.viscous=true", "damper.viscous: found True, must be a number"),
     ("31 overflow", "damper.viscous=1e400", "damper.viscous: found inf"),
     ("31 two components", "body.cog=[1, 2]", "body.cog: found (1.0, 2.0), must be a list of 3 numbers [m]"),
@@ -105,7 +105,7 @@ def test_item_33_link_out_of_the_folder(shaker, short_signal, tmp_path):
     (folder / "body_design.toml").symlink_to(ROOT / "vehicle/model/vehicles/focus/body_design.toml")
     (folder / "car.toml").write_text((ROOT / "vehicle/model/vehicles/focus/vehicle.toml").read_text())
     outcome = shaker("--input", "short.csv", "--vehicle", "cars/car.toml")
-    assert outcome.code == 2 and "is a link that points outside" in outcome.err
+    assert outcome.code == 2 and "is a link to a file outside" in outcome.err
 
 
 def test_item_35_existing_output(shaker, short_signal, tmp_path):
@@ -115,12 +115,16 @@ def test_item_35_existing_output(shaker, short_signal, tmp_path):
     outcome = shaker("--input", "short.csv", "--output", "runs/short")
     assert outcome.code == 2 and "give --force" in outcome.err and kept.read_text() == "mine"
     outcome = shaker("--input", "short.csv", "--force")
-    assert outcome.code == 2 and "no run wrote: mine.txt" in outcome.err and kept.read_text() == "mine"
+    assert (
+        outcome.code == 2
+        and "files that are not results of a run: mine.txt" in outcome.err
+        and kept.read_text() == "mine"
+    )
     outcome = shaker("--input", "short.csv", "--engine", "reduced")
     assert outcome.code == 0 and "runs/short exists; writing runs/short-2" in outcome.err
     assert (tmp_path / "runs" / "short-2" / "summary.json").exists() and kept.read_text() == "mine"
     outcome = shaker("--input", "short.csv", "--output", ".", "--force")
-    assert outcome.code == 2 and "holds the input" in outcome.err and short_signal.exists()
+    assert outcome.code == 2 and "contains the input" in outcome.err and short_signal.exists()
 
 
 def test_item_35_output_that_cannot_be_written(shaker, short_signal, tmp_path):
@@ -164,7 +168,7 @@ def test_item_38_interrupt(tmp_path):
     process.send_signal(signal.SIGINT)
     _, said = process.communicate(timeout=HANG)
     assert process.returncode == 130
-    assert said.strip().splitlines()[-1] == "error: interrupted; no results are half-written"
+    assert said.strip().splitlines()[-1] == "error: interrupted; every file written so far is complete"
     assert not list(tmp_path.glob("runs/*")) and not list(tmp_path.glob("runs/.*"))
 
 
@@ -209,6 +213,9 @@ def test_item_40_no_rendering_library(shaker, short_signal, tmp_path, monkeypatc
 def test_usage_errors(shaker, short_signal):
     assert shaker().code == 2
     outcome = shaker("--input", "short.csv", "--wheel", "rear_left")
-    assert outcome.code == 2 and "wheel rl (rear_left): focus does not have it; it has fr (front_right)" in outcome.err
+    assert (
+        outcome.code == 2
+        and ("wheel rl (rear_left): focus has no such wheel; choose from fr (front_right)") in outcome.err
+    )
     outcome = shaker("--input", "short.csv", "--set", "damper")
     assert outcome.code == 2 and "PATH=VALUE" in outcome.err

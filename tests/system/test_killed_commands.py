@@ -58,10 +58,10 @@ def visible(folder: Path) -> list[str]:
 @pytest.mark.parametrize(
     ("killer", "content", "said"),
     [
-        ("work_folder.synchronise_folder", "old", "left unfinished results; they are removed"),
-        ("work_folder._put_in_place", "new", "the complete results of a killed command are in place now"),
-        ("work_folder._retire", "new", "the complete results of a killed command are in place now"),
-        ("work_folder.discard", "new", "the complete results of a killed command are in place now"),
+        ("work_folder.synchronise_folder", "old", "left unfinished results; they were removed"),
+        ("work_folder._put_in_place", "new", "the complete results of a killed command were put in place"),
+        ("work_folder._retire", "new", "the complete results of a killed command were put in place"),
+        ("work_folder.discard", "new", "the complete results of a killed command were put in place"),
     ],
 )
 @pytest.mark.parametrize("exchange", [True, False])
@@ -99,7 +99,7 @@ def test_results_between_two_renames_come_back(tmp_path, capsys, monkeypatch):
         results_again = output_folder(tmp_path / "run", force=False)
         results_again.__enter__()
     assert (tmp_path / "run" / "a.csv").read_text() == "new" and visible(tmp_path) == ["run"]
-    assert "the complete results of a killed command are in place now" in capsys.readouterr().err
+    assert "the complete results of a killed command were put in place" in capsys.readouterr().err
 
 
 def test_a_failing_exchange_leaves_the_results_of_before(tmp_path, monkeypatch):
@@ -109,9 +109,7 @@ def test_a_failing_exchange_leaves_the_results_of_before(tmp_path, monkeypatch):
         raise OSError(5, "Input/output error")
 
     monkeypatch.setattr(work_folder, "exchange", fails)
-    with pytest.raises(
-        OutputError, match=r"cannot be written: Input/output error; the results of before are unchanged$"
-    ):
+    with pytest.raises(OutputError, match=r"cannot be written: Input/output error; the earlier results are unchanged$"):
         results(tmp_path / "run", "new")
     assert read(tmp_path / "run") == ["old", "old"] and visible(tmp_path) == ["run"]
 
@@ -128,7 +126,7 @@ def test_undeletable_old_results_are_no_error(tmp_path, monkeypatch, capsys):
     assert read(tmp_path / "run") == ["new", "new"]
     assert "is complete; files of the earlier results remain" in capsys.readouterr().err
     put_in_order(tmp_path / "run")
-    assert visible(tmp_path) == ["run"] and "are in place now" in capsys.readouterr().err
+    assert visible(tmp_path) == ["run"] and "were put in place" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("touched", [0, 1, 2])
@@ -151,7 +149,7 @@ def test_several_files_are_all_new_or_all_old(touched, tmp_path, capsys):
     assert [path.read_text() for path in files] == ["new", "old"]
     put_in_order(files[touched] if touched < 2 else tmp_path)
     assert [path.read_text() for path in files] == ["new", "new"] and visible(tmp_path) == ["a.csv", "b.csv"]
-    assert "are in place now" in capsys.readouterr().err
+    assert "were put in place" in capsys.readouterr().err
 
 
 ROWS = ("rows.jsonl", "plan.json")
@@ -167,11 +165,13 @@ def test_a_killed_study_goes_on_where_it_was(tmp_path, capsys):
     killed(tmp_path, STUDY.format(force=False, resume=False, row=1))
     folder = tmp_path / "study"
     assert not folder.exists()
-    with pytest.raises(ConfigurationError, match="holds finished runs; --resume goes on, --force starts anew"):
+    with pytest.raises(
+        ConfigurationError, match="holds finished runs; continue them with --resume, or start again with --force"
+    ):
         check_study(folder, force=False, rows=ROWS)
     assert (
-        "a killed command left finished rows (.study.partial/rows.jsonl); --resume goes on" in capsys.readouterr().err
-    )
+        "a killed command left finished rows in .study.partial/rows.jsonl; continue with --resume"
+    ) in capsys.readouterr().err
     with pytest.raises(ConfigurationError, match="a killed command left finished rows there"):
         results(folder, "of another command")
     with study_folder(folder, force=False, resume=True, rows=ROWS) as work:

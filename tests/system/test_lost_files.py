@@ -48,7 +48,7 @@ def test_only_what_a_run_wrote_is_replaced(tmp_path):
     (run / "thesis.tex").write_text("mine")
     (run / "notes").mkdir()
     (run / "notes" / "one.txt").write_text("mine")
-    with pytest.raises(ConfigurationError, match=r"no run wrote: notes/one.txt, thesis.tex;"):
+    with pytest.raises(ConfigurationError, match=r"that are not results of a run: notes/one.txt, thesis.tex;"):
         put(run, "a.csv", force=True)
     assert (run / "thesis.tex").exists() and (run / "notes" / "one.txt").exists()
     assert [path.name for path in tmp_path.iterdir()] == ["run"]
@@ -71,7 +71,7 @@ def test_a_writer_in_the_context_of_another_makes_one_temporary_file(tmp_path):
 def test_a_file_that_comes_during_the_run_is_kept(tmp_path):
     put(tmp_path / "run", "a.csv")
     with (
-        pytest.raises(ConfigurationError, match=r"no run wrote: late\.txt"),
+        pytest.raises(ConfigurationError, match=r"not results of a run: late\.txt"),
         output_folder(tmp_path / "run", force=True),
     ):
         (tmp_path / "run" / "late.txt").write_text("mine")
@@ -82,7 +82,7 @@ def test_a_folder_without_a_list_is_no_run(shaker, short_signal, tmp_path):
     (tmp_path / "thesis").mkdir()
     (tmp_path / "thesis" / "chapter.tex").write_text("mine")
     outcome = shaker("--input", "short.csv", "--output", "thesis", "--force")
-    assert outcome.code == 2 and "holds files that no run wrote: chapter.tex" in outcome.err
+    assert outcome.code == 2 and "holds files that are not results of a run: chapter.tex" in outcome.err
     assert (tmp_path / "thesis" / "chapter.tex").read_text() == "mine"
 
 
@@ -91,7 +91,7 @@ def test_the_vehicle_file_beside_the_run_is_kept(shaker, short_signal, tmp_path)
     car.parent.mkdir()
     car.write_text((ROOT / "vehicle/model/vehicles/focus/vehicle.toml").read_text())
     outcome = shaker("--input", "short.csv", "--vehicle", "cars/car.toml", "--output", "cars", "--force")
-    assert outcome.code == 2 and "holds the input cars/car.toml" in outcome.err and car.exists()
+    assert outcome.code == 2 and "contains the input cars/car.toml" in outcome.err and car.exists()
 
 
 def test_folders_of_earlier_versions_are_recognised(tmp_path):
@@ -118,7 +118,7 @@ def test_generated_files_of_a_clone_are_replaced(tmp_path, mark):
     page.write_text("# Page\n\n<!-- Written by `python -m scenarios.published`; never edit by hand. -->\n")
     check_file(page, force=True)
     page.write_text("# Page of somebody else\n")
-    with pytest.raises(ConfigurationError, match="other files are never replaced"):
+    with pytest.raises(ConfigurationError, match="so it is not replaced"):
         check_file(page, force=True)
 
 
@@ -170,7 +170,7 @@ def test_studies_keep_the_same_list(tmp_path):
     study(folder, "results.md", force=True)
     assert {path.name for path in folder.iterdir()} == {"results.md", MARKER}
     (folder / "mine.txt").write_text("mine")
-    with pytest.raises(ConfigurationError, match=r"no run wrote: mine\.txt"):
+    with pytest.raises(ConfigurationError, match=r"not results of a run: mine\.txt"):
         check_study(folder, force=True)
 
 
@@ -185,23 +185,23 @@ def test_a_single_file_replaces_nothing_but_what_was_written_there(tmp_path):
     # What somebody changed is theirs; so is a film of theirs that takes the name, and one that was moved here.
     for content in (FILM + b"cut", b"a letter to my mother"):
         film.write_bytes(content)
-        with pytest.raises(ConfigurationError, match="is not as this program wrote it there"):
+        with pytest.raises(ConfigurationError, match="was not written by this program, or was changed since"):
             check_file(film, "--video", force=True)
-        with pytest.raises(ConfigurationError, match="is not as this program wrote it there"):
+        with pytest.raises(ConfigurationError, match="was not written by this program, or was changed since"):
             write_text(film, "mine")
         assert film.read_bytes() == content
     film.write_bytes(FILM)  # as it was written once
     write_text(film, "ours")
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "elsewhere" / "film.mp4").symlink_to(film)
-    with pytest.raises(ConfigurationError, match="is not as this program wrote it there"):
+    with pytest.raises(ConfigurationError, match="was not written by this program, or was changed since"):
         check_file(tmp_path / "elsewhere" / "film.mp4", force=True)
 
 
 def test_files_that_were_changed_since_are_kept(tmp_path):
     put(tmp_path / "run", "a.csv", "b.csv")
     (tmp_path / "run" / "b.csv").write_text("edited by hand")
-    with pytest.raises(ConfigurationError, match=r"files that were changed since a run wrote them: b\.csv; --force"):
+    with pytest.raises(ConfigurationError, match=r"results that were edited afterwards: b\.csv; --force"):
         put(tmp_path / "run", "a.csv", force=True)
     folder, rows = tmp_path / "study", ("rows.jsonl",)
     with study_folder(folder, force=False, rows=rows) as made:
@@ -211,7 +211,7 @@ def test_files_that_were_changed_since_are_kept(tmp_path):
     check_study(folder, force=False, resume=True, rows=rows)
     (folder / "table.csv").write_text("edited by hand")
     for ways in ({"force": False, "resume": True}, {"force": True}):
-        with pytest.raises(ConfigurationError, match=r"changed since a run wrote them: table\.csv"):
+        with pytest.raises(ConfigurationError, match=r"results that were edited afterwards: table\.csv"):
             check_study(folder, rows=rows, **ways)
     assert (tmp_path / "run" / "b.csv").read_text() == (folder / "table.csv").read_text() == "edited by hand"
 
@@ -278,7 +278,7 @@ def test_a_link_leads_to_the_folder_that_is_replaced(tmp_path):
 @pytest.mark.parametrize("name", [".", "..", "/"])
 def test_the_working_folder_is_no_output(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(ConfigurationError, match="is the working folder, or contains it"):
+    with pytest.raises(ConfigurationError, match="is the current folder, or contains it"):
         put(Path(name), "a.csv", force=True)
 
 
@@ -300,6 +300,10 @@ def test_two_runs_in_one_folder(tmp_path):
 def test_model_files_replace_only_model_files(tmp_path):
     (tmp_path / "meshes").mkdir()
     (tmp_path / "meshes" / "statue.stl").write_text("mine")
-    with pytest.raises(ConfigurationError, match=r"meshes/statue\.stl: is not as this program wrote it there"):
+    with pytest.raises(
+        ConfigurationError,
+        match=r"meshes/statue\.stl: was not written by this "
+        r"program, or was changed since",
+    ):
         write_mjcf(tmp_path, {"car.xml": b"<mujoco/>"})
     assert (tmp_path / "meshes" / "statue.stl").exists()

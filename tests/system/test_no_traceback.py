@@ -28,7 +28,7 @@ SETTINGS = [
     ("60 nested lists", f"body.cog={NESTED}", "brackets are nested too deep"),
     ("60 open brackets", "body.cog=" + "[" * 5000, "brackets are nested too deep"),
     ("65 a number for a vector", "bushings.tyre.stiffness=2e5", "bushings.tyre.stiffness.z=2e5"),
-    ("a NUL byte", "name=a\0b", "contains a NUL byte"),
+    ("a NUL byte", "name=a\0b", "contains a NUL character"),
 ]
 
 
@@ -96,11 +96,11 @@ def test_the_working_folder_is_refused_before_the_run(shaker, short_signal, tmp_
     (tmp_path / "empty").mkdir()
     monkeypatch.chdir(tmp_path / "empty")
     outcome = shaker("--input", "../short.csv", "--output", ".", "--force")
-    assert outcome.code == 2 and "is the working folder" in outcome.err
+    assert outcome.code == 2 and "is the current folder" in outcome.err
 
 
 def test_a_wrong_wheel_or_channel_of_an_frf(car):
-    with pytest.raises(ConfigurationError, match=r"wheel rr \(rear_right\): focus does not have it"):
+    with pytest.raises(ConfigurationError, match=r"wheel rr \(rear_right\): focus has no such wheel"):
         car.matrix_frf(["seat_rail_acc_z"], [10.0], wheel="rr")
     with pytest.raises(ConfigurationError, match="no acceleration channel 'seat'"):
         car.matrix_frf(["seat"], [10.0])
@@ -109,7 +109,9 @@ def test_a_wrong_wheel_or_channel_of_an_frf(car):
 def test_an_unknown_opengl_backend(shaker, short_signal, monkeypatch):
     monkeypatch.setenv("MUJOCO_GL", "bogus")
     outcome = shaker("--input", "short.csv")
-    assert outcome.code == 2 and outcome.err.startswith("error: MUJOCO_GL=bogus: no OpenGL backend")
+    assert outcome.code == 2 and outcome.err.startswith(
+        "error: environment variable MUJOCO_GL=bogus: is not an OpenGL backend"
+    )
 
 
 @pytest.mark.parametrize("redirection", [">&-", ">/dev/full", ">&- 2>&-", "2>&-"])

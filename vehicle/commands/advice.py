@@ -65,8 +65,8 @@ def command_for(measurement: Measurement, file: str, databases: Sequence[Path] =
     }
     if by["force"] and (by["velocity"] or by["displacement"]) and not by["acceleration"] and len(histories) <= 4:
         return "", (
-            "a force with a velocity or a travel: the curve of a damper or a spring; name the file in the vehicle "
-            "file, docs/vehicle-file.md"
+            "force over velocity or travel, so probably the curve of a damper or spring; name this file in the "
+            "vehicle file (docs/vehicle-file.md shows where)"
         )
     empty = [channel for _, channel in (*by["displacement"], *by["acceleration"]) if not _has_values(channel)]
     plates, accelerations = (
@@ -91,8 +91,8 @@ def command_for(measurement: Measurement, file: str, databases: Sequence[Path] =
         names = ", ".join(channel.name for _, channel in plates[:4])
         return (
             "",
-            f"{names}: a height above the sea, a distance, or the travel of a spring. "
-            "Needed is the height of a plate or road",
+            f"{names}: probably no motion of a plate or road, but a height above the sea, a distance or the "
+            "travel of a spring; choose another channel",
         )
     if empty:
         note = f" ({empty[0].remark})" if empty[0].remark else ""
@@ -100,12 +100,15 @@ def command_for(measurement: Measurement, file: str, databases: Sequence[Path] =
     if any(channel.kind == "frequency" for channel in measurement.channels):
         return "", "responses: python -m vehicle compare RUN --measured FILE --map knuckle_fr_acc_z=NAME"
     if not measurement.channels:
-        return "", "no channels, nodes only"
+        return "", "the file has only nodes, no channels"
     if histories:
-        return "", "no unit is known that tells a displacement or an acceleration: set --unit ROLE=UNIT with --channel"
+        return "", (
+            "the file states no units, so displacements and accelerations cannot be told apart; set --channel "
+            "ROLE=NAME and --unit ROLE=UNIT"
+        )
     if any(channel.function in NOT_OVER_TIME for channel in measurement.channels):
         return "", "the channels are over distance or angle, not over time; export them over time"
-    return "", "no channel with times: set --rate HZ, or --channel time=NAME"
+    return "", "the file has no time channel; set --rate HZ, or --channel time=NAME"
 
 
 def comparison_for(measurement: Measurement, file: str, command: str) -> tuple[str, dict[str, str]]:
@@ -183,7 +186,7 @@ def _road(measurement: Measurement, file: str) -> tuple[str, str] | None:
     try:
         read_road(measurement.path, 1.5)
     except VehicleError as error:
-        return ("", f"no road for a car of 1.5 m track: {error}") if profile else None
+        return ("", f"not usable as a road for a car of 1.5 m track: {error}") if profile else None
     arguments = ["shaker", "--vehicle", "focus_road", "--road", file, "--speed", "80"]
     command, why = _first(measurement, [arguments])
     return command, "drives over the road at 80 km/h" if command else f"a road, but: {why}"
@@ -242,7 +245,11 @@ def _plates(
     addition = ""
     if not wheels:
         wheels = {SHAKER_WHEEL: moves[0][0]}
-        addition = "" if len(moves) == 1 else f"; {len(moves) - 1} more displacements name no wheel"
+        addition = (
+            ""
+            if len(moves) == 1
+            else f"; the names of {len(moves) - 1} more displacements state no wheel, so they are not used"
+        )
     car = ["--vehicle", "focus_road"] if set(wheels) - {"fr", "fl"} else []
     names = {measurement.channels[number - 1].name: wheel for wheel, number in wheels.items()}
     roles = {"displacement": SHAKER_WHEEL, **{f"displacement_{wheel}": wheel for wheel in wheels}}
@@ -268,7 +275,7 @@ def _accelerations(measurement: Measurement, files: list[str], those: list[Numbe
     for pair in seats or [pair for pair in those if not of_wheel_or_engine(pair[1])]:
         points.setdefault(point_of(pair[1]), []).append(pair)
     if not points:
-        return "", "accelerations of wheels or engine: comfort needs one of a seat or a floor"
+        return "", "accelerations of wheels or engine only; comfort needs an acceleration of a seat or of the floor"
     # The first of the points with the most axes.
     of_point = max(points.values(), key=lambda pairs: len({axis_of(channel) for _, channel in pairs}))
     axes: dict[str, int] = {}
@@ -283,7 +290,10 @@ def _accelerations(measurement: Measurement, files: list[str], those: list[Numbe
     rate = chosen[0].rate or 0.0
     length = chosen[0].values.size / rate if rate else 0.0
     if length < SHORTEST or rate < 25.0:
-        return "", f"an acceleration of {length:.3g} s at {rate:.4g} Hz: comfort needs {SHORTEST:g} s at 25 Hz or more"
+        return "", (
+            f"an acceleration of {length:.3g} s, sampled at {rate:.4g} Hz: comfort needs at least {SHORTEST:g} "
+            "s, sampled at 25 Hz or more"
+        )
     picks = [
         word
         for axis in ("x", "y", "z")

@@ -25,28 +25,34 @@ PORT = 8630
 
 def parser() -> Parser:
     """Return the parser of the options."""
-    parser = command_parser("bench", "A local web page: comfort, FRFs and slip of a car follow its sliders.")
+    parser = command_parser(
+        "bench", "Open a local web page whose sliders change a car, and whose curves show comfort, FRFs and slip."
+    )
     parser.add_argument("car", nargs="?", type=vehicle_file, metavar="CAR", help=VEHICLE_HELP)
     set_option(parser)
     file = signal_options(parser)
     file.add_argument(
-        "--from", dest="first", type=float, default=0.0, metavar="S", help="begin at this time of the file [s]"
+        "--from", dest="first", type=float, default=0.0, metavar="S", help="use the file from this time on [s]"
     )
     parser.add_argument(
         "--seconds",
         type=float,
         metavar="S",
-        help="evaluated length, 5 to 60; by default 10, on a road with an obstacle to 3 s after it",
+        help="length of the evaluation [s], 5 to 60; default: 10, with an obstacle until 3 s after it",
     )
     parser.add_argument(
-        "--port", type=int, default=PORT, metavar="N", help="first port that is tried; %(default)s by default"
+        "--port",
+        type=int,
+        default=PORT,
+        metavar="N",
+        help="port of the page, or the next free port above it; default: %(default)s",
     )
     parser.add_argument(
         "--output",
         type=Path,
         default=Path("runs/bench"),
         metavar="DIR",
-        help="folder of the files that a click on the page writes; %(default)s by default",
+        help="folder for the files that the page saves; default: %(default)s",
     )
     message_options(parser)
     return parser

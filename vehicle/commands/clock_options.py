@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 
 DELAY = (
-    "S: the measurement began this long after the run [s]; GROUP=TIME, as accelerations=12.3ms: channels that lag the "
-    "others by this in the file, taken out; GROUP is plates, accelerations, velocities, displacements, forces, a "
-    "channel or a pattern with *. May be repeated"
+    "S: start of the measurement after the start of the run [s]. GROUP=TIME, for example accelerations=12.3ms: "
+    "remove this lag of a group of channels against the others. GROUP is plates, accelerations, velocities, "
+    "displacements, forces, a channel or a pattern with *. May be repeated"
 )
 
 
@@ -23,8 +23,8 @@ def drift_option(parser: argparse._ActionsContainer) -> None:
         type=float,
         default=0.0,
         metavar="PPM",
-        help="the clock of the measurement is slow by so many parts per million: its times are multiplied by 1 + PPM / "
-        "1e6, then --delay is added; 0",
+        help="correct a slow clock of the measurement by these parts per million: times are multiplied by 1 + "
+        "PPM / 1e6, then --delay is added; default: 0",
     )
 
 

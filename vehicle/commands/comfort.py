@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser(
-        "comfort", "Weighted RMS, MTVV, crest factor, VDV, MSDV and vector sums of a record of acceleration."
+        "comfort",
+        "Compute comfort values of an acceleration record: weighted RMS, MTVV, crest factor, VDV, MSDV, sums.",
     )
     parser.add_argument(
         "--input",
@@ -32,8 +33,8 @@ def parser() -> Parser:
         nargs="+",
         action="extend",
         metavar="FILE",
-        help="columns time [s],x [m/s2],y [m/s2],z [m/s2] (or [g]), or any measurement file; z alone is "
-        "sufficient; several files, or a folder, give one table",
+        help="table with the columns time [s],x [m/s2],y [m/s2],z [m/s2] (or [g]; z alone is sufficient), or any "
+        "measurement file. Several files, or a folder, give one table",
     )
     channels = parser.add_argument_group("channels of the file")
     channels.add_argument(
@@ -42,14 +43,15 @@ def parser() -> Parser:
         action="append",
         default=[],
         metavar="PLACE|AXIS=NAME",
-        help="point of a run, as seat_rail in its time.csv or time.npz. By default columns x, y, z. Or the channel of "
-        'axis in any measurement file, as x="Seat X" (number, exact name, or pattern with *), for x, y and z',
+        help="for the time.csv or time.npz of a run: the point, for example seat_rail. For a measurement file: "
+        'the channel of each axis x, y and z, for example x="Seat X" (number, exact name, or pattern with '
+        "*). Default: columns x, y, z",
     )
     channels.add_argument(
         "--rail",
         metavar="PLACE|z=NAME",
-        help="acceleration below the seat, as seat_rail, or z=NAME in any measurement file; adds the SEAT value [-], "
-        "the weighted z acceleration of --channel divided by that of the rail, both with the weighting of the seat",
+        help="acceleration below the seat: the point of a run, for example seat_rail, or z=NAME in a measurement "
+        "file. Adds the SEAT value [-]: weighted z acceleration on the seat divided by that below the seat",
     )
     record_options(channels, "", channel=False)
     parser.add_argument("--json", action="store_true", help="print the result as JSON")
@@ -58,34 +60,37 @@ def parser() -> Parser:
         "--place",
         default="seat",
         metavar="NAME",
-        help="point of contact, names weightings and factors: seat (default; z Wk, x and y Wd), backrest, feet, "
-        "seat_rotation, standing, seat_bs6841, backrest_bs6841, feet_bs6841, hand (ISO 5349-1: Wh), "
-        "steering_wheel (Giacomin 2004: Ws), train_floor (EN 12299: mean comfort of 5 minutes)",
+        help="point of contact, which chooses weightings and factors: seat (default; z Wk, x and y Wd), "
+        "backrest, feet, seat_rotation, standing, seat_bs6841, backrest_bs6841, feet_bs6841, hand (ISO "
+        "5349-1: Wh), steering_wheel (Giacomin 2004: Ws), train_floor (EN 12299: mean comfort of 5 minutes)",
     )
     weighting.add_argument(
         "--offset",
         choices=("refuse", "remove", "keep"),
         default="refuse",
-        help="mean and drift of an axis: refuse a record where they change a weighted RMS or VDV by more than 1 %% or "
-        "the mean is that of gravity (default), remove them (a sensor's offset, gravity), or keep them: the record "
-        "starts at rest, so that its first seconds count for MTVV, crest factor and MSDV too",
+        help="mean and drift of the signal. refuse (default): stop if they change a weighted value by more than "
+        "1 %% or if the mean is gravity. remove: subtract them, a sensor's offset or gravity. keep: leave "
+        "them in; the record starts at rest, so its first seconds count for MTVV, crest factor and MSDV too",
     )
     weighting.add_argument(
         "--skip",
         type=float,
         default=0.0,
         metavar="S",
-        help="seconds left out at the beginning of the weighted records; 0 by default",
+        help="leave out the first S seconds after weighting [s]; default: 0",
     )
     weighting.add_argument(
         "--exposure",
         type=float,
         metavar="HOURS",
-        help="daily duration of this vibration; adds the exposure A(8) of a hand, a seat or a standing person, with "
-        "action value and limit value (Directive 2002/44/EC)",
+        help="hours a day with this vibration [h]; adds the daily exposure A(8) of a hand, a seat or a standing "
+        "person, with action value and limit value (Directive 2002/44/EC)",
     )
     weighting.add_argument(
-        "--mtvv", choices=("linear", "exponential"), default="linear", help="running average of the MTVV"
+        "--mtvv",
+        choices=("linear", "exponential"),
+        default="linear",
+        help="running average for the MTVV (maximum transient vibration value)",
     )
     message_options(parser)
     return parser
@@ -95,7 +100,7 @@ def _picked(options: argparse.Namespace, picks: Sequence[str]) -> tuple[str | No
     """Return the point of a run, or the choice of channels, that the texts of an option name."""
     points = [text for text in picks if "=" not in text]
     if len(points) > 1 or (points and len(picks) > 1):
-        raise ConfigurationError("--channel: set one PLACE, or x=NAME, y=NAME and z=NAME")
+        raise ConfigurationError("--channel: give one point of a run, or channels as x=NAME, y=NAME and z=NAME")
     channels = argparse.Namespace(**{**vars(options), "picks": [text for text in picks if "=" in text]})
     return (points[0] if points else None), record_choice(channels, "")
 
@@ -116,7 +121,8 @@ def evaluated(options: argparse.Namespace) -> RecordComfort:
         axis, equals, name = options.rail.partition("=")
         if equals and axis != "z":
             raise ConfigurationError(
-                f"--rail {options.rail}: the SEAT value needs axis z; set z=NAME, or an output point"
+                f"--rail {options.rail}: names no z acceleration, which the SEAT value needs; set z=NAME, or "
+                "a point of a run"
             )
         rail = _picked(options, [f"z={name}"] if equals else [options.rail])
     result = evaluate_comfort(
@@ -161,7 +167,7 @@ def _overview(results: list[dict[str, Any]]) -> str:
         return [(result["input"], f"{result['duration_s']:.4g}", f"{result['sampling_rate_hz']:.6g}", *cells)]
 
     heads = ("file", "length [s]", "rate [Hz]", "x", "y", "z", "sum", "MTVV z", "crest z", "VDV z")
-    caption = "weighted RMS of each axis, their vector sum and MTVV [m/s2], crest factor, VDV [m/s^1.75]"
+    caption = "weighted RMS of each axis, vector sum and MTVV [m/s2], crest factor [-], VDV [m/s^1.75]"
     return f"{caption}\n{table_of(heads, results, row)}"
 
 

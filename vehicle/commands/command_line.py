@@ -55,13 +55,16 @@ def run_command(job: Callable[[], None], *, debug: bool = False) -> int:
     try:
         backend = os.environ.get("MUJOCO_GL", "").strip().lower()
         if backend not in (*OPENGL, *SWITCHES):
-            raise ConfigurationError(f"MUJOCO_GL={backend}: no OpenGL backend; must be {', '.join(OPENGL)} or unset")
+            raise ConfigurationError(
+                f"environment variable MUJOCO_GL={backend}: is not an OpenGL backend; must be "
+                f"{', '.join(OPENGL)} or unset"
+            )
         job()
         _flush()
         if lost is not None and lost.getvalue():
             raise OutputError("standard output is closed: the printed results are lost")
     except KeyboardInterrupt:
-        _say("interrupted; no results are half-written")
+        _say("interrupted; every file written so far is complete")
         return INTERRUPTED
     except BrokenPipeError:
         _print_nowhere()
@@ -77,12 +80,15 @@ def run_command(job: Callable[[], None], *, debug: bool = False) -> int:
         _say(f"{error.filename or 'output'}: {error.strerror or error}")
         return OutputError.exit_code
     except MemoryError:
-        _say("out of memory; give a shorter input or a lower solver.record_rate")
+        _say("out of memory; use a shorter input, or store fewer samples a second with --set solver.record_rate=HZ")
         return VehicleError.exit_code
     except Exception as error:
         if debug:
             traceback.print_exc()
-        _say(f"{FAULT} ({type(error).__name__}: {error}); please report it with what --debug shows")
+        _say(
+            f"{FAULT} ({type(error).__name__}: {error}); please report it together with the output of the same "
+            "command with --debug"
+        )
         return VehicleError.exit_code
     finally:
         for line in tuple(_moving_lines):
@@ -158,7 +164,7 @@ def parse_and_run(parser: Parser, job: Callable[[argparse.Namespace], None], arg
     def work() -> None:
         for word in typed:
             if "\0" in word:
-                raise ConfigurationError(f"argument {word!r}: contains a NUL byte, which is not allowed")
+                raise ConfigurationError(f"argument {word!r}: contains a NUL character; remove it")
         with ExitStack() as held:
             options = parser.parse_args(typed, argparse.Namespace(words=typed, held=held))
             _put_in_order(typed)

@@ -40,52 +40,55 @@ CAR, RUN = "the car", "the run"
 
 def parser() -> Parser:
     """Return the parser of the options."""
-    parser = command_parser("compare", "Compare a measurement with a run: responses, time histories, or mode shapes.")
-    parser.advise("two runs are compared by python -m vehicle report RUN RUN")
+    parser = command_parser("compare", "Compare a measurement with a run: FRFs, time histories, or mode shapes.")
+    parser.advise("to compare two runs, type python -m vehicle report RUN RUN")
     parser.add_argument(
         "run",
         nargs="?",
         metavar="RUN_OR_INPUT",
-        help="folder of a run; or an input, as low.csv, which is put on the shaker; not needed for mode shapes",
+        help="folder of a run, or a shaker signal that is simulated first, for example low.csv; leave it out for "
+        "mode shapes",
     )
     measured_options(parser, required=True, several=True)
-    records = parser.scoped_group(RECORDS, needs="measured time histories; the file holds none", active=None)
+    records = parser.scoped_group(RECORDS, needs="measured time histories, and the file contains none", active=None)
     drift_option(records)
-    responses = parser.scoped_group(RESPONSES, needs="measured responses; the file holds none", active=None)
+    responses = parser.scoped_group(RESPONSES, needs="measured FRFs, and the file contains none", active=None)
     responses.add_argument(
         "--window",
         type=float,
         metavar="S",
-        help="length of the Hann windows that the measured responses were averaged over [s]; the simulated "
-        "responses are estimated in the same way. By default the whole record",
+        help="length of the Hann windows that the analyser used for the measured FRFs [s]; the simulated FRFs "
+        "are estimated with the same windows. Default: the whole record",
     )
     responses.add_argument(
         "--bands",
         default="1,2,4,8,16,32,50",
         metavar="HZ,HZ,...",
-        help="edges of the bands of the table [Hz]; %(default)s",
+        help="edges of the frequency bands of the table [Hz]; default: %(default)s",
     )
-    shapes = parser.scoped_group(SHAPES, needs="measured mode shapes; the file holds none", active=None)
+    shapes = parser.scoped_group(SHAPES, needs="measured mode shapes, and the file contains none", active=None)
     shapes.add_argument(
         "--damper",
         choices=("stuck", "sliding"),
         default="stuck",
-        help="state of the dampers, for modes; stuck by default",
+        help="dampers stuck by their friction, or sliding, for the modes; default: stuck",
     )
-    channels = parser.scoped_group(CHANNELS, needs="measured channels; the file holds mode shapes", active=None)
+    channels = parser.scoped_group(CHANNELS, needs="measured channels, and the file contains mode shapes", active=None)
     record_options(channels, "", channel=False)
     delay_option(channels)
     vehicle_options(
-        parser.scoped_group(CAR, needs="a car that is made here; the folder of a run has its own", active=None)
+        parser.scoped_group(
+            CAR, needs="an input that is simulated first; the folder of a run contains its car", active=None
+        )
     )
     setting_options(
-        parser.scoped_group(RUN, needs="a run that is made here, of an input as low.csv", active=None),
+        parser.scoped_group(RUN, needs="an input that is simulated first, for example low.csv", active=None),
         SweepSettings,
         "engine",
     )
     output_options(parser, OUTPUT)
     figures_option(parser)
-    parser.add_argument("--json", action="store_true", help="print the content of compare.json")
+    parser.add_argument("--json", action="store_true", help="print the results as JSON, as in compare.json")
     message_options(parser, quiet=True)
     return parser
 
@@ -103,14 +106,14 @@ def measured_options(parser: Parser, *, required: bool = False, several: bool = 
         required=required,
         **several_files,
         metavar="FILE",
-        help="measurement file of any format of `inspect`, with responses, time histories, or mode shapes (UFF 55)"
+        help="measurement file in any format that `inspect` reads, with FRFs, time histories, or mode shapes (UFF 55)"
         + (
-            "; several files, or a folder, give one table, and a folder of results for each"
+            "; several files, or a folder, give one table, and a folder of results for each file"
             if several
             else ""
             if required
-            else ". --unit CHANNEL=UNIT sets the unit of a channel of the model in it. If it needs --rate, --from or "
-            "--delay, run python -m vehicle compare after the run"
+            else ". --unit CHANNEL=UNIT sets the unit of a channel. If the file needs --rate, --from or --delay, "
+            "run python -m vehicle compare afterwards instead"
         ),
     )
     mapping_options(
@@ -128,9 +131,10 @@ def mapping_options(parser: argparse._ActionsContainer) -> None:
         action="append",
         default=[],
         metavar="CHANNEL=NAME",
-        help='channel of the model and its measured channel, as knuckle_fr_acc_z="Dof 12 +Z": number, exact name, '
-        "pattern with *, or place and direction. A response may name its plate, as knuckle_fr_acc_z/plate_fl=3; for "
-        "mode shapes PLACE=NODE; by default equal names, and for modes nodes at the places of the car. May be repeated",
+        help="channel of the model and its measured channel (number, exact name, pattern with *, or place and "
+        'direction), for example knuckle_fr_acc_z="Dof 12 +Z"; for an FRF also its plate, '
+        "knuckle_fr_acc_z/plate_fl=3; for mode shapes POINT=NODE. Default: equal names; for mode shapes the "
+        "nodes at the points of the car. May be repeated",
     )
     parser.add_argument(
         "--turn",
@@ -156,7 +160,7 @@ def measured_choice(options: argparse.Namespace, input_names: Container[str] = (
 
     channels = pairs("--map", options.mapping, "")
     if "" in channels:
-        raise ConfigurationError(f"--map {channels['']}: needed is CHANNEL=NAME, as knuckle_fr_acc_z=3")
+        raise ConfigurationError(f"--map {channels['']}: must be CHANNEL=NAME, for example knuckle_fr_acc_z=3")
     units = {name: unit for name, unit in pairs("--unit", options.units, "").items() if name not in input_names}
     settings = {name: getattr(options, name) for name in ("rate", "first", "last", "detrend", "highpass", "resample")}
     settings["databases"] = tuple(options.databases)
@@ -222,7 +226,9 @@ def _compared(options: argparse.Namespace, output: Path) -> tuple[dict[str, Any]
         summary, said = _modes(options, output, measurement, choice)
     else:
         if options.run is None:
-            raise ConfigurationError("needed is RUN_OR_INPUT: the folder of a run, or an input as low.csv")
+            raise ConfigurationError(
+                "RUN_OR_INPUT is missing: give the folder of a run, or an input, for example low.csv"
+            )
         refuse_idle(options, SHAPES)
         run, channels = _run(options, measurement, choice)
         measured = _measured(options, channels, choice, measurement)
@@ -308,8 +314,8 @@ def _modes(
     rows, columns = ([mode.frequency for mode in those] for those in (comparison.measured, comparison.simulated))
     tables = (
         ("measured (rows), simulated (columns)", comparison.mac, rows, columns),
-        ("AutoMAC of the measured modes", comparison.measured_auto, rows, rows),
-        ("AutoMAC of the simulated modes", comparison.simulated_auto, columns, columns),
+        ("AutoMAC: similarity among the measured modes", comparison.measured_auto, rows, rows),
+        ("AutoMAC: similarity among the simulated modes", comparison.simulated_auto, columns, columns),
     )
     with output_folder(output, force=options.force, protect=(options.measured,)) as folder:
         write_json(folder / "compare.json", summary)
@@ -326,7 +332,9 @@ def _car(options: argparse.Namespace) -> Car:
     if file is None and options.run is not None and Path(options.run).is_dir():
         file = Path(options.run) / "vehicle.toml"
         if not file.is_file():
-            raise ConfigurationError(f"{options.run}: holds no vehicle.toml; give the folder of a run, or --vehicle")
+            raise ConfigurationError(
+                f"{options.run}: contains no vehicle.toml; give the folder of a run, or the car with --vehicle"
+            )
     return Car.load(file, options.overrides)
 
 

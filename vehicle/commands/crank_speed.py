@@ -40,11 +40,15 @@ def crank_overrides(options: argparse.Namespace) -> list[str]:
         return []
     speeds = finite_numbers(options.rpm, ":")
     if len(speeds) not in (1, 2):
-        raise ConfigurationError(f"--rpm {options.rpm!r}: needed is a speed, as 750, or a run-up, as 700:3000 [1/min]")
+        raise ConfigurationError(
+            f"--rpm {options.rpm!r}: must be a speed, for example 750, or a run-up, for example 700:3000 [1/min]"
+        )
     if len(speeds) == 1:
         return [f"crank.rpm={speeds[0]!r}"]
     if options.duration is None:
-        raise ConfigurationError(f"--rpm {options.rpm}: a run-up needs its length; set --duration S, as 60")
+        raise ConfigurationError(
+            f"--rpm {options.rpm}: the length of the run-up is missing; set it in seconds, for example --duration 60"
+        )
     return [
         f"crank.rpm={speeds[0]!r}",
         f"crank.end_rpm={speeds[1]!r}",
@@ -57,11 +61,13 @@ def _measured(options: argparse.Namespace, channels: list[str]) -> list[str]:
     from vehicle.signals.excitation.input_files import find_input
 
     if options.rpm is not None or len(channels) > 1:
-        raise ConfigurationError("--channel rpm=NAME: the crankshaft has one speed; leave --rpm and other channels out")
+        raise ConfigurationError(
+            "--channel rpm=NAME: the crankshaft speed is given twice; leave out --rpm and other channels"
+        )
     if not options.input or options.first is not None:
         raise ConfigurationError(
-            "--channel rpm=NAME: names a channel of --input FILE, whose whole record is used; set crank.file and "
-            "crank.channel for the speed of another file, and leave out --from"
+            "--channel rpm=NAME: the speed must be a channel of --input FILE, used from its start; leave out "
+            "--from, or name another file with --set crank.file and crank.channel"
         )
     options.picks = [text for text in options.picks if not text.startswith("rpm=")]
     file = find_input(options.input).resolve().as_posix()

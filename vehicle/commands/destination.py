@@ -124,7 +124,7 @@ def report_path(options: argparse.Namespace, output: Path) -> Path:
     """Return the path of the report; a plain name is in the output folder."""
     name = Path(options.report or REPORT)
     if name.suffix != ".html":
-        raise ConfigurationError(f"--report {name}: a report is written as .html; give FILE.html")
+        raise ConfigurationError(f"--report {name}: must end in .html; give FILE.html")
     return path_beside(name, "--report", output, options)
 
 
@@ -138,5 +138,7 @@ def path_beside(name: Path, option: str, output: Path, options: argparse.Namespa
     if name.resolve().parent == folder:
         return Path(name.name)
     if folder in name.resolve().parents:
-        raise ConfigurationError(f"{option} {name}: is below the output folder; set a plain name: {name.name}")
+        raise ConfigurationError(
+            f"{option} {name}: must be a file name without a folder, in the output folder; set {name.name}"
+        )
     return named_file(options.held, name, option, force=options.force)

@@ -32,22 +32,28 @@ if TYPE_CHECKING:
 
 def parser() -> Parser:
     """Return the parser of the options."""
-    parser = command_parser("drive", "Drive signals of the plates that reproduce measured accelerations.")
+    parser = command_parser("drive", "Compute drive signals of the plates that reproduce measured accelerations.")
     parser.add_argument(
-        "--target", type=Path, required=True, metavar="FILE", help="measured accelerations, of any format of `inspect`"
+        "--target",
+        type=Path,
+        required=True,
+        metavar="FILE",
+        help="measured accelerations, in any format that `inspect` reads",
     )
-    channels = parser.add_argument_group("channels of the target")
+    channels = parser.add_argument_group("channels of the target measurement")
     record_options(
         channels,
-        'an acceleration of the car, as knuckle_fr_acc_z="Dof 12 +Z"; the name alone where the file has it, or has '
-        "one channel; at least as many channels as plates",
+        'acceleration of the car and its channel in the file, for example knuckle_fr_acc_z="Dof 12 +Z". The '
+        "name alone is sufficient if the file uses it or has only one channel. Give at least as many channels "
+        "as plates",
     )
     delay_option(channels)
     setting_options(vehicle_options(parser), DriveSettings, "wheels")
     iteration = parser.add_argument_group("the iteration")
     setting_options(iteration, DriveSettings, "band", "iterations", "gain", "target_error")
     parser.former(
-        "--tolerance", "--tolerance: the error at which the iteration ends is given by --target-error PERCENT"
+        "--tolerance",
+        "--tolerance is not an option here; set the error at which the iteration ends with --target-error PERCENT",
     )
     setting_options(iteration, DriveSettings, "engine")
     output_options(parser, None, default="runs/drive_<name of the target>")
@@ -80,7 +86,7 @@ def _job(options: argparse.Namespace) -> None:
 
 def _say(step: Step, iterations: int) -> None:
     """Print the error of a finished iteration."""
-    back = "" if step.kept else ", worse: taken back, half the gain"
+    back = "" if step.kept else ", worse than before: step undone, next step with half the gain"
     print(
         f"iteration {step.number} of at most {iterations}: error {100.0 * step.error:.3g} %{back}",
         file=sys.stderr,
@@ -98,7 +104,9 @@ def _channels(options: argparse.Namespace) -> tuple[dict[str, str], Choice]:
     choice = record_choice(options, "") or Choice()
     names = {role: name for role, name in choice.channels.items() if role != "time"}
     if not names:
-        raise ConfigurationError("--channel is missing: set the measured acceleration of the car")
+        raise ConfigurationError(
+            "--channel is missing; name a measured acceleration, for example --channel knuckle_fr_acc_z=NAME"
+        )
     return (named_channels(options.target, unnamed, choice) if unnamed == list(names) else names), choice
 
 
@@ -114,7 +122,7 @@ def report(summary: dict[str, Any], output: Path) -> str:
     lines = [
         f"target      {target['file']}, {target['duration_s']:g} s, {low:g} to {high:g} Hz",
         f"drive       {plates}",
-        f"error       {errors} (RMS of target minus response over RMS of target, in the band)",
+        f"error       {errors} (RMS of target minus response, divided by RMS of target, in this band)",
         f"iteration   {len(summary['iterations'])} runs ({summary['engine']}); {summary['outcome']}",
         *(f"note        {text}" for text in summary["notices"]),
         f"files       {output}: {', '.join(summary['files'].values())}",

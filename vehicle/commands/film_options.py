@@ -23,21 +23,28 @@ def film_options(parser: Parser, content: str) -> argparse._ActionsContainer:
     """
     parser.add_argument("--video", nargs="?", const="", metavar="FILE.mp4", help=content)
     film = parser.scoped_group("a film", needs="--video", active=lambda options: options.video is not None)
-    film.add_argument("--video-start", type=float, metavar="S", help="start of the excerpt [s]; chosen by default")
+    film.add_argument(
+        "--video-start",
+        type=float,
+        metavar="S",
+        help="start of the film in the record [s]; default: chosen by the program",
+    )
     film.add_argument(
         "--video-duration",
         type=float,
         metavar="S",
-        help="length of the film [s], 10 by default, shorter for a bump or an obstacle; slow motion shows less of the "
-        "record in it",
+        help="length of the film [s]; default: 10, less for a bump or an obstacle. A film in slow motion shows a "
+        "shorter part of the record",
     )
     film.add_argument(
         "--slow-motion",
         type=float,
         metavar="N",
-        help="play N times slower; by default 1, or as much as a wheel that moves faster than 15 Hz needs",
+        help="play N times slower; default: 1, or more if a wheel moves faster than 15 Hz",
     )
-    film.add_argument("--exaggeration", type=float, metavar="N", help="motion N times larger; chosen by default")
+    film.add_argument(
+        "--exaggeration", type=float, metavar="N", help="show the motion N times larger; default: chosen by the program"
+    )
     return film
 
 
@@ -55,7 +62,7 @@ def check_film_options(options: argparse.Namespace) -> None:
     )
     for name, value, lowest, allowed in wanted:
         if value is not None and not lowest <= value < math.inf:
-            raise ConfigurationError(f"{name} {value:g}: must be a finite number, {allowed}")
+            raise ConfigurationError(f"{name} {value:g}: must be {allowed}")
     mode = getattr(options, "video_mode", None)
     if mode is not None and (mode <= 0.0 or math.isinf(mode)):
         raise ConfigurationError(f"--video-mode {mode:g}: must be a frequency above 0 Hz, as --video-mode 28")

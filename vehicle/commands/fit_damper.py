@@ -19,28 +19,30 @@ CONTROL = "damper_control.toml", "damper_control.png"
 
 def parser() -> Parser:
     """Return the parser of the options."""
-    parser = command_parser("fit-damper", "Fit the law of a damper to records of a test machine.")
+    parser = command_parser("fit-damper", "Fit the force law of a damper to records of a test machine.")
     parser.add_argument(
         "files", nargs="+", type=Path, metavar="FILE",
-        help="record of a test: time, displacement, force, and velocity where it was measured; all are fitted together",
+        help="record of a test: time, displacement, force and, if measured, velocity; all files are fitted together",
     )  # fmt: skip
-    record_options(parser, "displacement, force and velocity, as force=Load", highpass=False)
+    record_options(parser, "channel of time, displacement, force or velocity, for example force=Load", highpass=False)
     parser.add_argument(
         "--positive", choices=("extension", "compression"), default="extension",
-        help="direction in which displacement, velocity and force of the files are positive; %(default)s by default",
+        help="direction in which displacement, velocity and force of the files count positive; default: %(default)s",
     )  # fmt: skip
     parser.add_argument(
         "--condition", action="append", default=[], metavar="NAME=VALUE",
-        help="condition of the tests: current=1, a value for each file as current=0,0,1, or current=channel:I for the "
-        "mean of a channel of each file; tests of equal conditions are fitted together; may be repeated",
+        help="condition of the tests, for example current=1 for all files, current=0,0,1 for three files, or "
+            "current=channel:I for the mean of channel I of each file. Tests at equal conditions give one law. "
+            "May be repeated",
     )  # fmt: skip
     parser.add_argument(
         "--pattern", default="", metavar="PATTERN",
-        help="conditions in the names of the files without ending, in braces, with * for the rest, as '*Hz{current}A'",
+        help="read conditions from the file names (without ending): name in braces, * for the rest, for example "
+            "'*Hz{current}A'",
     )  # fmt: skip
     output_options(parser, None, default=f"damper.toml, {TABLE}, damper.png and {REPORT} in runs/damper")
     head_options(parser)
-    parser.add_argument("--json", action="store_true", help="print JSON: law, parameters, errors of the tests")
+    parser.add_argument("--json", action="store_true", help="print law, parameters and errors as JSON")
     message_options(parser, quiet=True)
     return parser
 

@@ -24,7 +24,7 @@ CURVE_POINTS = 400
 
 def parser() -> Parser:
     """Return the parser of the options."""
-    parser = command_parser("fit-mount", "Fit the law of a mount to measured dynamic stiffness and loss angle.")
+    parser = command_parser("fit-mount", "Fit the force law of a mount to measured dynamic stiffness and loss angle.")
     parser.add_argument(
         "file",
         type=Path,
@@ -35,11 +35,12 @@ def parser() -> Parser:
         "--law",
         choices=("auto", "rubber", "hydromount", "decoupler"),
         default="auto",
-        help="rubber with Maxwell branch and friction, hydromount with inertia track, hydromount with a decoupler in "
-        "addition, or the law with the least BIC (auto); %(default)s by default",
+        help="rubber: spring with Maxwell branch and friction; hydro: hydromount with inertia track; decoupled: "
+        "with a decoupler too; auto: the law that fits best for its number of parameters (least BIC). "
+        "Default: %(default)s",
     )
     output_options(parser, None, default=f"{', '.join(FILES)} in runs/mount")
-    parser.add_argument("--json", action="store_true", help="print JSON: law, parameters, errors")
+    parser.add_argument("--json", action="store_true", help="print law, parameters and errors as JSON")
     message_options(parser, quiet=True)
     return parser
 

@@ -30,23 +30,23 @@ def parser() -> Parser:
         "--speed",
         type=float,
         metavar="KM/H",
-        help="speed at which the tyres roll; the plates are then the road under the wheels; by default that of the "
-        "vehicle file",
+        help="speed at which the tyres roll over the plates, which then are the road [km/h]; default: speed of "
+        "the vehicle file",
     )
     parser.add_argument(
-        "--fmi", choices=FMI_VERSIONS, default=FMI_VERSIONS[0], help="version of the standard; %(default)s by default"
+        "--fmi", choices=FMI_VERSIONS, default=FMI_VERSIONS[0], help="version of the FMI standard; default: %(default)s"
     )
     parser.add_argument(
         "--channels",
         metavar="NAME,...",
-        help="outputs besides the default channels: loads, all, or names separated by commas",
+        help="add outputs to the default channels: loads, all, or names separated by commas",
     )
     parser.add_argument(
         "--step",
         type=float,
         default=0.1,
         metavar="MS",
-        help="internal time step [ms], of which communication steps are multiples; %(default)s by default",
+        help="internal time step [ms]; a communication step must be a multiple of it; default: %(default)s",
     )
     output_options(parser, None, default="NAME.fmu", metavar="FILE.fmu")
     message_options(parser, quiet=True)
@@ -81,14 +81,17 @@ def _job(options: argparse.Namespace) -> None:
     counts = ", ".join(f"{fmu.count(causality)} {causality}s" for causality in ("input", "parameter", "output"))
     print(f"{path}: FMI {options.fmi}.0 co-simulation, {counts}; {size:.0f} kB; {', '.join(fmu.platforms)}")
     print(
-        f"step {1e3 * fmu.step:g} ms; inputs belong to the end of a communication step; displacement and velocity of "
-        "each plate are needed"
+        f"internal step {1e3 * fmu.step:g} ms; set displacement and velocity of each plate, with their values at "
+        "the end of the communication step"
     )
     forces = [force for force in car.vehicle.composition.forces if force.harmonics or force.recorded]
     if pushed := [force.channel for force in forces if force.path.startswith("force.")]:
-        print(f"note: {', '.join(pushed)}: inputs; the FMU has the means of these forces, not their harmonics or files")
+        print(f"note: {', '.join(pushed)}: is an input; the FMU keeps its mean value only, without harmonics and files")
     if others := [force.name for force in forces if not force.path.startswith("force.")]:
-        print(f"note: {', '.join(others)}: not in the FMU; give it a table [force.NAME], which is an input")
+        print(
+            f"note: {', '.join(others)}: left out of the FMU; to get an input for it, write it as a section "
+            "[force.NAME] of the vehicle file"
+        )
 
 
 main = command(parser, _job)

@@ -16,10 +16,12 @@ if TYPE_CHECKING:
     from vehicle.signals.records.choice import Choice
 
 
-FILE_NEEDS = "--input; a road moves the plates of all wheels"
-RECORD_NEEDS = "--input, or to a road that was recorded over time (--speed channel:NAME)"
-ROAD_NEEDS = "a road, as --road C --speed 80, and not to --input"
-CLASS_NEEDS = "a class of ISO 8608, as --road C --speed 80; a file of signals or a measured profile is used unchanged"
+FILE_NEEDS = "--input (a road moves the plates of all wheels)"
+RECORD_NEEDS = "--input, or to a road recorded over time (--speed channel:NAME)"
+ROAD_NEEDS = "a road, for example --road C --speed 80, and not to --input"
+CLASS_NEEDS = (
+    "a road class of ISO 8608, for example --road C --speed 80; signal files and measured profiles are used unchanged"
+)
 
 
 def signal_options(parser: Parser, *, several: bool = False) -> argparse._ArgumentGroup:
@@ -37,46 +39,49 @@ def signal_options(parser: Parser, *, several: bool = False) -> argparse._Argume
         "--input",
         action=action,
         metavar="FILE",
-        help=f"measurement file of any format of `inspect`, or the name of a shipped one: low.csv{again}",
+        help=f"measurement file in any format that `inspect` reads, or the name of a shipped file: low.csv{again}",
     )
     parser.add_argument(
         "--road",
         action=action,
         metavar="C|FILE|OBSTACLE",
-        help="instead of --input, a road under all wheels: a class of ISO 8608, A to H, or a measured profile "
-        "(columns distance, left, right [m]; OpenCRG .crg; ERD), or heights over time (--speed channel:NAME), or an "
-        "obstacle on a level road, NAME[:SIZES in mm][:left|right][@METRES]: cleat:20x50, half_round:50, speed_bump, "
-        "ramp, pothole, cobbles"
-        f"{again}",
+        help="a road under all wheels instead of --input: a class of ISO 8608 (A to H), a measured profile "
+        "(table distance, left, right [m]; OpenCRG .crg; ERD), heights over time (with --speed "
+        "channel:NAME), or an obstacle on a level road, NAME[:SIZES in mm][:left|right][@METRES]: "
+        f"cleat:20x50, half_round:50, speed_bump, ramp, pothole, cobbles{again}",
     )
     parser.former(
         r"--road (--.*)?$",
-        "--road: names no road; give a class of ISO 8608, A to H, or FILE.csv; levels beyond a shaker are accepted by "
-        "--any-level",
+        "--road: the road is missing; give a class of ISO 8608 (A to H) or FILE.csv. To allow levels beyond a "
+        "shaker, use --any-level",
     )
     group = parser.scoped_group("a file of signals", needs=FILE_NEEDS, active=lambda options: bool(options.input))
     group.add_argument(
         "--wheel",
         choices=sorted(CORNERS),
-        help="wheel of a plain displacement column; that of the vehicle file (shaker_wheel) by default",
+        help="wheel that a displacement column without a wheel in its name moves; default: shaker_wheel of the "
+        "vehicle file",
     )
     group.add_argument(
         "--any-level",
         action="store_true",
-        help="accept levels and accelerations beyond a shaker, and plates whose FRFs cannot be separated",
+        help="accept levels and accelerations beyond a real shaker, and plate signals so similar that their FRFs "
+        "cannot be separated",
     )
 
     def is_class(options: argparse.Namespace) -> bool:
         return any(len(road) == 1 for road in _listed(options.road))
 
-    note = "" if several else "; with --input: in place of the times of the file"
+    note = "" if several else "; with --input: replaces the times of the file"
 
     def on_road(options: argparse.Namespace) -> bool:
         # A file of targets names its roads; --rpm runs on a level one.
         return bool(options.road or getattr(options, "rpm", None) or getattr(options, "targets", None))
 
     road = road_options(parser, on_road, is_class, several=several, rate_note=note)
-    setting_options(road, RoadSettings, "tyre", note="; with --input tyres are standing unless --set driving.speed=M/S")
+    setting_options(
+        road, RoadSettings, "tyre", note="; with --input the tyres stand, except with --set driving.speed=M/S"
+    )
     return group
 
 
@@ -100,13 +105,13 @@ def road_options(
         action="append" if several else "store",
         type=speed_value,
         metavar="KM/H|channel:NAME",
-        help="speed of the car [km/h]; channel:NAME for a road that was recorded over time together with this speed"
-        + ("; once for all roads, or once for each" if several else ""),
+        help="speed of the car [km/h], or channel:NAME: the speed recorded with a road over time"
+        + ("; one speed for all roads, or a speed for each road" if several else ""),
     )
     setting_options(group, RoadSettings, "duration")
     setting_options(parser if rate_note else group, RoadSettings, "rate", note=rate_note)
     random = parser.scoped_group("a road of a class", needs=CLASS_NEEDS, active=is_class)
-    each = "; repeated: each road with each seed, so that their scatter is known" if several else ""
+    each = "; repeat it to drive each road with each seed, which shows the scatter" if several else ""
     setting_options(random, RoadSettings, "seed", note=each, action="append" if several else "store")
     setting_options(random, RoadSettings, "coherence")
     setting_options(group, RoadSettings, "patch")
@@ -129,7 +134,7 @@ def speed_value(text: str) -> float | str:
     try:
         return float(text)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r}: must be a speed in km/h, or channel:NAME") from None
+        raise argparse.ArgumentTypeError(f"{text!r}: must be a speed [km/h] or channel:NAME") from None
 
 
 def recorded_over_time(options: argparse.Namespace) -> bool:
@@ -151,7 +156,7 @@ def drives_on_road(options: argparse.Namespace) -> bool:
     """
     roads = " ".join(f"--road {road}" for road in _listed(options.road))
     if roads and options.input:
-        raise ConfigurationError(f"{roads} and --input: set only one of them")
+        raise ConfigurationError(f"{roads} and --input exclude each other; leave one of them out")
     if not roads and not options.input and getattr(options, "rpm", None):
         # The engine alone shakes the car, which stands or drives on a level road.
         from vehicle.signals.excitation.road_drive import LEVEL
@@ -159,7 +164,7 @@ def drives_on_road(options: argparse.Namespace) -> bool:
         options.road, options.speed = LEVEL, options.speed or 0.0
         return True
     if not roads and not options.input:
-        raise ConfigurationError("set --input FILE, or a road: --road C --speed 80")
+        raise ConfigurationError("the input is missing; set --input FILE, or a road, for example --road C --speed 80")
     return bool(roads)
 
 
@@ -180,29 +185,32 @@ def record_options(
             action="append",
             default=[],
             metavar="ROLE=NAME",
-            help=f"channel of the file, by number, exact name, or pattern with *, for {roles}; time=NAME names the "
-            "times. May be repeated; `python -m vehicle inspect FILE` lists them",
+            help=f"channel of the file (number, exact name, or pattern with *) for {roles}; time=NAME for the "
+            "times. May be repeated. `python -m vehicle inspect FILE` lists the channels",
         )
     if unit:
         unit_option(parser)
     if rate:
-        parser.add_argument("--rate", type=float, metavar="HZ", help="samples a second, in place of the file's times")
+        parser.add_argument(
+            "--rate", type=float, metavar="HZ", help="sampling rate [Hz], replaces the times of the file"
+        )
     database_option(parser)
-    parser.add_argument("--from", dest="first", type=float, metavar="S", help="begin at this time of the file [s]")
-    parser.add_argument("--to", dest="last", type=float, metavar="S", help="end at this time of the file [s]")
+    parser.add_argument("--from", dest="first", type=float, metavar="S", help="use the file from this time on [s]")
+    parser.add_argument("--to", dest="last", type=float, metavar="S", help="use the file up to this time [s]")
     parser.add_argument(
         "--resample",
         type=float,
         metavar="HZ",
-        help="bring the record to this sampling rate first, with anti-alias filter: for jittered times",
+        help="resample the record at this rate first [Hz], with an anti-alias filter; for irregular times",
     )
-    parser.add_argument("--detrend", action="store_true", help="subtract the straight line of least squares")
+    parser.add_argument("--detrend", action="store_true", help="subtract the best straight line (offset and drift)")
     if highpass:
         parser.add_argument(
             "--highpass",
             type=float,
             metavar="HZ",
-            help="corner of a high-pass without phase shift [Hz]; with it velocities and accelerations are integrated",
+            help="corner frequency of a high-pass without phase shift [Hz]; needed to integrate velocities and "
+            "accelerations",
         )
 
 
@@ -214,8 +222,8 @@ def unit_option(parser: argparse._ActionsContainer) -> None:
         action="append",
         default=[],
         metavar="[ROLE=]UNIT",
-        help="unit of the chosen channels, or of one, if the file has no unit or a wrong unit, as mm or g; may be "
-        "repeated",
+        help="unit of the chosen channels, or of one of them, for example mm or g, if the file states none or a "
+        "wrong one. May be repeated",
     )
 
 
@@ -228,7 +236,7 @@ def database_option(parser: argparse._ActionsContainer) -> None:
         action="append",
         default=[],
         metavar="FILE",
-        help="database of CAN messages that decodes a bus log (MDF, .asc, .trc, candump). May be repeated",
+        help="CAN database that decodes a bus log (MDF, .asc, .trc, candump). May be repeated",
     )
 
 
@@ -250,8 +258,9 @@ def record_choice(options: argparse.Namespace, role: str, known: tuple[str, ...]
     unknown = next((name for name in asked if name not in units), None)
     if unknown is not None and getattr(options, "measured", None) is None:  # else of what was measured
         raise ConfigurationError(
-            f"--unit {unknown}=...: no --channel {unknown}=NAME on the command line; the roles there are "
-            f"{', '.join(filter(None, channels)) or 'none'}, and --unit UNIT applies to all of them"
+            f"--unit {unknown}=...: there is no --channel {unknown}=NAME, only "
+            f"{', '.join(filter(None, channels)) or 'none'}; use one of these names, or --unit UNIT for all "
+            "channels"
         )
     choice = Choice(
         channels=channels,

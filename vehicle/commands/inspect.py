@@ -27,7 +27,7 @@ def parser() -> Parser:
         "files",
         nargs="+",
         metavar="FILE",
-        help="file of any format, recognised by its content, a shipped input, or a folder. Several give one table",
+        help="measurement file (format recognised by its content), shipped input, or folder. Several give one table",
     )
     database_option(parser)
     parser.add_argument("--json", action="store_true", help="print JSON")
@@ -177,7 +177,7 @@ def report(content: dict[str, Any]) -> str:
         if channel["remark"]:
             lines.append(f"{'':>6}{channel['remark']}")
     if len(content["channels"]) > SHOWN:
-        lines.append(f"{'':>6}{len(content['channels']) - SHOWN} more; --json lists all")
+        lines.append(f"{'':>6}{len(content['channels']) - SHOWN} more channels; --json lists all")
     if content["modes"]:
         lines.append(f"{'mode':>6} {'[Hz]':>10} {'damping':>9} {'modal mass':>12} {'points':>7}")
     for mode in content["modes"]:
@@ -195,7 +195,8 @@ def report(content: dict[str, Any]) -> str:
     if content["comparison"]:
         count = len(content["comparison_left_out"])
         others = f"; {count} more channels fit, --json lists them" if count else ""
-        lines += [f"compares the accelerations with the run RUN of that command; tune takes the same --map{others}:",
+        lines += ["to compare the measured accelerations with the run of that command (replace RUN by its folder; "
+                  f"`tune` accepts the same --map){others}:",
                   f"  {content['comparison']}"]  # fmt: skip
     return "\n".join(lines)
 

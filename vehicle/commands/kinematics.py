@@ -34,22 +34,26 @@ MOST_POSITIONS = 2001
 def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser(
-        "kinematics", "Camber, toe, loads, roll centre and steering axis of an axle over wheel travel and load."
+        "kinematics", "Compute camber, toe, loads, roll centre and steering axis of an axle over wheel travel and load."
     )
     vehicle_options(parser)
     parser.add_argument(
-        "--axle", default="front", metavar="NAME", help="table of the vehicle file; %(default)s by default"
+        "--axle", default="front", metavar="NAME", help="axle, a section of the vehicle file; default: %(default)s"
     )
     parser.add_argument(
         "--travel",
         default="-50:50:5",
         metavar="A:B[:STEP]",
-        help="of the wheel centres [mm], upwards; %(default)s by default",
+        help="travel of the wheel centres [mm], upwards positive; default: %(default)s",
     )
-    parser.add_argument("--opposite", action="store_true", help="the left wheel goes down where the right one goes up")
+    parser.add_argument(
+        "--opposite",
+        action="store_true",
+        help="move the wheels in opposite directions, as in roll: left wheel down, right wheel up",
+    )
     loads = parser.scoped_group(
         "loads on the wheels",
-        needs="bushings that yield, and --ideal makes ideal joints of them; leave one of the two out",
+        needs="elastic bushings, and --ideal makes them rigid joints; leave one of the two out",
         active=lambda options: not options.ideal,
     )
     for name, quantity in (("contact-force", "force [N]"), ("moment", "moment [N m]")):
@@ -58,22 +62,24 @@ def parser() -> Parser:
             action="append",
             default=[],
             metavar="AXIS=VALUE",
-            help=f"{quantity} on both wheels at their contact points, in the axes of the car (x to the rear, y to the "
-            "right, z up), as x=1000; with --opposite against each other. May be repeated",
+            help=f"{quantity} on both wheels at their contact points (x to the rear, y to the right, z up), for "
+            "example x=1000; with --opposite in opposite directions. May be repeated",
         )
-    parser.add_argument("--ideal", action="store_true", help="every bushing an ideal joint: kinematics alone")
+    parser.add_argument(
+        "--ideal", action="store_true", help="replace every bushing by an ideal joint: kinematics without elasticity"
+    )
     parser.add_argument(
         "--tyre",
         choices=("rolling", "standing"),
         default="rolling",
-        help="rolling: contact patches that roll freely; standing: patches with the horizontal force and "
-        "torque of the car at rest, as on plates; %(default)s by default",
+        help="rolling: the tyres roll freely, without horizontal force; standing: each tyre keeps the horizontal "
+        "force and torque of the car at rest on plates; default: %(default)s",
     )
     extra_output_options(parser, "kinematics.csv and kinematics.png")
-    parser.former("--replace", "--replace: files are replaced by --force, as in all commands")
+    parser.former("--replace", "--replace is not an option here; use --force to replace files")
     parser.former(
         "--force(=| [^-])",
-        "--force: replaces files, as in all commands; a force on the wheels is given by --contact-force AXIS=VALUE",
+        "--force takes no value, it replaces files; set a force on the wheels with --contact-force AXIS=VALUE",
     )
     parser.add_argument("--json", action="store_true", help="print JSON")
     message_options(parser)
@@ -109,10 +115,14 @@ def _travels(text: str) -> list[float]:
     numbers = finite_numbers(text, ":")
     first, last, step = (*numbers, 5.0)[:3] if len(numbers) in (2, 3) else (0.0, 0.0, 0.0)
     if not (first < last and step > 0.0):
-        raise ConfigurationError(f"--travel {text!r}: needed is A:B or A:B:STEP in mm with A below B, as -50:50:5")
+        raise ConfigurationError(
+            f"--travel {text!r}: must be A:B or A:B:STEP [mm] with A below B, for example -50:50:5"
+        )
     count = math.floor((last - first) / step + 1e-9) + 1
     if count > MOST_POSITIONS:
-        raise ConfigurationError(f"--travel {text!r}: {count} positions; at most {MOST_POSITIONS}; take a larger step")
+        raise ConfigurationError(
+            f"--travel {text!r}: gives {count} positions, must be at most {MOST_POSITIONS}; use a larger step"
+        )
     return [round(first + index * step, 9) * 1e-3 for index in range(count)]
 
 
@@ -123,7 +133,9 @@ def _vector(option: str, entries: list[str]) -> list[float]:
         axis, _, text = entry.partition("=")
         value = finite_numbers(text, ",")
         if axis not in vector or len(value) != 1:
-            raise ConfigurationError(f"{option} {entry!r}: needed is AXIS=VALUE with x, y or z and a number, as x=1000")
+            raise ConfigurationError(
+                f"{option} {entry!r}: must be AXIS=VALUE with x, y or z and a number, for example x=1000"
+            )
         (vector[axis],) = value
     return list(vector.values())
 
@@ -171,8 +183,8 @@ def _report(
         + ("; left wheel opposite" if options.opposite else ""),
         "camber: top outwards +, toe: front inwards +, lateral: outwards +, longitudinal: to the rear +",
         *_rows(HEADS, [dataclasses.asdict(pose) for pose in poses]),
-        "roll centre above the ground; swing arms: inwards and towards the middle of the car +; support angles of "
-        "brake and drive forces: against dive, lift and squat +",
+        "roll centre: height above the ground; swing arms: inwards and towards the middle of the car +; "
+        "anti-dive, anti-lift and anti-squat angles: + if they reduce dive, lift and squat",
         *_rows(
             {"wheel_travel_m": HEADS["wheel_travel_m"], **GEOMETRY_HEADS},
             [

@@ -28,37 +28,43 @@ SHOWN = 15
 
 def parser() -> Parser:
     """Return the parser of the options."""
-    parser = command_parser("loads", "Rainflow counts, load spectra and equivalent amplitudes of the loads of a run.")
+    parser = command_parser(
+        "loads", "Compute rainflow counts, load spectra and equivalent amplitudes of the loads of a run."
+    )
     parser.add_argument(
         "runs",
         type=Path,
         nargs="+",
         metavar="RUN",
-        help="folders of runs, or files of time histories; several are a "
-        "schedule, whose damage is written to schedule.csv",
+        help="folders of runs, or files of time histories; several form a test schedule, whose damage is written "
+        "to schedule.csv",
     )
-    parser.add_argument("--repeats", metavar="N,...", help="repeats of each run of the schedule; 1 by default")
+    parser.add_argument("--repeats", metavar="N,...", help="number of repeats of each run of the schedule; default: 1")
     parser.add_argument(
         "--reference-run",
         type=Path,
         metavar="RUN",
-        help="run whose damage counts as 1 in schedule.csv, for example on a reference road",
+        help="compare with the damage of this run in schedule.csv, for example on a reference road",
     )
     parser.add_argument(
-        "--channels", metavar="NAME,...", help="channels to count; all forces, torques and travels by default"
+        "--channels", metavar="NAME,...", help="channels to count; default: all forces, torques and travels"
     )
     parser.add_argument(
         "--slope",
         type=float,
         default=5.0,
         metavar="K",
-        help="slope of the S-N (Woehler) curve [-]: damage of n cycles of amplitude A is n A^K; "
-        "%(default)s by default, usual for steel parts of a chassis",
+        help="slope of the S-N (Woehler) curve [-]: damage of n cycles of amplitude A is n A^K; default: "
+        "%(default)s, usual for steel parts of a chassis",
     )
     parser.add_argument(
-        "--classes", type=int, default=64, metavar="N", help="classes of the range in the spectra; %(default)s"
+        "--classes",
+        type=int,
+        default=64,
+        metavar="N",
+        help="number of load classes in the spectra; default: %(default)s",
     )
-    output_options(parser, None, default=f"{', '.join(FILES)} in that of the run")
+    output_options(parser, None, default=f"{', '.join(FILES)} in the folder of the run")
     message_options(parser, quiet=True)
     return parser
 
@@ -82,7 +88,7 @@ def _job(options: argparse.Namespace) -> None:
     tyres = summary.get("tyre") if summary else None
     caption = (
         f"{source.name}, {counted.duration:g} s{f'; tyres {tyres}' if tyres else ''}; rainflow counts of ASTM E1049; "
-        f"equivalent amplitude: one cycle a second of equal damage, slope {options.slope:g}"
+        f"equivalent amplitude: one cycle a second with it does the same damage, S-N slope {options.slope:g}"
     )
     texts = _table(loads, caption), _spectra(loads, caption, options.classes)
     write_together(paths, (*texts, partial(plot_loads, loads=loads, caption=caption)))
@@ -105,14 +111,16 @@ def _schedule(options: argparse.Namespace) -> None:
     try:
         repeats = [float(text) for text in texts]
     except ValueError:
-        raise ConfigurationError(f"--repeats {options.repeats}: must be numbers, as --repeats 100,20") from None
+        raise ConfigurationError(
+            f"--repeats {options.repeats}: must be numbers, for example --repeats 100,20"
+        ) from None
     runs = [_counted(run, options) for run in options.runs]
     reference = None if options.reference_run is None else _counted(options.reference_run, options)
     rows = scheduled_loads(runs, repeats, options.slope, reference)
     (path,) = output_files_of(options, Path(), (SCHEDULE,))
     parts = ", ".join(f"{count:g} x {run.name}" for count, run in zip(repeats, runs, strict=True))
-    against = "" if reference is None else f"; damage ratio: over that of {reference.name}"
-    caption = f"schedule {parts}; rainflow counts of ASTM E1049, slope {options.slope:g}{against}"
+    against = "" if reference is None else f"; damage ratio: divided by the damage of {reference.name}"
+    caption = f"schedule {parts}; rainflow counts of ASTM E1049, S-N slope {options.slope:g}{against}"
     heads = ["channel", "unit", "equivalent_amplitude", *(f"share of {run.name} [-]" for run in runs)]
     heads += [] if reference is None else ["damage_ratio [-]"]
     table = [
@@ -128,7 +136,9 @@ def _schedule(options: argparse.Namespace) -> None:
     for row in strongest:
         shares = ", ".join(f"{number(100.0 * share, 3)} %" for share in row.shares)
         print(f"{row.name:<34}{row.unit:>5}{row.equivalent_amplitude:>12.5g}  {number(row.ratio):>12}  {shares}")
-    print(f"files: {path}" + (f"; {len(rows) - len(strongest)} more channels there" if len(rows) > SHOWN else ""))
+    print(
+        f"files: {path}" + (f"; {len(rows) - len(strongest)} more channels in this file" if len(rows) > SHOWN else "")
+    )
 
 
 def _counted(run: Path, options: argparse.Namespace) -> CountedRun:
@@ -153,14 +163,14 @@ def _chosen(text: str | None, units: Mapping[str, str], source: Path) -> list[st
         loads = [name for name, unit in units.items() if unit in ("N", "N m") or name.startswith("suspension_travel_")]
         if not loads:
             raise ConfigurationError(
-                f"{source}: no channel in N or N m and no suspension travel; name channels with --channels, or record "
-                "loads: python -m vehicle shaker --channels loads"
+                f"{source}: contains no force [N], torque [N m] or suspension travel; name channels with "
+                "--channels, or record loads: python -m vehicle shaker --channels loads"
             )
         return loads
     names = [name.strip() for name in text.split(",")]
     missing = next((name for name in names if name not in units), None)
     if missing is not None:
-        raise ConfigurationError(f"--channels: {source} has no channel {missing!r}; it has {', '.join(units)}")
+        raise ConfigurationError(f"--channels: {source} has no channel {missing!r}; choose from {', '.join(units)}")
     return list(dict.fromkeys(names))
 
 
@@ -218,7 +228,7 @@ def recorded_channels(text: str, vehicle: Vehicle) -> tuple[str, ...]:
             close = get_close_matches(name, (*more, *vehicle.channels), n=1)
             nearest = f"; did you mean {close[0]}?" if close else ""
             raise ConfigurationError(
-                f"--channels: no channel {name!r}; give loads, all, or names of channels as "
+                f"--channels: the car has no channel {name!r}; give loads, all, or names, for example "
                 f"{vehicle.load_channels[0]},{vehicle.load_channels[-1]}{nearest}"
             )
     return (*vehicle.channels, *(name for name in more if name in names))

@@ -13,7 +13,7 @@ from vehicle.commands.parser import Parser
 
 def parser() -> Parser:
     """Return the parser of the options."""
-    parser = command_parser("mjcf", "Write car.xml, scene.xml and meshes of a vehicle.")
+    parser = command_parser("mjcf", "Write a car as a MuJoCo model: car.xml, scene.xml and meshes.")
     vehicle_options(parser)
     output_options(parser, Path("mjcf"))
     message_options(parser)

@@ -28,21 +28,24 @@ if TYPE_CHECKING:
 
 def parser() -> Parser:
     """Return the parser of the options."""
-    parser = command_parser("modes", "Modes up to 60 Hz of the assembled car, from its matrices.")
+    parser = command_parser("modes", "Compute the modes of the complete car up to 60 Hz.")
     vehicle_options(parser)
     parser.add_argument(
-        "--damper", choices=("stuck", "sliding"), default="stuck", help="state of the dampers; stuck by default"
+        "--damper",
+        choices=("stuck", "sliding"),
+        default="stuck",
+        help="dampers stuck by their friction, or sliding; default: stuck",
     )
     parser.add_argument(
-        "--speed", type=float, metavar="KM/H", help="modes of the car that drives at this speed, with tyres that roll"
+        "--speed", type=float, metavar="KM/H", help="speed of the car [km/h]: the tyres roll; default: the car stands"
     )
     parser.add_argument("--json", action="store_true", help="print JSON")
     parser.add_argument(
         "--uff",
         type=Path,
         metavar="FILE.uff",
-        help="write the places of the car, lines between them and the complex mode shapes as a universal file "
-        "(datasets 15, 82 and 55), for Testlab, ME'scope or `python -m vehicle compare`",
+        help="write points, lines and complex mode shapes as a universal file (datasets 15, 82 and 55), for "
+        "Testlab, ME'scope or `python -m vehicle compare`",
     )
     parser.add_argument(
         "--animate", type=float, metavar="HZ", help="with --video: show the mode nearest to this frequency [Hz]"
@@ -52,24 +55,32 @@ def parser() -> Parser:
         nargs="?",
         const="",
         metavar="FILE.mp4",
-        help="write the mode of --animate as a film of three cycles, 4 s, that can be repeated without a seam; "
-        "runs/mode_<frequency>_hz.mp4 by default",
+        help="write the mode of --animate as a film of three cycles (4 s) that can run in a loop; default: "
+        "runs/mode_<frequency>_hz.mp4",
     )
     parser.add_argument(
         "--decoupling",
         metavar="PART",
-        help="modes of a part on its mounts, as engine: shares of its kinetic energy in three translations and three "
-        "rotations about its centre of gravity, and its torque roll axis",
+        help="show the modes of a part on its mounts, for example engine: shares of kinetic energy in its three "
+        "translations and three rotations, and its torque roll axis",
     )
     decoupled = parser.scoped_group(
         "a decoupling", needs="--decoupling", active=lambda options: bool(options.decoupling)
     )
-    decoupled.add_argument("--grounded", action="store_true", help="with the body fixed; by default in the car")
     decoupled.add_argument(
-        "--aim", type=float, metavar="PERCENT", help="mark the modes whose largest share is below this; none by default"
+        "--grounded", action="store_true", help="compute the modes of the part with the body fixed; default: in the car"
     )
     decoupled.add_argument(
-        "--crankshaft", default="0,1,0", metavar="X,Y,Z", help="direction of the crankshaft; across the car by default"
+        "--aim",
+        type=float,
+        metavar="PERCENT",
+        help="mark the modes whose largest share is below P percent; default: mark none",
+    )
+    decoupled.add_argument(
+        "--crankshaft",
+        default="0,1,0",
+        metavar="X,Y,Z",
+        help="direction of the crankshaft, for example 0,1,0; default: across the car",
     )
     files = parser.scoped_group(
         "files", needs="--uff or --video", active=lambda options: options.uff is not None or options.video is not None
@@ -87,7 +98,11 @@ def _job(options: argparse.Namespace) -> None:
     if options.uff is not None and options.uff.exists():
         written_here = options.uff.is_file() and b"vehicle-on-shaker" in options.uff.read_bytes()[:500]
         if not (options.force and written_here):
-            mend = "was not written by this program; set another name" if options.force else "exists; give --force"
+            mend = (
+                "was not written by this program, so --force does not replace it; set another name"
+                if options.force
+                else "exists; give --force"
+            )
             raise ConfigurationError(f"--uff {options.uff}: {mend}")
     speed = [] if options.speed is None else [f"driving.speed={options.speed / 3.6!r}"]
     car = Car.load(options.vehicle, [*options.overrides, *speed])
@@ -99,7 +114,7 @@ def _job(options: argparse.Namespace) -> None:
     try:
         figures = motion_figures(car, (options.damper,))
     except SimulationError as error:
-        reason = f"headline figures: not defined: {error}"
+        reason = f"key figures of the suspension cannot be computed: {error}"
     table = modes_table(car, options.damper, figures)
     table["notices"] += [reason] if reason else []
     if options.uff is not None:
@@ -121,7 +136,7 @@ def _decoupling(options: argparse.Namespace, car: Any) -> str:
         raise ConfigurationError(f"--aim {options.aim:g}: must be above 0 and at most 100 percent")
     crankshaft = finite_numbers(options.crankshaft, ",")
     if len(crankshaft) != 3:
-        raise ConfigurationError(f"--crankshaft {options.crankshaft}: must be three numbers, as 0,1,0")
+        raise ConfigurationError(f"--crankshaft {options.crankshaft}: must be three numbers, for example 0,1,0")
     x, y, z = crankshaft
     engine_modes = decoupling(
         car.matrices,
@@ -137,12 +152,14 @@ def _check_film_options(options: argparse.Namespace) -> None:
     """Check the film options before the computation, and choose the OpenGL library before MuJoCo is imported."""
     if options.animate is None:
         if options.video is not None:
-            raise ConfigurationError("--video: of which mode? Give its frequency too, as --animate 28")
+            raise ConfigurationError("--video: the mode is missing; give its frequency, for example --animate 28")
         return
     if not 0.0 < options.animate < math.inf:
-        raise ConfigurationError(f"--animate {options.animate:g}: must be a frequency above 0 Hz, as --animate 28")
+        raise ConfigurationError(f"--animate {options.animate:g}: must be above 0 Hz, for example --animate 28")
     if options.video is None:
-        raise ConfigurationError(f"--animate {options.animate:g}: shows a mode as a film; give --video [FILE.mp4] too")
+        raise ConfigurationError(
+            f"--animate {options.animate:g}: makes a film only with --video; add --video [FILE.mp4]"
+        )
     from vehicle.drawing.rendering.backend import require_film
     from vehicle.runs.output.free_names import named_file
 
@@ -213,8 +230,10 @@ def report(table: dict[str, Any], figures: Sequence[MotionFigure]) -> str:
             f"{mode['frequency_hz']:8.3f} {100 * mode['damping_ratio']:6.2f} %  {mode['description']:<{width}} {text}"
         )
     if table["growing"]:
-        fault = "does not stand" if table["tyre"] == "standing" else "does not keep its course"
-        lines.append(f"this car {fault}: {', '.join(table['growing'])} grows by itself (negative damping above)")
+        fault = "does not stand" if table["tyre"] == "standing" else "does not keep its course when driving"
+        lines.append(
+            f"this car {fault}: {', '.join(table['growing'])} grows by itself (negative damping in the table above)"
+        )
     lines += [str(figures_table(figures))] if figures else []
     lines += [f"note     {text}" for text in table["notices"]]
     free = table["free_body"]

@@ -36,32 +36,39 @@ def parser() -> Parser:
     from vehicle.studies.design.stated_numbers import StatedNumbers, option
 
     parser = command_parser("new", "Make a car from a template car and its masses, lengths and frequencies.")
-    parser.add_argument("folder", type=Path, metavar="NAME", help="folder of the new car; its last part is the name")
+    parser.add_argument(
+        "folder",
+        type=Path,
+        metavar="NAME",
+        help="folder of the new car; the last part of the path is the name of the car",
+    )
     parser.add_argument(
         "--from",
         dest="source",
         metavar="CAR",
-        help="template: a shipped car with four wheels, as sedan or focus_road, the file of a car, or chrono:FILE.json "
-        "of a vehicle of Project Chrono; sedan by default with --car-class. Axles and powertrain scale with the mass",
+        help="car to start from: a shipped car with four wheels (sedan, focus_road), the file of a car, or "
+        "chrono:FILE.json of a Project Chrono vehicle. Default with --car-class: sedan. Axles and "
+        "powertrain are scaled with the mass",
     )
     parser.add_argument(
         "--car-class",
         dest="car_class",
         choices=CLASSES,
-        help="class of the car: default masses, lengths and ride frequencies; electric-suv has an electric drive, "
-        "no engine",
+        help="class of the car, which sets default masses, lengths and ride frequencies; electric-suv has an "
+        "electric drive, no engine",
     )
     parser.add_argument(
         "--chrono-tyre",
         type=Path,
         metavar="FILE.json",
-        help="tyre of all wheels of a vehicle of Chrono whose file names none",
+        help="tyre of all wheels, for a Chrono vehicle whose file names no tyre",
     )
     parser.add_argument(
         "--numbers",
         type=Path,
         metavar="FILE.toml",
-        help="numbers by the names of these options with '_' for '-', as kerb_mass = 1450, and loads as [load.driver]",
+        help="file with the values of these options ('_' for '-', for example kerb_mass = 1450) and loads as "
+        "[load.driver]",
     )
     for title, names in GROUPS.items():
         group = parser.add_argument_group(title)
@@ -79,7 +86,7 @@ def parser() -> Parser:
             )
     inertia = field_quantity(StatedNumbers, "inertia")
     parser.add_argument(
-        "--inertia", choices=inertia["choices"], help=f"{inertia['meaning']}; {inertia['default']} by default"
+        "--inertia", choices=inertia["choices"], help=f"{inertia['meaning']}; default: {inertia['default']}"
     )
     parser.add_argument("--json", action="store_true", help="print the checks as JSON")
     parser.add_argument("--force", action="store_true", help=FORCE_HELP)
@@ -102,18 +109,22 @@ def _job(options: argparse.Namespace) -> None:
     if not NAME_PATTERN.fullmatch(name):
         raise ConfigurationError(f"NAME {str(options.folder)!r}: its last part must be letters, digits, '_', '.', '-'")
     if name in CARS and options.folder == Path(name):
-        raise ConfigurationError(f"NAME {name}: is the name of a shipped car, which --vehicle would read; take another")
+        raise ConfigurationError(
+            f"NAME {name}: is the name of a shipped car, which --vehicle would find first; choose another name"
+        )
     stated = stated_numbers(
         options.numbers, {key: getattr(options, key) for key in (*NAMES, "tyre_size", "inertia", "car_class")}
     )
     if options.source is None:
         if stated.car_class is None:
-            raise ConfigurationError("--from: missing; name a template, as --from sedan, or state --car-class")
+            raise ConfigurationError(
+                "--from is missing; give the car to start from, for example --from sedan, or a --car-class"
+            )
         options.source = "sedan"
     foreign = Path(options.source.removeprefix(PREFIX)) if options.source.startswith(PREFIX) else None
     if options.chrono_tyre is not None and foreign is None:
         raise ConfigurationError(
-            "--chrono-tyre: belongs to --from chrono:FILE.json; another car has its tyres in its file"
+            "--chrono-tyre: belongs to --from chrono:FILE.json; other cars state their tyres in the car file"
         )
     source = vehicle_file(options.source) if foreign is None else foreign
     try:

@@ -23,7 +23,9 @@ from vehicle.studies.optimisation.search_settings import SearchSettings
 
 def parser() -> Parser:
     """Return the parser of the options."""
-    parser = command_parser("optimise", "Search for the parameters with the best compromise of comfort, load, travel.")
+    parser = command_parser(
+        "optimise", "Search for parameters with the best compromise of comfort, tyre load and travel."
+    )
     signal_options(parser, several=True)
     vehicle_options(parser)
     search = parser.add_argument_group("the search")

@@ -17,7 +17,7 @@ EXIT_CODES = (
     "Exit codes: 0 done, 2 usage, 3 bad data, 4 simulation failed, 5 library missing, 6 cannot write, 130 interrupted."
 )
 
-FORCE_HELP = "replace files of an earlier run; stop if the folder contains other or edited files"
+FORCE_HELP = "replace files of an earlier run; stops if the folder contains other or edited files"
 
 
 def command_parser(name: str, description: str) -> Parser:
@@ -28,7 +28,7 @@ def command_parser(name: str, description: str) -> Parser:
 
 
 CAR_HELP = f"folder or file of a car, or the name of a shipped car: {', '.join(CARS)}"
-VEHICLE_HELP = f"{CAR_HELP}; the car of Bommer 2006 by default"
+VEHICLE_HELP = f"{CAR_HELP}; default: the car of Bommer 2006"
 
 
 def setting_options(
@@ -77,8 +77,8 @@ def set_option(parser: argparse._ActionsContainer) -> None:
         action="append",
         default=[],
         metavar="PATH=VALUE",
-        help="override one parameter, as damper.coulomb_friction=93.75; a vector is [x, y, z], and the path "
-        "of one component ends with its axis: bushings.tyre.stiffness.z=2e5. May be repeated",
+        help="change one parameter, for example damper.coulomb_friction=93.75. A vector is [x, y, z]; one "
+        "component of it ends with its axis: bushings.tyre.stiffness.z=2e5. May be repeated",
     )
 
 
@@ -91,7 +91,7 @@ def output_options(parser: Parser, path: Path | None, *, default: str = "", meta
         metavar: DIR, or FILE with its ending.
     """
     destination = "folder" if metavar == "DIR" else "file"
-    text = f"{destination} of the results; {default or path} by default, and the next free name where that exists"
+    text = f"{destination} of the results; default: {default or path}, or the next free name if that exists"
     parser.add_argument("--output", type=Path, default=path, metavar=metavar, help=text)
     parser.add_argument("--force", action="store_true", help=FORCE_HELP)
 
@@ -109,14 +109,14 @@ def figures_option(parser: argparse._ActionsContainer) -> None:
         "--no-figures",
         dest="figures",
         action="store_false",
-        help="write no pictures (PNG): the command is done sooner; tables, summary and report are unchanged",
+        help="write no pictures (PNG), which saves time; tables, summary and report are unchanged",
     )
 
 
 def head_options(parser: argparse._ActionsContainer) -> None:
     """Add --author and --project, the names in the head of a report."""
-    parser.add_argument("--author", default="", metavar="NAME", help="author in the head of the report")
-    parser.add_argument("--project", default="", metavar="NAME", help="project in the head of the report")
+    parser.add_argument("--author", default="", metavar="NAME", help="author, shown at the top of the report")
+    parser.add_argument("--project", default="", metavar="NAME", help="project, shown at the top of the report")
 
 
 def report_option(parser: Parser, content: str, folder: str) -> None:
@@ -126,7 +126,7 @@ def report_option(parser: Parser, content: str, folder: str) -> None:
         nargs="?",
         const="",
         metavar="FILE.html",
-        help=f"write a report too: {content}; report.html in the folder of {folder} by default",
+        help=f"also write a report: {content}; default: report.html in the folder of {folder}",
     )
     head_options(parser.scoped_group("a report", needs="--report", active=lambda options: options.report is not None))
 
@@ -148,13 +148,15 @@ def film_name(value: str, default: str) -> Path:
     """
     name = Path(value or default)
     if name.suffix != ".mp4":
-        raise ConfigurationError(f"--video {name}: a film is written as .mp4; set FILE.mp4")
+        raise ConfigurationError(f"--video {name}: must end in .mp4; set FILE.mp4")
     return name
 
 
 def resume_options(parser: Parser) -> None:
     """Add --resume and --retry-failed, which continue a table of runs."""
-    parser.add_argument("--resume", action="store_true", help="continue in that folder; finished rows are kept")
+    parser.add_argument(
+        "--resume", action="store_true", help="continue the unfinished study in this folder; finished rows are kept"
+    )
     group = parser.scoped_group("going on", needs="--resume", active=lambda options: options.resume)
     setting_options(group, SweepSettings, "retry_failed")
 

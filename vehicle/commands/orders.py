@@ -33,17 +33,24 @@ MOST_ORDERS = 12
 def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser(
-        "orders", "Amplitudes at orders of crankshaft or wheels over steady speeds, with limits and Campbell map."
+        "orders", "Compute amplitudes at orders of crankshaft or wheels at steady speeds, with limits and Campbell map."
     )
     vehicle_options(parser)
     parser.add_argument(
-        "--rpm", metavar="A:B:STEP", help="speeds of the crankshaft [1/min], as 700:3000:50: a run at each"
+        "--rpm",
+        metavar="A:B:STEP",
+        help="speeds of the crankshaft [1/min], for example 700:3000:50; a run at each speed",
     )
     parser.add_argument(
-        "--speed", metavar="A:B:STEP", help="or speeds of the car [km/h], as 60:160:5; with --rpm one speed of the car"
+        "--speed",
+        metavar="A:B:STEP",
+        help="speeds of the car [km/h], for example 60:160:5; with --rpm a single speed of the car",
     )
     parser.add_argument(
-        "--orders", default="1,2", metavar="N,...", help="orders of the angle, as 2,4; %(default)s by default"
+        "--orders",
+        default="1,2",
+        metavar="N,...",
+        help="orders (multiples of the rotation frequency), for example 2,4; default: %(default)s",
     )
     parser.add_argument(
         "--channel",
@@ -52,13 +59,13 @@ def parser() -> Parser:
         help="acceleration channels, as seat rail z,roof left rear x; may be repeated. By default seat rail z",
     )
     parser.add_argument(
-        "--angle", metavar="NAME", help="crank, or a wheel, as wheel_fr; that of the first force by default"
+        "--angle",
+        metavar="NAME",
+        help="rotation that the orders refer to: crank, or a wheel, for example wheel_fr; default: that of the "
+        "first force",
     )
     parser.add_argument(
-        "--road", default="level", metavar="C", help="class of ISO 8608 under the wheels; %(default)s by default"
-    )
-    parser.add_argument(
-        "--duration", type=float, default=10.0, metavar="S", help="length of each run [s]; %(default)s by default"
+        "--duration", type=float, default=10.0, metavar="S", help="length of each run [s]; default: %(default)s"
     )
     setting_options(parser, SweepSettings, "engine", default="reduced")
     parser.add_argument("--json", action="store_true", help="print JSON")
@@ -77,9 +84,15 @@ def job(options: argparse.Namespace) -> None:
     rpm = points_of("--rpm", options.rpm)
     speeds = points_of("--speed", options.speed)
     if not rpm and not speeds:
-        raise ConfigurationError("orders: set --rpm A:B:STEP, as 700:3000:50, or --speed A:B:STEP, as 60:160:5")
+        raise ConfigurationError(
+            "orders: the speeds are missing; set --rpm A:B:STEP, for example 700:3000:50, or --speed A:B:STEP, "
+            "for example 60:160:5"
+        )
     if rpm and len(speeds) > 1:
-        raise ConfigurationError("--rpm and --speed: vary one of them; with --rpm give one --speed, as --speed 80")
+        raise ConfigurationError(
+            "--rpm and --speed: only one of them can be a range; with --rpm A:B:STEP give a single speed, for "
+            "example --speed 80"
+        )
     orders = _orders(options.orders)
     from vehicle.runs.car import Car
     from vehicle.runs.car.order_points import order_points_at
@@ -150,15 +163,16 @@ def points_of(option: str, text: str | None) -> list[float]:
         return values
     if len(values) == 2:
         raise ConfigurationError(
-            f"{option} {text}: steady points need a step, as {text}:{max((values[1] - values[0]) / 20, 1):.0f}; "
-            "a run-up is one run: python -m vehicle shaker --rpm A:B --duration S"
+            f"{option} {text}: the step between the speeds is missing, for example "
+            f"{text}:{max((values[1] - values[0]) / 20, 1):.0f}; for a run-up type python -m vehicle shaker "
+            "--rpm A:B --duration S"
         )
     if len(values) != 3 or not all(map(math.isfinite, values)) or not 0.0 < values[0] < values[1] or values[2] <= 0.0:
-        raise ConfigurationError(f"{option} {text!r}: needed is A:B:STEP with 0 < A < B, as 700:3000:50")
+        raise ConfigurationError(f"{option} {text!r}: must be A:B:STEP with 0 < A < B, for example 700:3000:50")
     first, last, step = values
     count = math.floor((last - first) / step + 1e-9) + 1
     if count > MOST:
-        raise ConfigurationError(f"{option} {text}: {count} points; at most {MOST}; take a larger step")
+        raise ConfigurationError(f"{option} {text}: gives {count} points, must be at most {MOST}; use a larger step")
     return [round(first + index * step, 9) for index in range(count)]
 
 
@@ -171,7 +185,7 @@ def _orders(text: str) -> list[float]:
     wrong = not orders or any(not 0.0 < order <= 100.0 or (2.0 * order) % 1.0 for order in orders)
     if wrong or len(set(orders)) < len(orders) or len(orders) > MOST_ORDERS:
         raise ConfigurationError(
-            f"--orders {text!r}: needed are up to {MOST_ORDERS} whole or half orders, each once, as 2,4"
+            f"--orders {text!r}: must be up to {MOST_ORDERS} whole or half orders, each once, for example 2,4"
         )
     return orders
 

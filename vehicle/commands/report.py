@@ -15,18 +15,19 @@ from vehicle.errors import ConfigurationError
 
 def parser() -> Parser:
     """Return the parser of the options."""
-    parser = command_parser("report", "Findings, figures, moving modes and tables of runs as one HTML file.")
+    parser = command_parser("report", "Write findings, figures, moving modes and tables of runs into one HTML file.")
     parser.add_argument(
         "runs",
         nargs="+",
         type=Path,
         metavar="RUN",
-        help="folder of a run, as runs/low; the others are compared with the first",
+        help="folder of a run, for example runs/low; further runs are compared with the first",
     )
     parser.add_argument(
         "--targets",
         metavar="FILE.toml",
-        help="begin with the verdict on figures with limits; 'ride' is the shipped file, to be copied and changed",
+        help="start the report with the check of these targets (figures with limits); 'ride' is a shipped file "
+        "to copy and change",
     )
     film_options(
         parser,
@@ -35,7 +36,10 @@ def parser() -> Parser:
     )
     head_options(parser)
     output_options(
-        parser, None, default=f"{REPORT} in the folder of a single run, and here for several,", metavar="FILE.html"
+        parser,
+        None,
+        default=f"{REPORT} in the folder of a single run, in the current folder for several runs",
+        metavar="FILE.html",
     )
     message_options(parser, quiet=True)
     return parser
@@ -46,7 +50,7 @@ def _job(options: argparse.Namespace) -> None:
 
     missing = next((run for run in options.runs if not run.is_dir()), None)
     if missing is not None:
-        raise ConfigurationError(f"{missing}: is no folder; give the folder of a run, as runs/low")
+        raise ConfigurationError(f"{missing}: is not a folder; give the folder of a run, for example runs/low")
     default = options.runs[0] / REPORT if len(options.runs) == 1 else Path(REPORT)
     check_film_options(options)
     path, film = output_file_of(options, default, ending=".html"), None

@@ -28,11 +28,16 @@ if TYPE_CHECKING:
 
 def parser() -> Parser:
     """Return the parser of the options."""
-    parser = command_parser("road", "Plate signals of a car on a road: a class, a measured profile or an obstacle.")
+    parser = command_parser(
+        "road", "Write the plate signals of a car on a road: a class, a measured profile or an obstacle."
+    )
     vehicle_options(parser)
     parser.add_argument("--class", dest="road_class", metavar="C", help="class of ISO 8608, A to H")
     parser.add_argument(
-        "--profile", type=Path, metavar="FILE.csv", help="or a measured road: distance, left, right [m]"
+        "--profile",
+        type=Path,
+        metavar="FILE.csv",
+        help="or the file of a measured road: columns distance, left, right [m]",
     )
     parser.add_argument(
         "--obstacle",
@@ -44,8 +49,8 @@ def parser() -> Parser:
     parser.add_argument(
         "--iri",
         action="store_true",
-        help="also print the international roughness index of each track, with its class of ISO 8608, and write it for "
-        "every 100 m to FILE_iri.csv",
+        help="also print the international roughness index (IRI) of each track and its class of ISO 8608; "
+        "FILE_iri.csv has the IRI of every 100 m",
     )
     output_options(parser, Path("road.csv"), metavar="FILE.csv")
     figures_option(parser)
@@ -65,7 +70,7 @@ def _job(options: argparse.Namespace) -> None:
 
     roads = [road for road in (options.road_class, options.profile, options.obstacle) if road is not None]
     if len(roads) != 1:
-        raise ConfigurationError("road: needed is one of --class, --profile and --obstacle")
+        raise ConfigurationError("road: give exactly one of --class, --profile and --obstacle")
     inputs = tuple(file for file in (options.profile, options.vehicle) if file is not None)
     path = output_file_of(options, options.output, ending=".csv", protect=inputs)
     picture = path.with_suffix(".png")
@@ -80,12 +85,14 @@ def _job(options: argparse.Namespace) -> None:
         slopes = drive.slopes(signal)
         beside = {f"road_{wheel} [m]": signal.profile[wheel] for wheel in signal.wheels}
         beside |= {f"slope_{wheel} [-]": slopes[wheel] for wheel in signal.wheels}
-        comments.append("displacement and slope: what the tyre takes of the road below it")
+        comments.append("displacement and slope: the road after its averaging by the contact patch of the tyre")
     indices = path.with_name(f"{path.stem}_iri.csv")
     roughness = {}
     if options.iri:
         if not isinstance(drive, RoadDrive):
-            raise ConfigurationError("--iri: needs the heights over distance; this road was recorded over time")
+            raise ConfigurationError(
+                "--iri: the road was recorded over time, but the IRI needs heights over distance; leave --iri out"
+            )
         named_file(options.held, indices, ending=".csv", force=options.force, protect=inputs)
         roughness = drive.roughness()
     with whole_files([path, picture, indices]) as (new_path, new_picture, new_indices):
@@ -148,8 +155,8 @@ def class_or_profile(text: str) -> str | Path:
         if is_obstacle(text) or text == LEVEL:
             return text
         raise ConfigurationError(
-            f"--road {text}: no class of ISO 8608 (A to H), no file of a measured profile, no obstacle "
-            f"({', '.join(SHAPES)}), and not {LEVEL}"
+            f"--road {text}: unknown; give a class of ISO 8608 (A to H), the file of a measured profile, an "
+            f"obstacle ({', '.join(SHAPES)}) or {LEVEL}"
         )
     return text.upper() if len(text) == 1 else Path(text)
 
@@ -173,7 +180,7 @@ def road_of(road: str | Path, options: argparse.Namespace) -> Road:
     from vehicle.signals.records.choice import Choice
 
     if options.speed is None:
-        raise ConfigurationError("a road needs --speed KM/H, as --speed 80")
+        raise ConfigurationError("the speed on the road is missing; set it in km/h, for example --speed 80")
     choice = Choice()
     if isinstance(options.speed, str) and hasattr(options, "picks"):
         # --rate is that of the run; the times are those of the file.

@@ -26,7 +26,7 @@ def expanded(names: Sequence[str]) -> tuple[list[str], bool]:
         files = sorted(str(file) for file in folder.iterdir() if file.is_file() and not file.name.startswith("."))
         if not files:
             raise ConfigurationError(
-                f"{name}: a folder without files; give measurement files, or a folder that has some"
+                f"{name}: is an empty folder; give measurement files, or a folder with measurement files"
             )
         paths += files
     return list(dict.fromkeys(paths)), len(paths) > 1 or any(Path(name).is_dir() for name in names)
@@ -70,4 +70,6 @@ def raise_worst(errors: Sequence[VehicleError], files: int) -> None:
     """Raise one error for all failed files, of the class of the first; call it after printing the results."""
     if errors:
         count = len(errors)
-        raise type(errors[0])(f"{count} of {files} files {'has' if count == 1 else 'have'} no result, see the table")
+        raise type(errors[0])(
+            f"{count} of {files} files {'has' if count == 1 else 'have'} no result; the reason is in the table"
+        )

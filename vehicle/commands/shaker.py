@@ -58,58 +58,64 @@ def parser() -> Parser:
         needs=RECORD_NEEDS,
         active=lambda options: bool(options.input) or recorded_over_time(options),
     )
-    record_options(recorded, 'a plate, as fr="Shaker FR", or rpm of the crankshaft', rate=False, unit=False)
+    record_options(
+        recorded, 'a plate, for example fr="Shaker FR", or the speed rpm of the crankshaft', rate=False, unit=False
+    )
     parser.add_argument(
         "--rpm",
         metavar="N|A:B|A:B:STEP",
-        help="speed of the crankshaft [1/min], or a run-up from A to B over --duration, or steady points, the runs of "
-        "`python -m vehicle orders`; without --input and --road on a level road",
+        help="speed of the crankshaft [1/min]; A:B is a run-up over --duration; A:B:STEP are steady speeds, a "
+        "run each, as in `python -m vehicle orders`. Without --input and --road the road is level",
     )
     parser.add_argument(
-        "--no-forces", action="store_true", help="leave out all applied forces of the car: --set apply_forces=false"
+        "--no-forces",
+        action="store_true",
+        help="simulate without the applied forces of the car; the same as --set apply_forces=false",
     )
-    file.add_argument("--interpolate", action="store_true", help="fill missing displacements by interpolation")
+    file.add_argument("--interpolate", action="store_true", help="fill gaps in the displacement by interpolation")
     file.add_argument("--remove-mean", action="store_true", help="subtract the mean of the displacement")
     read = parser.scoped_group(
         "a file of signals or of a measurement",
-        needs="--input, --measured, or a road that was recorded over time; any other road has none",
+        needs="--input, --measured, or a road recorded over time; any other road has no file",
         active=lambda options: bool(options.input or options.measured) or recorded_over_time(options),
     )
     unit_option(read)
-    output_options(parser, None, default="runs/<input stem>, or runs/road_C_80,")
+    output_options(parser, None, default="runs/<input stem> or runs/road_C_80")
     car = vehicle_options(parser)
     car.add_argument(
         "--controller",
         type=Path,
         metavar="FILE.fmu",
-        help="controller of all semi-active dampers, FMI 2.0 or 3.0 co-simulation: velocities in, coefficient out; an "
-        "instance for each damper; runs its native code with all your rights, so it needs --trust",
+        help="FMU (FMI 2.0 or 3.0 co-simulation) that controls each semi-active damper: velocities in, damping "
+        "coefficient out. It runs native code with all your rights, so it needs --trust",
     )
     car.add_argument(
         "--trust",
         action="store_true",
-        help="run the native code of the controller, or of those in the vehicle file; its SHA-256 goes into the "
-        "vehicle file of the run, where it replaces the option",
+        help="allow the native code of FMU controllers; its SHA-256 is stored in the vehicle file of the run, "
+        "which then needs no --trust",
     )
     setting_options(parser, SweepSettings, "engine", default="mujoco")
     setting_options(parser, SweepSettings, "skip")
     parser.add_argument(
-        "--timestep", type=float, metavar="S", help="step of the integration [s]; that of the vehicle file by default"
+        "--timestep",
+        type=float,
+        metavar="S",
+        help="time step of the integration [s]; default: time step of the vehicle file",
     )
     parser.add_argument(
         "--time-format",
         choices=TABLES,
         default="npz",
-        help="format of the time histories; %(default)s by default",
+        help="format of the time histories; default: %(default)s",
     )
     parser.add_argument(
         "--channels",
         dest="recorded",
         metavar="loads|all|NAME,...",
-        help="record more than the default channels: loads, the forces of all elements [N] and the suspension travel "
-        "[m], or some of these by name; all is everything, with the coefficients of semi-active dampers [N s/m] and "
-        "applied forces (force_NAME, torque_NAME, angle_crank, speed_crank); "
-        "python -m vehicle loads counts their cycles",
+        help="record more channels. loads: forces of all elements [N] and suspension travel [m], for `python -m "
+        "vehicle loads`; names: some of these; all: also coefficients of semi-active dampers [N s/m] and "
+        "applied forces (force_NAME, torque_NAME, angle_crank, speed_crank)",
     )
     parser.add_argument(
         "--format",
@@ -117,8 +123,8 @@ def parser() -> Parser:
         action="append",
         default=[],
         choices=WRITTEN,
-        help="write the run in this format too: time histories, and in mat, uff and h5 the FRFs with their coherence; "
-        "uff with the places of the car. May be repeated",
+        help="also write the time histories in this format; mat, uff and h5 also contain FRFs and coherence, uff "
+        "also the points of the car. May be repeated",
     )
     figures_option(parser)
     film = film_options(parser, "render a film of the run")
@@ -128,11 +134,11 @@ def parser() -> Parser:
         nargs="?",
         const=math.nan,
         metavar="HZ",
-        help="show a mode beside the run: that nearest to this frequency [Hz], or that with the largest share in the "
-        "vertical acceleration of the seat rail",
+        help="show a mode beside the run: the one nearest to this frequency [Hz]; without a number the one with the "
+        "largest share in the vertical acceleration of the seat rail",
     )
     measured_options(parser)
-    report_option(parser, "one HTML file with findings, figures, moving modes and tables", "the run")
+    report_option(parser, "an HTML file with findings, figures, moving modes and tables", "the run")
     message_options(parser, quiet=True)
     return parser
 
@@ -146,7 +152,8 @@ def _job(options: argparse.Namespace) -> None:
     if options.no_forces:
         if options.rpm is not None or any(text.startswith("rpm=") for text in options.picks):
             raise ConfigurationError(
-                "--rpm: turns the crankshaft of forces that --no-forces leaves out; give one of both"
+                "--rpm has no effect with --no-forces, which leaves out the forces of the crankshaft; leave "
+                "out one of them"
             )
         options.overrides = [*options.overrides, "apply_forces=false"]
     if options.rpm is not None and options.rpm.count(":") == 2:
@@ -285,14 +292,15 @@ def _check_signal(options: argparse.Namespace, signal: Signal) -> None:
     """Check --wheel against the wheels of the file, and the excerpt of the film against the record."""
     if options.wheel is not None and len(signal.wheels) > 1:
         raise ConfigurationError(
-            f"--wheel {options.wheel}: {options.input} names the wheels of its columns; leave --wheel out"
+            f"--wheel {options.wheel}: the columns of {options.input} already state their wheels; leave --wheel out"
         )
     if options.video_start is not None:
         chosen = options.video_duration is not None and options.slow_motion is not None
         latest = signal.duration - (options.video_duration / options.slow_motion if chosen else 0.0)
         if not 0.0 <= options.video_start <= latest:
             raise ConfigurationError(
-                f"--video-start {options.video_start:g}: the excerpt must lie in the record, so give 0 to {latest:g} s"
+                f"--video-start {options.video_start:g}: must be 0 to {latest:g} s, so that the film lies "
+                "within the record"
             )
 
 
@@ -308,22 +316,23 @@ def _controller_overrides(options: argparse.Namespace) -> list[str]:
         files = {path: file for path, file in files.items() if file.is_file()}
         if not files:
             raise ConfigurationError(
-                f"--trust: no damper of {vehicle.name} has a controller in an FMU; leave it out, or add --controller"
+                f"--trust: no damper of {vehicle.name} is controlled by an FMU; leave --trust out, or add "
+                "--controller FILE"
             )
         return [f"{path}.control.fmu_sha256={digest(file)}" for path, file in files.items()]
     paths = list(controls)
     if not paths:
         raise ConfigurationError(
-            f"--controller {options.controller}: no damper of {vehicle.name} has a table control with the limits of "
-            "its coefficient; take --vehicle focus_road, or add [front.damper.control]: docs/vehicle-file.md"
+            f"--controller {options.controller}: {vehicle.name} has no semi-active damper; use --vehicle "
+            "focus_road, or add a section [front.damper.control] to the vehicle file (docs/vehicle-file.md)"
         )
     if options.trust and not options.controller.is_file():
-        raise ConfigurationError(f"--controller {options.controller}: there is no such file; set the path of an FMU")
+        raise ConfigurationError(f"--controller {options.controller}: the file does not exist; set the path of an FMU")
     file = options.controller.resolve().as_posix()
     if not PATH_PATTERN.fullmatch(file):
         raise ConfigurationError(
-            f"--controller {file}: the path has a quotation mark, bracket, # or backslash, which a vehicle file does "
-            "not accept in paths; rename or move the FMU"
+            f"--controller {file}: the path contains a quotation mark, bracket, # or backslash, which vehicle "
+            "files do not allow; rename or move the FMU"
         )
     texts = [f"law={FMU}", f"fmu={file}"]
     texts += [f"fmu_sha256={digest(options.controller)}"] if options.trust else []
@@ -336,7 +345,7 @@ def _engine(options: argparse.Namespace) -> tuple[str, str]:
     if needs is None or options.engine == "mujoco":
         return options.engine, ""
     why = f"{needs}: the reduced engine " + (
-        "stores no positions for a film" if needs == "--video" else "has its own step"
+        "does not store the positions that a film needs" if needs == "--video" else "chooses its time step itself"
     )
     if options.engine == "reduced":
         raise ConfigurationError(f"{why}; leave --engine reduced out, or {needs}")

@@ -17,7 +17,7 @@ from vehicle.model.parameters.shipped import vehicle_file
 
 def parser() -> Parser:
     """Return the parser of the options."""
-    parser = command_parser("show", "Masses, stiffnesses, frequencies, geometry and parameters of a car.")
+    parser = command_parser("show", "Print masses, stiffnesses, frequencies, geometry and parameters of a car.")
     parser.add_argument("car", nargs="?", type=vehicle_file, metavar="CAR", help=VEHICLE_HELP)
     set_option(parser)
     parser.add_argument(
@@ -25,11 +25,11 @@ def parser() -> Parser:
         nargs="?",
         const="",
         metavar="WORDS",
-        help="list the parameters with these words in their path or meaning, with value, unit, range and source; all "
-        "parameters without words",
+        help="list parameters whose path or meaning contains these words, with value, unit, range and source; "
+        "without words all parameters",
     )
     extra_output_options(parser, "car.png (drawing with dimensions), car.json and parameters.csv")
-    parser.former("--vehicle", "--vehicle: the car comes first, as in `show sedan`")
+    parser.former("--vehicle", "--vehicle is not an option here; name the car first, for example `show sedan`")
     parser.add_argument("--json", action="store_true", help="print JSON")
     message_options(parser)
     return parser
@@ -39,7 +39,10 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.runs.car import Car
 
     if options.search is not None and options.output is not None:
-        raise ConfigurationError("--search: prints parameters only; leave out --output, which writes all of them")
+        raise ConfigurationError(
+            "--search and --output exclude each other: --search prints some parameters, --output writes all; "
+            "leave one of them out"
+        )
     car = Car.load(options.car, options.overrides)
     if options.search is not None:
         _print_parameters(car, options)
@@ -73,8 +76,8 @@ def _print_parameters(car: Any, options: argparse.Namespace) -> None:
         unknown = [word for word in searched if not car.search(word)]
         shown = " or ".join(map(repr, unknown)) or f"all of {', '.join(map(repr, searched))}"
         raise ConfigurationError(
-            f"--search {options.search!r}: no parameter of {car.vehicle.name} has {shown} in its path or meaning; "
-            "use other words, as bushings, damper, mass, or --search alone for all"
+            f"--search {options.search!r}: no parameter of {car.vehicle.name} contains {shown} in its path or "
+            "meaning; use other words, for example damper or mass, or --search without words to list all"
         )
     print_result(options, [dataclasses.asdict(parameter) for parameter in parameters], parameter_table(parameters))
 

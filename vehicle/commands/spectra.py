@@ -23,29 +23,34 @@ if TYPE_CHECKING:
 def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser(
-        "spectra", "Densities, third octaves and cumulative RMS of accelerations of runs, weighted and not."
+        "spectra",
+        "Compute spectral densities, third octaves and cumulative RMS of accelerations, weighted and unweighted.",
     )
     parser.add_argument(
-        "runs", nargs="+", type=Path, metavar="RUN", help="folder of a run, or a measurement file; drawn together"
+        "runs",
+        nargs="+",
+        type=Path,
+        metavar="RUN",
+        help="folders of runs, or measurement files; all are drawn in the same pictures",
     )
     parser.add_argument(
         "--channels",
         metavar="NAME,...",
-        help="acceleration channels; by default seat rail, seat, and the vertical motion of the knuckles, of a "
-        "measurement file without these all accelerations",
+        help="acceleration channels; default: seat rail, seat and vertical acceleration of the knuckles, or all "
+        "accelerations of a measurement file without these",
     )
     parser.add_argument(
         "--range",
         default="0.5:80",
         metavar="HZ:HZ",
-        help="lowest and highest frequency [Hz]; %(default)s by default, the range of ISO 2631-1 for comfort",
+        help="lowest and highest frequency [Hz]; default: %(default)s, the range of ISO 2631-1 for comfort",
     )
     record_options(
         parser.add_argument_group("measurement files"),
-        "the channel of a run that it is, as seat_rail_acc_z, which has its weighting",
+        "the name of this channel in runs, for example seat_rail_acc_z, which decides its weighting",
         highpass=False,
     )
-    output_options(parser, None, default="in the folder of a single run, and in runs/spectra for several,")
+    output_options(parser, None, default="the folder of a single run, runs/spectra for several runs")
     message_options(parser, quiet=True)
     return parser
 
@@ -62,7 +67,7 @@ def _job(options: argparse.Namespace) -> None:
     try:
         frequency_range = float(low), float(high)
     except ValueError:
-        raise ConfigurationError(f"--range {options.range}: must be HZ:HZ, as 0.5:80") from None
+        raise ConfigurationError(f"--range {options.range}: must be LOW:HIGH [Hz], for example 0.5:80") from None
     choice = record_choice(options, "")
     runs = [record_spectra(path, asked, frequency_range, choice) for path in options.runs]
     names = _unique([run.name for run in runs])
@@ -83,7 +88,7 @@ def _job(options: argparse.Namespace) -> None:
     for file, (title, columns) in pictures.items():
         contents[file] = partial(plot_spectra, runs=spectra, channels=columns, title=title, caption=caption)
     if levels:
-        title = "Roads against the classes of ISO 8608"
+        title = "Roads compared with the classes of ISO 8608"
         contents["spectra_road.png"] = partial(plot_road_levels, levels=levels, title=title, caption=caption)
     paths = output_files_of(options, folder, list(contents))
     write_together(paths, contents.values())
@@ -114,8 +119,8 @@ def _report(runs: Mapping[str, RecordSpectra]) -> list[str]:
                 f"{spectrum.label:<{width}}{spectrum.rms:>12.4g}  {f'{band:g} Hz, {rms:.3g} m/s2':<27}{half:>7.2f} Hz"
             )
         lines += [
-            f"road under {wheel}: G(0.1 cycles/m) = {1e6 * level.reference_density:.3g}e-6 m3, class {level.letter} of "
-            f"ISO 8608 (fitted from {level.fitted[0]:.3g} to {level.fitted[1]:.3g} cycles/m)"
+            f"road under {wheel}: G(0.1 cycles/m) = {1e6 * level.reference_density:.3g}e-6 m3, class "
+            f"{level.letter} of ISO 8608 (fit over {level.fitted[0]:.3g} to {level.fitted[1]:.3g} cycles/m)"
             for wheel, level in run.road_levels.items()
         ]
     return lines

@@ -48,8 +48,8 @@ def parser() -> Parser:
         action="extend",
         default=[],
         metavar="PATH=LOW:HIGH",
-        help="parameters to fit and their bounds above 0, in their unit, as front.damper.viscous=800:4000; the fit "
-        "begins at the value of the car, which --set changes",
+        help="parameter to fit and its bounds (above 0, in its unit), for example front.damper.viscous=800:4000. "
+        "The fit starts at the value of the car, or of --set",
     )
     measurement_options(parser)
     responses = parser.scoped_group(
@@ -64,14 +64,17 @@ def parser() -> Parser:
     drift_option(records)
     setting_options(records, HistorySettings, "stretch", "lowpass")
     parser.add_argument(
-        "--posterior", action="store_true", help="posterior distribution of the parameters given the FRFs (emcee)"
+        "--posterior",
+        action="store_true",
+        help="also compute the uncertainty of the parameters from the FRFs: their probability distribution "
+        "(posterior) by random sampling with emcee",
     )
     posterior = parser.scoped_group("posterior", needs="--posterior", active=lambda options: options.posterior)
     setting_options(posterior, PosteriorSettings)
     setting_options(parser, SweepSettings, "engine", default="mujoco")
     output_options(parser, OUTPUT)
     head_options(parser)
-    parser.add_argument("--json", action="store_true", help="print the content of tune.json")
+    parser.add_argument("--json", action="store_true", help="print the results as JSON, as in tune.json")
     parser.former("--measured", "--measured: FRFs are given by --frf FILE, time histories by --record FILE")
     parser.former("--(vary|fit) ", "the parameters to fit are given by --parameters PATH=LOW:HIGH")
     message_options(parser, quiet=True)
@@ -91,9 +94,11 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.studies.tuning.tuning_text import tuning_text
 
     if not options.measurements:
-        raise ConfigurationError("no measurement: add --frf FILE or --record FILE")
+        raise ConfigurationError("the measurement is missing; add --frf FILE or --record FILE")
     if not options.parameters:
-        raise ConfigurationError("no parameter to fit: add --parameters PATH=LOW:HIGH, as damper.viscous=800:4000")
+        raise ConfigurationError(
+            "the parameters to fit are missing; add --parameters PATH=LOW:HIGH, for example damper.viscous=800:4000"
+        )
     car = Car.load(options.car, options.overrides)
     bounds = [parsed_variation("--parameters", text).range() for text in options.parameters]
     parameters = ranges_of(car.vehicle, {entry.path: (entry.low, entry.high) for entry in bounds})

@@ -49,12 +49,18 @@ class _OfMeasurement(argparse.Action):
     def __call__(self, parser: Any, namespace: argparse.Namespace, values: Any, option: str | None = None) -> None:
         latest = getattr(namespace, "latest", None)
         if not latest:
-            raise ConfigurationError(f"{option}: belongs to the --frf or --record before it; place it after one")
+            raise ConfigurationError(
+                f"{option}: must follow the --frf or --record that it belongs to; move it behind this option"
+            )
         for each in latest:
             if self.dest == "stuck" and each.content != "frf":
-                raise ConfigurationError(f"--stuck: belongs to --frf; {each.file} contains time histories")
+                raise ConfigurationError(
+                    f"--stuck: belongs to --frf, but {each.file} follows --record; leave --stuck out"
+                )
             if self.dest in OF_RECORD and each.content != "record":
-                raise ConfigurationError(f"{option}: belongs to --record; set --record {each.file}")
+                raise ConfigurationError(
+                    f"{option}: belongs to --record, but {each.file} follows --frf; give the file with --record"
+                )
             setattr(each, self.dest, values if self.nargs is None else True)
 
 
@@ -68,7 +74,8 @@ def measurement_options(parser: Parser) -> None:
         type=Path,
         action=_Measurement,
         metavar="FILE",
-        help="measured FRFs, or accelerations and plate as time histories, in any format of `inspect`; repeatable",
+        help="file of measured FRFs, or of time histories of accelerations and plate, in any format that "
+        "`inspect` reads. May be repeated",
     )
     files.add_argument(
         "--record",
@@ -76,43 +83,45 @@ def measurement_options(parser: Parser) -> None:
         type=Path,
         action=_Measurement,
         metavar="FILE",
-        help="measured time histories, of a bump or of another input, in any format of `inspect`; repeatable",
+        help="file of measured time histories of a bump or another input, in any format that `inspect` reads. "
+        "May be repeated",
     )
     files.add_argument(
         "--signal",
         action=_OfMeasurement,
         metavar="FILE",
-        help="plate displacement of the files of the preceding --frf or --record, in any format of `inspect`; --map "
-        "plate_fl_displacement=NAME names its channels too; the plate in each file by default",
+        help="file of the plate displacement for the preceding --frf or --record (channels: --map "
+        "plate_fl_displacement=NAME). Default: the plate in each measurement file",
     )
     setting_options(files, ResponseSettings, "stuck", action=_OfMeasurement)
     files.add_argument(
         "--road",
         action=_OfMeasurement,
         metavar="C|FILE|OBSTACLE",
-        help="road that was driven at the preceding --record, as `shaker` takes it: a measured profile, heights over "
-        "time (--speed channel:NAME; may be the file of the record), a class of ISO 8608, or an obstacle; tyres roll",
+        help="road of the preceding --record, in the forms of `shaker`: a measured profile, heights over time "
+        "(with --speed channel:NAME; may be the same file), a class of ISO 8608, or an obstacle. The tyres "
+        "roll",
     )
     files.add_argument(
         "--speed",
         type=speed_value,
         action=_OfMeasurement,
         metavar="KM/H|channel:NAME",
-        help="speed on the road of the preceding --road [km/h]; channel:NAME for a road over time",
+        help="speed on the preceding --road [km/h], or channel:NAME: the speed recorded with a road over time",
     )
-    words = "contact with the road of the preceding --road; patch by default, cams on an obstacle"
+    words = "tyre contact on the preceding --road; default: patch, on an obstacle cams"
     setting_options(files, RoadSettings, "contact", action=_OfMeasurement, help=words)
     setting_options(files, LevelSettings, "levels", "reference", action=_OfMeasurement)
     files.add_argument(
-        "--any-level", action="store_true", help="accept levels and accelerations of the plates beyond a shaker"
+        "--any-level", action="store_true", help="accept plate levels and accelerations beyond a real shaker"
     )
     mapping_options(files)
     record_options(files, "", channel=False)
-    delay_option(files, "; groups without it are fitted")
+    delay_option(files, "; the lag of a group without this option is fitted")
     files.add_argument(
         "--channels",
         metavar="NAME,...",
-        help="fitted channels of the model; by default all in the files",
+        help="channels of the model to fit; default: all in the files",
     )
 
 
@@ -132,9 +141,14 @@ def _road_of(each: argparse.Namespace, choice: Choice) -> Road | None:
                 raise ConfigurationError(f"--{name}: belongs to --road; add --road FILE after --record {each.file}")
         return None
     if each.signal is not None:
-        raise ConfigurationError(f"--road {each.road} and --signal {each.signal}: set only one of them")
+        raise ConfigurationError(
+            f"--road {each.road} and --signal {each.signal} exclude each other; leave one of them out"
+        )
     if each.speed is None:
-        raise ConfigurationError(f"--road {each.road}: needs --speed KM/H, as --speed 80, or --speed channel:NAME")
+        raise ConfigurationError(
+            f"--road {each.road}: the speed is missing; add --speed KM/H, for example --speed 80, or --speed "
+            "channel:NAME"
+        )
     return Road(class_or_profile(each.road), speed=each.speed, contact=each.contact, choice=choice)
 
 

@@ -44,7 +44,10 @@ def core() -> ctypes.CDLL:
     stamp, chosen = digest(), os.environ.get("VEHICLE_CORE")
     library = _loaded(Path(chosen) if chosen else BINARIES / platform_name() / f"core.{_suffix()}", stamp)
     if library is None and chosen:
-        raise MissingPartError(f"VEHICLE_CORE: {chosen} cannot be loaded, or belongs to other sources; build it again")
+        raise MissingPartError(
+            f"environment variable VEHICLE_CORE: {chosen} cannot be loaded, or was built from another version of "
+            "the sources; build it again"
+        )
     if library is None:
         library = _loaded(_compiled(stamp), stamp)
     if library is None:
@@ -96,8 +99,8 @@ def _compiled(stamp: str) -> Path:
     compiler = shlex.split(os.environ.get("CC", "")) or [name for name in COMPILERS if shutil.which(name)][:1]
     if not compiler:
         raise MissingPartError(
-            f"there is no compiled core for {platform_name()} that fits its sources, and no C compiler to make it; "
-            "install gcc or clang, or set CC to the command of one"
+            f"the compiled core for {platform_name()} is missing or outdated, and no C compiler was found to "
+            "build it; install gcc or clang, or set the environment variable CC to the command of a C compiler"
         )
     with tempfile.TemporaryDirectory(dir=kept.parent) as folder:
         sources = Path(folder) / "source"
@@ -109,8 +112,8 @@ def _compiled(stamp: str) -> Path:
         except (OSError, subprocess.CalledProcessError) as error:
             message = getattr(error, "stderr", "") or str(error)
             raise MissingPartError(
-                f"the core cannot be compiled with {' '.join(compiler)}: {message.strip().splitlines()[0]}; set CC to "
-                "the command of another C compiler"
+                f"the core cannot be compiled with {' '.join(compiler)}: {message.strip().splitlines()[0]}; set "
+                "the environment variable CC to the command of another C compiler"
             ) from None
         library.replace(kept)
     return kept

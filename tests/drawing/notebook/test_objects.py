@@ -102,7 +102,7 @@ def test_a_missing_library_is_one_sentence(library, call, run, monkeypatch):
     with pytest.raises(MissingPartError) as caught:
         getattr(run, call)()
     assert str(caught.value) == (
-        f"{call}: needs {library}, which is not installed; pip install 'vehicle-on-shaker[notebook]'"
+        f"{call} needs {library}, which is not installed; install it with: pip install 'vehicle-on-shaker[notebook]'"
     )
 
 
@@ -140,5 +140,5 @@ def test_spectra_and_both_comfort_values(run):
 def test_files_of_a_run(run, tmp_path):
     assert (run.save(tmp_path / "run") / "summary.json").exists()
     assert "<h1>Car on the shaker" in run.report(tmp_path / "run.html").read_text(encoding="utf-8")
-    with pytest.raises(ConfigurationError, match="stores; run the car with engine='mujoco'"):
+    with pytest.raises(ConfigurationError, match="do not store; run the car with engine='mujoco'"):
         run.film(tmp_path / "run.mp4")

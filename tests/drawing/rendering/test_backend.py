@@ -128,7 +128,7 @@ def test_no_ffmpeg_names_both_remedies(tmp_path, monkeypatch, present):
     path = program(tmp_path / "ffmpeg", "no encoders") if present else None
     monkeypatch.setattr("shutil.which", lambda name: path)
     monkeypatch.setattr(backend, "_bundled_ffmpeg", lambda: None)
-    found = f"found {path} without the encoder libx264" if present else "no ffmpeg program was found"
+    found = f"{path} has no encoder libx264" if present else "the program ffmpeg was not found"
     with pytest.raises(MissingPartError) as caught:
         backend.find_ffmpeg()
     assert str(caught.value) == (

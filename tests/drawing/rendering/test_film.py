@@ -97,8 +97,8 @@ def test_the_chosen_exaggeration_makes_motion_visible(run):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"start": 0.3}, "film, start: found 0.3 s, the record goes from 0 to 0.3 s"),
-        ({"start": -1.0}, "film, start: found -1 s, the record goes from 0 to 0.3 s"),
+        ({"start": 0.3}, "film, start: found 0.3 s, must be 0 to 0.3 s, within the record"),
+        ({"start": -1.0}, "film, start: found -1 s, must be 0 to 0.3 s, within the record"),
         ({"duration": 0.0}, "film, duration: found 0 s, must be above 0 and finite"),
         ({"duration": np.nan}, "film, duration: found nan s, must be above 0 and finite"),
         ({"slow": 0.5}, "film, slow motion: found 0.5, must be at least 1"),
@@ -114,7 +114,7 @@ def test_options_out_of_range_are_refused(run, options, message):
 @pytest.mark.parametrize(
     ("size", "message"),
     [
-        ((1281, 720), "film size: found 1281 x 720, both must be even; give 1282 x 720"),
+        ((1281, 720), "film size: found 1281 x 720, both numbers must be even; give 1282 x 720"),
         ((160, 90), "film size: found 160 x 90, at least 320 x 180 can be read"),
     ],
 )

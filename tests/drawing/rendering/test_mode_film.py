@@ -97,12 +97,12 @@ def test_the_nearest_mode_is_taken(modes):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (["--video"], "--video: of which mode? Give its frequency too, as --animate 28"),
-        (["--animate", "28"], "--animate 28: shows a mode as a film; give --video [FILE.mp4] too"),
-        (["--animate", "0", "--video"], "--animate 0: must be a frequency above 0 Hz"),
-        (["--animate=-3", "--video"], "--animate -3: must be a frequency above 0 Hz"),
-        (["--animate", "nan", "--video"], "--animate nan: must be a frequency above 0 Hz"),
-        (["--animate", "28", "--video", "mode.avi"], "--video mode.avi: a film is written as .mp4; set FILE.mp4"),
+        (["--video"], "--video: the mode is missing; give its frequency, for example --animate 28"),
+        (["--animate", "28"], "--animate 28: makes a film only with --video; add --video [FILE.mp4]"),
+        (["--animate", "0", "--video"], "--animate 0: must be above 0 Hz"),
+        (["--animate=-3", "--video"], "--animate -3: must be above 0 Hz"),
+        (["--animate", "nan", "--video"], "--animate nan: must be above 0 Hz"),
+        (["--animate", "28", "--video", "mode.avi"], "--video mode.avi: must end in .mp4; set FILE.mp4"),
     ],
 )
 def test_what_cannot_be_filmed_is_refused(capsys, options, message):

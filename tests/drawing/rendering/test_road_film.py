@@ -104,9 +104,7 @@ def test_the_road_passes_in_the_film(road_run):
     assert any(line.startswith("road passes at 94.14 km/h") for line in driving.overlay.heading)
     assert any(line.startswith("motion and road exaggerated") for line in driving.overlay.heading)
     # What moves the tyre is not the road itself: the record has the height that the tyre takes of it.
-    assert any(
-        line.endswith("heights in numbers: effective, as the tyre takes them") for line in driving.overlay.heading
-    )
+    assert any(line.endswith("heights in numbers: after averaging by the tyre") for line in driving.overlay.heading)
     names = {driving.scene.model.geom(number).name for number in range(driving.scene.model.ngeom)}
     standing = Shot(road_run, layout, take)
     rig = {standing.scene.model.geom(number).name for number in range(standing.scene.model.ngeom)} - names

@@ -61,5 +61,5 @@ def test_channels_off_a_flexible_body_are_rejected(car):
     with pytest.raises(ConfigurationError, match=r"^channel engine_acc_z: must be an acceleration of the body: "):
         of(car, "engine_acc_z")
     rigid = Car.load(overrides=["body.flexible=false"])
-    with pytest.raises(ConfigurationError, match=r"the body is rigid; set body\.flexible = true"):
+    with pytest.raises(ConfigurationError, match=r"the body is rigid, so it has no modes; set body\.flexible = true"):
         of(rigid, "seat_rail_acc_z")

@@ -148,7 +148,7 @@ def test_frequency_response_by_hand(stuck):
 def test_unknown_channel():
     with pytest.raises(ConfigurationError) as caught:
         frequency_response(first_order(quarter_car().system), [1.0], ["roof_acc_z"])
-    assert str(caught.value) == "output 'roof_acc_z': unknown; this model has body_acc_z, wheel_acc_z"
+    assert str(caught.value) == "output 'roof_acc_z': unknown; choose from body_acc_z, wheel_acc_z"
 
 
 def test_groups_of_parts(car):

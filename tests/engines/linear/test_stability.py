@@ -38,7 +38,7 @@ def test_an_unstable_car_is_rejected_with_the_moving_part(engine):
     assert re.match(
         "the car is statically unstable: front wheel fore-aft, sides in phase grows by a factor e in ", message
     )
-    assert "most strained is front.bushings.suspension_mount.stiffness.x (10000)" in message
+    assert "the most loaded is front.bushings.suspension_mount.stiffness.x (10000)" in message
     assert "body.mass (813 kg), body.cog and gravity (20 m/s2)" in message
 
 
@@ -68,7 +68,7 @@ def test_values_that_are_no_numbers_do_not_leave_a_run(car):
         values[400] = bad
         broken = dict(recording.channels) | {"seat_rail_acc_z": values}
         with pytest.raises(
-            SimulationError, match=r"channel seat_rail_acc_z is \S+ m/s2 at t = 0\.4000 s: the car does"
+            SimulationError, match=r"channel seat_rail_acc_z is \S+ m/s2 at t = 0\.4000 s: this is impossible"
         ):
             require_finite(type(recording)(**{**fields(recording), "channels": broken}))
 

@@ -18,19 +18,19 @@ MOUNT = "bushings.suspension_mount.stiffness=[3e6, 3e6, {}]"
 REFUSED = {
     "a stiff mount": (
         [MOUNT.format(3e7)],
-        r"at which the ringing of damper_top_fr_acc_z after the damper breaks away is \+7\d % off, "
+        r"at which the ringing of damper_top_fr_acc_z after the damper breaks away is \+7\d % wrong, "
         r"must be at most 10 % \(\d+ Hz: \w+ moves, held by "
         r"front\.bushings\.suspension_mount\.stiffness\.z \(3e\+07\)\); "
-        r"set solver\.timestep=0\.0005, or correct that parameter",
+        r"set solver\.timestep=0\.0005, or correct this parameter",
     ),
     "a stiffer one": (
         [MOUNT.format(1e9)],
-        r".* is \+5\d\d % off, .*stiffness\.z \(1e\+09\)\); set solver\.timestep=0\.00025",
+        r".* is \+5\d\d % wrong, .*stiffness\.z \(1e\+09\)\); set solver\.timestep=0\.00025",
     ),
     # The tangent at rest is 40 N over a micrometre.
     "friction within a micrometre": (
         [f"suspension_mount.friction_{key}=[0, 0, {value}]" for key, value in (("force", 40), ("stroke", 1e-6))],
-        r".* is \+9\d % off, .*held by front\.bushings\.suspension_mount\.friction_stroke\.z \(1e-06\)\); set ",
+        r".* is \+9\d % wrong, .*held by front\.bushings\.suspension_mount\.friction_stroke\.z \(1e-06\)\); set ",
     ),
     "a torque arm of steel": (
         ["bushings.torque_arm_engine.stiffness=[1e8, 1.3e5, 6.5e5]"],
@@ -40,7 +40,7 @@ REFUSED = {
     # 3.6 kg on 5e6 N/m: w h = 1.18, and 2 asin(w h/2)/(w h) is 1.072.
     "a stop of steel": (
         ["damper.stop.displacement=[-0.03, 0.0, 0.02]", "damper.stop.force=[0.0, 0.0, 1e5]"],
-        r"at which a vibration on a stiffer segment of a table is 7 % high \(188 Hz: \w+ moves, held by "
+        r"at which the frequency on a stiffer segment of a table is 7 % too high \(188 Hz: \w+ moves, held by "
         r"stop of damper 1, up to 5e\+06 N/m stiffer than at rest\); set solver\.timestep=0\.0005,",
     ),
     "a step of 2 ms": (
@@ -88,7 +88,7 @@ def test_nobody_is_told_to_change_a_step_that_he_has_not_set(high_piece, tmp_pat
     car = Car.load(None, [MOUNT.format(3e7)])
     run = car.run(high_piece)
     assert run.recording.statistics.timestep == 0.0005
-    assert "time step 0.0005 s: that of the vehicle file, 0.001 s, is too long for this car" in (
+    assert "the time step is 0.0005 s, because the 0.001 s of the vehicle file are too long for this car" in (
         run.recording.statistics.notices
     )
     assert car.with_(["damper.viscous=1500"]).stepped().vehicle.solver.timestep == 0.0005
@@ -106,15 +106,15 @@ def test_the_part_that_makes_every_step_too_long_is_named():
     with pytest.raises(ConfigurationError) as caught:
         car.stepped()
     assert re.match(
-        r"no time step from 0\.001 s down to 1\.6e-05 s suits this car: .* \(\d+ Hz: \w+ moves, held by "
-        r"front\.damper\.stop\); correct that parameter",
+        r"no time step from 0\.001 s down to 1\.6e-05 s is short enough for this car: .* \(\d+ Hz: \w+ moves, held by "
+        r"front\.damper\.stop\); correct this parameter",
         str(caught.value),
     ), str(caught.value)
     assert "solver.timestep" not in str(caught.value)
 
 
 def test_an_output_that_friction_does_not_move_is_not_compared(tmp_path):
-    """A car without dampers: 0/0 was "+nan % off" at every step."""
+    """A car without dampers: 0/0 was "+nan % wrong" at every step."""
     overrides = ["hardpoints.seat_rail=[2.1, 0.0, 0.9]", "solver.timestep=0.0005"]
     car = rolling_car(tmp_path, 15.0, gravity=9.81, overrides=overrides)
     require_accurate_step(car.model, car.matrices)

@@ -101,7 +101,7 @@ def test_it_says_what_it_is(car, high_piece):
     assert (statistics.engine, statistics.energies, statistics.warnings) == ("reduced", None, ())
     assert statistics.steps * statistics.timestep == pytest.approx(4.0)
     assert statistics.within_validity
-    with pytest.raises(ConfigurationError, match="engine: found 'adams', allowed are mujoco, reduced, auto"):
+    with pytest.raises(ConfigurationError, match="engine: found 'adams', must be one of mujoco, reduced, auto"):
         car.run(high_piece, engine="adams")
 
 

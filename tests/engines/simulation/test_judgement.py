@@ -19,9 +19,11 @@ def balance(residual, work=10.0):
 def test_limits_of_the_residual():
     assert judge_energy(balance(9e-3), 1000.0) == ()
     (warning,) = judge_energy(balance(2e-2), 1000.0)
-    assert warning.startswith("energy residual 0.02: of 10 J put in by the plates 0.2 J are unaccounted for")
+    assert warning.startswith("energy balance: 0.2 J of 10 J put in by the plates are missing (residual 0.02)")
     with pytest.raises(
-        SimulationError, match=r"^energy residual 0\.06: .*, allowed are 0\.05: the integration does not"
+        SimulationError,
+        match=r"^energy balance: .*residual 0\.06\), must be at most 0\.05: "
+        r"the time steps are too long",
     ):
         judge_energy(balance(6e-2), 1000.0)
     # A still plate, or one that does next to nothing, has no balance to judge.
@@ -29,10 +31,10 @@ def test_limits_of_the_residual():
     # Plates that end lower than they began: the work of lifting comes back.
     assert judge_energy(Energies(work_in=0.02, dissipated=0.8, stored=-0.781), 1000.0) == ()
     (warning,) = judge_energy(Energies(work_in=0.02, dissipated=0.8, stored=-0.76), 1000.0)
-    assert warning.startswith("energy residual 0.025: of 0.8 J dissipated 0.02 J are unaccounted for")
+    assert warning.startswith("energy balance: 0.02 J of 0.8 J dissipated are missing (residual 0.025)")
     # Powers of a few samples a period cannot be summed.
     (coarse,) = judge_energy(balance(0.2), 50.0)
-    assert "summed from samples at 50 Hz" in coarse
+    assert "50 Hz are too few samples a second" in coarse
 
 
 def test_item_52_a_friction_line_too_steep_for_the_vehicle_file(car, high_piece):

@@ -128,5 +128,5 @@ def test_a_force_beyond_all_forces_is_refused_and_the_command_names_the_inputs(e
     words = [word for text in FORCES for word in ("--set", text)]
     assert fmu_command(["sedan", *words, "--speed", "80", "--output", str(tmp_path / "car.fmu")]) == 0
     printed = capsys.readouterr().out
-    assert "note: torque_idle: inputs; the FMU has the means of these forces, not their harmonics or files" in printed
-    assert "note: imbalance_fr_x, imbalance_fr_z, imbalance_fl_x, imbalance_fl_z: not in the FMU" in printed
+    assert "note: torque_idle: is an input; the FMU keeps its mean value only, without harmonics and files" in printed
+    assert "note: imbalance_fr_x, imbalance_fr_z, imbalance_fl_x, imbalance_fl_z: left out of the FMU" in printed

@@ -58,7 +58,7 @@ def test_command(tmp_path, capsys):
     assert main(arguments) == 0
     text = capsys.readouterr().out
     assert "FMI 3.0 co-simulation, 8 inputs, 4 parameters, 79 outputs" in text and "aarch64-darwin" in text
-    assert "step 0.2 ms; inputs belong to the end of a communication step" in text
+    assert "internal step 0.2 ms; set displacement and velocity of each plate" in text
     assert main(arguments) == 2 and "exists" in capsys.readouterr().err
     assert main([*arguments, "--force", "--quiet"]) == 0 and capsys.readouterr().out == ""
 
@@ -70,9 +70,9 @@ def test_command(tmp_path, capsys):
         (["--step", "nan"], "--step nan: must be 0.001 to 0.5 ms"),
         (["--step", "-0.1"], "--step -0.1: must be 0.001 to 0.5 ms"),
         (["--speed", "-5"], "--speed -5: must be 0 to 300 km/h"),
-        (["--speed", "80"], "focus has other ground contacts than wheels"),
+        (["--speed", "80"], "focus also stands on the ground without wheels"),
         (["--fmi", "1"], "--fmi '1': must be one of "),
-        (["--channels", "seat"], "--channels: no channel 'seat'"),
+        (["--channels", "seat"], "--channels: the car has no channel 'seat'"),
         (["--output", "car.zip"], "car.zip"),
     ],
 )
@@ -85,12 +85,12 @@ def test_refusals(arguments, message, capsys, tmp_path, monkeypatch):
 
 def test_refusals_in_python(car: Car, tmp_path: Path):
     for options, message in (
-        ({"fmi": "1"}, "fmi: found '1', allowed are 2, 3"),
+        ({"fmi": "1"}, "fmi: found '1', must be one of 2, 3"),
         ({"step": 1e-2}, "step: found 0.01 s, must be 1e-06 to 0.0005 s"),
         ({"channels": ["nothing"]}, "nothing"),
-        ({"channels": ["plate_fr_displacement"]}, "all of them are plate displacements"),
+        ({"channels": ["plate_fr_displacement"]}, "contains only plate displacements"),
     ):
         with pytest.raises(ConfigurationError, match=message):
             write_fmu(car, tmp_path / "car.fmu", **options)
-    with pytest.raises(ConfigurationError, match=r"an FMU has the ending \.fmu"):
+    with pytest.raises(ConfigurationError, match=r"the name of an FMU must end in \.fmu"):
         write_fmu(car, tmp_path / "car.zip")

@@ -67,12 +67,14 @@ def test_item_27_hardpoints_that_the_body_does_not_have_are_refused(other):
     with pytest.raises(DataError) as caught:
         assemble(vehicle, published)
     message = str(caught.value)
-    assert "no node at strut_top_fr [0.889, 0.578" in message and "'strut_top_fr'" in message
+    assert "no node at the attachment strut_top_fr of the" in message and "'strut_top_fr'" in message
     assert "move the hardpoint, use a body model with a node there, or compute the body from the" in message
 
 
 def test_item_27_a_missing_interface_node_is_refused(other):
     vehicle, body = other
     places = vehicle.composition.attachments() | {"brace": (0.8, 0.44, 1.4)}
-    with pytest.raises(DataError, match=r"no node at brace \[0\.8, 0\.44, 1\.4\] m, an attachment of the car"):
+    with pytest.raises(
+        DataError, match=r"no node at the attachment brace of the car, \[0\.8, 0\.44, 1\.4\] m; the nearest"
+    ):
         attached_nodes(body, places)

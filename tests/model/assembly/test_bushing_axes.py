@@ -130,8 +130,8 @@ def test_both_sides_are_mirrored_and_stand(tmp_path):
 
 
 @pytest.mark.parametrize(("axes", "message"), [
-    ('["engine_cog", "engine_kog"]', "connection.link.axes: found 'engine_kog', unknown point; the nearest is"),
-    ('["engine_cog"]', "connection.link.axes: found ['engine_cog']; must be two points"),
+    ('["engine_cog", "engine_kog"]', "connection.link.axes: unknown point 'engine_kog'; the most similar name is"),
+    ('["engine_cog"]', "connection.link.axes: found ['engine_cog'], must be two points of a connection"),
     ("3", "connection.link.axes: found 3, must be a list"),
 ])  # fmt: skip
 def test_bad_axes_are_refused(tmp_path, axes, message):

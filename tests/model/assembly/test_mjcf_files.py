@@ -62,7 +62,10 @@ def test_plain_mujoco_refuses_the_model_and_names_the_reason(files, tmp_path):
     lines = files["car.xml"].decode().splitlines()
     assert "force_laws" in lines[line - 1]
     before = " ".join(" ".join(lines[:line]).split())
-    assert "MuJoCo alone would hold its parts by soft constraints, and their motion would be none of the car" in before
+    assert (
+        "MuJoCo alone cannot simulate this car, because its force laws are in the program that wrote the "
+        "file; without them"
+    ) in before
 
 
 def test_nothing_moves_in_the_scene(files, tmp_path):

@@ -115,7 +115,7 @@ def test_free_frame_modes_are_orthogonal_to_rigid_motion_and_mass_normalised():
     frequencies, shapes = free_free_modes(condensed, masses, points, 6)
     held, _ = condense_rotations(frame_stiffness(points[:3], [(0, 1, SECTION), (1, 2, SECTION), (2, 0, SECTION)]))
     loose = np.pad(held, (0, 3))  # nothing holds the last node
-    with pytest.raises(DataError, match="body frame: a part of it moves without stiffness"):
+    with pytest.raises(DataError, match="body frame: a part can move with no or almost no stiffness"):
         free_free_modes(loose, masses, points, 6)
     flat = shapes.reshape(6, -1)
     weight = np.repeat(masses, 3)
@@ -136,7 +136,7 @@ def test_free_frame_modes_are_orthogonal_to_rigid_motion_and_mass_normalised():
 
 
 def test_beam_of_no_length_and_loose_node_are_refused():
-    with pytest.raises(ConfigurationError, match="its ends must differ"):
+    with pytest.raises(ConfigurationError, match=r"both ends are at \[np\.float64\(1\.0\)"):
         beam_stiffness([1.0, 0.0, 0.0], [1.0, 0.0, 0.0], SECTION)
     strut = BeamSection(axial=1.0e6, torsion=0.0, bending_y=0.0, bending_z=0.0)
     with pytest.raises(ConfigurationError, match="a node can rotate freely"):

@@ -48,11 +48,15 @@ def test_interface_and_output_points_are_those_of_the_vehicle_alone():
 
 
 BAD = {
-    "misspelt key": ("freedom = 0.15", "fredom = 0.15", "nodes.arm_front.fredom: unknown parameter; the nearest known"),
+    "misspelt key": (
+        "freedom = 0.15",
+        "fredom = 0.15",
+        "nodes.arm_front.fredom: unknown parameter; the most similar known name",
+    ),
     "a mass missing": (
         "mass = 4.0  # [kg] assumed: A-arm bracket of the subframe\n",
         "",
-        "nodes.arm_front.mass: missing; every parameter must be given [kg]",
+        "nodes.arm_front.mass: missing; this parameter must be given [kg]",
     ),
     "negative mass": ("mass = 4.0", "mass = -4.0", "nodes.arm_front.mass: found -4.0 kg, must be greater than 0.0"),
     "text for a number": ("mass = 4.0", 'mass = "four"', "nodes.arm_front.mass: found 'four', must be a number"),
@@ -66,23 +70,23 @@ BAD = {
     "no such hardpoint": (
         "[nodes.strut_top]",
         "[nodes.strut_tip]",
-        "nodes.strut_tip: the vehicle has no hardpoint strut_tip; the nearest is strut_top",
+        "nodes.strut_tip: the vehicle has no hardpoint strut_tip; the most similar name is strut_top",
     ),
     "mirror of nothing": (
         'mirror = "seat_rail"',
         'mirror = "seat_rial"',
-        "nodes.seat_rail_right: the vehicle has no hardpoint seat_rial; the nearest is seat_rail",
+        "nodes.seat_rail_right: the vehicle has no hardpoint seat_rial; the most similar name is seat_rail",
     ),
     "name made twice": ("[nodes.sill_rear]", "[nodes.seat_rail]", "Cannot declare ('nodes', 'seat_rail') twice"),
     "node made twice": (
         "[nodes.sill_rear]",
         "[nodes.cowl_right]\nplace = [1.0, 0.0, 1.0]\nmass = 1.0\nfreedom = 1.0\n[nodes.sill_rear]",
-        "nodes: cowl_right defined by two entries; rename one entry",
+        "nodes: cowl_right defined twice; rename one entry",
     ),
     "member to nowhere": (
         '"rail_front-arm_front"',
         '"rail_front-arm_font"',
-        "members.front_rails.between: 'rail_front-arm_font' has no node 'arm_font'; the nearest is arm_front",
+        "members.front_rails.between: 'rail_front-arm_font' has no node 'arm_font'; the most similar name is arm_front",
     ),
     "member to itself": (
         '"rail_front-arm_front"',
@@ -94,14 +98,14 @@ BAD = {
     "half a section": (
         "wall = 0.0018  # [m] assumed: nominal section\n",
         "",
-        "members.front_rails.between: found a section with width; set width and wall of a tube, or the area of a",
+        ("members.front_rails.between: the section has width; must have width and wall (a tube) or area (a strut)"),
     ),
-    "tube and strut": ("width = 0.055", "area = 1e-5\nwidth = 0.055", "a section with width, wall, area; set"),
+    "tube and strut": ("width = 0.055", "area = 1e-5\nwidth = 0.055", "the section has width, wall, area; must have"),
     "factor of zero": ("factor = 1.0962", "factor = 0.0", "members.front_rails.factor: found 0.0 -, must be greater"),
     "a node without a tube": (
         '"seat-seat_rail"',
         '"seat_rail-seat_rail_right"',
-        "nodes: no tube ends at seat, which could turn freely; add members with width and wall",
+        "nodes: seat could turn freely, because no tube ends there; add members with width and wall",
     ),
     "nodes in one place": (
         "[0.15, 0.52, 0.82]",

@@ -64,8 +64,8 @@ CASES = {
         "the sum of the two smaller must be at least the largest",
     ),
     "residual one-sided": toml(text(RESIDUAL + ", 0.0", RESIDUAL + ", 1e-08"), "is not symmetric"),
-    "residual negative": toml(text(RESIDUAL, "residual_flexibility_m_per_n = [[-1e-07"), "must not be negative"),
-    "residual in mm": toml(text(RESIDUAL, "residual_flexibility_m_per_n = [[1e-03"), "probably mm/N"),
+    "residual negative": toml(text(RESIDUAL, "residual_flexibility_m_per_n = [[-1e-07"), "must be at least 0 (below"),
+    "residual in mm": toml(text(RESIDUAL, "residual_flexibility_m_per_n = [[1e-03"), "probably in mm/N, or the node"),
     "residual of words": toml(text(RESIDUAL, 'residual_flexibility_m_per_n = [["a"'), "must be numbers"),
     "rotation rows": toml(line("rotation", "rotation_per_m_sqrt_kg = [[0.0, 0.0, 0.0]]"), "4 rows of three finite"),
     "rotation NaN": toml(text("[[0.01, 0.01", "[[nan, 0.01"), "4 rows of three finite"),
@@ -79,18 +79,18 @@ CASES = {
             "mass_kg = 275.0\ncog_m = [1.0, 0.0, 0.8]\ninertia_kg_m2 = [[90, 0, 0], [0, 300, 0], [0, 0, 300]]\nedges",
         ),
         SHOW,
-        "found both; specify mass, CoG and inertia, or the mass of every node",
+        "found both; give mass, CoG and inertia, or the mass of every node.",
     ),
     "rigid mode": toml(shapes(heave), "mode 1 (8.50209 Hz) is a rigid motion (share 100.0000%"),
     "twin modes": toml(shapes(twin), "have the same shape (MAC 1.0000)"),
     "still mode": toml(shapes(still), "mode 3 is zero at all nodes"),
     "shapes of mm and tonnes": toml(shapes(larger), "from mm and tonnes: divide by sqrt(1000)"),
-    "shape a number": toml(scalar("shape_per_sqrt_kg"), "mode 1, shape_per_sqrt_kg: 0 rows"),
+    "shape a number": toml(scalar("shape_per_sqrt_kg"), "mode 1, shape_per_sqrt_kg: found 0 rows"),
     "edges a number": toml(scalar("edges"), "edges: 5 is not a pair of node names"),
     "edge of lists": toml(
         text('["corner_0", "corner_1"]', '["corner_0", ["corner_1"]]'), "is not a pair of node names"
     ),
-    "TOML cut off": toml(cut(0.6), "no valid TOML, perhaps cut off"),
+    "TOML cut off": toml(cut(0.6), "not valid TOML, perhaps cut off: Unclosed"),
     "TOML of format 7": toml(text("superelement 2", "superelement 7"), "format is 'modal superelement 7'"),
     "npz cut off": npz(cut(0.7), "not a valid npz, perhaps truncated"),
     "npz damaged": npz(
@@ -98,10 +98,10 @@ CASES = {
         "not a valid npz",
     ),
     "npz renamed array": npz(array(frequency_hz=None), "'frequency_hz' is mi"),
-    "npz unknown array": npz(array(shape=np.zeros(3)), "unknown array 'shape'; the nearest valid one is"),
+    "npz unknown array": npz(array(shape=np.zeros(3)), "unknown array 'shape'; the most similar known name is"),
     "npz of objects": npz(array(nodes=lambda names: names.astype(object)), "Object arrays cannot be loaded"),
     "npz shape": npz(
-        array(shape_per_sqrt_kg=lambda table: table[:, :-1]), "but 8 nodes and 4 frequencies need (4, 8, 3)"
+        array(shape_per_sqrt_kg=lambda table: table[:, :-1]), "has the shape (4, 7, 3), must be (4, 8, 3) for 8 nodes"
     ),
     "npz edges": npz(array(edges=np.arange(3)), "array 'edges': shape (3,)"),
     "npz names": npz(array(nodes=lambda names: names.reshape(2, 4)), "array 'nodes': shape (2, 4)"),
@@ -109,9 +109,9 @@ CASES = {
     "npz residuals": npz(array(residual_nodes=np.array(["corner_1", "corner_2"])), "1 arrays for 2 nodes"),
     "npz of format 7": npz(array(head=lambda head: str(head).replace("ment 2", "ment 7")), "'modal superelement 7'"),
     "npz without head": npz(array(head="nothing"), "not a valid npz"),
-    "npz of text": npz(holds(b"node,x,y,z\n1,2,3\n"), "no valid TOML"),
+    "npz of text": npz(holds(b"node,x,y,z\n1,2,3\n"), "not valid TOML, perhaps cut"),
     "npz of a picture": npz(holds(b"\x89PNG\r\n\x1a\n"), "cannot be read as UTF-8 text"),
-    "no model": npz(gone, "no such file"),
+    "no model": npz(gone, "the file does not exist. Give"),
     "frd cut off": Case("modes.frd", cut(0.9), ("import", "FILE"), "is not a line of a result file"),
     "frd without its end": Case("modes.frd", text(" 9999\n", ""), ("import", "FILE"), "truncated; the job did not end"),
     "frd without modes": Case("modes.frd", cut(0.45), ("import", "FILE"), "no modes; write *NODE FILE with U"),
@@ -123,20 +123,20 @@ CASES = {
         "modes.frd", line(" -1         9-1", None), ("import", "FILE"), "node 9 of the modes has no position"
     ),
     "frd of a static step": Case("modes.frd", text("MODAL", "STATI"), ("import", "FILE"), "no modes; write *NODE FILE"),
-    "no .mas": Case("job.mas", gone, JOB, "(mas is missing)"),
-    "no .dof": Case("job.dof", gone, JOB, "(dof is missing)"),
+    "no .mas": Case("job.mas", gone, JOB, " mas is missing. CalculiX"),
+    "no .dof": Case("job.dof", gone, JOB, " dof is missing. CalculiX"),
     ".sti empty": Case("job.sti", holds(b""), JOB, "0 rows"),
     ".sti NaN": Case("job.sti", line("1 1 ", "1 1 nan"), JOB, "row 1 contains a number that is not finite"),
     ".sti cut off": Case(
         "job.sti", cut(0.501), JOB, "job.sti: stiffness: degree of freedom 1 of node 51 has no stiffness"
     ),
-    ".mas one number": Case("job.mas", holds(b"1\n2\n"), JOB, "2 rows of 1 numbers, must be 3"),
+    ".mas one number": Case("job.mas", holds(b"1\n2\n"), JOB, "found 1 numbers in each of 2 rows"),
     ".sti half rows": Case("job.sti", line("1 1 ", "1.5 1 3.0"), JOB, "found 1.5, must be a whole number"),
     ".dof direction 7": Case("job.dof", line("1.6", "1.7"), JOB, "directions 1 to 7, must be 1 to 6"),
-    ".dof of another job": Case("job.dof", holds(b"1.1\n1.2\n1.3\n"), JOB, "The files are inconsistent"),
+    ".dof of another job": Case("job.dof", holds(b"1.1\n1.2\n1.3\n"), JOB, "the number of degrees of freedom."),
     ".dof twice": Case("job.dof", line("1.6", "1.5"), JOB, "degree of freedom 5 of node 1 occurs twice"),
-    ".dof of words": Case("job.dof", line("1.1", "one.x"), JOB, "not rows of numbers"),
-    ".inp without nodes": Case("job.inp", holds(b"*HEADING\n"), JOB, "job.inp: no nodes"),
+    ".dof of words": Case("job.dof", line("1.1", "one.x"), JOB, "cannot be read as rows of"),
+    ".inp without nodes": Case("job.inp", holds(b"*HEADING\n"), JOB, "job.inp: contains no nodes."),
     ".inp broken": Case("job.inp", line("1,0.0", "1,0.0,west,0.4"), JOB, "is not a line of *node"),
     "market cut off": Case("K.mtx", cut(0.5), MARKET, "the matrix cannot be read"),
     "market head": Case("K.mtx", text("coordinate", "spiral"), MARKET, "the matrix cannot be read"),
@@ -149,22 +149,24 @@ CASES = {
     "market wrong size": Case(
         "M.mtx", lambda p: scipy.io.mmwrite(p, scipy.sparse.eye(7)), MARKET, "7 rows and 7 columns"
     ),
-    "abaqus cut off": Case("K.txt", cut(0.502), ABAQUS, "not rows of numbers, or truncated"),
-    "abaqus direction": Case("K.txt", line("1,1,1,1", "1,0,1,1,5.0"), ABAQUS, "K.txt: directions 0 to 6"),
+    "abaqus cut off": Case("K.txt", cut(0.502), ABAQUS, "cannot be read as rows of numbers, or"),
+    "abaqus direction": Case("K.txt", line("1,1,1,1", "1,0,1,1,5.0"), ABAQUS, "K.txt: found directions 0 to"),
     "mat truncated": Case("both.mat", cut(0.4), ("import", "both.mat:K", *MATLAB), "both.mat: "),
     "mat of text": Case("both.mat", nothing, ("import", "both.mat:text", *MATLAB), "must be a matrix of real numbers"),
     "mat complex": Case(
         "both.mat", nothing, ("import", "both.mat:complex", *MATLAB), "must be a matrix of real numbers"
     ),
-    "mat unknown": Case("both.mat", nothing, ("import", "both.mat:KK", *MATLAB), "no variable 'KK'; the file has"),
-    "mat no choice": Case("both.mat", nothing, ("import", "both.mat", *MATLAB), "choose one as both.mat:NAME"),
+    "mat unknown": Case("both.mat", nothing, ("import", "both.mat:KK", *MATLAB), "no variable 'KK'; choose from K, M"),
+    "mat no choice": Case("both.mat", nothing, ("import", "both.mat", *MATLAB), "choose one of them with"),
     "nodes of two numbers": Case("nodes.csv", line("1,", "1,0.0,0.4"), MARKET, "is not a line of *node"),
     "nodes NaN": Case("nodes.csv", line("1,", "1,nan,0.0,0.4"), MARKET, "a coordinate is not finite"),
     "node at two places": Case("nodes.csv", line("1,", "11,9.0,0.0,0.4"), MARKET, "node 11 is also at [9.0, 0.0, 0.4]"),
-    "node missing": Case("nodes.csv", line("1,", None), MARKET, "node 1 of the matrices has no position"),
-    "no nodes given": Case("K.mtx", nothing, MARKET[:4], "set --nodes too", 2),
-    "no dofs given": Case("K.mtx", nothing, (*MARKET[:4], *MARKET[6:]), "needs --dofs", 2),
-    "no mass given": Case("K.mtx", nothing, ("import", "K.mtx"), "needs --mass, --nodes and --dofs", 2),
+    "node missing": Case("nodes.csv", line("1,", None), MARKET, "nodes of the matrices have no position in the"),
+    "no nodes given": Case("K.mtx", nothing, MARKET[:4], "set --nodes FILE too", 2),
+    "no dofs given": Case("K.mtx", nothing, (*MARKET[:4], *MARKET[6:]), "freedom are missing; give", 2),
+    "no mass given": Case(
+        "K.mtx", nothing, ("import", "K.mtx"), "is a stiffness matrix; give --mass, --dofs and --nodes", 2
+    ),
     "map of three": Case(
         "map.csv", text("fr,1", "fr,1,2"), (*UFF, "--point-nodes", "map.csv"), "is not a line point,node"
     ),
@@ -172,7 +174,7 @@ CASES = {
         "map.csv", text("strut", "nose"), (*UFF, "--point-nodes", "map.csv"), "the car has no point 'nose_top_fr'"
     ),
     "map to no node": Case(
-        "map.csv", text("fr,1", "fr,999"), (*UFF, "--point-nodes", "map.csv"), "no node '999' for strut_top_fr"
+        "map.csv", text("fr,1", "fr,999"), (*UFF, "--point-nodes", "map.csv"), "no node '999', which is chosen for"
     ),
     "map twice": Case(
         "map.csv",
@@ -181,14 +183,16 @@ CASES = {
         "point 'seat' occurs twice",
     ),
     "no map": Case("map.csv", gone, (*UFF, "--point-nodes", "map.csv"), "map.csv: cannot be read"),
-    "uff without nodes": Case("modes.uff", modes(with_positions=False), UFF, "20 of them without a position"),
-    "uff without modal mass": Case("modes.uff", modes(modal_mass=0.0), UFF, "no modal mass, so the shape has no scale"),
+    "uff without nodes": Case("modes.uff", modes(with_positions=False), UFF, "20 of them have no position. Export"),
+    "uff without modal mass": Case(
+        "modes.uff", modes(modal_mass=0.0), UFF, "the modal mass is missing, so the shape has no"
+    ),
     "uff without modes": Case("modes.uff", modes(count=0), UFF, "modes.uff"),
     "uff in radians": Case("modes.uff", modes(speed=2.0 * np.pi), (*UFF, "--up-to", "300"), "probably rad/s"),
     "uff in millimetres": Case("modes.uff", modes(modal_mass=1e-6), UFF, "Use shapes with modal masses of 1 kg"),
     "uff cut off": Case("modes.uff", cut(0.7), UFF, "modes.uff"),
     "uff without points": Case(
-        "modes.uff", modes(points=POINTS[5:]), UFF, "points of the car have no node within 1 mm"
+        "modes.uff", modes(points=POINTS[5:]), UFF, "points of the car have no node of the body within"
     ),
     "no file": Case("modes.uff", gone, UFF, "modes.uff", 2),
     "up to nan": option("--up-to", "nan", says="--up-to nan: must be a frequency above 0 Hz"),
@@ -201,10 +205,10 @@ CASES = {
     "modal mass": option("--modal-mass", "0", says="--modal-mass 0: must be a mass above 0 kg"),
     "axes mirrored": option("--axes", "x,y,-z", says="three different, right-handed source axes"),
     "axes of words": option("--axes", "forward", says="three different, right-handed source axes"),
-    "origin of two": option("--origin", "1,2", says="must be three numbers in metres"),
-    "origin nan": option("--origin", "1,nan,0", says="must be three numbers in metres"),
+    "origin of two": option("--origin", "1,2", says="must be three numbers [m]"),
+    "origin nan": option("--origin", "1,nan,0", says="must be three numbers [m]"),
     "unit": option("--length-unit", "furlong", says="--length-unit 'furlong': must be one of "),
-    "unit of a universal file": option("--length-unit", "mm", says="a universal file states its own units"),
+    "unit of a universal file": option("--length-unit", "mm", says="a universal file states its units in dataset"),
     "matrices in mm": Case("K.mtx", nothing, (*MARKET, "--length-unit", "mm"), "Set --length-unit m."),
     "matrices in t": Case("K.mtx", nothing, (*MARKET, "--mass-unit", "t"), 'Set --mass-unit "kg".'),
     "job in g": Case(
@@ -214,12 +218,12 @@ CASES = {
     "frd in t": Case("modes.frd", nothing, ("import", "FILE", "--mass-unit", "t"), 'Set --mass-unit "kg".'),
     "method of modes": option("--method", "rubin", says="--method: belongs to stiffness and mass"),
     "modal mass of matrices": Case("K.mtx", nothing, (*MARKET, "--modal-mass", "1"), "--modal-mass: belongs to", 2),
-    "nodes of a job": Case("job.sti", nothing, (*JOB, "--nodes", "nodes.csv"), "--nodes: belongs to files", 2),
-    "nodes of modes": option("--nodes", "nodes.csv", says="--nodes: belongs to files of stiffness and mass"),
+    "nodes of a job": Case("job.sti", nothing, (*JOB, "--nodes", "nodes.csv"), "--nodes: belongs to stiffness", 2),
+    "nodes of modes": option("--nodes", "nodes.csv", says="--nodes: belongs to stiffness and mass in separate"),
     "attachment modes": option("--attachment-modes", "200", says="belongs to --method rubin or craig-bampton"),
-    "output as text": option("--output", "body.txt", says="a body model is written as .toml or .npz"),
+    "output as text": option("--output", "body.txt", says="must end in .toml or .npz"),
     "output exists": option("--output", "box.toml", says="exists; give --force to replace it, or another name"),
-    "output in a file": option("--output", "map.csv/body.toml", says="map.csv is a file, no folder"),
+    "output in a file": option("--output", "map.csv/body.toml", says="map.csv is a file, not a folder"),
 }
 REFUSED = {"run.op2": "Nastran OP2", "run.RST": "ANSYS results", "file.full": "HBMAT,k", "a.odb": "*MATRIX OUTPUT",
            "b.mnf": "Adams modal neutral file"}  # fmt: skip
@@ -268,4 +272,4 @@ def test_good_matrices_get_as_far_as_the_points_of_the_car(good, tmp_path, monke
     """The nodes of the box do not match the points of the car, so the import ends there."""
     monkeypatch.chdir(good)
     assert command.main([*arguments, "--output", str(tmp_path / "made.toml")]) == 3
-    assert "points of the car have no node within 1 mm" in capsys.readouterr().err
+    assert "points of the car have no node of the body within" in capsys.readouterr().err

@@ -164,7 +164,9 @@ def test_a_rigid_body_takes_its_attachments_from_either_file():
     for engine in ("mujoco", "reduced"):
         assert rms(built, engine) == rms(imported, engine)
         assert rms(built, engine) != rms(Car.load(None, [*RIGID, "body.attachment_flexibility=false"]), engine)
-    with pytest.raises(ConfigurationError, match=r"no file 'nothing\.toml' .*, or set body\.flexible = false and "):
+    with pytest.raises(
+        ConfigurationError, match=r"the file 'nothing\.toml' is neither in the folder of the vehicle file nor"
+    ):
         _ = Car.load(None, [*RIGID, "body.superelement=nothing.toml"]).model
 
 
@@ -186,7 +188,7 @@ def test_an_imported_body_says_how_far_its_nodes_may_be(tmp_path):
     changes = ["body.superelement=mine.toml", "hardpoints.strut_top.z=1.234"]
     car = Car.load(tmp_path / "car.toml", changes)
     assert rms(car, "mujoco") == pytest.approx(rms(Car.load(None, changes[1:]), "mujoco"), rel=1e-3)
-    for bad, message in (("0.0", "hardpoint_tolerance: found 0 m, must be above 0"), ("[1]", "one number")):
+    for bad, message in (("0.0", "hardpoint_tolerance: found 0 m, must be above 0"), ("[1]", r"single number\.")):
         (tmp_path / "mine.toml").write_text(text.replace("tolerance_m = 0.001", f"tolerance_m = {bad}"))
         with pytest.raises(DataError, match=message):
             _ = Car.load(tmp_path / "car.toml", changes).trimmed_body

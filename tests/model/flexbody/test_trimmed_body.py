@@ -149,7 +149,7 @@ def test_the_stored_factors_are_the_minimum_of_the_fit(frame):
 
 def test_a_fit_that_misses_says_so(frame):
     start = dict.fromkeys(frame.design.factors, 0.031)
-    with pytest.raises(ConfigurationError, match="first, last and torsion frequency are"):
+    with pytest.raises(ConfigurationError, match="first, last and torsion frequency differ by"):
         fit_factors(frame, start, weights=())
 
 
@@ -170,7 +170,7 @@ def test_masses_near_the_guess_or_a_refusal(frame):
     np.testing.assert_allclose(same, guess, rtol=1e-9)  # an estimate that already fits changes by round-off only
     published = inertia_tensor(ixx=1000.0, iyy=5268.0, izz=4600.0, ixy=82.03, izx=1800.0, iyz=-50.04)
     cog = np.array([2.157, 0.0, 1.011])
-    with pytest.raises(ConfigurationError, match="no positive masses at the 43 nodes have mass 813 kg"):
+    with pytest.raises(ConfigurationError, match=r"have positive masses that give the mass 813 kg, the CoG \[2\.157"):
         matched_masses(guess, freedom, points, mass=813.0, cog=cog, inertia_about_cog=about_cog(published, 813.0, cog))
 
 
@@ -201,5 +201,7 @@ def test_masses_are_found_where_a_linear_program_finds_any(frame, change, possib
         assert masses.min() > 0.0
         np.testing.assert_allclose(rows @ masses, wanted, atol=1e-9)  # round-off of sums of 800 kg at 2 m
     else:
-        with pytest.raises(ConfigurationError, match=r"^body\.mass .*no positive masses at the 43 nodes"):
+        with pytest.raises(
+            ConfigurationError, match=r"body\.mass \(690\), body\.cog \[2\.157, 0\.0, 1\.011\], body\.inertia"
+        ):
             body.masses(guess, freedom, points)

@@ -147,7 +147,7 @@ def test_overrides_without_effect():
     changes = ["rear.bushings.damper_mount.friction_stroke=[0,0,2e-4]"]
     path = changes[0].partition(".friction_stroke")[0]
     assert idle_parameters(load_vehicle(Path("focus_road"), changes), changes) == (
-        f"{changes[0]}: without effect; it belongs to {path}.friction_force above zero",
+        f"{changes[0]}: has no effect; it acts only with {path}.friction_force above zero",
     )
     changes += [f"{path}.friction_force=[0,0,40]"]
     assert idle_parameters(load_vehicle(Path("focus_road"), changes), changes) == ()

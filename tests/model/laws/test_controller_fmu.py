@@ -149,10 +149,13 @@ REFUSED: dict[str, tuple[dict[str, Any], type[Exception], str]] = {
     "inputs": (
         {"inputs": ("body_velocity", "v_wheel")},
         DataError,
-        "found inputs body_velocity, v_wheel and outputs coefficient; inputs must be among body_velocity, ",
+        (
+            "found inputs body_velocity, v_wheel and outputs coefficient; must be inputs among "
+            "body_velocity, wheel_velocity"
+        ),
     ),
     "no input": ({"inputs": ()}, DataError, "found inputs none"),
-    "output": ({"output": "c"}, DataError, "outputs c; inputs must be among body_velocity"),
+    "output": ({"output": "c"}, DataError, "outputs c; must be inputs among body_velocity, wheel_velocity"),
 }
 
 
@@ -166,7 +169,7 @@ def test_an_unsuitable_fmu_is_refused_with_the_remedy(tmp_path, case):
 
 
 def test_a_file_that_is_missing_or_no_fmu_is_refused(tmp_path):
-    with pytest.raises(ConfigurationError, match="there is no such file; set the path of an FMU"):
+    with pytest.raises(ConfigurationError, match="the file does not exist; set the path of an FMU"):
         read_controller(tmp_path / "none.fmu", "")
     (tmp_path / "text.fmu").write_text("no archive")
     with pytest.raises(DataError, match=r"cannot be read as an FMU .*; export it as FMI 2\.0 or 3\.0 co-simulation"):
@@ -177,11 +180,11 @@ def test_native_code_runs_only_with_its_digest(tmp_path):
     path = controller_fmu(tmp_path / "skyhook.fmu")
     with pytest.raises(ConfigurationError, match=f'native code.* fmu_sha256 = "{digest(path)}" .* --trust'):
         read_controller(path, None)
-    with pytest.raises(ConfigurationError, match=r"the file has changed; if you trust the new file, set its digest"):
+    with pytest.raises(ConfigurationError, match="the FMU has changed: its SHA-256 is"):
         read_controller(path, digest(path)[::-1])
 
 
-@pytest.mark.parametrize(("size", "found"), [(300, "0.279 GiB unpacked, must be at most 0.186 GiB"),
+@pytest.mark.parametrize(("size", "found"), [(300, "0.279 GiB, must be at most 0.186 GiB"),
                                              (150, "to 1, must be at most 200 to 1")])  # fmt: skip
 def test_an_fmu_that_would_fill_the_disk_is_refused_before_it_is_unpacked(tmp_path, size, found):
     path = controller_fmu(tmp_path / "skyhook.fmu")

@@ -78,7 +78,7 @@ BAD: dict[str, tuple[dict[str, Any], str]] = {
     ),
     "one slope too many": (
         {"presliding_force": (0.5, 1.0), "presliding_slope": (1.0, 0.5, 0.2)},
-        "Damper.presliding_slope: found 3 numbers for 2 of presliding_force; set a slope for each, 1 to 8",
+        "Damper.presliding_slope: found 3 numbers for the 2 of presliding_force; set a slope for each, 1 to 8",
     ),
     "an end below the limit": (
         {"presliding_force": (0.5, 0.9), "presliding_slope": (1.0, 0.5)},
@@ -102,9 +102,9 @@ def test_bad_curves(case):
 def test_overrides_without_effect():
     changes = ["damper.presliding_stiffness=5e5"]
     assert idle_parameters(load_vehicle(None, changes), changes) == (
-        "damper.presliding_stiffness=5e5: without effect; it belongs to front.damper.friction_law = presliding",
+        "damper.presliding_stiffness=5e5: has no effect; it acts only with front.damper.friction_law = presliding",
     )
     changes += ["damper.friction_law=presliding", "damper.smoothing=1e4"]
     assert idle_parameters(load_vehicle(None, changes), changes) == (
-        "damper.smoothing=1e4: without effect; it belongs to front.damper.friction_law = coulomb or stribeck",
+        "damper.smoothing=1e4: has no effect; it acts only with front.damper.friction_law = coulomb or stribeck",
     )

@@ -23,16 +23,21 @@ def put(text: str) -> tuple[str, str]:
 
 VEHICLES = {
     # Keys that nobody knows.
-    "of the car": ("gravity = 9.81", "gravity = 9.81\ncolour = 3", "colour: unknown parameter; the nearest known"),
+    "of the car": ("gravity = 9.81", "gravity = 9.81\ncolour = 3", "colour: unknown parameter; the most similar known"),
     "of the body": (
         "mass = 813.0",
         "mass = 813.0\nmas = 3",
-        "body.mas: unknown parameter; the nearest known name is mass",
+        "body.mas: unknown parameter; the most similar known name is mass",
     ),
     "of an element": (
         "viscous =",
         "viscus = 1\nviscous =",
-        "front.damper.viscus: unknown parameter; the nearest known",
+        "front.damper.viscus: unknown parameter; the most similar known",
+    ),
+    "of an axle": (
+        "[front.damper]",
+        "[front.dampers]",
+        ("front.dampers: unknown parameter; the most similar known name"),
     ),
     "part of an axle": (
         "[front.parts.caliper]",
@@ -44,7 +49,6 @@ VEHICLES = {
         "# nothing",
         "front.damper.viscous: missing; viscous_law = linear needs it [N s/m]",
     ),
-    "of an axle": ("[front.damper]", "[front.dampers]", "front.dampers: unknown parameter; the nearest known name"),
     "of a side": (
         *put("[front.left.bushing.arm_rear]\nstiffness = [1, 1, 1]"),
         "front.left.bushing: unknown parameter",
@@ -52,7 +56,7 @@ VEHICLES = {
     "a bushing of a side": (*put("[front.left.bushings.arm_reer]"), "front.left.bushings.arm_reer: unknown parameter"),
     "deep in a side": (
         *put("[front.left.bushings.arm_rear]\nstifness = [1e5, 1e5, 1e5]"),
-        "front.left.bushings.arm_rear.stifness: unknown parameter; the nearest known name is stiffness",
+        "front.left.bushings.arm_rear.stifness: unknown parameter; the most similar known name is stiffness",
     ),
     "deeper in a side": (
         *put("[front.left.damper.stop]\ndisplacment = [0, 1]"),
@@ -66,13 +70,16 @@ VEHICLES = {
     "of an output": (NEW, f"{NEW}\nx = {{ on = 'body', at = 'seat', in = 3 }}", "outputs.x.in: unknown parameter"),
     "a point": ("strut_top = ", "strut_tip = [0, 1, 2]\nstrut_top = ", "front.hardpoints.strut_tip: unknown"),
     # Templates.
-    "no template": ('template = "blocks"', "", "rear.template: missing; an instance needs template = NAME"),
+    "no template": ('template = "blocks"', "", "rear.template: missing; the section needs template = NAME"),
     "no template below": (*put("[seat.driver]\nparts = {}"), "seat.driver.template: missing"),
-    "a table of no kind": (*put("[reer]\nname = 1"), "reer: unknown parameter; the nearest known name is rear"),
+    "a table of no kind": (*put("[reer]\nname = 1"), "reer: unknown parameter; the most similar known name is rear"),
     "no such template": (
         'template = "blocks"',
         'template = "bloks"',
-        "template 'bloks': no such file beside the vehicle file nor in the package; the nearest is blocks",
+        (
+            "template 'bloks': the file is neither in the folder of the vehicle file nor in the package; the most "
+            "similar name is blocks"
+        ),
     ),
     "a number as template": (
         'template = "blocks"',
@@ -86,7 +93,7 @@ VEHICLES = {
     "twice under two names": (
         "seat = [",
         "strut_top_fr = [1, 0, 1]\nseat = [",
-        "hardpoints.strut_top_fr: an instance has a",
+        "hardpoints.strut_top_fr: a template already has a",
     ),
     "of nothing": (
         "tie_inner = [0.985, 0.335, 0.66]",
@@ -130,7 +137,7 @@ VEHICLES = {
     "moments": (
         ARM,
         "inertia = [0.05, 0.02, 0.5]",
-        "front.parts.a_arm.inertia: found [0.05, 0.02, 0.5] kg m2, the two",
+        "front.parts.a_arm.inertia: found [0.05, 0.02, 0.5] kg m2; the sum of the two",
     ),
     "products": (
         ARM,
@@ -183,15 +190,15 @@ VEHICLES = {
     "part of an output": (
         'on = "engine"',
         'on = "engin"',
-        "outputs.engine.on: found 'engin', unknown part; the nearest is",
+        "outputs.engine.on: unknown part 'engin'; the most similar name is",
     ),
     "point of an output": (
         'at = "engine_cog"',
         'at = "engine_kog"',
-        "outputs.engine.at: found 'engine_kog', unknown point",
+        "outputs.engine.at: unknown point 'engine_kog'",
     ),
     "two of one name": (*put(f"[connection.arm_rear_fr]\n{LINK}"), "arm_rear_fr: two elements have this name"),
-    "an alias": ("[alias]", '[alias]\nx = "front.nothing"', "alias.x: no parameter front.nothing"),
+    "an alias": ("[alias]", '[alias]\nx = "front.nothing"', "alias.x: unknown parameter front.nothing"),
     "a bushing": ("[front.bushings.arm_rear]", "[front.bushings.arm_front]", "front.bushings.arm_rear: missing;"),
     "side of what exists once": (
         *put("[front.left.stabilizer]\ntorsional_stiffness = 1"),
@@ -199,7 +206,7 @@ VEHICLES = {
     ),
     "side of what is not mirrored": (
         *put("[engine.left.bushings.hydromount]\nstiffness = [1e5, 1e5, 1e5]"),
-        "engine.left.bushings.hydromount: three_mounts.toml does not use it; it is not mirrored",
+        "engine.left.bushings.hydromount: three_mounts.toml does not use this section; it is not mirrored",
     ),
     "nothing to stand on": (
         TEXT[TEXT.index("[rear]") : TEXT.index("# Channels")],
@@ -242,19 +249,19 @@ def test_a_point_that_nothing_uses(tmp_path, capsys):
 
 HEAD = "velocity [m/s],force [N]\n"
 CURVES = {
-    "missing": (None, "no such file; give the name of a file beside the vehicle file"),
+    "missing": (None, "does not exist; give a file in the folder of the vehicle file"),
     "empty": ("", "test.csv: the file is empty"),
-    "binary": ("\0\0\0", "test.csv:1:1: NUL byte"),
+    "binary": ("\0\0\0", "test.csv:1:1: contains a NUL character"),
     "head": ("speed [m/s],force [N]\n-1,-1\n1,1\n", "test.csv:1: no column 'velocity [m/s]'; found 'speed [m/s]'"),
     "unit": (
         "velocity [mm/s],force [N]\n-1,-1\n1,1\n",
         "test.csv:1: no column 'velocity [m/s]'; found 'velocity [mm/s]'",
     ),
     "of a spring": ("displacement [m],force [N]\n-1,-1\n1,1\n", "no column 'velocity [m/s]'; found 'displacement [m]'"),
-    "NaN": (HEAD + "-1,-1\n0,nan\n1,1\n", "test.csv:3:2: column 'force [N]' holds 'nan'; allowed are finite numbers"),
+    "NaN": (HEAD + "-1,-1\n0,nan\n1,1\n", "test.csv:3:2: column 'force [N]' is 'nan', must be a finite number"),
     "a word": (HEAD + "-1,-1\nfast,0\n1,1\n", "test.csv:3:1: column 'velocity [m/s]' holds 'fast'"),
     "unsorted": (HEAD + "1,1\n-1,-1\n", "front.damper.velocity: found -1.0 after 1.0, must be ascending"),
-    "falling": (HEAD + "-1,1\n1,-1\n", "front.damper.force: found -1.0 N after 1.0 N, must not fall"),
+    "falling": (HEAD + "-1,1\n1,-1\n", "front.damper.force: found -1.0 N after 1.0 N, must not decrease"),
     "a point": (HEAD + "1,1\n", "front.damper.velocity: found 1 points, must be 2 to 40"),
     "one direction": (HEAD + "0,0\n1,1\n", "front.damper.velocity: found 0.0 to 1.0, must lie on both sides of 0"),
 }

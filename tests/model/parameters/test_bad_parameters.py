@@ -22,7 +22,7 @@ CASES = {
     "20 infinite stiffness": (
         "stabilizer.torsional_stiffness=inf",
         "stabilizer.torsional_stiffness: found inf N m/rad, must be a finite number "
-        "(torque over relative angle of the halves)",
+        "(torque per relative angle of its two halves)",
     ),
     "21 negative stiffness": (
         "bushings.arm_rear.stiffness=[2.5e5, -8e5, 8e5]",
@@ -48,8 +48,8 @@ CASES = {
     ),
     "24 triangle inequality": (
         "parts.engine.inertia=[5.0, 5.0, 15.0]",
-        "parts.engine.inertia: found [5.0, 5.0, 15.0] kg m2, the two smaller must add up to at least the largest "
-        "(short by 5); no mass distribution has these moments",
+        "parts.engine.inertia: found [5.0, 5.0, 15.0] kg m2; the sum of the two smaller must be at least "
+        "the largest (it is 5 kg m2 less), as for every real body",
     ),
     "25 zero step": ("solver.timestep=0", "solver.timestep: found 0.0 s, must be at least 1e-06"),
     "25 negative step": ("solver.timestep=-1e-3", "solver.timestep: found -0.001 s, must be at least 1e-06"),
@@ -60,16 +60,16 @@ CASES = {
     ),
     "26 left side given": (
         "hardpoints.wheel_center=[0.85, -0.747, 0.695]",
-        "hardpoints.wheel_center: found y = -0.747 m, side points are those of the right side (y > 0); the left side "
-        "is mirrored from them",
+        "hardpoints.wheel_center: found y = -0.747 m, must be above 0: give the points of the right side, "
+        "the left side is mirrored",
     ),
     "26 strut top below the ball joint": (
         "hardpoints.strut_top=[0.877, 0.548, 0.55]",
-        "hardpoints.strut_top: found z = 0.55 m, must lie above hardpoints.lower_ball (z = 0.595 m)",
+        "hardpoints.strut_top: found z = 0.55 m, must be above 0.595 m, the z of hardpoints.lower_ball",
     ),
     "26 spring seat above the strut top": (
         "hardpoints.spring_lower=[0.8625, 0.6015, 1.3]",
-        "hardpoints.strut_top: found z = 1.23 m, must lie above hardpoints.spring_lower (z = 1.3 m)",
+        "hardpoints.strut_top: found z = 1.23 m, must be above 1.3 m, the z of hardpoints.spring_lower",
     ),
     "26 arm on one line": (
         "hardpoints.arm_rear=[0.839, 0.03, 0.615]",
@@ -78,7 +78,7 @@ CASES = {
     ),
     "26 millimetres": (
         "hardpoints.strut_top=[877.0, 548.0, 1230.0]",
-        "hardpoints.strut_top: found [877.0, 548.0, 1230.0] m, farther than 20.0 m: probably mm; set metres",
+        "hardpoints.strut_top: found [877.0, 548.0, 1230.0] m, must be within 20.0 m; probably mm: set metres",
     ),
     "28 Stribeck velocity zero": (
         "damper.stribeck_velocity=0",
@@ -104,8 +104,8 @@ CASES = {
     ),
     "31 number for a vector": (
         "body.cog=2.157",
-        "--set body.cog=2.157: body.cog is a vector; set all components as [x, y, z], or one by adding its axis to the "
-        "path: body.cog.z=2.157",
+        "--set body.cog=2.157: body.cog is a vector; set all components as [x, y, z], or a single one with its "
+        "axis, for example body.cog.z=2.157",
     ),
     "31 overflow": (
         "main_spring.stiffness=1e400",
@@ -163,8 +163,12 @@ def test_a_degressive_damper_is_steeper_below_its_velocity():
 
 
 def test_missing_and_binary_files(tmp_path):
-    with pytest.raises(ConfigurationError, match=r"none\.toml: no such file; give the path of a parameter file"):
+    with pytest.raises(
+        ConfigurationError,
+        match=r"none\.toml: the file does not exist; give the path "
+        r"of a parameter file",
+    ):
         load_vehicle(tmp_path / "none.toml")
     (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(ConfigurationError, match=r"binary\.toml: not UTF-8 at byte 0"):
+    with pytest.raises(ConfigurationError, match=r"binary\.toml: is not UTF-8 text at byte 0"):
         load_vehicle(tmp_path / "binary.toml")

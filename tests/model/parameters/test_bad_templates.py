@@ -12,18 +12,18 @@ MOUNT = 'suspension_mount = { shape = "top_mount", points = ["strut_top"] }'
 LINE = 'along = ["damper_bottom", "strut_top"]'
 
 TEMPLATES = {
-    "unknown list": ("above = [", "abuve = [", "abuve: unknown; the nearest known name is above"),
+    "unknown list": ("above = [", "abuve = [", "abuve: unknown key; the most similar known key is above"),
     "unknown key": (
         'kind = "ball"',
         'kynd = "ball"',
-        "joint.lower_ball.kynd: unknown parameter; the nearest known name",
+        "joint.lower_ball.kynd: unknown parameter; the most similar known name",
     ),
     "unknown kind": (
         'kind = "ball"',
         'kind = "bell"',
         "joint.lower_ball.kind: found 'bell', must be one of free, fixed",
     ),
-    "unknown part": ('parent = "a_arm"', 'parent = "a_arn"', "joint.lower_ball.parent: found 'a_arn', unknown name"),
+    "unknown part": ('parent = "a_arm"', 'parent = "a_arn"', "joint.lower_ball.parent: unknown name 'a_arn'"),
     "unknown moving part": (
         'moving = "damper_top"',
         'moving = "damper_tip"',
@@ -32,39 +32,39 @@ TEMPLATES = {
     "unknown point": (
         'at = "tie_outer"',
         'at = "tie_outa"',
-        "found 'tie_outa', unknown name; the nearest is tie_outer",
+        "unknown name 'tie_outa'; the most similar is tie_outer",
     ),
-    "unknown joint": ('joint = "damper"', 'joint = "dampr"', "damper.damper.joint: found 'dampr', unknown name"),
+    "unknown joint": ('joint = "damper"', 'joint = "dampr"', "damper.damper.joint: unknown name 'dampr'"),
     "side of a part": ('child = "a_arm"', 'child = "a_arm:lft"', "joint.2.child: found side 'lft', must be left"),
     "side of a point": ('at = "tie_outer"', 'at = "tie_outer:links"', "found side 'links', must be left, right"),
     "a number for a part": ('child = "a_arm"', "child = 3", "joint.2.child: found 3, must be a list"),
     "a number for all": ("joint = [", "spring = 3\njoint = [", "not a TOML file"),
-    "a word for a table": ("joint = [", 'joint = ["a",', "joint: found 'a', must be a table"),
+    "a word for a table": ("joint = [", 'joint = ["a",', "joint: found 'a', must be a section"),
     "a word for a switch": ("mirrored = true", 'mirrored = "yes"', "mirrored: found 'yes', must be true or false"),
     "a number as meaning": ('tie_inner = "steering rod on the body"', "tie_inner = 3", "hardpoints.tie_inner: found 3"),
     "a number for two points": ("above = [", "above = [3,", "above: found 3, must be a list"),
     "a default of no port": (
         'rack = "body"',
         'rak = "body"',
-        "port_defaults.rak: found 'rak', unknown name; the nearest",
+        "port_defaults.rak: unknown name 'rak'; the most similar",
     ),
     "a port as no part": (
         'rack = "body"',
         'rack = "bodi"',
-        "port_defaults.rack: found 'bodi', unknown name; the nearest",
+        "port_defaults.rack: unknown name 'bodi'; the most similar",
     ),
     "one point above": ("above = [", 'above = [["strut_top"],', "above: found ['strut_top']; must be two points"),
     "not TOML": ("mirrored = true", "mirrored = tru", "not a TOML file: Invalid value (at line"),
-    "no axis": (f", {LINE}", "", "joint.damper.along: a slide needs either two points in along or an axis"),
+    "no axis": (f", {LINE}", "", "joint.damper.along: a joint of kind slide needs either two points in along, or axis"),
     "two axes": (
         LINE,
         f"{LINE}, axis = [0, 0, 1]",
-        "joint.damper.along: a slide needs either two points in along or an axis",
+        "joint.damper.along: a joint of kind slide needs either two points in along, or axis",
     ),
     "an axis of no length": (
         LINE,
         "axis = [0, 0, 0]",
-        "joint.damper.axis: found [0.0, 0.0, 0.0]; an axis needs a length",
+        "joint.damper.axis: found [0.0, 0.0, 0.0], must not be zero",
     ),
     "an axis in the plane": (
         LINE,
@@ -86,7 +86,7 @@ TEMPLATES = {
     "one end of a spring": (
         ', upper = { part = "body", at = "strut_top" } }',
         " }",
-        "spring.main_spring.lower: must have",
+        "spring.main_spring.lower: a spring needs",
     ),
     "a loop": (
         '{ kind = "free", child = "a_arm" }',
@@ -101,7 +101,7 @@ TEMPLATES = {
     "held twice": (
         '{ kind = "free", child = "a_arm" }',
         '{ kind = "free", child = ["a_arm", "knuckle"] }',
-        "joint of knuckle: it has the parent world already; close a loop by a connection",
+        "joint of knuckle: the part already has the parent world; to close a loop, use a connection",
     ),
     "fixed and hinged": (
         '{ kind = "free", child = "a_arm" }',
@@ -113,7 +113,7 @@ TEMPLATES = {
         'child = "a_arm", parent = "knuckle" }',
         "joint.2.parent: found 'knuckle'; a",
     ),
-    "held by nothing": (', "main_spring_lower"]', "]", "main_spring_lower_fr has no joint; add one"),
+    "held by nothing": (', "main_spring_lower"]', "]", "main_spring_lower_fr has no joint; add a joint"),
     "a joint on the body": (
         '{ kind = "fixed", child = "main_spring_upper", parent = "body", at = "strut_top" }',
         '{ kind = "ball", child = "main_spring_upper", parent = "body", at = "strut_top" }',
@@ -130,7 +130,7 @@ TEMPLATES = {
         'child = ["a_arm", "body"] }',
         "joint of body: not a part of this template",
     ),
-    "no points": (MOUNT, MOUNT.replace('"strut_top"', ""), "parts.suspension_mount.points: found none"),
+    "no points": (MOUNT, MOUNT.replace('"strut_top"', ""), "parts.suspension_mount.points: empty"),
     "a point too many": (
         "tie_inner = ",
         'spare = "nothing"\ntie_inner = ',
@@ -162,7 +162,10 @@ TEMPLATES = {
     "no such template": (
         'template = "wheel"',
         'template = "weel"',
-        "'weel': no such file beside the vehicle file nor in the package; the nearest is wheel",
+        (
+            "'weel': the file is neither in the folder of the vehicle file nor in the package; the most similar "
+            "name is wheel"
+        ),
     ),
     "uses itself": ('template = "wheel"', 'template = "mine"', "template 'mine': uses itself"),
     "a key of use": (
@@ -174,13 +177,13 @@ TEMPLATES = {
     "unbound port": (
         ', with = { hub = "knuckle" }',
         "",
-        "use.with.hub: missing; wheel.toml needs it (part that carries",
+        "use.with.hub: missing; wheel.toml needs this port (part that carries",
     ),
-    "no such port": ("hub = ", "hob = ", "use.with.hob: wheel.toml has no port of this name; it has ['hub']"),
+    "no such port": ("hub = ", "hob = ", "use.with.hob: wheel.toml has no port of this name, only ['hub']"),
     "a port without part": (
         'hub = "knuckle"',
         'hub = "knukle"',
-        "found 'knukle', unknown name; the nearest is knuckle",
+        "unknown name 'knukle'; the most similar is knuckle",
     ),
 }
 

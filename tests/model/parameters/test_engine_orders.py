@@ -140,17 +140,20 @@ def test_the_work_of_a_measured_cycle_is_that_of_its_pressure_and_volume(tmp_pat
 CYCLE_LATER = np.array([720.0, 0.0])
 
 BAD_TRACES = {
-    "half a cycle": (lambda rows: rows[:721], None, "angles from -360 to 0 deg in steps of up to 360 deg; must be"),
+    "half a cycle": (lambda rows: rows[:721], None, "angles from -360 to 0 deg in steps of up to 360 deg, must be"),
     "two cycles": (
-        lambda rows: np.vstack([rows, rows + CYCLE_LATER]), None, "must be one cycle of 720 deg in steps of at most 3",
+        lambda rows: np.vstack([rows, rows + CYCLE_LATER]), None, "must be a cycle of 720 deg in steps of at most 3",
     ),
-    "unsorted": (lambda rows: rows[::-1], None, "crank angle 359 deg follows 359.5 deg; must ascend through one cycle"),
+    "unsorted": (lambda rows: rows[::-1], None, ("crank angle 359 deg follows 359.5 deg, must increase "
+        "through a single cycle")),
     "Pa as bar": (lambda rows: rows * [1.0, 1e5], None, "bar, must be 2 to 400 bar; correct the unit of the column"),
     "bar as Pa": (lambda rows: rows, "a [deg],p [Pa]", "pressure is 0.0003208 bar, must be 2 to 400 bar"),
-    "gauge": (lambda rows: rows - [0.0, 1.0], None, "bar, must be above 0: pressures are absolute; add the ambient"),
+    "gauge": (lambda rows: rows - [0.0, 1.0], None, ("bar, must be above 0 bar, because pressures are absolute; "
+        "add the ambient")),
     "shifted": (lambda rows: rows + 0.5 * CYCLE_LATER, None, "is at 377.5 deg, must be within 60 deg of 0 or 720 deg"),
-    "no unit": (lambda rows: rows, "a,p", "0 columns are of the quantity angle (rad, deg, °, arcmin), must be one, as"),
-    "gap": (lambda rows: np.delete(rows, slice(100, 120), axis=0), None, "in steps of up to 10.5 deg; must be"),
+    "no unit": (lambda rows: rows, "a,p", ("0 columns have a unit of angle (rad, deg, °, arcmin), must "
+        "be a single column, for example")),
+    "gap": (lambda rows: np.delete(rows, slice(100, 120), axis=0), None, "in steps of up to 10.5 deg, must be"),
 }  # fmt: skip
 
 
@@ -169,12 +172,16 @@ def test_a_trace_gives_the_torque_itself(tmp_path: Path, monkeypatch: pytest.Mon
     trace(tmp_path, modelled)
     monkeypatch.chdir(tmp_path)
     numbers = {f"engine.orders.{key}": value for key, value in {**FOUR, "pressure": "p.csv"}.items()}
-    with pytest.raises(ConfigurationError, match=r"engine.orders.torque: found 60 N m and a file of the pressure"):
+    with pytest.raises(
+        ConfigurationError,
+        match=r"engine.orders.torque: given twice, as 60 N m and "
+        r"by the pressure file",
+    ):
         Car.load("sedan", {"crank.rpm": 750, **numbers})
     car = Car.load("sedan", {"crank.rpm": 750, **numbers, "engine.orders.torque": 0})
     forces = {force.name: force for force in car.vehicle.composition.forces}
     assert forces["engine_torque"].harmonics[2.0 * 750 * math.pi / 30.0] != 0.0
-    with pytest.raises(ConfigurationError, match=r"engine.orders.pressure: .*none.csv: no such file"):
+    with pytest.raises(ConfigurationError, match=r"engine.orders.pressure: .*none.csv: the file does not exist"):
         Car.load(
             "sedan", {"crank.rpm": 750, **numbers, "engine.orders.torque": 0, "engine.orders.pressure": "none.csv"}
         )
@@ -248,7 +255,7 @@ def test_both_engines_agree_on_idle(name: str) -> None:
         ({"firing": [1, 3, 4]}, "engine.orders.firing: found [1.0, 3.0, 4.0], must name each of the 4 cylinders"),
         ({"rod": 0.04}, "engine.orders.rod: found 0.04 m, must be above half the stroke"),
         ({"cylinder_axis": [0, 1, 0]}, "engine.orders.cylinder_axis: found [0.0, 1.0, 0.0], must be across"),
-        ({"torque": 1500.0}, "engine.orders.torque: found 1500 N m, this engine gives at most"),
+        ({"torque": 1500.0}, "engine.orders.torque: found 1500 N m, must be at most"),
     ],
 )
 def test_a_wrong_engine_is_refused(changes: dict[str, Any], said: str) -> None:

@@ -132,7 +132,7 @@ def test_an_override_may_name_an_axis():
     assert changed["suspension_mount"]["stiffness"] == [1e6, 3e6, 5e5]
     assert override(table, ["hardpoints.seat_rail.y=-0.4"])["hardpoints"]["seat_rail"][1] == -0.4
     for wrong in (f"{path}.w=1", f"{path}.z.x=1", "damper.viscous.z=1"):
-        with pytest.raises(ConfigurationError, match="no parameter"):
+        with pytest.raises(ConfigurationError, match="unknown parameter"):
             load_vehicle(None, [wrong])
     with pytest.raises(ConfigurationError, match=r"must be at least 0\.0"):
         load_vehicle(None, [f"{path}.z=-1"])
@@ -143,18 +143,18 @@ def test_an_override_may_name_an_axis():
     [
         (
             "damper.coulomb_fricton=1",
-            "--set damper.coulomb_fricton=1: no parameter damper.coulomb_fricton; "
+            "--set damper.coulomb_fricton=1: unknown parameter damper.coulomb_fricton; "
             "the nearest is front.damper.coulomb_friction",
         ),
-        ("damper", "--set damper: must be PATH=VALUE, as in damper.coulomb_friction=93.75"),
-        ("=3", "--set =3: must be PATH=VALUE, as in damper.coulomb_friction=93.75"),
+        ("damper", "--set damper: must be PATH=VALUE, for example damper.coulomb_friction=93.75"),
+        ("=3", "--set =3: must be PATH=VALUE, for example damper.coulomb_friction=93.75"),
         (
             "main_spring=3",
             "--set main_spring=3: main_spring is a group; set one of front.main_spring.stiffness",
         ),
         (
             "damper.viscous=many",
-            "--set damper.viscous=many: 'many' is not a number, a list of numbers or a text",
+            "--set damper.viscous=many: cannot read many; give a number",
         ),
     ],
 )

@@ -45,7 +45,9 @@ def test_values_arrive_where_their_paths_say(car):
 )
 def test_a_path_that_is_no_number_is_refused_with_the_nearest(car, path):
     for use in (lambda: overrides_of(car.vehicle, {path: 1.0}), lambda: value_of(car.vehicle, path)):
-        with pytest.raises(ConfigurationError, match=f"parameter {path}: no number of a vehicle; the nearest is "):
+        with pytest.raises(
+            ConfigurationError, match=f"parameter {path}: is not a number of the vehicle; the most similar path is "
+        ):
             use()
 
 
@@ -69,7 +71,7 @@ def test_the_end_of_a_path_is_enough_where_it_can_mean_one_thing_only(car):
     with pytest.raises(ConfigurationError) as caught:
         load_vehicle(None, ["torsional_stifness=1"])
     assert str(caught.value) == (
-        "--set torsional_stifness=1: no parameter torsional_stifness; the nearest is "
+        "--set torsional_stifness=1: unknown parameter torsional_stifness; the most similar path is "
         "front.stabilizer.torsional_stiffness"
     )
     with pytest.raises(ConfigurationError) as caught:
@@ -78,7 +80,7 @@ def test_the_end_of_a_path_is_enough_where_it_can_mean_one_thing_only(car):
         "--set mass=1: parameter mass may be body.mass, engine.parts.engine.mass, engine.parts.torque_arm.mass, "
         "front.parts.a_arm.mass or one of 12 others; give more of its path"
     )
-    with pytest.raises(ConfigurationError, match=r"parameter stiffness\.z: no number of a vehicle; .* may"):
+    with pytest.raises(ConfigurationError, match=r"parameter stiffness\.z: is not a number of the vehicle; .* may"):
         value_of(car.vehicle, "stiffness.z")
 
 
@@ -102,7 +104,7 @@ def test_optional_keys_are_given_where_the_law_has_them():
     assert arm is not None and arm.damping == (9.0, 9.0, 9.0)
     for text, near in (("gas_forse=1", "damper.gas_force"), ("*.stopp=1", "damper.stop"), ("w.tabel_x=1", "table_x")):
         with pytest.raises(
-            ConfigurationError, match=rf"^--set {re.escape(text)}: no parameter .* nearest is .*{near}$"
+            ConfigurationError, match=rf"^--set {re.escape(text)}: unknown parameter .* most similar path is .*{near}$"
         ):
             load_vehicle(None, [text])
     with pytest.raises(ConfigurationError, match=r"parameter table_x may be front\.bushings\.\w+\.table_x, "):
@@ -119,7 +121,7 @@ def test_units_are_those_of_the_fields(car):
     }
     assert {path: unit_of(car.vehicle, path) for path in units} == units
     for path in ("damper", "body.flexible", "front.template", "outputs.seat.on"):
-        with pytest.raises(ConfigurationError, match=f"parameter {path}: no quantity of a vehicle"):
+        with pytest.raises(ConfigurationError, match=f"parameter {path}: is not a value of a vehicle"):
             unit_of(car.vehicle, path)
 
 
@@ -149,7 +151,7 @@ def test_overrides_as_a_mapping_and_a_single_text():
         "a.b=1.5", "c=true", "d=[1, 2.0, 3]", 'e="stribeck"', "f=2.0", "g={x = [1, 2]}"
     ]  # fmt: skip
     assert assignments(["a=1"]) == ["a=1"]
-    with pytest.raises(ConfigurationError, match=r"found the text 'a=1'; must be a list, as \['a=1'\]"):
+    with pytest.raises(ConfigurationError, match=r"found the text 'a=1', must be a list, \['a=1'\]"):
         assignments("a=1")
     with pytest.raises(ConfigurationError, match="a is a object; must be a number"):
         assignments({"a": object()})

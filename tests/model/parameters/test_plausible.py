@@ -26,7 +26,10 @@ ABSURD = {
     ),
     "a point below the plate": (
         "hardpoints.lower_ball.z=0.3",
-        "hardpoints.lower_ball.z: found 0.3 m, must not lie below the plate (hardpoints.tyre_patch.z = 0.4 m)",
+        (
+            "hardpoints.lower_ball.z: found 0.3 m, must be at least 0.4 m, the height of the plate "
+            "(hardpoints.tyre_patch.z)"
+        ),
     ),
     "rear support without stiffness": (
         "bushings.rear_support.stiffness.z=0",
@@ -175,16 +178,16 @@ def test_road_vehicles_are_accepted_in_both_engines(name, high_piece):
 def test_parameters_without_effect_are_said():
     changes = ["damper.stribeck_velocity=0.05", "damper.viscous=2000", "body.frequency_scale=1.1"]
     assert idle_parameters(load_vehicle(None, changes), changes) == (
-        "damper.stribeck_velocity=0.05: without effect; it belongs to front.damper.friction_law = stribeck",
+        "damper.stribeck_velocity=0.05: has no effect; it acts only with front.damper.friction_law = stribeck",
     )
     changes = ["front.damper.viscous=2000"]
     assert idle_parameters(load_vehicle(Path("sedan"), changes), changes) == (
-        "front.damper.viscous=2000: without effect; it belongs to front.damper.viscous_law = linear or degressive",
+        "front.damper.viscous=2000: has no effect; it acts only with front.damper.viscous_law = linear or degressive",
     )
     # Attachments of a rigid body give way too.
     changes = ["body.flexible=false", "body.frequency_scale=1.1", "body.attachment_flexibility=false"]
     assert idle_parameters(load_vehicle(None, changes), changes) == (
-        "body.frequency_scale=1.1: without effect; it belongs to body.flexible = true",
+        "body.frequency_scale=1.1: has no effect; it acts only with body.flexible = true",
     )
     changes = ["damper.friction_law=stribeck", "damper.coulomb_friction=65", "damper.stribeck_velocity=0.05"]
     assert idle_parameters(load_vehicle(None, changes), changes) == ()

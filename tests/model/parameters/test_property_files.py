@@ -120,22 +120,24 @@ def dpr(rows=DAMPER, **more):
 
 
 BAD = {
-    "no units": ("front.dpr", dpr().replace("[UNITS]", "[MODEL]"), r"front\.dpr: no block \[UNITS\].*add it"),
+    "no units": ("front.dpr", dpr().replace("[UNITS]", "[MODEL]"), (r"front\.dpr: the block \[UNITS\] "
+                                                                   r"is missing.*add it")),
     "no length": ("front.dpr", dpr(units={"FORCE": "newton", "TIME": "s"}), r"\[UNITS\] has no LENGTH; add a line"),
     "unit": ("front.dpr", dpr(units={"LENGTH": "furlong", "FORCE": "newton", "TIME": "s"}), "'furlong', must be one"),
     "no curve": ("front.dpr", property_file("dpr", {}), r"no block \[CURVE\]; found \[MDI_HEADER\], \[UNITS\]"),
-    "twice": ("front.dpr", dpr() + "[CURVE]\n0 0\n", r"the block \[CURVE\] is there twice"),
+    "twice": ("front.dpr", dpr() + "[CURVE]\n0 0\n", r"the block \[CURVE\] appears twice"),
     "unsorted": ("front.dpr", dpr([(-1, -1), (-2, -2), (1, 1)]), "has -2 after -1, must be ascending"),
     "NaN": ("front.dpr", dpr([(-1, -1), (0, float("nan")), (1, 1)]), "has 'nan', must be a finite number"),
     "word": ("front.dpr", dpr().replace("-300", "fast"), "has 'fast', must be a finite number"),
     "columns": ("front.dpr", dpr().replace("-300", "-300 0.0"), r"a row of 3 columns, must be 2"),
     "a point": ("front.dpr", dpr([(0, 0)]), "has 1 points, must be at least 2"),
-    "falling": ("front.dpr", dpr([(-1, 1), (1, -1)]), "front.damper.force: found -1.0 N after 1.0 N, must not fall"),
+    "falling": ("front.dpr", dpr([(-1, 1), (1, -1)]), ("front.damper.force: found -1.0 N after 1.0 N, must not "
+        "decrease")),
     "another": ("front.dpr", FILES["front.spr"], r"a spring \('spr'\), must be of a damper \('dpr'\)"),
     "damper as spring": ("front.spr", dpr(), r"a damper \('dpr'\), must be of a spring \('spr'\)"),
     "tyre": ("front.spr", dpr().replace("'dpr'", "'tir'"), r"of type 'tir', must be of a spring"),
     "bracket": ("front.dpr", dpr().replace("[CURVE]", "[CURVE"), r"'\[CURVE' has no ']' at its end"),
-    "no damping": ("arm.bus", FILES["arm.bus"].replace("FZ_DAMPING", "FZ_D"), r"\[DAMPING\] has no FX_DAMPING.*set da"),
+    "no damping": ("arm.bus", FILES["arm.bus"].replace("FZ_DAMPING", "FZ_D"), r"\[DAMPING\] lacks FX_DAMPING.*set da"),
     "no axis": ("arm.bus", FILES["arm.bus"].replace("[FZ_CURVE]", "[FW_CURVE]"), r"no block \[FZ_CURVE\]"),
     "stop with force": ("front.bum", property_file("bum", {"CURVE": BUMP[1:]}), "a stop must have 0 N at its contact"),
     "rebound as bump": ("front.bum", FILES["front.reb"], r"a rebound stop \('reb'\), must be of a bump stop"),
@@ -152,15 +154,15 @@ def test_a_wrong_property_file_is_refused_by_name(case, tmp_path):
 
 
 TABLES = {
-    "both": ("main_spring", FRONT_TABLES["main_spring"] + "\nstiffness = 3e4", "without stiffness in the same table"),
+    "both": ("main_spring", FRONT_TABLES["main_spring"] + "\nstiffness = 3e4", "without stiffness in the same section"),
     "points": ("main_spring", '[front.main_spring]\nstiffness = 3e4\ntable = { curve = "front.spr" }',
-               "name it in the table above: front.main_spring.curve"),
+               "name it one level higher: front.main_spring.curve"),
     "clearance": ("damper", FRONT_TABLES["damper"].replace(", clearance = 0.05", ""), "curve .a file. and clearance"),
     "negative": ("damper", FRONT_TABLES["damper"].replace("0.05", "-0.05"), "bump.clearance: found -0.05; must be"),
     "stop": ("damper", FRONT_TABLES["damper"].split("[front.damper.stop]")[0] + 'stop = { curve = "front.bum" }',
              r"front\.damper\.stop\.bump\.curve"),
     "missing": ("main_spring", '[front.main_spring]\ncurve = "none.spr"', "front.main_spring.curve: .*none.spr"),
-    "csv": ("bushings.arm_front", '[front.bushings.arm_front]\ncurve = "axis.csv"', "is no property file"),
+    "csv": ("bushings.arm_front", '[front.bushings.arm_front]\ncurve = "axis.csv"', "is not a property file"),
 }  # fmt: skip
 
 
@@ -188,11 +190,11 @@ def test_a_file_that_is_not_beside_the_car_is_in_the_working_folder(tmp_path, mo
         if path.is_file():
             path.rename((car if path.suffix == ".toml" else work) / path.name)
     file = next(car.glob("*.toml"))
-    with pytest.raises(ConfigurationError, match="no such file"):
+    with pytest.raises(ConfigurationError, match="does not exist"):
         load_vehicle(file)
     monkeypatch.chdir(work)
     assert numbers(file, "front.damper") == beside
     damper = next(work.glob("*.dpr"))
-    (car / damper.name).write_text("no property file")
+    (car / damper.name).write_text("not a property file")
     with pytest.raises(ConfigurationError, match=damper.name):
         load_vehicle(file)

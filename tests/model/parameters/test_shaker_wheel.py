@@ -17,14 +17,14 @@ def test_the_source_s_right_wheel_is_the_driver_s_left():
         vehicle.shaker_wheel == "fl" == SHAKER_WHEEL
         and vehicle.points["wheel_center_fl"][1] < 0.0 > vehicle.points["seat_rail"][1]
     )
-    assert vehicle.wheel_text("fl") == "driver's left front wheel (fl; 'right wheel' in the words of the source)"
+    assert vehicle.wheel_text("fl") == "driver's left front wheel (fl; 'right wheel' in the words of the publication)"
     assert vehicle.wheel_text("fr") == "driver's right front wheel (fr)"
 
 
 def test_the_key_has_a_default_and_is_checked():
     assert load_vehicle(Path("sedan")).shaker_wheel == "fr"
     assert load_vehicle(Path("sedan")).wheel_text("rr") == "rear right wheel (rr)"
-    with pytest.raises(ConfigurationError, match=r"rr \(rear_right\): focus does not have it"):
+    with pytest.raises(ConfigurationError, match=r"rr \(rear_right\): focus has no such wheel"):
         load_vehicle(None, ["shaker_wheel=rr"])
     with pytest.raises(ConfigurationError, match="shaker_wheel: found 'left'"):
         load_vehicle(None, ["shaker_wheel=left"])

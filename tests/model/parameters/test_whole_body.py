@@ -91,18 +91,19 @@ def test_what_followed_is_said():
     changes = ["body.mass=829.26"]
     (said,) = body_notices(load_vehicle(Path("focus"), changes), changes)
     assert said.startswith(
-        "body.mass=829.26: the whole body is scaled, radii of gyration stay; ixx 1020, iyy 5373.36, "
+        "body.mass=829.26: the whole body is scaled, so its radii of gyration stay the same; ixx 1020, iyy 5373.36, "
     )
-    assert said.endswith("masses of the body model times 1.02, its frequencies times 0.990148")
+    assert said.endswith("the masses of the body model are multiplied by 1.02, its frequencies by 0.990148")
     (said,) = body_notices(load_vehicle(Path("sedan"), ["body.cog.z=1"]), ["body.cog.z=1"])
-    assert (
-        said
-        == "body.cog.z=1: the inertia about the CoG stays; ixx 556.49, iyy 1923.74, izz 2199.25 kg m2 about the CoG"
+    assert said == (
+        "body.cog.z=1: the inertia about the centre of gravity stays the same; ixx 556.49, iyy 1923.74, izz "
+        "2199.25 kg m2 about the CoG"
     )
     assert body_notices(load_vehicle(Path("sedan")), ["front.damper.gas_force=1"]) == []
     assert body_rules(load_vehicle(Path("sedan")), ["body.mass", "body.inertia.ixx", "cog.x"]) == [
-        "body.mass: the whole body is scaled, radii of gyration stay, but for what is given of body.inertia",
-        "cog.x: the inertia about the CoG stays, but for what is given of body.inertia",
+        "body.mass: the whole body is scaled, so its radii of gyration stay the same, except the given values "
+        "of body.inertia",
+        "cog.x: the inertia about the centre of gravity stays the same, except the given values of body.inertia",
     ]
 
 

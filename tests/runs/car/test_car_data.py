@@ -200,10 +200,10 @@ def test_what_is_not_defined_is_said_in_words(shown):
     assert one_axle.wheelbase_m is None and one_axle.roll_share is None
     assert one_axle.support_percent(one_axle.axles[0]) is None
     text = str(one_axle)
-    assert "wheelbase, anti-dive in per cent and distribution of roll stiffness: not defined, since 1 axle" in text
+    assert "wheelbase, anti-dive [%] and distribution of roll stiffness are not defined, because only 1 axle" in text
     assert "rear support right 1948 N" in text and "nan" not in text
-    assert "rear: not steered; its template five_link has no steering_axis" in str(shown["focus_road"])
-    assert "front: modes with sliding dampers have the smallest slope" in str(shown["sedan"])
+    assert "rear: no steering figures, because its template five_link has no steering_axis" in str(shown["focus_road"])
+    assert "front: modes with sliding dampers use the smallest damping" in str(shown["sedan"])
     weightless = Car.load("sedan", {"gravity": 0.0}).show()
     assert "need gravity" in str(weightless) and weightless.axles[0].ride_frequency_hz is None
 
@@ -251,7 +251,7 @@ def test_an_axle_that_ideal_joints_lock_is_shown_on_its_bushings(tmp_path):
     car = Car(vehicle_of({**Car.load("sedan").vehicle.table, "rear": rear}, tmp_path), folder=tmp_path)
     data = car.show()
     assert [axle.ideal for axle in data.axles] == [True, False]
-    assert "note: rear: ideal joints would lock this axle" in str(data)
+    assert "note: rear: geometry, motion ratios and unsprung mass are computed with its bushings" in str(data)
     assert math.isfinite(data.axles[1].geometry.roll_centre_height_m) and data.axles[1].roll.bars == 0.0
 
 

@@ -39,9 +39,9 @@ def test_axes_sides_ends_and_defaults():
     assert (sedan["body.modes_up_to"].value, sedan["body.modes_up_to"].unit) == (None, "Hz")
     assert repr(sedan["body.modes_up_to"]).startswith("body.modes_up_to = not set")
     assert sedan["load.trunk.mass"].value is None
-    with pytest.raises(ConfigurationError, match=r"no parameter damper\.viscus"):
+    with pytest.raises(ConfigurationError, match=r"unknown parameter damper\.viscus"):
         sedan["damper.viscus"]
-    with pytest.raises(ConfigurationError, match=r"front\.damper is a table or a component"):
+    with pytest.raises(ConfigurationError, match=r"front\.damper is a section or a component"):
         sedan["front.damper"]
 
 

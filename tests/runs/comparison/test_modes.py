@@ -116,11 +116,11 @@ def measurement(path, car, places, **changes):
 def test_nodes_are_told_or_lie_at_places(tmp_path, car):
     places = ("knuckle_fr", "knuckle_fl", "engine", "seat_rail")
     bare = measurement(tmp_path, car, places)
-    with pytest.raises(DataError, match="0 of its nodes are at output points of the car"):
+    with pytest.raises(DataError, match="0 of its nodes lie at output points of the car"):
         compare_modes(car, bare, {})
     told = compare_modes(car, bare, {place: f"Dof {11 + n}" for n, place in enumerate(places)})
     assert [pair.simulated for pair in told.pairs] == [1, 2, 3] and min(pair.mac for pair in told.pairs) > 1.0 - 1e-9
-    with pytest.raises(DataError, match="no mode moves a node '99'; there are 11, 12, 13, 14"):
+    with pytest.raises(DataError, match="no mode has a node '99'; choose from 11, 12, 13, 14"):
         compare_modes(car, bare, dict.fromkeys(places, "99"))
     # damper_top_fr and suspension_mount_fr lie at one point: one node there is neither.
     at = {one.name: one.at for one in car.vehicle.composition.outputs}

@@ -121,7 +121,9 @@ def test_the_table_of_a_run_names_the_worst_channel_and_band(run, car):
     first = (run / "compare.csv").read_text().splitlines()[2].split(",")
     assert first[:4] == ["frf", worst[0], f"{worst[1]:g}", f"{rows[0]['high_hz']:g}"]
     said = " ".join(content["notices"])
-    assert "measured along -Z to ?: sign inverted" in said and "(g)/(m) converted to m/s2 per m" in said
+    assert (
+        "sign inverted, because it was measured along -Z with the plate along ?"
+    ) in said and "(g)/(m) converted to m/s2 per m" in said
 
 
 def test_the_command_compares_the_files_of_a_run(run, measured, tmp_path, capsys):
@@ -186,10 +188,11 @@ def test_a_record_that_began_later_names_its_delay(run, tmp_path):
     )
     measured = read_measured(path, tuple(truth.channels))
     notices = comparison_of(measured, of_folder(run)).notices
-    assert notices[0].startswith("no FRFs: no channel is that of a plate") and "--map plate_fl_disp" in notices[0]
-    assert notices[1].endswith(
-        "0.05 s late, in all channels: if the records began at different times, set --delay 0.05"
+    assert (
+        notices[0].startswith("no FRFs, because no channel is the motion of a plate")
+        and "--map plate_fl_disp" in notices[0]
     )
+    assert notices[1].endswith("50 ms late, in all channels; if the records began at different times, set --delay 0.05")
     again = comparison_of(measured, of_folder(run), delay=0.05)
     assert again.notices == notices[:1] and again.records[0].correlation == pytest.approx(1.0)
 
@@ -252,19 +255,19 @@ def test_a_fit_finds_the_mounts_from_the_same_file(measured, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "code", "message"),
     [
-        (["--map", "knuckle_acc_z=1"], 2, "unknown model channel; .*did you mean knuckle_f[rl]_acc_z"),
+        (["--map", "knuckle_acc_z=1"], 2, "unknown channel of the model; .*did you mean knuckle_f[rl]_acc_z"),
         (["--map", "knuckle_fr_acc_z=nothing*"], 3, "--map knuckle_fr_acc_z= 'nothing\\*' matches no channel"),
         (["--map", "knuckle_fr_acc_z=Acc *"], 3, "matches 3 channels"),
         (["--map", "damper_fr_velocity=1"], 3, "only acceleration channels of the model"),
-        ([], 3, "no channel has the name of a model channel; set --map"),
+        ([], 3, "no channel has the name of a channel of the model; set --map"),
         (
             [*MAP[:2], "--unit", "knuckle_fr_acc_z=m/s2/N"],
             3,
             "a response to a force, but the inputs of the model are plate",
         ),
-        ([*MAP[:2], "--unit", "knuckle_fr_acc_z=Pa"], 3, "must be a motion of a point over a motion"),
-        ([*MAP[:2], "--bands", "9,3"], 2, "must be increasing edges in Hz"),
-        (["--map", "3"], 2, "needed is CHANNEL=NAME"),
+        ([*MAP[:2], "--unit", "knuckle_fr_acc_z=Pa"], 3, "must be a motion of a point divided by a motion"),
+        ([*MAP[:2], "--bands", "9,3"], 2, "must be increasing frequencies [Hz]"),
+        (["--map", "3"], 2, "must be CHANNEL=NAME"),
     ],
 )
 def test_what_cannot_be_compared_is_refused(run, measured, tmp_path, capsys, arguments, code, message):

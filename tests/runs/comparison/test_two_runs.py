@@ -58,5 +58,5 @@ def test_runs_on_a_road_have_no_responses():
 
 def test_channels_are_chosen_for_a_file_only(runs):
     base, softer = runs
-    with pytest.raises(ConfigurationError, match="channels, choice, inverted: for a measurement file"):
+    with pytest.raises(ConfigurationError, match="channels, choice, inverted: work only with a measurement file"):
         compare(softer, base, {COMPARED[0]: COMPARED[0]})

@@ -239,11 +239,14 @@ def test_parameters_are_in_words():
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["nowhere"], "nowhere: is no folder; give the folder of a run"),
+        (["nowhere"], "nowhere: is not a folder; give the folder of a run"),
         (["."], "has no summary.json; give the folder of a run"),
-        (["{run}", "--output", "page.txt"], "--output page.txt: this file is written as .html"),
+        (["{run}", "--output", "page.txt"], "--output page.txt: the name must end in .html"),
         (["{run}", "--video"], "--video: shows two runs side by side, found 1"),
-        (["{run}", "--output", "mine.html", "--force"], "--output mine.html: is not as this program wrote it there"),
+        (
+            ["{run}", "--output", "mine.html", "--force"],
+            "--output mine.html: was not written by this program, or was changed since",
+        ),
     ],
 )
 def test_what_cannot_be_reported_is_refused(words, message, reported, tmp_path, monkeypatch, capsys):
@@ -268,7 +271,7 @@ def test_a_damaged_run_is_refused(reported, tmp_path, capsys):
     assert main([str(tmp_path)]) == 3 and "(input.wheel: missing)" in capsys.readouterr().err
     (tmp_path / "summary.json").write_text((reported.folder / "summary.json").read_text())
     assert main([str(tmp_path)]) == 3
-    assert "vehicle.toml: missing, though summary.json lists it as vehicle" in capsys.readouterr().err
+    assert "vehicle.toml: is missing, although summary.json lists it as vehicle" in capsys.readouterr().err
 
 
 def test_reactions_are_those_of_the_standard():

@@ -385,7 +385,7 @@ def test_settings_outside_the_valid_range_are_named(browser):
         valid = car.run(scaled(signal, level), engine="reduced").recording.statistics.within_validity
         notices = page.ask("record", level=level)["notices"]
         assert valid == (level == 1.0) and valid == (not notices), notices
-    assert notices == ["stabilizer_half_fl turned by more than 0.05 rad about y; this car is valid up to there"]
+    assert len(notices) == 1 and notices[0].startswith("stabilizer_half_fl rotates by more than 0.05 rad about y")
 
 
 @pytest.mark.parametrize("friction", [100.0, 5000.0])

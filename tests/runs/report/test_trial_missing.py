@@ -36,7 +36,7 @@ def test_a_car_that_the_page_cannot_run_has_no_section():
     ):
         trial_data(car, signal, wheel="fl", skip=30.0)
     slopes = dataclasses.replace(signal, slope_velocity=signal.displacement)
-    with pytest.raises(ConfigurationError, match="heights of the plates"):
+    with pytest.raises(ConfigurationError, match="plate displacements"):
         trial_data(car, slopes, wheel="fl")
 
 

@@ -175,17 +175,19 @@ def test_sentence():
         "sedan meets 1 of 3 targets and misses two and three; there is no run for four."
     )
     untried = sentence(figures, "sedan", dict.fromkeys(figures, Rated(state=NOT_RUN)))
-    assert untried == "No target was tried for sedan: none of its runs is on an input of the file."
+    assert untried == "No target was checked for sedan: the target file has none of the inputs of its runs."
 
 
 FAULTS = {
     "quantity = 'noise'\nunit = 'm/s2'\nat_most = 1": "a.quantity: found 'noise', must be one of rms",
     "quantity = 'rms'\nunit = 'm/s2'\nat_most = 1": "a.channels: missing; rms needs it",
-    "quantity = 'peak'\nunit = 'm/s2'\nat_most = 1\nchannels = ['b']\nband = [1, 2]": "a.band: peak does not have it",
-    "quantity = 'tyre_load'\nunit = '-'": "a.at_most: set either at_most or at_least",
-    "quantity = 'tyre_load'\nunit = '-'\nat_most = 1\nat_least = 0": "a.at_most: set either at_most or at_least",
-    "quantity = 'tyre_load'\nunit = '-'\nat_most = nan": "a.at_most: limit nan and weight 1",
-    "quantity = 'tyre_load'\nunit = '-'\nat_most = 1\nweight = 0": "a.at_most: limit 1 and weight 0",
+    "quantity = 'peak'\nunit = 'm/s2'\nat_most = 1\nchannels = ['b']\nband = [1, 2]": "a.band: not used by peak",
+    "quantity = 'tyre_load'\nunit = '-'": "a.at_most: set exactly one of at_most and at_least",
+    (
+        "quantity = 'tyre_load'\nunit = '-'\nat_most = 1\nat_least = 0"
+    ): "a.at_most: set exactly one of at_most and at_least",
+    "quantity = 'tyre_load'\nunit = '-'\nat_most = nan": "a.at_most: found limit nan and weight 1",
+    "quantity = 'tyre_load'\nunit = '-'\nat_most = 1\nweight = 0": "a.at_most: found limit 1 and weight 0",
     "quantity = 'rms'\nunit = 'm/s2'\nat_most = 1\nchannels = ['b']\nband = [5, 2]": "a.band: found [5.0, 2.0]",
     "quantity = 'rms'\nunit = 'm/s2'\nat_most = 1\nchannels = ['b']\nweighting = 'Wx'": "a.weighting: found 'Wx'",
     "quantity = 'tyre_load'\nunit = '-'\nat_most = 1\nspede = 3": "a.spede: unknown parameter",
@@ -206,9 +208,9 @@ def test_wrong_files(tmp_path):
     empty, plain = tmp_path / "empty.toml", tmp_path / "plain.toml"
     empty.write_text("", encoding="utf-8")
     plain.write_text("limit = 3\n", encoding="utf-8")
-    with pytest.raises(ConfigurationError, match="no target; needed is a table"):
+    with pytest.raises(ConfigurationError, match="contains no target; write a section"):
         read_targets(empty)
-    with pytest.raises(ConfigurationError, match="must be a table, as"):
+    with pytest.raises(ConfigurationError, match="must be a section"):
         read_targets(plain)
     with pytest.raises(ConfigurationError, match="no such file"):
         read_targets(tmp_path / "missing.toml")

@@ -231,7 +231,7 @@ BAD = [
     ),
     (
         {"damper": "slip", "vary": {"mount.stifness": 1.0}},
-        "no parameter mount.stifness; the nearest is mount.stiffness",
+        "unknown parameter mount.stifness; the most similar path is mount.stiffness",
     ),
     ({"damper": "stuck"}, "damper: found 'stuck', must be slip, stick or friction"),
     ({"damper": "friction", "friction": "stick"}, "friction: found 'stick', must be one of coulomb, stribeck"),
@@ -276,7 +276,7 @@ def test_a_model_with_friction_has_no_frequency_response():
         frequency_response(model(damper="friction"), 1.0, "body")
     with pytest.raises(ConfigurationError, match="natural_modes: the model must be a single linear model"):
         natural_modes(model(damper="friction"))
-    with pytest.raises(ConfigurationError, match="output 'engine': unknown; this model has body, wheel"):
+    with pytest.raises(ConfigurationError, match="output 'engine': unknown; choose from body, wheel"):
         frequency_response(model(damper="slip"), 1.0, "engine")
     with pytest.raises(ConfigurationError, match="frequency: must be finite numbers"):
         frequency_response(model(damper="slip"), -1.0, "body")

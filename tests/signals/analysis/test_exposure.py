@@ -127,7 +127,9 @@ def test_vector_sums():
         rel=1e-6, unit="m/s2", source="standard: ISO 2631-1:1997, 6.5",
     )  # fmt: skip
     assert vector_sum([1.0, 1.0], [1.0, 1.0], power=4.0) == pytest.approx(2.0**0.25)
-    with pytest.raises(ConfigurationError, match="vector sum: found 2 values and 3 factors"):
+    with pytest.raises(
+        ConfigurationError, match="vector sum: found 2 values and 3 factors, must be a factor for each value"
+    ):
         vector_sum([1.0, 1.0], [1.0, 1.0, 1.0])
 
 

@@ -122,7 +122,7 @@ def test_lines_without_excitation_are_nan_with_a_reason():
     # a Hann window spreads a sine of whole periods over three lines
     assert found.frequency[known] == pytest.approx([9.75, 10.0, 10.25])
     assert found.response[0, known] == pytest.approx(np.full(3, 2.0), rel=1e-10)
-    assert found.reasons == ("194 lines between 1 and 50 Hz: not excited, so the FRF is undefined",)
+    assert found.reasons == ("194 lines between 1 and 50 Hz: the input has no power there, so the FRF is undefined",)
 
 
 def test_too_few_averages_are_rejected_and_a_single_average_has_no_coherence():
@@ -132,7 +132,7 @@ def test_too_few_averages_are_rejected_and_a_single_average_has_no_coherence():
     found = frequency_response(STEP, excitation, excitation, minimum_averages=1.0)
     assert found.response[0] == pytest.approx(np.ones(197))
     assert np.isnan(found.coherence).all()
-    assert found.reasons == ("coherence: undefined with 1 averages (a single average always gives 1)",)
+    assert found.reasons == ("the coherence is undefined with 1 averages: a single average always gives 1",)
 
 
 def test_records_of_different_length_are_refused():

@@ -78,7 +78,9 @@ def test_daily_exposure():
     for hours in (0.0, -1.0, 25.0, np.nan):
         with pytest.raises(ConfigurationError, match="h in a day; must be above 0 and at most 24"):
             exposure(values, hours)
-    with pytest.raises(ConfigurationError, match="feet has no action value; the point of contact must be hand, seat"):
+    with pytest.raises(
+        ConfigurationError, match="the directive has no action value for feet; the point of contact must be hand, seat"
+    ):
         exposure({**values, "place": "feet"}, 8.0)
     with pytest.raises(DataError, match="y missing"):
         exposure({**values, "y": None}, 8.0)
@@ -113,9 +115,9 @@ def test_quantile_of_the_intervals():
 
 
 def test_what_a_train_needs():
-    with pytest.raises(DataError, match=r"296.5 s are left after 3.5 s; the mean comfort is that of 300 s"):
+    with pytest.raises(DataError, match=r"only 296.5 s are left after the first 3.5 s, must be at least 300 s"):
         rail_comfort(0.005, np.stack([tone(2.0, 1.0, 300.0, 200.0)] * 3))
-    with pytest.raises(DataError, match="found 2 axes; needed are x, y and z"):
+    with pytest.raises(DataError, match="found 2 axes, must be the three axes x, y and z"):
         rail_comfort(0.005, np.stack([tone(2.0, 1.0, 310.0, 200.0)] * 2))
 
 

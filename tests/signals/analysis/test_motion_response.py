@@ -30,8 +30,8 @@ def test_four_independent_plates_have_an_frf_each(noise, window):
             np.testing.assert_allclose(one.response.response[row], gain, rtol=1e-6)
         np.testing.assert_allclose(one.response.coherence, 1.0, rtol=1e-6)
     assert what_moves([one.motion for one in responses]) == (
-        "4 plates move independently of each other: the FRFs are separated, to fr, fl, rr, rl; the coherence counts "
-        "all plates together"
+        "4 plates move independently of each other: the FRFs are separated into responses to each of fr, fl, "
+        "rr, rl; the coherence is that of all plates together"
     )
 
 
@@ -43,11 +43,12 @@ def test_a_front_axle_in_roll_is_one_motion(noise):
     np.testing.assert_allclose(responses[0].response.response[0], 2.0 - 0.5, rtol=1e-6)
     np.testing.assert_allclose(responses[2].response.response[1], 1.0, rtol=1e-6)
     assert what_moves([one.motion for one in responses]) == (
-        "4 plates move; fr, fl move together, one -1 times the other: the FRFs are separated, to fr, rr, rl; the "
-        "coherence counts all plates together"
+        "4 plates move; fr, fl move together, one -1 times the other: the FRFs are separated into responses to "
+        "each of fr, rr, rl; the coherence is that of all plates together"
     )
     assert what_moves([responses[0].motion]) == (
-        "both plates move together, one -1 times the other: the FRFs are those to plate_fr_displacement while both do"
+        "both plates move together, one -1 times the other: the FRFs are the responses to plate_fr_displacement "
+        "while both do"
     )
 
 

@@ -118,9 +118,9 @@ def test_index_by_integration_over_a_corner():
 
 
 def test_refused_profiles():
-    with pytest.raises(DataError, match=r"a sample every 0.5 m; needed is one every 0.3 m or less"):
+    with pytest.raises(DataError, match=r"the heights are 0.5 m apart, must be at most 0.3 m"):
         roughness_index(0.5, np.zeros(100))
-    with pytest.raises(DataError, match=r"the road is 9.9 m long; needed are 11 m or more"):
+    with pytest.raises(DataError, match=r"the road is 9.9 m long, must be at least 11 m"):
         roughness_index(0.1, np.zeros(100))
     with pytest.raises(DataError):
         roughness_index(0.1, np.array([0.0, np.nan] * 100))

@@ -61,7 +61,7 @@ def test_the_axes_of_the_seat_are_weighted_as_the_standard_has_them():
 def test_a_point_of_contact_other_than_a_seat_is_rejected():
     with pytest.raises(ConfigurationError, match="found point of contact 'feet', must be seat or seat_bs6841"):
         seat_value(STEP, SEAT, RAIL, contact="feet")
-    with pytest.raises(DataError, match="acceleration of the rail is zero"):
+    with pytest.raises(DataError, match="acceleration of the seat rail is zero"):
         seat_value(STEP, SEAT, 0.0 * RAIL)
 
 
@@ -84,8 +84,14 @@ def test_a_run_reports_its_seat_value(tmp_path, monkeypatch, capsys):
     assert comfort(["--input", "seated/time.npz", *asked]) == 0
     assert f"notice: {NO_SEAT}" in capsys.readouterr().err
     for wrong, message in (
-        (["--rail", "x=1"], "--rail x=1: the SEAT value needs axis z; set z=NAME, or an output point"),
-        (["--rail", "seat_rail", "--place", "feet"], "--place feet: --rail is for the SEAT value of a seat"),
+        (
+            ["--rail", "x=1"],
+            ("--rail x=1: names no z acceleration, which the SEAT value needs; set z=NAME, or a point of a run"),
+        ),
+        (
+            ["--rail", "seat_rail", "--place", "feet"],
+            ("--place feet: --rail gives the SEAT value, which only a seat has"),
+        ),
     ):
         assert comfort(["--input", "seated/time.npz", "--channel", "seat", "--offset", "keep", *wrong]) == 2
         assert message in capsys.readouterr().err

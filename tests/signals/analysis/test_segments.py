@@ -41,8 +41,8 @@ def test_too_short_a_record_is_refused_with_the_length_needed():
     with pytest.raises(DataError) as refusal:
         cut_into_segments(12_000, 1e-3, window_s=4.0, overlap=0.5, minimum_averages=8.0)
     assert str(refusal.value) == (
-        "record too short: 12 s hold 4.79 effective averages of 4 s windows with 50 % overlap; must be at least 8; use "
-        "at least 20 s, or a shorter window (coarser lines)"
+        "record too short: 12 s give 4.79 averages with windows of 4 s and 50 % overlap, must be at least 8; record at "
+        "least 20 s, or use a shorter window (coarser frequency lines)"
     )
     # the length named is enough, and one step less is not
     assert cut_into_segments(20_000, 1e-3, window_s=4.0, overlap=0.5, minimum_averages=8.0).averages >= 8.0

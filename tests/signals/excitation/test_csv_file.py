@@ -33,7 +33,7 @@ def test_a_plain_column_needs_a_wheel(tmp_path):
     with pytest.raises(DataError) as caught:
         read_signal(path)
     assert str(caught.value) == f"{path}:1:2: column 'displacement [m]' names no wheel; {remedy}"
-    with pytest.raises(DataError, match=r"channel 'displacement' names no wheel; pass wheel='fl'"):
+    with pytest.raises(DataError, match=r"the name of channel 'displacement' states no wheel; pass wheel='fl'"):
         read_signal(path, choice=Choice(first=0.0, last=0.3))
 
 
@@ -70,8 +70,8 @@ def test_bom_crlf_and_quotes_are_accepted_with_notice(tmp_path):
     signal = read_plain(path)
     assert np.array_equal(signal.displacement["fr"], CLEAN)
     assert signal.notices == (
-        "byte order mark at the beginning of the file skipped",
-        "line ends of Windows (CR LF) or old Mac (CR) read as line ends",
+        "the byte order mark at the beginning of the file is skipped",
+        "line ends of Windows (CR LF) or old Mac (CR) are accepted",
     )
 
 
@@ -111,7 +111,7 @@ def test_a_long_gap_is_not_interpolated(tmp_path):
     with pytest.raises(DataError) as caught:
         read_plain(path, interpolate=True)
     assert str(caught.value) == (
-        f"{path}:102:2: column 'displacement [m]' has no value for 0.012 s from this line on; interpolation bridges "
+        f"{path}:102:2: column 'displacement [m]' has no value for 0.012 s from this line on; interpolation can fill "
         "at most "
         "0.01 s; use the part before or after it"
     )
@@ -135,9 +135,8 @@ def test_offset_gets_a_ramp_of_stated_length_and_nothing_is_subtracted(tmp_path)
     np.testing.assert_allclose(signal.displacement["fr"], expected, rtol=1e-9, atol=1e-15)
     assert signal.displacement["fr"][0] == 0.0
     assert signal.notices == (
-        f"plate fr begins at 0.01 m (RMS {np.std(z):.6g} m): a step at t = 0; half-cosine ramp applied to all plates "
-        "over the "
-        "first 0.200 s; nothing was subtracted",
+        f"plate fr begins at 0.01 m instead of 0 (RMS {np.std(z):.6g} m), which is a step at t = 0; the motion "
+        "of all plates is faded in over the first 0.200 s (half-cosine ramp); no mean was subtracted",
     )
 
 
@@ -149,7 +148,7 @@ def test_ramp_is_half_a_second_on_long_records(tmp_path):
 def test_offset_is_removed_only_on_request(tmp_path):
     lines = [f"{t},{float(z) + 0.01!r}" for t, z in (row.split(",") for row in rows(2001, frequency=2.0))]
     signal = read_plain(write(tmp_path, [HEADER, *lines]), remove_mean=True)
-    assert signal.notices[0] == "mean 0.0104998 m of plate fr removed on request"
+    assert signal.notices[0] == "mean 0.0104998 m of plate fr was subtracted, as requested"
     assert "begins at -0.00049975 m" in signal.notices[1]  # the rest of the step, ramped
     assert abs(np.mean(signal.displacement["fr"][200:])) < 1e-4
 
@@ -159,7 +158,8 @@ def test_jump_of_velocity_gets_a_ramp(tmp_path):
     lines = [f"{a:.3f},{1e-3 * np.sin(20 * np.pi * a):.17g}" for a in t]
     signal = read_plain(write(tmp_path, [HEADER, *lines]))
     assert signal.notices[0].startswith(
-        "plate fr begins with 0.0627905 m/s: a jump of velocity at t = 0; half-cosine ramp"
+        "plate fr begins with 0.0627905 m/s instead of 0, which is a jump of velocity at t = 0; the motion of "
+        "all plates is faded in"
     )
     assert abs(signal.plate_motion([0.0]).velocity["fr"][0]) < 1e-4
 
@@ -169,8 +169,12 @@ def test_low_sampling_rates(tmp_path):
         return read_plain(write(tmp_path, [HEADER, *rows(400, rate=rate, frequency=2.0)]))
 
     assert read(250.0).notices == ()
-    assert read(200.0).notices == ("sampling rate 200 Hz: usable up to 80 Hz, from 250 Hz on up to 100 Hz",)
-    assert read(125.0).notices == ("sampling rate 125 Hz: usable up to 50 Hz, from 250 Hz on up to 100 Hz",)
+    assert read(200.0).notices == (
+        ("sampling rate 200 Hz: results are valid up to 80 Hz; with at least 250 Hz up to 100 Hz"),
+    )
+    assert read(125.0).notices == (
+        ("sampling rate 125 Hz: results are valid up to 50 Hz; with at least 250 Hz up to 100 Hz"),
+    )
     assert read(125.0).highest is None
 
 
@@ -199,9 +203,9 @@ def test_resampling_keeps_the_band_and_removes_what_would_fold(tmp_path):
     # 450 Hz would fold to 50 Hz with 1e-5 m; the filter leaves 1e-4 of it. Ripple of 80 dB on 1e-3 m: 1e-7.
     np.testing.assert_allclose(signal.displacement["fr"][kept], wanted[::4][kept], rtol=0, atol=2e-7)
     assert signal.notices[-1] == (
-        "resampled from uniform times at 2000 Hz to 500 Hz by a spline of degree 7 through the samples at their true "
-        "times and a linear-phase anti-alias filter from 200 Hz on; amplitudes hold within 0.1 % up to 600 Hz, 4 % up "
-        "to 800 Hz"
+        "resampled from uniform times at 2000 Hz to 500 Hz by a spline of degree 7 through the samples at their "
+        "true times and a linear-phase anti-alias filter from 200 Hz on; amplitudes are correct within 0.1 % up "
+        "to 600 Hz, 4 % up to 800 Hz"
     )
 
 
@@ -217,7 +221,8 @@ def test_non_uniform_time_is_resampled_on_request(tmp_path):
     # Median rate a little off 1000 Hz may ask for a finer grid and the filter's ripple of 80 dB; ends apart.
     np.testing.assert_allclose(signal.displacement["fr"][100:-100], uniform[100:-100], rtol=0, atol=2e-7)
     assert any(
-        n.startswith("resampled from jittered times (steps up to ") and "to 1000 Hz" in n for n in signal.notices
+        n.startswith("resampled from irregular times (steps deviate from the median by up to ") and "to 1000 Hz" in n
+        for n in signal.notices
     )
 
 
@@ -229,7 +234,7 @@ def test_resampling_to_the_same_rate_changes_nothing(tmp_path):
 
 def test_resampling_limits(tmp_path):
     path = write(tmp_path, [HEADER, *rows(200), *(f"{float(r.split(',')[0]) + 1.0:.6f},0" for r in rows(200))])
-    with pytest.raises(DataError, match=r":202: gap of 0\.801 s after 0\.199 s; --resample bridges at most 0\.01 s"):
+    with pytest.raises(DataError, match=r":202: gap of 0\.801 s after 0\.199 s; --resample fills at most 0\.01 s"):
         read_plain(path, choice=Choice(resample=1000.0))
     path = write(tmp_path, [HEADER, *rows()])
     with pytest.raises(DataError, match="gives 399000001 samples, must be at most 20000000; set a lower rate"):
@@ -291,7 +296,9 @@ def test_64_a_rounded_clock_is_recognised(rate, decimals, cut, tmp_path):
     z = 5e-4 * (1.0 - np.cos(2.0 * np.pi * 10.0 * t))
     lines = [f"{a:.{decimals}f},{b:.9e}" for a, b in zip(cut(t, decimals), z, strict=True)]
     signal = read_plain(write(tmp_path, [HEADER, *lines]))
-    assert signal.notices[0].startswith(f"time stamps are rounded to {decimals} decimals: taken as a clock of ")
+    assert signal.notices[0].startswith(
+        f"time stamps are rounded to {decimals} decimals; the sampling rate is assumed to be "
+    )
     # A whole number of Hz is exact; any other is known to a last digit over the record.
     assert 1.0 / signal.timestep == pytest.approx(rate, rel=1e-12 if rate.is_integer() else 10.0**-decimals / t[-1])
 
@@ -300,7 +307,7 @@ def test_64_a_jittering_clock_is_none(tmp_path):
     """The same number of decimals, but the stamps leave the clock by two of the last."""
     t = np.arange(6000) / 2048.0 + 2e-6 * np.random.default_rng(1).uniform(-1.0, 1.0, 6000)
     lines = [f"{a:.6f},{1e-3 * np.sin(60.0 * a):.9e}" for a in t]
-    with pytest.raises(DataError, match="time is not uniform"):
+    with pytest.raises(DataError, match="time steps are not uniform"):
         read_plain(write(tmp_path, [HEADER, *lines]))
 
 
@@ -310,7 +317,7 @@ def test_64_pauses_and_drift_are_mentioned(tmp_path):
     shaking = [f"{a:.3f},{b:.9e}" for a, b in zip(t, z, strict=True)]
     assert any("stands still for 2" in text and "from t = 4 s on" in text for text in _notices(tmp_path, shaking))
     with pytest.raises(
-        DataError, match=r":4002: the record pauses for 2\.001 s, from 3\.999 to 6 s; pauses are not filled"
+        DataError, match=r":4002: the record has a gap of 2\.001 s, from 3\.999 to 6 s, and gaps are not filled"
     ):
         read_plain(write(tmp_path, [HEADER, *shaking[:4000], *shaking[6000:]]))
     drifting = [f"{a:.3f},{1e-3 * np.sin(30.0 * a) + 3e-4 * a:.9e}" for a in t]

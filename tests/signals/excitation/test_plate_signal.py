@@ -40,12 +40,16 @@ def test_arrays_are_copies_that_nobody_can_change():
 @pytest.mark.parametrize(
     ("time", "displacement", "message"),
     [
-        (TIME, {}, "the signal drives no wheel; set a displacement for one of fr, fl"),
+        (TIME, {}, "the signal moves no wheel; set the displacement of at least one of fr, fl"),
         (TIME, {"xx": np.zeros(1001)}, "unknown wheel 'xx'; must be one of fr, fl, rr, rl"),
         (TIME, {"fr": np.zeros(1000)}, "displacement of fr has shape (1000,), time has (1001,)"),
-        (TIME, {"fr": np.where(TIME == 0.5, np.nan, 0.0)}, "displacement of fr is nan at sample 500; allowed: finite"),
-        (TIME[:31], {"fr": np.zeros(31)}, "time has shape (31,); needed is one axis with at least 32 samples"),
-        (TIME + 1.0, {"fr": np.zeros(1001)}, "time must be finite, begin at 0 s and increase; it begins at 1.0 s"),
+        (
+            TIME,
+            {"fr": np.where(TIME == 0.5, np.nan, 0.0)},
+            ("displacement of fr is nan at sample 500; must be a finite number"),
+        ),
+        (TIME[:31], {"fr": np.zeros(31)}, "time has shape (31,); must be (n,) with at least 32 samples"),
+        (TIME + 1.0, {"fr": np.zeros(1001)}, "the time begins at 1.0 s; it must begin at 0 s, increase and be finite"),
         (TIME**2, {"fr": np.zeros(1001)}, "resample the signal to a uniform grid first"),
     ],
 )

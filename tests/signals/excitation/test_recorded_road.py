@@ -98,7 +98,7 @@ def test_the_speed_may_be_slower_and_in_another_unit(tmp_path):
         drive(wrong).signal()
     second = drive(wrong, choice=Choice(units={"speed": "km/h"})).signal()
     np.testing.assert_allclose(second.displacement["rl"], first.displacement["rl"], atol=1e-9)
-    with pytest.raises(DataError, match="is its unit right"):
+    with pytest.raises(DataError, match="is the unit right"):
         drive(recorded(tmp_path / "c.csv", factor=10.0)).signal()
 
 
@@ -134,7 +134,7 @@ def test_what_is_no_speed_is_refused(tmp_path):
         drive(path, channel="left").signal()
     with pytest.raises(ConfigurationError, match="--duration 30 s: must be at most the length of the record"):
         drive(path, duration=30.0).signal()
-    with pytest.raises(ConfigurationError, match="must be left, right, or height for a recorded road"):
+    with pytest.raises(ConfigurationError, match="must be left, right or height for a recorded road"):
         drive(path, choice=Choice(channels={"fr": "left"})).signal()
     options = parser().parse_args(["--road", "C", "--speed", "channel:v"])
     with pytest.raises(ConfigurationError, match="belongs to a recorded road"):
@@ -169,7 +169,7 @@ def test_a_profile_is_driven_to_its_end(tmp_path):
     inner = late > 80.0 / 3.6
     # a cubic spline through points 0.05 m apart, waves of 1.3 m
     assert np.abs(signal.displacement["rr"][inner] - height(late[inner])).max() < 1e-6
-    with pytest.raises(DataError, match=r"the road ends after 50 m, .* set a shorter --duration"):
+    with pytest.raises(DataError, match=r"the road is 50 m long, .* set a shorter --duration"):
         RoadDrive(road=path, speed=80.0, wheels=WHEELS, track=1.5, duration=3.0).signal()
 
 
@@ -238,7 +238,8 @@ def test_a_surface_is_read(tmp_path, form):
     assert [one.name for one in channels] == ["distance", "v = -1.000 m", "v = 0.000 m", "v = 1.000 m"]
     # v goes to the left: the right track would need the missing point
     with pytest.raises(
-        DataError, match=r"the right track, v = -0.750 m, is outside the road at 1 of 9 points, first at u"
+        DataError,
+        match=r"the right wheels, -0.750 m to the left of the reference line, leave the road at 1 of 9 points, first",
     ):
         read_road(path, 1.5)
     grid[4, 0] = 2.0
@@ -257,7 +258,7 @@ def test_a_damaged_surface_is_refused(tmp_path):
         read_surface(path)
     start = whole.index(b"$$$$$$$$\n") + 9
     path.write_bytes(whole[:start] + whole[start + 1 :] + b"\0")
-    with pytest.raises(DataError, match=r"height 3.* m, must be at most 10000 m; .* line ends"):
+    with pytest.raises(DataError, match=r"has a height of 3.* m, must be at most 10000 m; .* line ends"):
         read_road(path, 1.5)
     path.write_bytes(whole.replace(b"$KD_Def", b"$ROAD_CRG_MODS\nSCALE_Z_GRID = 2\n$KD_Def"))
     with pytest.raises(DataError, match=r"ROAD_CRG_MODS\) are not supported"):
@@ -293,8 +294,8 @@ def test_every_damage_is_named_with_the_file(tmp_path, form):
     for share in (0.0, 0.1, 0.5, 0.9):
         refused(whole[: start + 9 + int(share * (len(whole) - start - 9))], "claims|truncated or damaged|damaged")
     # More or fewer rows, sections or a wider step than the header claims.
-    refused(whole.replace(b"REFERENCE_LINE_END_U = 119.5", b"REFERENCE_LINE_END_U = 219.5"), "claims|according to its")
-    refused(whole.replace(b"REFERENCE_LINE_END_U = 119.5", b"REFERENCE_LINE_END_U = 102.5"), "according to its")
+    refused(whole.replace(b"REFERENCE_LINE_END_U = 119.5", b"REFERENCE_LINE_END_U = 219.5"), "claims|its header states")
+    refused(whole.replace(b"REFERENCE_LINE_END_U = 119.5", b"REFERENCE_LINE_END_U = 102.5"), "its header states")
     refused(
         whole.replace(b"D:long section 3,m\n", b"D:long section 3,m\nD:long section 4,m\n"),
         "claims|fewer than the 4 numbers of its header",
@@ -302,15 +303,17 @@ def test_every_damage_is_named_with_the_file(tmp_path, form):
     refused(whole.replace(b"D:long section 3,m\n", b""), "sections|according|more than the 2 numbers of its header")
     refused(whole.replace(b"REFERENCE_LINE_INCREMENT = 0.5", b"REFERENCE_LINE_INCREMENT = 0"), "must be above 0")
     refused(whole.replace(b"LONG_SECTION_V_INCREMENT = 1.0", b"LONG_SECTION_V_INCREMENT = x"), "must be a number")
-    refused(whole.replace(form.encode(), b"XXXX"), "numbers in the format 'XXXX'; must be one of")
+    refused(whole.replace(form.encode(), b"XXXX"), "the numbers have the format 'XXXX'; must be one of")
     # Missing numbers at the edge, which the right wheels would need; a narrow car drives beside them.
     grid[5:9, 0] = np.nan
     crg(path, form, grid)
     refused(
-        path.read_bytes(), r"the right track, v = -0.750 m, is outside the road at 4 of 40 points, first at u = 102.5"
+        path.read_bytes(),
+        r"the right wheels, -0.750 m to the left of the reference line, leave the "
+        r"road at 4 of 40 points, first after 102.5",
     )
     assert np.isfinite(read_surface(path).height(0.5)).all()
-    refused(whole, "outside the road at 40 of 40 points", track=2.4)
+    refused(whole, "leave the road at 40 of 40 points", track=2.4)
 
 
 def erd(path, samples=200, unit="mm", kind=5, count=2):

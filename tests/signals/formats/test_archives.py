@@ -21,7 +21,7 @@ def test_arrays_that_are_no_channels_stay_unread(tmp_path, monkeypatch):
     monkeypatch.setattr(unpacked_size, "MEMORY_LIMIT", 10_000)  # less than the image
     assert [one.name for one in read_record(file).channels] == ["a"]
     np.savez_compressed(file, image=np.zeros((400, 500)))
-    with pytest.raises(DataError, match=r"no array 'time'; found no array of one dimension"):
+    with pytest.raises(DataError, match="the array 'time' is missing; found no array of one dimension"):
         read_record(file)
 
 
@@ -45,7 +45,9 @@ def test_a_cell_beyond_every_sensor(tmp_path):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         for accept in (False, True):
-            with pytest.raises(DataError, match=r"big\.csv:41:2: .* holds '1e200'; allowed are numbers up to 1e\+30"):
+            with pytest.raises(
+                DataError, match=r"big\.csv:41:2: column 'displacement \[m\]' is '1e200', must be a number up to"
+            ):
                 read_signal(file, wheel="fl", accept_implausible=accept)
 
 

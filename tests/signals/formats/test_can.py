@@ -176,8 +176,8 @@ def test_named_values_that_are_no_measured_values_are_missing(tmp_path):
     channels = {one.name: one for one in found.channels}
     np.testing.assert_allclose(channels["Z"].values, [-0.75, np.nan, -1.0, np.nan, -0.65])
     np.testing.assert_array_equal(channels["State"].values, np.ones(5))  # a state is its number
-    assert "IMU.Z: values named 'SNA', read as missing values: 1" in found.notices
-    assert "IMU.Z: values named 'Overrun', read as missing values: 1" in found.notices
+    assert "IMU.Z: values named 'SNA' are read as missing: 1" in found.notices
+    assert "IMU.Z: values named 'Overrun' are read as missing: 1" in found.notices
 
 
 J1939 = f"""VERSION ""
@@ -203,16 +203,18 @@ def test_messages_of_j1939_are_found_by_their_group(tmp_path):
     (speed,) = found.channels
     np.testing.assert_allclose(speed.values, [100.0, np.nan, 200.0])
     assert (speed.name, speed.place) == ("Speed", "EEC 0xCFF0021")
-    assert "EEC.Speed: values above the valid range of J1939, read as missing values: 1" in found.notices
+    assert "EEC.Speed: values above the valid range of J1939 are read as missing: 1" in found.notices
     sent += [Frame(0.02 + 0.01 * n, 1, "Rx", 0x0CFF0022, True, data) for n, data in enumerate(word)]
     sent += [Frame(0.1, 1, "Rx", 0x18EF9933, True, bytes([130]) + bytes(7))]  # to another destination
     sent += [Frame(0.2, 1, "Rx", 0x18FE0133, True, bytes(8))]
     found = decode(tmp_path, J1939, sent)
     assert [one.name for one in found.channels] == ["Speed 0xCFF0021", "Speed 0xCFF0022", "Torque"]
     assert found.channels[2].values.tolist() == [5.0]
-    assert "1 frames of 1 messages are not in car.dbc: 0x18FE0133" in found.notices
+    assert "car.dbc does not describe 1 frames of 1 messages, which are left out: 0x18FE0133" in found.notices
     plain = J1939.replace('BA_ "ProtocolType" "J1939";', "")
-    with pytest.raises(DataError, match="no message of the log"):  # other extended identifiers are exact
+    with pytest.raises(
+        DataError, match="describes none of the messages of the log"
+    ):  # other extended identifiers are exact
         decode(tmp_path, plain, sent)
 
 

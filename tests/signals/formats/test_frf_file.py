@@ -69,17 +69,23 @@ def test_selection_by_channel_band_and_spacing(tmp_path):
     ("lines", "message"),
     [
         ([HEADER, *ROWS[:3]], "3 rows of numbers"),
-        (["# only a comment"], "only comments; needed are the columns 'frequency"),
-        (["f,a_magnitude,a_phase [deg],a_coherence", *ROWS], r"own\.csv:1: no column 'frequency \[Hz\]'"),
+        (["# only a comment"], "only comments; must have the columns 'frequency"),
+        (["f,a_magnitude,a_phase [deg],a_coherence", *ROWS], r"own\.csv:1: column 'frequency \[Hz\]' is missing"),
         (["frequency [Hz],a_magnitude,a_phase [rad],a_coherence", *ROWS], r"unknown column 'a_phase \[rad\]'"),
         (["frequency [Hz],a_magnitude,a_phase [deg],b_coherence", *ROWS], r"no column 'a_coherence'"),
         (["frequency [Hz],a_magnitude,a_phase [deg],a_magnitude", *ROWS], r"'a_magnitude' appears twice"),
         (["frequency [Hz]", *[row.split(",")[0] for row in ROWS]], "no channel"),
-        (["# note", HEADER, *ROWS, "20,1,2"], r"own\.csv:13:3: the last row has 3 cells, the header 4"),
-        ([HEADER, *ROWS, "20,1,2,nan"], r"own\.csv:12:4: column 'a_coherence' holds 'nan'; .*, or an empty cell"),
-        ([HEADER, *ROWS, "20,inf,2,0.5"], r"own\.csv:12:2: column 'a_magnitude' holds 'inf'"),
-        ([HEADER, *ROWS, "20,1,x,0.5"], r"own\.csv:12:3: column 'a_phase \[deg\]' holds 'x'"),
-        ([HEADER, *ROWS, ",1,2,0.5"], r"own\.csv:12:1: column 'frequency \[Hz\]' holds ''; a frequency is never"),
+        (["# note", HEADER, *ROWS, "20,1,2"], r"own\.csv:13:3: the last row has 3 cells, but the header 4; the"),
+        (
+            [HEADER, *ROWS, "20,1,2,nan"],
+            r"own\.csv:12:4: column 'a_coherence' is 'nan', must be a finite number, or empty",
+        ),
+        ([HEADER, *ROWS, "20,inf,2,0.5"], r"own\.csv:12:2: column 'a_magnitude' is 'inf', must be"),
+        ([HEADER, *ROWS, "20,1,x,0.5"], r"own\.csv:12:3: column 'a_phase \[deg\]' is 'x', must be"),
+        (
+            [HEADER, *ROWS, ",1,2,0.5"],
+            r"own\.csv:12:1: column 'frequency \[Hz\]' is ''; a frequency is never interpolated",
+        ),
         ([HEADER, *ROWS, "20,1,2,1.5"], r"own\.csv:12: column 'a_coherence' has the value 1\.5, must be 0 to 1"),
         ([HEADER, *ROWS, "20,-1,2,0.5"], r"own\.csv:12: column 'a_magnitude' has the value -1, must be 0 and above"),
         (
@@ -95,9 +101,9 @@ def test_bad_files_are_refused_by_place(tmp_path, lines, message):
 
 
 def test_what_is_no_text_file_is_refused(tmp_path):
-    with pytest.raises(ConfigurationError, match=r"own\.csv: no such file"):
+    with pytest.raises(ConfigurationError, match=r"own\.csv: the file does not"):
         read_frf(tmp_path / "own.csv")
     path = tmp_path / "own.csv"
     path.write_bytes(b"\xff\xfe\x00\x80")
-    with pytest.raises(DataError, match="the file is UTF-16; allowed is UTF-8"):
+    with pytest.raises(DataError, match="the file is UTF-16, must be UTF-8"):
         read_frf(path)

@@ -69,9 +69,9 @@ def test_a_logger_file_is_inspected(tmp_path, capsys):
 def test_a_logger_file_drives_the_plate_with_four_options(tmp_path):
     path = tmp_path / "logger.txt"
     time, _ = logger(path, pause=2.5, drift=4e-3, seconds=16.0)
-    with pytest.raises(DataError, match=r"9 channels: 1 'Shaker FR'.*--channel fl=NAME"):
+    with pytest.raises(DataError, match=r"9 channels is the plate\? set --channel fl=NAME with"):
         read_signal(path, choice=choice("--detrend"))
-    pause = r"pauses for 2\.5\d* s, .* pauses are not filled; .* \(--to 107\.99\d+\) or after it \(--from 110\.5\)"
+    pause = r"gap of 2\.5\d* s, .* gaps are not filled; .* \(--to 107\.99\d+\) or after it \(--from 110\.5\)"
     with pytest.raises(DataError, match=pause):
         read_signal(path, choice=choice("--channel", "fr=Shaker*"))
     found = read_signal(path, choice=choice("--channel", "fr=Shaker FR", "--from", "101", "--to", "107.9", "--detrend"))
@@ -101,10 +101,10 @@ def test_accelerations_and_velocities_are_integrated(tmp_path, order):
     path, unit = tmp_path / "plate.csv", {1: "m/s", 2: "m/s²"}[order]
     rows = "\n".join(f"{t:.3f}\t{v:.9e}" for t, v in zip(time, np.asarray(derived), strict=True))
     path.write_text(f"time [s]\tPlate ({unit})\n{rows}\n", encoding="utf-8")
-    with pytest.raises(DataError, match=r"the plate needs a displacement; set --highpass HZ"):
+    with pytest.raises(DataError, match="the plate needs a displacement; to integrate it, set --highpass"):
         read_signal(path, choice=choice("--channel", "fr=Plate"))
     found = read_signal(path, choice=choice("--channel", "fr=Plate", "--highpass", str(corner)))
-    assert "integrated in the frequency domain, high-pass 0.5 Hz on request" in " ".join(found.notices)
+    assert "integrated in the frequency domain, high-pass 0.5 Hz, as requested" in " ".join(found.notices)
     values = found.displacement["fr"][-time.size :]
     # What the filter makes of the two ends rings for some periods of its corner.
     validated(
@@ -118,13 +118,16 @@ def test_accelerations_and_velocities_are_integrated(tmp_path, order):
     [
         ("time [s],z\n" + "0.01,1.5\n" * 3, "no unit; set --unit fr=UNIT"),
         ("time [s],z [furlong]\n" + "0.01,1.5\n" * 3, "the unknown unit 'furlong'; set --unit fr=UNIT"),
-        ("time,z [mm]\n" + "0.01,1.5\n" * 3, "has no times; set --rate HZ, or --channel time=NAME"),
+        ("time,z [mm]\n" + "0.01,1.5\n" * 3, "has no times; set --rate HZ, or the channel of the times with"),
         ("time [s],z [mm]\n" + "0.5,1.5\n" * 3, "times must increase"),
-        ("time [s],z [mm]\n0,0,1,5\n0,1,1,5\n0,2,1,5\n0,3,1,6\n", "1,5 is ambiguous"),
-        ("time [s],z [mm]\n0.1,1.5\n0.2,1.5\n0.3,1.5\n0.4,1.5\n0.5,1.5\n0.6,x\n", "column 'z' holds 'x'"),
+        ("time [s],z [mm]\n0,0,1,5\n0,1,1,5\n0,2,1,5\n0,3,1,6\n", "are the commas decimal commas"),
+        ("time [s],z [mm]\n0.1,1.5\n0.2,1.5\n0.3,1.5\n0.4,1.5\n0.5,1.5\n0.6,x\n", "column 'z' is 'x', must be"),
         ("time [s],z [mm]\n0.1,1.5\n0.2,1.5\n0.3,1.5\n0.4,1.5\n0.5,1.5\n0.6\n", "the file is truncated"),
         ("time [s];z [mm]\n0,1;1.000,5\n0,2;1,5\n0,3;1,5\n", "no table of numbers|separate thousands"),
-        ("time [s],z [mm]\n0.1,x\n" + "0.2,1.5\n" * 6, r"log.csv:2: a mixture of names and numbers: '0.1', 'x'"),
+        (
+            "time [s],z [mm]\n0.1,x\n" + "0.2,1.5\n" * 6,
+            r"log\.csv:2: the line mixes names and numbers: '0\.1', 'x'; repair",
+        ),
         ("nothing\nhere\n", "no table of numbers"),
     ],
 )
@@ -158,7 +161,10 @@ def test_units_and_rates_of_the_request_are_said(tmp_path):
         path, choice=choice("--channel", "fr=1", "--unit", "um", "--rate", "1024"), accept_implausible=True
     )
     said = " ".join(found.notices)
-    assert "unit [um] on request; the file has [mm]" in said and "rate 1024 Hz on request; the file has 2048 Hz" in said
+    assert (
+        "unit is [um], as requested; the file says" in said
+        and "rate 1024 Hz, as requested; the file has 2048 Hz" in said
+    )
     assert np.max(found.displacement["fr"]) == pytest.approx(1e-3 * z.max(), rel=1e-3)
     assert found.timestep == 1.0 / 1024.0
 
@@ -168,7 +174,7 @@ def test_a_chosen_channel_is_judged_by_its_own_unit_and_time(tmp_path):
     rows = (f"{t:.7f},{50.0 * np.sin(8.0 * np.pi * t):.6f}\n" for t in time)
     path.write_text("t,plate\n" + "".join(rows))
     assert [one.remark for one in read_record(path).channels] == [
-        "time column without a known unit: set --rate HZ, or --channel time=t --unit time=s",
+        "the time column has no known unit; set --rate HZ, or --channel time=t --unit time=s",
         "",
     ]
     told = ("--channel", "time=t", "--unit", "time=s", "--channel", "plate", "--unit")
@@ -206,7 +212,7 @@ def test_comfort_takes_any_channels(tmp_path, capsys):
         )  # fmt: skip
     assert any("z: channel 9 'Acc 8' [g]" in text for text in found["notices"])
     for wrong, said in (
-        (["--channel", "time=1"], "no axis is assigned"),
+        (["--channel", "time=1"], "which channels are the axes"),
         ([*picks[:4], "--channel", "z=1"], "is a displacement, must be an acceleration"),
     ):
         assert comfort(["--input", str(path), *wrong]) == 3

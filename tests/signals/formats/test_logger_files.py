@@ -92,7 +92,7 @@ def test_a_line_of_units_alone_names_no_columns(tmp_path):
     found = read(tmp_path, "[s],[mm],(m/(s^2))\n" + "".join(f"0.0{n},{n}.5,-{n}.5\n" for n in range(9)))
     assert [(one.name, one.unit) for one in found.channels] == [("column 1", "s"), ("column 2", "mm"),
                                                                 ("column 3", "m/(s^2)")]  # fmt: skip
-    assert "the columns are numbered" in " ".join(found.notices)
+    assert "the columns are named by their" in " ".join(found.notices)
 
 
 def test_units_in_brackets_leave_the_name():
@@ -152,7 +152,7 @@ def test_starts_programs_and_what_is_left_out(tmp_path):
     assert torque.start == "21-Aug-2012 18:20:20.500" and "ignored: 'GPS Time'" in " ".join(torque.notices)
     assert torque.channels[-1].si_unit == ""  # g/s is a flow of grams, no acceleration over time
     lvm = read(tmp_path, LVM, "x.lvm")
-    assert lvm.start == "2013/02/19 09:51:40,5" and "comments of rows are ignored" in lvm.notices
+    assert lvm.start == "2013/02/19 09:51:40,5" and "comments behind rows are ignored" in lvm.notices
 
 
 @pytest.mark.parametrize(
@@ -191,17 +191,17 @@ def test_packets_of_labview_without_times_between_them_have_no_rate(tmp_path):
     (one, _) = read(tmp_path, LVM.replace("Samples\t6\t6", "Samples\t3\t3"), "x.lvm").channels
     assert one.rate is None and "packets of 3 samples" in one.remark and "set --rate 25600" in one.remark
     (one, _) = read(tmp_path, LVM.replace("3,906250E-5", "0,000977"), "x.lvm").channels
-    assert one.rate == 1024.0 and "taken as a clock of 1024 Hz" in one.remark
+    assert one.rate == 1024.0 and "the sampling rate is assumed to" in one.remark
     (one, _) = read(tmp_path, LVM.replace("3,906250E-5", "0,000500"), "x.lvm").channels
-    assert one.rate == 2000.0 and "uncertainty of the rate 2000 Hz 0.1 %" in one.remark
+    assert one.rate == 2000.0 and "the sampling rate is 2000 Hz +- 0.1 %" in one.remark
 
 
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
         ("Channels\t2", "Channels\t5", "2 names for 5 channels"),
-        ("X_Columns\tNo", "X_Columns\tTwo", "must be Tab or Comma, and No, One or Multi"),
-        ("0,500000", "0.500000", "decimal points and commas"),
+        ("X_Columns\tNo", "X_Columns\tTwo", "must be Tab or Comma; X_Columns is 'Two', must be"),
+        ("0,500000", "0.500000", "decimal points and decimal commas"),
         ("***End_of_Header***\t\t\t", "", "no rows of numbers"),
         ("1,000000\t3,000000", "1,000000", "row has 2 cells for 3 columns"),
     ],
@@ -232,8 +232,8 @@ def test_vbox_over_midnight(tmp_path):
     [
         ("235959.90", "237959.90", r"x.vbo:26: time 237959.9"),
         ("235959.90", "inf", r"x.vbo:26: time inf"),
-        ("[data]", "[dat]", r"0 rows; needed are \[column names\] and \[data\]"),
-        (" +0.1000 +1.00", "", "row has 7 cells, the header 9"),
+        ("[data]", "[dat]", r"0 rows; must have the sections \[column names\] and"),
+        (" +0.1000 +1.00", "", "row has 7 cells, but the header 9"),
     ],
 )
 def test_damaged_vbox_files_are_refused(tmp_path, old, new, said):
@@ -245,4 +245,4 @@ def test_damaged_vbox_files_are_refused(tmp_path, old, new, said):
 def test_units_of_vbox_that_fit_no_columns_are_not_used(tmp_path):
     found = read(tmp_path, VBO.replace("g\ndeg/s\n", "g\n\ndeg/s\nV\n").replace("long accel g", "x"), "x.vbo")
     assert next(one for one in found.channels if one.name == "Yaw_Rate").unit == ""
-    assert "the assignment is ambiguous, no unit is used: g, -, deg/s, V" in " ".join(found.notices)
+    assert "cannot be assigned, so no unit is used: g, -, deg/s, V; set --unit" in " ".join(found.notices)

@@ -36,7 +36,7 @@ def test_factor_and_offset_of_a_netcdf_file():
         "File readers", "weighted RMS along z of a packed netCDF array", found.weighted_rms["z"], 0.2696,
         abs=5e-5, unit="m/s2", source="second derivation: the record from which the array was packed",
     )  # fmt: skip
-    assert any("unpacked by the factor 0.05 and the offset 0" in text for text in found.notices)
+    assert any("integers are converted by its factor 0.05 and offset 0" in text for text in found.notices)
 
 
 @pytest.mark.parametrize(
@@ -73,14 +73,14 @@ def test_attributes_that_pack(tmp_path, values, attributes, expected):
 )  # fmt: skip
 def test_a_factor_of_unknown_sense_takes_the_unit_away(tmp_path, attributes):
     channel, _ = array(tmp_path, **attributes)
-    assert (channel.unit, channel.values[0]) == ("", -200.0) and "the unit 'm/s2' is not taken" in channel.remark
-    with pytest.raises(DataError, match=r"z has .*the unit 'm/s2' is not taken; set --unit z=UNIT|is not taken"):
+    assert (channel.unit, channel.values[0]) == ("", -200.0) and "the unit 'm/s2' is ignored" in channel.remark
+    with pytest.raises(DataError, match=r"z has .*the unit 'm/s2' is ignored; set --unit z=UNIT|is ignored"):
         choose(read_record(tmp_path / "packed.h5"), Choice(channels={"z": "z"}, rate=100.0))
 
 
 def test_missing_values_are_counted_and_not_evaluated(tmp_path):
     channel, notices = array(tmp_path, _FillValue=np.int16(300))
-    assert "array 'z': 1 values are missing by its attributes" in notices
+    assert "array 'z': 1 values are marked as missing" in notices
     with pytest.raises(DataError, match="1 missing values"):
         choose(read_record(tmp_path / "packed.h5"), Choice(channels={"z": "z"}, rate=100.0))
     assert channel.values.size == 6

@@ -50,21 +50,25 @@ def test_comfort_reads_a_place_of_a_run(run, tmp_path, capsys):
         assert found[axis]["weighted_rms"] == pytest.approx(expected[axis]["weighted_rms"], rel=1e-7)
     assert main(["--input", str(run)]) == 3
     said = capsys.readouterr().err
-    assert "no column x; found " in said
+    assert "time.npz: column x is missing" in said
     assert "set --channel to one of seat_rail" in said
     assert main(["--input", str(run), "--channel", "roof"]) == 3
-    assert "no column roof_acc_x" in capsys.readouterr().err
+    assert "column roof_acc_x is missing" in capsys.readouterr().err
 
 
 def test_arrays_that_are_no_record_are_refused(tmp_path):
     path = tmp_path / "own.npz"
-    with pytest.raises(ConfigurationError, match=r"own\.npz: no such file"):
+    with pytest.raises(ConfigurationError, match=r"own\.npz: the file does not"):
         read_columns(path)
     path.write_bytes(b"PK no archive")
     with pytest.raises(DataError, match=r"own\.npz: cannot be read as npz"):
         read_columns(path)
     np.savez(path, x=SINE)
-    with pytest.raises(DataError, match=r"own\.npz: no array 'time'; found x; needed are 'time"):
+    with pytest.raises(
+        DataError,
+        match=r"own\.npz: the array 'time' is missing; found x; store time "
+        r"and each channel as a vector: 'time",
+    ):
         read_columns(path)
     np.savez(path, time=TIME, x=SINE[:-1])
     with pytest.raises(DataError, match=r"own\.npz: array 'x' has 3999 samples for 4000 times"):
@@ -87,7 +91,7 @@ def test_the_shaker_reads_the_plates_of_a_run(run):
 def test_arrays_beyond_the_memory_are_refused_before_they_are_unpacked(tmp_path, monkeypatch):
     np.savez_compressed(tmp_path / "own.npz", time=TIME, x=0.0 * TIME)  # zeros pack a thousand times smaller
     monkeypatch.setattr("vehicle.signals.formats.unpacked_size.MEMORY_LIMIT", 60_000)
-    with pytest.raises(DataError, match=r"own\.npz: its data need .* GiB unpacked, must be at most"):
+    with pytest.raises(DataError, match=r"own\.npz: unpacked, its data need .* GiB, must be at most"):
         read_columns(tmp_path / "own.npz")
 
 

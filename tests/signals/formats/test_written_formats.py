@@ -58,7 +58,7 @@ def test_a_universal_file_comes_back(tmp_path):
     assert speed.unit == "m/s"
     np.testing.assert_allclose(speed.values, 1e-3 * SINE, rtol=1e-15)
     gap = Channel(name="gap", values=np.where(TIME > 0.5, np.nan, SINE), axis=TIME)
-    with pytest.raises(DataError, match="gap has a missing value, not supported by UFF"):
+    with pytest.raises(DataError, match="gap has a missing value, which UFF cannot store; leave"):
         write(path, (gap,), "test")
 
 

@@ -121,5 +121,5 @@ def test_an_absurd_value_is_refused_for_what_it_is(tmp_path, capsys, command, ce
     assert importlib.import_module(f"vehicle.commands.{command}").main(arguments) == (0 if command == "inspect" else 3)
     shown = capsys.readouterr()
     if command == "comfort":
-        assert f"z: {text} at 2 s is no measured value (limit 1e+30)" in shown.err
+        assert f"z: {text} at 2 s is too large for a measured value, must be at most 1e+30" in shown.err
     assert "missing" not in shown.out + shown.err

@@ -55,7 +55,7 @@ def test_starts_of_tdms_are_read_and_the_channels_cut():
         source="second derivation: the record from which both channels were made",
     )  # fmt: skip
     assert (found.record.start, found.record.time.size, found.start) == (0.25, 2975, 0.0)
-    assert any("cut to their common span, 0.25 to 29.99 s" in text for text in found.notices)
+    assert any("cut to the time that all have, 0.25 to 29.99 s" in text for text in found.notices)
     content = contents(read_record(path))
     assert [one["start_s"] for one in content["channels"]] == [0.0, 0.25]
     assert any("begin at 0 to 0.25 s and end at 29.99 to 30.24 s" in text for text in content["notices"])
@@ -75,7 +75,7 @@ def test_shaker_cuts_two_plates_to_their_common_span(tmp_path, capsys):
     picks = [word for name in starts for word in ("--channel", f"{name[-2:].lower()}={name}")]
     output = tmp_path / "out"
     assert shaker(["--input", str(path), *picks, "--output", str(output), "--engine", "reduced", "--no-figures"]) == 0
-    assert "cut to their common span, 0.25 to 2.998 s" in capsys.readouterr().out
+    assert "cut to the time that all have, 0.25 to 2.998 s" in capsys.readouterr().out
     with np.load(output / "time.npz") as run:
         names = {name.split(" [")[0]: name for name in run.files}
         plates = [run[names[f"plate_{wheel}_displacement"]] for wheel in ("fr", "fl")]
@@ -88,7 +88,7 @@ def test_samples_that_coincide_are_cut_and_said():
     assert (chosen.time[0], chosen.time[-1]) == (3.5, pytest.approx(11.99))
     for values in chosen.values.values():
         np.testing.assert_allclose(values, motion(chosen.time), atol=1e-12)
-    assert "x 3 to 12.99 s, y 3.5 to 13.49 s, z 2 to 11.99 s): cut to their common span, 3.5 to 11.99 s" in " ".join(chosen.notices)  # noqa: E501  # fmt: skip
+    assert "x 3 to 12.99 s, y 3.5 to 13.49 s, z 2 to 11.99 s), so they are cut to the time that all have, 3.5 to 11.99 s" in " ".join(chosen.notices)  # noqa: E501  # fmt: skip
 
 
 @pytest.mark.parametrize(("start", "rate"), [(3.0037, 100.0), (3.0, 250.0), (2.5003, 40.0)])
@@ -113,7 +113,9 @@ def test_samples_at_other_times_need_resampling_and_get_it(tmp_path, start, rate
 
 def test_channels_of_other_hours_have_no_common_span():
     record = measurement(channel("a", 0.0), channel("b", 3600.0))
-    with pytest.raises(DataError, match=r"no common span of time \(x 0 to 9.99 s, y 3600 to 3609.99 s\)"):
+    with pytest.raises(
+        DataError, match=r"in common \(x 0 to 9\.99 s, y 3600 to 3609\.99 s\); choose channels recorded"
+    ):
         choose(record, Choice(channels={"x": "a", "y": "b"}))
 
 
@@ -190,7 +192,7 @@ def test_masters_that_are_no_time(tmp_path, kind, unit, quantity):
     master(path, kind, unit, step=step)
     found = read_record(path)
     over, heights = found.channels
-    assert over.unit == unit and heights.axis is None and f"is a {quantity}: no times" in heights.remark
+    assert over.unit == unit and heights.axis is None and f"has the quantity {quantity}, not time" in heights.remark
     np.testing.assert_allclose(over.values, step * np.arange(200))
     if quantity != "index":  # a count of samples may get a rate, an angle may not
         with pytest.raises(DataError, match="must be a time history"):
@@ -216,8 +218,8 @@ def test_axes_of_tdms_that_are_no_time(tmp_path):
     time, milli, lines, road, angle = read_record(path).channels
     assert time.rate == 2.0 and milli.rate == pytest.approx(2000.0)
     assert lines.kind == "frequency" and lines.axis is not None and lines.axis[1] == 0.5
-    assert road.axis is None and "in 'm': no times" in road.remark
-    assert angle.axis is None and "in 'deg': no times" in angle.remark
+    assert road.axis is None and "in 'm', not a time" in road.remark
+    assert angle.axis is None and "in 'deg', not a time" in angle.remark
 
 
 def test_a_scaling_of_tdms_is_applied_or_takes_the_unit_away(tmp_path):
@@ -237,11 +239,11 @@ def test_a_scaling_of_tdms_is_applied_or_takes_the_unit_away(tmp_path):
     linear, raw = read_record(path).channels
     np.testing.assert_allclose(linear.values, 1.0 + 0.05 * np.arange(5))
     assert (linear.unit, linear.remark, raw.unit) == ("m/s^2", "", "")
-    assert "scaling is not known (Unsupported scale type: Reciprocal): the unit 'm/s^2' is not taken" in raw.remark
+    assert "scaling (Unsupported scale type: Reciprocal), so the unit 'm/s^2' is ignored" in raw.remark
 
 
 def test_an_axis_of_lvm_that_is_no_time(tmp_path):
     path = tmp_path / "record.lvm"
     path.write_text(LVM.replace("X_Dimension\tTime\tTime", "X_Dimension\tDistance\tTime"), newline="\n")
     over, time = read_record(path).channels
-    assert over.axis is None and over.remark == "the axis is a distance: no times" and time.rate == 25600.0
+    assert over.axis is None and over.remark == "the axis is a distance, not a time" and time.rate == 25600.0

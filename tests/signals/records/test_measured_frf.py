@@ -48,7 +48,7 @@ def test_all_motions_over_motions_become_accelerations_over_displacements(tmp_pa
     [
         ("(m/s2)/N", "a response to a force, but the inputs of the model are plate displacements"),
         ("g/N", "a response to a force"),
-        ("V/m", "must be a motion of a point over a motion of the plate"),
+        ("V/m", "must be a motion of a point divided by a motion of the plate, such"),
         ("", "has no unit; set --unit knuckle_fr_acc_z=UNIT"),
         ("qq", "has the unknown unit 'qq'"),
     ],
@@ -103,7 +103,7 @@ def test_responses_over_unequal_lines_share_their_union(tmp_path):
     found, said = measured_frfs(both, {NAME: "H", "engine_acc_z": "K"}, Choice())
     assert found.frequency.size == LINES.size and np.isnan(found.response[1, :10]).all()
     np.testing.assert_array_equal(found.response[1, 10:], TRUTH[10:])
-    assert "engine_acc_z: no coherence in the file; all lines have equal weight" in said
+    assert "engine_acc_z: the file has no coherence, so all lines have equal weight" in said
 
 
 def test_time_histories_give_the_response_of_the_system(tmp_path):

@@ -39,7 +39,10 @@ def test_channels_are_found_and_converted(tmp_path):
 def test_a_file_without_a_header_has_usual_columns_unless_they_are_named(tmp_path):
     path = write(tmp_path / "12mm0x5Hz1x5A.txt", head="", columns=(0, 1, 3))
     usual = read_test(path)
-    assert any("no header: columns taken as time [s], displacement [mm], force [N]" in text for text in usual.notices)
+    assert any(
+        ("the file has no header; the columns are read as time [s], displacement [mm], force [N]") in text
+        for text in usual.notices
+    )
     channels = {"time": "1", "displacement": "2", "force": "3"}
     choice = Choice(channels=channels, units={"time": "s", "displacement": "mm", "force": "kN"})
     test = read_test(path, choice, pattern="*Hz{current}A")
@@ -66,7 +69,7 @@ def test_the_frequency_of_the_notice_has_that_error(tmp_path):
 
 def test_a_velocity_that_lags_is_replaced(tmp_path):
     test = read_test(write(tmp_path / "a.csv", late=0.003))
-    assert any("which is used; it is 3 ms late" in text for text in test.notices)
+    assert any("which is used; the measured velocity is 3 ms late" in text for text in test.notices)
     reference = read_test(write(tmp_path / "b.csv"))
     assert not any("derivative" in text for text in reference.notices)
     assert np.max(np.abs(test.velocity - reference.velocity)[test.settled]) < 1e-3 * np.max(reference.velocity)
@@ -90,6 +93,6 @@ def test_conditions(tmp_path):
     assert [dict(key)["temperature"] for key in by_conditions([typed, other, typed])] == [5.0, 20.0]
     assert [len(group) for group in by_conditions([typed, other, typed]).values()] == [1, 2]
     for wrong, said in (({"conditions": {"current": "high"}}, "must be a number, or channel:NAME"),
-                        ({"pattern": "*Hz{current}A"}, "does not match a; set the name of the file")):  # fmt: skip
+                        ({"pattern": "*Hz{current}A"}, "does not match a; write the file name")):  # fmt: skip
         with pytest.raises(ConfigurationError, match=said):
             read_test(path, **wrong)

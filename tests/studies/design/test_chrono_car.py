@@ -207,7 +207,7 @@ def test_the_command_writes_the_car_and_prints_what_is_left_out(tmp_path, capsys
     assert checks["checks"]["ride_frequency_rear"]["value"] == pytest.approx(1.4, rel=1e-2)
     assert any("left out" in note for note in checks["notes"])
     assert main(["bad", "--from", f"chrono:{files / 'strut_car.json'}"]) == 2
-    assert "names no tyre; add --chrono-tyre FILE.json" in capsys.readouterr().err
+    assert "states no tyre; add the file of a Chrono tyre" in capsys.readouterr().err
     assert main(["bad", "--from", "sedan", "--chrono-tyre", "x.json"]) == 2
     assert "--chrono-tyre: belongs to --from chrono:" in capsys.readouterr().err
 

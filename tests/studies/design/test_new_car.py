@@ -175,19 +175,19 @@ def test_the_command_line_takes_precedence_over_the_file(tmp_path):
     [
         (
             "--kerb-mass 120",
-            "--kerb-mass: parts of sedan scaled by 0.0726 are those of no car: engine.parts.engine.mass",
+            "--kerb-mass: parts of sedan, scaled by 0.0726, are outside the range of cars: engine.parts.engine.mass",
         ),
         ("--kerb-mass 1500 --front-axle-load 1800", "--front-axle-load: .* must be inside the wheelbase of 2.757"),
         ("--cog-x 3", "--cog-x: the centre of gravity would be 3.000 m behind the front axle"),
         ("--kerb-mass 1500 --front-axle-load 800 --rear-axle-load 800", "together 1600 kg, must be the kerb mass"),
         (
             "--ride-frequency-front 0.4",
-            "0.4 Hz: cannot be reached; reachable are 0.78.* to 3.4.* Hz, with front.main_spring",
+            "0.4 Hz: cannot be reached, must be 0.78.* to 3.4.* Hz, with front.main_spring",
         ),
         ("--track-front 0.8", "--track-front 0.8 m: front.hardpoints.tie_inner would be 13 mm beyond the middle"),
         ("--roll-inertia 200", "the body would have I.*check --yaw-inertia"),
         ("--wheel-hop-front 80", "--wheel-hop-front: found 80.0 Hz, must be at most 30.0"),
-        ("--pitch-frequency 2 --pitch-inertia 3000", "either gives the other; leave one of the two out"),
+        ("--pitch-frequency 2 --pitch-inertia 3000", "each follows from the other; leave one of the two out"),
         (
             "--tyre-size 205-55-16",
             "--tyre-size '205-55-16': not the size of a radial tyre; write width/height R rim, as 205/55R16",
@@ -258,7 +258,7 @@ def test_survey_inertia_is_that_of_the_whole_car(surveyed):
 
 
 def test_contradictions_are_found_before_any_computation():
-    with pytest.raises(ConfigurationError, match="the curve is the damping"):
+    with pytest.raises(ConfigurationError, match="the curve sets the damping"):
         stated_numbers(None, {"damping_ratio_front": 0.3, "damper_curve_front": "a.csv"})
-    with pytest.raises(ConfigurationError, match="nearest known name is kerb_mass"):
+    with pytest.raises(ConfigurationError, match="most similar known name is kerb_mass"):
         stated_numbers(None, {"kerb_mas": 3.0})

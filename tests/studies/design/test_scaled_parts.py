@@ -64,13 +64,15 @@ def test_stated_numbers_precede_those_of_the_class():
     stated = StatedNumbers(car_class="small", kerb_mass=1050.0, front_axle_load=640.0)
     values = {check.name: check.value for check in new_car("one", "sedan", stated).checks}
     assert values["kerb_mass"] == pytest.approx(1050.0) and values["front_axle_load"] == pytest.approx(640.0, rel=1e-3)
-    with pytest.raises(ConfigurationError, match="--car-class: found 'bus', must be one of small, sedan, van"):
+    with pytest.raises(ConfigurationError, match="--car-class 'bus': must be one of small, sedan, van"):
         new_car("one", "sedan", StatedNumbers(car_class="bus"))
 
 
 def test_a_template_or_a_class_is_needed(tmp_path, capsys):
     assert main([str(tmp_path / "mine"), "--kerb-mass", "1000"]) == 2
-    assert "--from: missing; name a template, as --from sedan, or state --car-class" in capsys.readouterr().err
+    assert (
+        "--from is missing; give the car to start from, for example --from sedan, or a --car-class"
+    ) in capsys.readouterr().err
 
 
 def test_an_unusual_figure_of_the_template_is_named():
@@ -92,9 +94,9 @@ def test_a_refused_hop_says_what_can_be_reached():
     with pytest.raises(ConfigurationError) as caught:
         new_car("one", "sedan", StatedNumbers(wheel_hop_rear=25.0))
     found = re.match(
-        r"--wheel-hop-rear 25 Hz: cannot be reached; reachable are ([0-9.]+) to ([0-9.]+) Hz, with "
+        r"--wheel-hop-rear 25 Hz: cannot be reached, must be ([0-9.]+) to ([0-9.]+) Hz, with "
         r"rear.bushings.tyre.stiffness.z from ([0-9.e+]+) to ([0-9.e+]+) N/m \(static deflection of 50 to 6 mm\)\. "
-        r"Lighter wheels and brakes raise it, heavier ones lower it",
+        r"Lighter wheels and brakes raise it, heavier wheels lower it",
         str(caught.value),
     )
     assert found, str(caught.value)

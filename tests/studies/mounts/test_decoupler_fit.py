@@ -178,7 +178,7 @@ def test_a_decoupler_needs_two_amplitudes(points):
     large = amplitude == AMPLITUDE[2]
     data = MeasuredStiffness(frequency=frequency[large], amplitude=amplitude[large], stiffness=exact[large])
     assert [fit.law.name for fit in fit_mount(data)] == ["hydromount", "rubber"]
-    with pytest.raises(DataError, match="law 'decoupler': found points at one amplitude"):
+    with pytest.raises(DataError, match="law 'decoupler': found points at a single amplitude"):
         fit_mount(data, ["decoupler"])
     with pytest.raises(ConfigurationError, match="law 'gap': must be rubber, hydromount, decoupler"):
         fit_mount(data, ["gap"])

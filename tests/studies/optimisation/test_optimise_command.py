@@ -100,7 +100,7 @@ def test_an_interrupted_search_is_continued(road, searched, tmp_path, capsys):
     (folder / "cars.csv").write_text("\n".join(lines[:37]) + "\n37,5,2", encoding="utf-8")  # cut off
     more = [*TRADE, "--cars", "40", "--limit", "travel<=0.05", "--quiet"]
     assert main(arguments(road, folder, *more)) == 2
-    assert "holds finished runs; --resume goes on" in capsys.readouterr().err
+    assert "holds finished runs; continue them with --resume" in capsys.readouterr().err
     assert main(arguments(road, folder, *more, "--resume", "--search-seed", "2")) == 2
     assert "contains another search" in capsys.readouterr().err
     assert main(arguments(road, folder, *more, "--resume")) == 0
@@ -137,9 +137,9 @@ def test_tolerances_and_another_front_beside(road, searched, tmp_path, capsys):
         (
             ["--minimise", "unweighted", "--vary", "damper.viscos=1:2"],
             2,
-            "--vary damper.viscos: no parameter damper.viscos",
+            "--vary damper.viscos: unknown parameter damper.viscos",
         ),
-        (["--minimise", "unweighted", "--vary", "damper.friction_law=1:2"], 2, "no number of a vehicle"),
+        (["--minimise", "unweighted", "--vary", "damper.friction_law=1:2"], 2, "is not a number of the vehicle"),
         (["--minimise", "unweighted", "--vary", "front.damper.viscous=1:2"], 2, "set by 2 of these options"),
         (
             ["--minimise", "unweighted", "--vary", "body.mass=-5:900"],

@@ -57,7 +57,7 @@ def test_variations_make_a_table(signal, tmp_path, capsys):
     # A second call is rejected, or continues with --resume.
     again = [*arguments, "--vary", "bushings.suspension_mount.stiffness.z=7e5"]
     assert main(again) == 2
-    assert "holds finished runs; --resume goes on, --force starts anew" in capsys.readouterr().err
+    assert "holds finished runs; continue them with --resume, or start again with --force" in capsys.readouterr().err
     assert main([*again, "--resume", "--quiet"]) == 0
     assert "# 0 runs computed" in (output / "timing.csv").read_text(encoding="utf-8")
     assert table_of(output) == rows
@@ -79,14 +79,22 @@ def test_a_table_of_variations(tmp_path):
         (["--vary", "damper.viscous"], "must be PATH=A,B,C, PATH=A:B:N", 2),
         (["--vary", "damper.viscous=1,,2"], "must be PATH=A,B,C, PATH=A:B:N", 2),
         (["--vary", "a=1", "--vary", "a=2"], "given twice", 2),
-        (["--vary", "damper.viscous=1:2"], "contains bounds; needed are values", 2),
+        (["--vary", "damper.viscous=1:2"], "contains bounds, must be values", 2),
         (["--vary", "damper.viscous=1000", "--skip", "3"], "--skip 3 s: must be at least 0 and below the 3 s ", 2),
         (["--vary", "damper.viscous=1000", "--skip", "-5"], "--skip -5 s: must be at least 0", 2),
         (["--vary", "damper.viscous=1000", "--skip", "nan"], "--skip nan s: must be at least 0", 2),
         (["--vary", "damper.viscous=1000", "--jobs", "0"], "--jobs 0: must be at least 1", 2),
-        (["--vary", "damper.viscous=1000", "--set", "damper.vicsous=1"], "the nearest is front.damper.viscous", 2),
-        (["--vary", "damper.vicsous=1000"], "varied parameter damper.vicsous=1000: no parameter damper.vicsous", 2),
-        (["--vary", "damper.viscous=1000", "--resume", "--force"], "set only one of them", 2),
+        (
+            ["--vary", "damper.viscous=1000", "--set", "damper.vicsous=1"],
+            ("the most similar path is front.damper.viscous"),
+            2,
+        ),
+        (
+            ["--vary", "damper.vicsous=1000"],
+            ("varied parameter damper.vicsous=1000: unknown parameter damper.vicsous"),
+            2,
+        ),
+        (["--vary", "damper.viscous=1000", "--resume", "--force"], "leave one of them out", 2),
         (["--vary", "damper.viscous=1000", "--executor", "here"], "must be dask://host:port", 2),
         (["--table", "missing.csv"], "cannot be read", 3),
         (["--vary", "damper.viscous=1000", "--executor", "..:x"], "--executor ..:x: TypeError", 2),
@@ -118,7 +126,7 @@ def test_a_folder_with_other_files_is_refused(signal, tmp_path, capsys):
     output.mkdir()
     (output / "thesis.txt").write_text("mine", encoding="utf-8")
     assert main(["--input", str(signal), "--output", str(output), "--vary", "damper.viscous=1", "--force"]) == 2
-    assert "holds files that no run wrote: thesis.txt" in capsys.readouterr().err
+    assert "holds files that are not results of a run: thesis.txt" in capsys.readouterr().err
 
 
 def test_failed_rows_are_no_success(signal, tmp_path, capsys):
@@ -177,7 +185,7 @@ def test_two_sweeps_in_one_folder(signal, tmp_path, capsys):
     for option in ("--force", "--resume"):
         with folder_lock(tmp_path / "out"):
             assert main([*arguments, option]) == 2
-        assert "is writing there; wait for it" in capsys.readouterr().err
+        assert "is writing there; wait until it ends" in capsys.readouterr().err
         assert (tmp_path / "out" / "rows.jsonl").read_bytes() == rows
 
 
@@ -196,8 +204,8 @@ def test_an_interrupted_force_keeps_the_old_sweep_and_goes_on(signal, tmp_path, 
         assert main([*arguments, "damper.viscous=2500", "--force"]) == 130
     said = capsys.readouterr().err.splitlines()
     assert said[-2:] == [
-        f"notice: {out}: the finished rows are kept (.out.partial/rows.jsonl); --resume goes on",
-        "error: interrupted; no results are half-written",
+        f"notice: {out}: the finished rows are kept in .out.partial/rows.jsonl; continue with --resume",
+        "error: interrupted; every file written so far is complete",
     ]
     assert {path.name: path.read_bytes() for path in out.iterdir()} == old
     assert main([*arguments, "damper.viscous=2500"]) == 2
@@ -216,5 +224,5 @@ def test_an_executor_that_cannot_be_made(signal, tmp_path, capsys):
 def test_a_varied_parameter_without_effect_is_noted():
     car, road = Car.load("sedan"), Road("B", speed=80, duration=6)
     (note,) = plan_sweep(car, {"front.damper.viscous": [1000, 2000], "rear.damper.viscous": [1000]}, road).notes
-    assert note.startswith("front.damper.viscous=1000: without effect; it belongs to front.damper.viscous_law")
+    assert note.startswith("front.damper.viscous=1000: has no effect; it acts only with front.damper.viscous_law")
     assert not plan_sweep(car, {"front.damper.coulomb_friction": [40, 80]}, road).notes

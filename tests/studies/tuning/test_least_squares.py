@@ -123,7 +123,7 @@ def test_of_a_pair_with_one_common_effect_one_parameter_is_held():
     assert np.isnan(result.standard_errors[held.path])
     assert held.path not in result.free and result.correlation.shape == (3, 3)
     assert (
-        f"{held.path}: the data do not identify this parameter apart from {held.partners[0]} (standard"
+        f"{held.path}: the data do not determine this parameter apart from {held.partners[0]} (standard"
         in held.message()
     )
     # The springs in series are identifiable.
@@ -164,15 +164,15 @@ def test_progress_is_called():
 
 
 def test_invalid_parameters_and_targets_are_rejected():
-    with pytest.raises(ConfigurationError, match="no parameter to fit"):
+    with pytest.raises(ConfigurationError, match="the parameters to fit are missing"):
         fit([], [MeasuredMasses()], dict)
-    with pytest.raises(ConfigurationError, match="targets: no measurement"):
+    with pytest.raises(ConfigurationError, match="targets: the measurement is missing"):
         fit(PARAMETERS, [], dict)
     with pytest.raises(ConfigurationError, match="lower: given 2 times"):
         fitted(MeasuredMasses(), (*PARAMETERS, PARAMETERS[0]))
     with pytest.raises(ConfigurationError, match="colour: has no start"):
         fitted(MeasuredMasses(), (*PARAMETERS, Range(path="colour", low=1.0, high=9.0)))
-    with pytest.raises(ConfigurationError, match="the data identify no parameter: colour"):
+    with pytest.raises(ConfigurationError, match="the data determine no parameter: colour"):
         fit([Range(path="colour", low=1.0, high=9.0, start=2.0)], [MeasuredMasses()], lambda _: TRUE)
 
 

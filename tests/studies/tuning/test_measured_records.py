@@ -75,9 +75,13 @@ def test_the_part_that_counts(files):
     assert measured(files, delay=0.2, stretch=(0.25, 0.9)).window == pytest.approx((0.25, 0.9))
     late = measured(files)  # taken to begin with the signal: nothing fits
     assert np.sqrt(np.mean(late.residuals(Car.load(overrides=STRIBECK)) ** 2)) > 0.5
-    with pytest.raises(DataError, match="no overlap; set --delay S"):
+    with pytest.raises(DataError, match="they do not overlap; set --delay S"):
         measured(files, delay=5.0)
-    with pytest.raises(DataError, match=r"0.03 s of the record count, must be at least 0.04 s .* longer record"):
+    with pytest.raises(
+        DataError,
+        match=r"0.03 s of the record are evaluated, must be at least 0.04 "
+        r"s .* longer record",
+    ):
         measured(files, delay=0.2, stretch=(0.25, 0.28))
 
 
@@ -111,5 +115,5 @@ def test_a_record_contains_its_plate(tmp_path):
         measured_histories(Car.load(), file, None, names, lowpass=0.0)
     with pytest.raises(ConfigurationError, match="this record contains its plate"):
         measured_histories(Car.load(), file, None, names, delay=0.1)
-    with pytest.raises(DataError, match=r"contains no input: no moving plate .* --signal FILE"):
+    with pytest.raises(DataError, match=r"contains no moving plate .* --signal FILE"):
         measured_histories(Car.load(), file, None, {"knuckle_fl_acc_z": "Acc"})

@@ -20,7 +20,7 @@ from vehicle.studies.tuning.measured_targets import measured_histories
 ACCELERATIONS = ("knuckle_fr_acc_z", "knuckle_fl_acc_z")
 COLUMNS = {"fr": "Stößel VR", "fl": "Stößel VL"}
 MAP = [word for wheel, name in COLUMNS.items() for word in ("--map", f"plate_{wheel}_displacement={name}")]
-WESTERN = "the text is not UTF-8: read as Windows text (cp1252)"
+WESTERN = "the text is not UTF-8; it is read as Windows text (cp1252)"
 
 
 @pytest.fixture(scope="module")
@@ -55,7 +55,9 @@ def test_a_signal_file_is_read_as_inspect_reads_it(files, run, tmp_path, capsys)
                  "knuckle_fl_acc_z=knuckle_fl_acc_z", "--engine", "reduced", "--quiet", "--json"]  # fmt: skip
     assert tune([*arguments, "--output", str(tmp_path / "unnamed")]) == 3
     said = capsys.readouterr().err
-    assert f"no column names its plate; set --map '{MAP[1]}' --map '{MAP[3]}' (columns: 'Stößel VR', " in said
+    assert (
+        f"the names of the columns state no plate; set --map '{MAP[1]}' --map '{MAP[3]}' (columns: 'Stößel VR', "
+    ) in said
     assert tune([*arguments, *MAP, "--output", str(tmp_path / "named")]) == 0
     (parameter,) = json.loads(capsys.readouterr().out)["parameters"]
     # The files have nine digits; the filter of the fit does the rest.

@@ -177,9 +177,9 @@ def test_classes_of_a_linear_response():
     ("arguments", "message"),
     [
         (["--speed", "80"], "--speed: belongs to --road; add --road FILE"),
-        (["--road", "C"], "--road C: needs --speed KM/H"),
-        (["--road", "C", "--speed", "80", "--signal", "low.csv"], "--road C and --signal low.csv: set only one"),
-        (["--road", "nowhere", "--speed", "80"], "--road nowhere: no class of ISO 8608"),
+        (["--road", "C"], "--road C: the speed is missing; add --speed KM/H"),
+        (["--road", "C", "--speed", "80", "--signal", "low.csv"], "--road C and --signal low.csv exclude each other"),
+        (["--road", "nowhere", "--speed", "80"], "--road nowhere: unknown; give a class of ISO 8608"),
         (["--reference", "knuckle_fl_acc_z"], "belongs to --levels N"),
         (
             ["--road", "PROFILE", "--speed", "72", "--levels", "2"],

@@ -66,12 +66,12 @@ def test_a_fit_with_a_forgotten_delay_prints_no_values(record, tmp_path, capsys)
     words += ["--parameters", f"{FRONT}=40:200", f"{REAR}=20:200", "--output", str(tmp_path / "tune")]
     assert main(words) == 0
     said = capsys.readouterr().out
-    assert "--set" not in said.replace("no --set line to copy", "")
+    assert "--set" not in said.replace("do not use this fit", "")
     assert "check delays (--delay), signs (--turn) and units (--unit) of the channels first" in said
     content = json.loads((tmp_path / "tune" / "tune.json").read_text(encoding="utf-8"))
     assert content["set"] == [] and content["refusal"] in said
     page = (tmp_path / "tune" / "report.html").read_text(encoding="utf-8")
-    assert "The fit is not to be used" in page and f"--set {FRONT}" not in page
+    assert "Do not use this fit" in page and f"--set {FRONT}" not in page
 
 
 def test_frfs_and_levels_have_the_delay_too(tmp_path):

@@ -160,9 +160,11 @@ def test_bad_targets_are_rejected(car, high_piece):
     def of_plate(plate):
         return data.renamed([parsed_name(f"{channel}{plate}") for channel in CHANNELS])
 
-    with pytest.raises(ConfigurationError, match="low: the FRF of knuckle_fr_acc_z names no plate; name it as "):
+    with pytest.raises(
+        ConfigurationError, match="low: the FRF of knuckle_fr_acc_z does not state its plate; name it, for example "
+    ):
         FrfTarget(name="low", data=of_plate(""), signal=None)
-    with pytest.raises(ConfigurationError, match=r"wheel rl \(rear_left\): focus does not have it"):
+    with pytest.raises(ConfigurationError, match=r"wheel rl \(rear_left\): focus has no such wheel"):
         FrfTarget(name="low", data=of_plate("/plate_rl"), signal=None).residuals(car)
     with pytest.raises(
         DataError, match="low: knuckle_fr_acc_z/plate_fl: is an FRF to plate_fl, but the signal drives "

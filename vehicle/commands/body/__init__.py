@@ -21,7 +21,8 @@ TASKS = {
 def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser(
-        "body", "Body models: import one from finite elements or a modal test, build, show, compare, participation."
+        "body",
+        "Import a body model from finite elements or a modal test, build it, show it, compare two, rank its modes.",
     )
     tasks = parser.add_subparsers(dest="task", required=True, metavar="|".join(TASKS))
     for name, task in TASKS.items():

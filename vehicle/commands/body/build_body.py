@@ -18,15 +18,21 @@ if TYPE_CHECKING:
 
 def add(tasks: Any) -> None:
     """Add the parser of the task with its options."""
-    built = tasks.add_parser("build", help="compute the frame of a body design on the points of a car")
+    built = tasks.add_parser(
+        "build", help="compute a body model from a body design (a frame of beams through the points of the car)"
+    )
     design = built.add_argument_group("the design")
-    design.add_argument("--design", type=Path, metavar="FILE.toml", help="body design; that of the vehicle by default")
+    design.add_argument(
+        "--design",
+        type=Path,
+        metavar="FILE.toml",
+        help="file of the body design; default: the design named in the vehicle file",
+    )
     design.add_argument(
         "--fit",
         action="store_true",
-        help="fit the section factors of the design again, from its nominal sections, to what is published of the body "
-        "of Bommer 2006 (first mode 19 Hz, ninth 43 Hz, torsion 25.5 Hz; takes minutes). "
-        "Prints them in the form of a design",
+        help="fit the factors of the beam sections to the published body modes of Bommer 2006 (first 19 Hz, "
+        "torsion 25.5 Hz, ninth 43 Hz), and print them as lines of a design. Takes minutes",
     )
     output_options(built)
     vehicle_options(built)

@@ -26,9 +26,11 @@ MOST = 40
 
 def add(tasks: Any) -> None:
     """Add the parser of the task with its options."""
-    compared = tasks.add_parser("compare", help="two models of a body: frequencies and MAC at the points of the car")
+    compared = tasks.add_parser(
+        "compare", help="compare frequencies and mode shapes (MAC) of two body models at the points of the car"
+    )
     compared.add_argument("file", type=Path, metavar="FILE", help="body model, .toml or .npz")
-    compared.add_argument("other", type=Path, metavar="OTHER", help="other body model, .toml or .npz")
+    compared.add_argument("other", type=Path, metavar="OTHER", help="file of the other body model, .toml or .npz")
     extra_output_options(compared, ", ".join(FILES))
     vehicle_options(compared)
     message_options(compared)
@@ -51,7 +53,9 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
         shapes.append(np.array([model.shape_at(nodes[point]).T for point in points.values()]).transpose(1, 0, 2))
     likeness = mac(*shapes)
     if options.output is not None:
-        _write_files(options, models, likeness, f"MAC of the shapes at {len(points)} points of the car")
+        _write_files(
+            options, models, likeness, f"similarity (MAC) of the mode shapes at {len(points)} points of the car"
+        )
     print(
         f"{'mode':>4} {'Hz':>8}   {'mode':>4} {'Hz':>8} {'change':>8} {'MAC':>6}   at {len(points)} points of the car"
     )

@@ -24,57 +24,70 @@ if TYPE_CHECKING:
     from vehicle.model.parameters.vehicle import Vehicle
 
 _ANSYS = (
-    "in /AUX2 read it with FILE,JOB,full and write HBMAT,k,matrix,,ASCII,STIFF,NO,YES and "
-    "HBMAT,m,matrix,,ASCII,MASS,NO,NO; give k.matrix, --mass m.matrix, --dofs k.mapping and --nodes, their list"
+    "type in ANSYS: /AUX2, FILE,JOB,full, HBMAT,k,matrix,,ASCII,STIFF,NO,YES and "
+    "HBMAT,m,matrix,,ASCII,MASS,NO,NO. Then import k.matrix with --mass m.matrix, --dofs k.mapping and --nodes "
+    "FILE"
 )
 REFUSED = {
-    ".op2": "Nastran OP2: no reader of it works with today's numpy; export modes as a universal file (datasets 15, 55) "
-    "through the pre-processor, or punch K and M with PARAM,EXTOUT,DMIGPCH and give JOB.pch with --nodes JOB.bdf",
-    ".op4": "Nastran OP4: it names no directions; punch K and M with PARAM,EXTOUT,DMIGPCH and give JOB.pch with "
-    "--nodes JOB.bdf",
-    ".rst": f"ANSYS results: a modal analysis of the free body leaves JOB.full too; {_ANSYS}",
-    ".full": f"ANSYS full file: {_ANSYS}",
-    ".odb": "Abaqus database: write K and M with *MATRIX GENERATE, STIFFNESS, MASS and *MATRIX OUTPUT",
-    ".mnf": "Adams modal neutral file: export modes as a universal file from the program that made it",
+    ".op2": "Nastran OP2 cannot be read; export modes as a universal file (datasets 15, 55) through the "
+    "pre-processor, or punch K and M with PARAM,EXTOUT,DMIGPCH and give JOB.pch with --nodes JOB.bdf",
+    ".op4": "Nastran OP4 does not state the directions of its rows; punch K and M with PARAM,EXTOUT,DMIGPCH and "
+    "give JOB.pch with --nodes JOB.bdf",
+    ".rst": f"ANSYS results cannot be read; use JOB.full of the same modal analysis instead: {_ANSYS}",
+    ".full": f"ANSYS full file: convert it to text first: {_ANSYS}",
+    ".odb": "Abaqus database cannot be read; write K and M with *MATRIX GENERATE, STIFFNESS, MASS and *MATRIX OUTPUT",
+    ".mnf": "Adams modal neutral file cannot be read; export the modes as a universal file from the FE program",
 }
 
 
-MATRICES, FILES, MODES, UNITS = "stiffness and mass matrices", "files beside the matrices", "modes", "units"
+MATRICES, FILES, MODES, UNITS = (
+    "stiffness and mass matrices",
+    "further files that belong to the matrices",
+    "modes",
+    "units",
+)
 """Titles of the groups of options that act on one type of source."""
 
 
 def add(tasks: Any) -> None:
     """Add the parser of the task with its options."""
-    parser = tasks.add_parser("import", help="make a body model of matrices, computed modes or a modal test")
+    parser = tasks.add_parser(
+        "import", help="make a body model from FE matrices, from computed modes or from a modal test"
+    )
     parser.add_argument(
         "file",
         type=Path,
         metavar="FILE",
-        help="JOB.sti of CalculiX (with .mas, .dof, .inp); JOB.pch of Nastran (DMIG); K as Matrix Market,"
-        " Harwell-Boeing, FILE.mat:K, text with --mass, --dofs, --nodes;"
-        " modes as .frd of CalculiX or a universal file (datasets 55, 2414)",
+        help="matrices: JOB.sti of CalculiX (.mas, .dof and .inp in the same folder), JOB.pch of Nastran (DMIG), "
+        "or K as Matrix Market, Harwell-Boeing, FILE.mat:K or text, with --mass, --dofs and --nodes. Modes: "
+        ".frd of CalculiX, or a universal file (datasets 55, 2414)",
     )
-    parser.add_argument("--name", help="name of the body; that of the file by default")
+    parser.add_argument("--name", help="name of the body; default: name of the file")
     output_options(parser)
     _add_matrix_options(parser)
     modes = parser.scoped_group(MODES, needs="modes; the file holds stiffness and mass", active=None)
-    modes.add_argument("--modal-mass", type=float, metavar="KG", help="modal mass of shapes that come without one [kg]")
+    modes.add_argument(
+        "--modal-mass", type=float, metavar="KG", help="modal mass of the mode shapes, where the file states none [kg]"
+    )
     modes.add_argument(
         "--residual",
         type=Path,
         metavar="FILE",
-        help="residual stiffness of the attachments beyond the modes, a table point,x [N/m],y [N/m],z [N/m], or in m/N",
+        help="static stiffness that the modes of the file leave out, at the attachments: table point,x [N/m],y "
+        "[N/m],z [N/m], or flexibilities in [m/N]",
     )
     units = parser.scoped_group(
-        UNITS, needs="matrices or .frd; a universal file states its own units (dataset 164)", active=None
+        UNITS, needs="matrices or .frd; a universal file states its units in dataset 164", active=None
     )
-    units.add_argument("--length-unit", choices=LENGTHS, help="unit of length of matrices and .frd; m by default")
+    units.add_argument(
+        "--length-unit", choices=LENGTHS, help="unit of length in the matrices or the .frd file; default: m"
+    )
     follows = ", ".join(f"{mass} with {length}" for length, mass in FOLLOWING.items())
     units.add_argument(
         "--mass-unit",
         choices=MASSES,
-        help=f"unit of mass of matrices and .frd; by default that of consistent units with N (lbf) and s: {follows}; "
-        "a stiffness in N/mm belongs to masses in t",
+        help="unit of mass in the matrices or the .frd file. Default: the unit that fits N (or lbf), s and the "
+        f"unit of length: {follows}. Example: a stiffness in N/mm needs masses in t",
     )
     _add_model_options(parser)
     vehicle_options(parser)
@@ -83,23 +96,31 @@ def add(tasks: Any) -> None:
 
 def _add_matrix_options(parser: Parser) -> None:
     """Add the options that act on stiffness and mass matrices."""
-    files = parser.scoped_group(FILES, needs="files of stiffness and mass, each named by an option", active=None)
-    files.add_argument("--mass", type=Path, metavar="FILE", help="mass matrix that belongs to a stiffness matrix")
+    files = parser.scoped_group(FILES, needs="stiffness and mass in separate files", active=None)
+    files.add_argument(
+        "--mass", type=Path, metavar="FILE", help="file of the mass matrix that belongs to the stiffness matrix"
+    )
     files.add_argument(
         "--dofs",
         type=Path,
         metavar="FILE",
-        help="degrees of freedom of the rows of K and M: node,direction (1 to 6), or the mapping file of ANSYS",
+        help="file with the node and direction (1 to 6) of each matrix row, as node,direction, or the mapping "
+        "file of ANSYS",
     )
-    files.add_argument("--nodes", type=Path, metavar="FILE", help="table node,x,y,z; deck with *NODE; .bdf with GRID")
+    files.add_argument(
+        "--nodes",
+        type=Path,
+        metavar="FILE",
+        help="positions of the nodes: table node,x,y,z, input deck with *NODE, or .bdf with GRID",
+    )
     matrices = parser.scoped_group(MATRICES, needs="stiffness and mass; the file holds modes", active=None)
     matrices.add_argument(
         "--method",
         choices=METHODS,
         default=METHODS[0],
-        help="reduction: free-free: modes of the free body and residual flexibility. rubin: in addition modes of its "
-        "points with the mass that moves with them. craig-bampton: modes of the body held at its points; free-free by "
-        "default",
+        help="reduction: free-free (default) keeps the modes of the free body and the residual flexibility; "
+        "rubin adds modes of its points with the mass that moves with them; craig-bampton keeps the modes "
+        "of the body held at its points",
     )
     more = parser.scoped_group(
         "modes of the points",
@@ -110,7 +131,7 @@ def _add_matrix_options(parser: Parser) -> None:
         "--attachment-modes",
         type=float,
         metavar="HZ",
-        help="highest mode that rubin adds, or that craig-bampton keeps [Hz]; 5 times --up-to by default",
+        help="highest mode that rubin adds or craig-bampton keeps [Hz]; default: 5 times --up-to",
     )
 
 
@@ -121,38 +142,48 @@ def _add_model_options(parser: Parser) -> None:
         "--axes",
         default="x,y,z",
         metavar="X,Y,Z",
-        help="the source's names of the vehicle's x (to the rear), y (to the driver's right), z (up): -x,-y,z of a "
-        "source with x forward and y to the left; x,y,z by default",
+        help="axes of the source file that point to the rear, to the driver's right and up. Example: -x,-y,z if "
+        "its x points forward and its y to the left. Default: x,y,z",
     )
     frame.add_argument(
-        "--origin", default="0,0,0", metavar="X,Y,Z", help="source's origin in the vehicle frame [m]; 0,0,0 by default"
+        "--origin",
+        default="0,0,0",
+        metavar="X,Y,Z",
+        help="where the origin of the source file lies in the car [m]; default: 0,0,0",
     )
     model = parser.add_argument_group("modes of the model")
     model.add_argument(
-        "--up-to", type=float, default=100.0, metavar="HZ", help="highest mode of the model [Hz]; 100 by default"
+        "--up-to", type=float, default=100.0, metavar="HZ", help="keep modes up to this frequency [Hz]; default: 100"
     )
     model.add_argument(
-        "--damping", type=float, default=0.02, metavar="RATIO", help="modal damping ratio; 0.02 by default"
+        "--damping", type=float, default=0.02, metavar="RATIO", help="damping ratio of every mode; default: 0.02"
     )
     points = parser.add_argument_group("points of the car")
-    parser.former("--tolerance", "--tolerance: the farthest node of a point is given by --point-distance MM")
-    parser.former("--map", "--map: the table of nodes for points of the car is given by --point-nodes FILE")
+    parser.former(
+        "--tolerance",
+        "--tolerance is not an option here; set the largest allowed distance between a point of the car and its "
+        "node with --point-distance MM",
+    )
+    parser.former(
+        "--map",
+        "--map is not an option here; give the table of nodes for the points of the car with --point-nodes FILE",
+    )
     points.add_argument(
         "--point-distance",
         type=float,
         default=1.0,
         metavar="MM",
-        help="maximum distance of a point from its node [mm]; 1 by default",
+        help="largest allowed distance between a point of the car and its node [mm]; default: 1",
     )
     points.add_argument(
         "--spread",
         type=float,
         default=0.0,
         metavar="MM",
-        help="radius of the nodes that carry a point together [mm]; 0 by default",
+        help="connect a point to all nodes within this radius [mm]; default: 0, the nearest node only",
     )
     points.add_argument(
-        "--point-nodes", type=Path, metavar="FILE", help="table point,node: nodes chosen for points of the car"
+        "--point-nodes", type=Path, metavar="FILE", help="table point,node that chooses the node of a point of the car"
     )
 
 
@@ -178,7 +209,7 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     }
     axes = finite_numbers(options.origin, ",")
     if len(axes) != 3:
-        raise ConfigurationError(f"--origin {options.origin}: must be three numbers in metres, as 1.2,0,0.35")
+        raise ConfigurationError(f"--origin {options.origin}: must be three numbers [m], for example 1.2,0,0.35")
     origin = (axes[0], axes[1], axes[2])
     matrices = _matrices(options)
     idle: tuple[str, ...] = (MODES,) if matrices is not None else (MATRICES, FILES)
@@ -232,10 +263,10 @@ def _matrices(options: argparse.Namespace) -> Any:
     if not is_bulk_data(file):
         if options.mass is None:
             if options.file.suffix in (".mtx", ".mat"):
-                raise ConfigurationError(f"{options.file}: a stiffness matrix needs --mass, --nodes and --dofs too")
+                raise ConfigurationError(f"{options.file}: is a stiffness matrix; give --mass, --dofs and --nodes too")
             return None
         if options.nodes is None:
-            raise ConfigurationError("--mass: the positions of the nodes are missing; set --nodes too")
+            raise ConfigurationError("--mass: the positions of the nodes are missing; set --nodes FILE too")
     from vehicle.model.flexbody.sources.matrix_files import read_matrices
 
     return read_matrices(file, options.mass, options.dofs, options.nodes)
@@ -276,7 +307,7 @@ def _check_numbers(options: argparse.Namespace) -> None:
             "--attachment-modes",
             options.attachment_modes,
             options.attachment_modes is None or options.up_to <= options.attachment_modes < math.inf,
-            f"a frequency from --up-to, {options.up_to:g} Hz, on",
+            f"at least --up-to, {options.up_to:g} Hz",
         ),
         ("--damping", options.damping, 0.0 <= options.damping <= HIGHEST_DAMPING, f"0 to {HIGHEST_DAMPING:g}"),
         (

@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 
 def output_options(task: Any) -> None:
     """Add --output and --force, the file of the body model."""
-    task.add_argument("--output", type=Path, required=True, metavar="FILE", help="body model to write, .toml or .npz")
+    task.add_argument(
+        "--output", type=Path, required=True, metavar="FILE", help="file to write the body model to, .toml or .npz"
+    )
     task.add_argument("--force", action="store_true", help=FORCE_HELP)
 
 
@@ -29,7 +31,7 @@ def require_output(options: argparse.Namespace) -> None:
         OutputError: its folder cannot be written.
     """
     if options.output.suffix not in (".toml", ".npz"):
-        raise ConfigurationError(f"--output {options.output}: a body model is written as .toml or .npz")
+        raise ConfigurationError(f"--output {options.output}: must end in .toml or .npz")
     inputs = (getattr(options, name, None) for name in ("file", "design", "vehicle"))
     output_file_of(options, options.output, protect=tuple(path for path in inputs if path is not None))
 

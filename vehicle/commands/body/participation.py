@@ -30,29 +30,42 @@ UNIT = "m/s2/m"
 def add(tasks: Any) -> None:
     """Add the parser of the task with its options."""
     asked = tasks.add_parser(
-        "participation", help="which body modes make a place loud at a frequency, and which attachments drive them"
+        "participation",
+        help="rank the body modes by what they add to the vibration of a point, and the attachments that drive a mode",
     )
     asked.add_argument(
         "--response",
         default="seat_rail_acc_z",
         metavar="CHANNEL",
-        help="acceleration of a place on the body; %(default)s by default",
+        help="acceleration channel of a point on the body; default: %(default)s",
     )
     asked.add_argument(
         "--at",
         type=float,
         metavar="HZ",
-        help="frequency of the tables [Hz]; by default that of the largest response between 1 and 50 Hz",
+        help="frequency of the tables [Hz]; default: where the response between 1 and 50 Hz is largest",
     )
-    asked.former("--place", "--place: the acceleration is named by --response CHANNEL, as --response seat_rail_acc_z")
-    asked.add_argument(
-        "--wheel", metavar="NAME", help="wheel whose plate moves, as fr or front_right; that on the shaker by default"
-    )
-    asked.add_argument(
-        "--damper", choices=("stuck", "sliding"), default="stuck", help="state of the dampers; stuck by default"
+    asked.former(
+        "--place",
+        "--place is not an option here; name the acceleration with --response CHANNEL, for example --response "
+        "seat_rail_acc_z",
     )
     asked.add_argument(
-        "--mode", type=int, metavar="N", help="mode whose driving attachments are shown; the loudest by default"
+        "--wheel",
+        metavar="NAME",
+        help="wheel whose plate moves, for example fr or front_right; default: the wheel on the shaker",
+    )
+    asked.add_argument(
+        "--damper",
+        choices=("stuck", "sliding"),
+        default="stuck",
+        help="dampers stuck by their friction, or sliding; default: stuck",
+    )
+    asked.add_argument(
+        "--mode",
+        type=int,
+        metavar="N",
+        help="number of the mode whose driving attachments are shown; default: the mode with the largest share",
     )
     extra_output_options(asked, ", ".join(FILES))
     asked.add_argument("--json", action="store_true", help="print JSON")
@@ -68,7 +81,7 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     from vehicle.runs.car import Car
 
     if options.at is not None and not 0.0 < options.at < math.inf:
-        raise ConfigurationError(f"--at {options.at:g}: must be a frequency above 0 Hz, as --at 26")
+        raise ConfigurationError(f"--at {options.at:g}: must be above 0 Hz, for example --at 26")
     wheel = CORNERS.get(options.wheel, options.wheel) or vehicle.shaker_wheel
     vehicle.require_wheels((wheel,))
     if options.output is not None:
@@ -85,9 +98,9 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     result = of([at])
     modes = len(result.mode_frequency)
     if options.mode is not None and not 1 <= options.mode <= modes:
-        raise ConfigurationError(f"--mode {options.mode}: the body has modes 1 to {modes}")
+        raise ConfigurationError(f"--mode {options.mode}: must be 1 to {modes}, the modes of this body")
     mode = int(result.shares[6:, 0].argmax()) if options.mode is None else options.mode - 1
-    caption = f"{vehicle.name}: {options.response} per displacement of the plate {wheel}, dampers {options.damper}"
+    caption = f"{vehicle.name}: {options.response} per displacement of plate {wheel}, dampers {options.damper}"
     caption += f", tyres {vehicle.driving.words}"
     if options.output is not None:
         _write(options, over, result, mode, caption)
@@ -108,7 +121,7 @@ def _report(result: Participation, mode: int, caption: str) -> list[str]:
     lines = [
         f"{caption}, {result.frequency[0]:g} Hz: {abs(total):.4g} m/s² per m, "
         f"phase {np.degrees(np.angle(total)):.0f} deg",
-        "share: part in phase with the sum; a negative share reduces the sum",
+        "share of the sum, counting only what acts in phase with it; a negative share reduces the sum",
         f"{'share':>9} {'(m/s²)/m':>10} {'to sum':>8}  contribution",
     ]
     names, shares = _named(result), result.shares[:, 0]
@@ -117,16 +130,16 @@ def _report(result: Participation, mode: int, caption: str) -> list[str]:
         turned = np.degrees(np.angle(contributions[i] / total))
         lines.append(f"{_percent(shares[i])} {abs(contributions[i]):>10.4g} {turned:>+5.0f} deg  {names[i]}")
     if small:
-        lines.append(f"{_percent(shares[small].sum())} {'':>10} {'':>9}  the other {len(small)}")
+        lines.append(f"{_percent(shares[small].sum())} {'':>10} {'':>9}  the other {len(small)} together")
     if np.abs(shares).sum() > CANCEL:
-        lines.append("the place is quiet here: its response is the small difference of contributions that cancel")
-    lines.append(f"what drives {names[6 + mode]}: share of the force on the mode")
+        lines.append("the point moves little at this frequency: large contributions nearly cancel each other")
+    lines.append(f"what drives {names[6 + mode]}: share of each attachment in the force on this mode")
     drivers = result.attachment_shares[mode, :, 0]
     small = [i for i in range(len(drivers)) if abs(drivers[i]) < SHOWN]
     for i in sorted(set(range(len(drivers))) - set(small), key=lambda i: -abs(drivers[i])):
         lines.append(f"{_percent(drivers[i])}  {result.attachments[i]}")
     if small:
-        lines.append(f"{_percent(drivers[small].sum())}  the other {len(small)}")
+        lines.append(f"{_percent(drivers[small].sum())}  the other {len(small)} together")
     return lines
 
 

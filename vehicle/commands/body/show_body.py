@@ -26,8 +26,14 @@ COLUMNS = 12
 
 def add(tasks: Any) -> None:
     """Add the parser of the task with its options."""
-    shown = tasks.add_parser("show", help="frequencies, participation of attachments, mass properties, residuals")
-    shown.add_argument("file", type=Path, nargs="?", metavar="FILE", help="body model; that of the vehicle by default")
+    shown = tasks.add_parser(
+        "show",
+        help="print frequencies, mode shapes at the attachments, mass, inertia and residual flexibility of a body "
+        "model",
+    )
+    shown.add_argument(
+        "file", type=Path, nargs="?", metavar="FILE", help="file of the body model; default: the body of the vehicle"
+    )
     extra_output_options(shown, ", ".join(FILES))
     shown.add_argument("--json", action="store_true", help="print JSON")
     vehicle_options(shown)
@@ -58,7 +64,11 @@ def report(model: Superelement, vehicle: Vehicle) -> list[str]:
     if not model.frequencies.size:
         return [*lines, "rigid"]
     if notices := mass_difference(model, vehicle.body, body_loads(vehicle)):
-        lines += [*notices, "[body] of this model:", *(f"  {line}" for line in vehicle_lines(model))]
+        lines += [
+            *notices,
+            "lines for the section [body] of a vehicle file:",
+            *(f"  {line}" for line in vehicle_lines(model)),
+        ]
     lines += mode_lines(model)
     try:
         at_points = [
@@ -92,7 +102,10 @@ def mass_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
         sign = 1.0 if i == j else -1.0  # products as integrals, as in the vehicle file
         name = f"I{'xyz'[i]}{'xyz'[j]} [kg m2]"
         line(name, sign * float(model.inertia[i, j]), sign * float(body.inertia[i, j]), 1)
-    lines.append("  moments about the CoG, products as integrals; the car takes those of the vehicle")
+    lines.append(
+        "  moments about the centre of gravity, Ixy = integral of xy dm; a simulation uses the values of the "
+        "vehicle file"
+    )
     return lines
 
 
@@ -121,10 +134,10 @@ def attachment_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
     import numpy as np
 
     count = min(len(model.frequencies), COLUMNS)
-    cut = "" if count == len(model.frequencies) else f"; the first {count} modes, all with --output"
+    cut = "" if count == len(model.frequencies) else f"; first {count} modes only, --output DIR writes all"
     amplitudes = {name: np.linalg.norm(shape, axis=1) for name, shape in levels(model, vehicle).items()}
     lines = [
-        f"participation of attachments and output points: |shape| over its mean in the body, sqrt(m) |Phi| [-]{cut}",
+        f"mode shapes at attachments and output points, relative to the mean of the body: sqrt(m) |Phi| [-]{cut}",
         f"  {'mode':<28}" + "".join(f"{number:>6}" for number in range(1, count + 1)),
     ]
     return lines + [
@@ -142,12 +155,12 @@ def residual_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
             along = "".join(f"{value:>11.3g}" for value in np.diag(flexibility))
             lines.append(f"  {name:<28}{along}{np.linalg.eigvalsh(flexibility)[-1]:>11.3g}")
     else:
-        lines = ["residual flexibility: none known"]
+        lines = ["residual flexibility: the model contains none"]
     bare = _bare(model, vehicle)
     if bare:
         lines.append(
-            f"  none at {', '.join(bare)}: apart from the modes of the model the body is rigid there, as after a modal "
-            "test; `body import --residual` reads measured values"
+            f"  no residual flexibility at {', '.join(bare)}: only the modes of the model make the body flexible "
+            "there; add measured values with `body import --residual FILE`"
         )
     return lines
 
@@ -180,11 +193,15 @@ def rotation_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
     nodes = attached_nodes(model, stiff)
     unknown = [name for name, at in stiff.items() if nodes[at] not in model.rotations]
     present = [name for name in stiff if name not in unknown]
-    lines = [f"rotations of nodes under rotational stiffness: known at {', '.join(present)}"] if present else []
+    lines = (
+        [f"rotation of the body at points with rotational stiffness: included at {', '.join(present)}"]
+        if present
+        else []
+    )
     if unknown:
         lines.append(
-            f"rotations of nodes under rotational stiffness: unknown at {', '.join(unknown)}; the body is rigid "
-            "against torques there"
+            f"rotation of the body at points with rotational stiffness: missing at {', '.join(unknown)}, so the "
+            "body is rigid against torques there"
         )
     return lines
 
@@ -244,7 +261,7 @@ def _write(options: argparse.Namespace, model: Superelement, levels: Mapping[str
     pairs = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
     residuals = [["attachment", *(f"{'xyz'[i]}{'xyz'[j]} [m/N]" for i, j in pairs)]]
     residuals += [[name, *(values[pair] for pair in pairs)] for name, values in model.residual.items()]
-    note = "shape at each attachment and place over its mean in the body, sqrt(m) Phi"
+    note = "mode shape at each attachment and point, relative to the mean of the body: sqrt(m) Phi"
     # A place is a node of the picture where it is one of the model.
     shown = [index for index, node in enumerate(model.nodes) if node in levels]
     titles = [
@@ -253,7 +270,9 @@ def _write(options: argparse.Namespace, model: Superelement, levels: Mapping[str
         for i, (frequency, ratio) in enumerate(zip(model.frequencies, model.damping_ratio, strict=True))
     ]
     more = f"; the first {MOST} of {count} modes" if count > MOST else ""
-    caption = f"grey: at rest; colour: displacement, each mode at its own scale; dots: attachments and places{more}"
+    caption = (
+        f"grey: at rest; colour: displacement, each mode at its own scale; dots: attachments and output points{more}"
+    )
     texts = ("\n".join(modes) + "\n", table_text(taking, [note]), table_text(residuals))
     contents: dict[str, Content] = dict(zip(FILES, texts, strict=False))
     if count:

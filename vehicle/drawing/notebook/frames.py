@@ -22,7 +22,8 @@ def _library(name: str, purpose: str) -> Any:
         return import_module(name)
     except ImportError:
         raise MissingPartError(
-            f"{purpose}: needs {name}, which is not installed; pip install 'vehicle-on-shaker[notebook]'"
+            f"{purpose} needs {name}, which is not installed; install it with: pip install "
+            "'vehicle-on-shaker[notebook]'"
         ) from None
 
 

@@ -86,9 +86,7 @@ def require_moving(recording: Recording, wheel: str | None) -> None:
     """Raise a DataError if the plate of a wheel does not move."""
     moving = recording.excited
     if moving and wheel is not None and wheel not in moving:
-        raise DataError(
-            f"wheel {wheel}: its plate is at rest, so it has no FRF; the moving plates are {', '.join(moving)}"
-        )
+        raise DataError(f"wheel {wheel}: its plate is at rest, so there is no FRF; choose from {', '.join(moving)}")
 
 
 def of_wheel(all_responses: Sequence[MotionResponse], wheel: str | None, names: tuple[str, ...]) -> RunResponse:
@@ -119,9 +117,7 @@ def responses(
     """
     moving = recording.excited
     if not moving:
-        raise DataError(
-            f"{signal.source}: no plate moves (displacement constant), so there is no FRF; give a signal that moves one"
-        )
+        raise DataError(f"{signal.source}: no plate moves, so there is no FRF; give a signal that moves a plate")
     return motion_responses(
         recording.timestep,
         {wheel_name: recording[f"plate_{wheel_name}_displacement"] for wheel_name in moving},

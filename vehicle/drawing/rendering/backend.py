@@ -109,7 +109,7 @@ def find_ffmpeg() -> str:
     for path in programs:
         if _encodes(path):
             return path
-    fault = f"found {', '.join(programs)} without the encoder {ENCODER}" if programs else "no ffmpeg program was found"
+    fault = f"{', '.join(programs)} has no encoder {ENCODER}" if programs else "the program ffmpeg was not found"
     raise MissingPartError(
         f"video: {fault}. Install ffmpeg, on Debian: apt-get install ffmpeg, or the Python package imageio-ffmpeg; "
         "or run without --video"

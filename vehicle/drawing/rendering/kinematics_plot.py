@@ -19,7 +19,7 @@ PANELS: dict[str, dict[str, str]] = {
     "vertical load [N]": {"load_n": ""},
     "change of spring length [mm]": {"strut_length_m": ""},
     "roll centre above the ground [mm]": {"roll_centre_height_m": ""},
-    "support angle in the side view [deg]": {"brake_support_deg": "brake force", "drive_support_deg": "drive force"},
+    "anti-dive / anti-squat angle [deg]": {"brake_support_deg": "brake force", "drive_support_deg": "drive force"},
     "steering axis [deg]": {"caster_deg": "caster", "kingpin_inclination_deg": "kingpin inclination"},
 }
 """Label of each panel to its quantities and their names."""

@@ -39,12 +39,13 @@ class Layout:
     def __post_init__(self) -> None:
         if self.width % 2 or self.height % 2:
             raise ConfigurationError(
-                f"film size: found {self.width} x {self.height}, both must be even; "
-                f"give {self.width + self.width % 2} x {self.height + self.height % 2}"
+                f"film size: found {self.width} x {self.height}, both numbers must be even; give "
+                f"{self.width + self.width % 2} x {self.height + self.height % 2}"
             )
         if self.width < SMALLEST[0] or self.height < SMALLEST[1]:
             raise ConfigurationError(
-                f"film size: found {self.width} x {self.height}, at least {SMALLEST[0]} x {SMALLEST[1]} can be read"
+                f"film size: found {self.width} x {self.height}, must be at least {SMALLEST[0]} x "
+                f"{SMALLEST[1]} to be readable"
             )
 
     @property

@@ -35,7 +35,7 @@ def plot_road(path: Path, distance: Vector, tracks: Mapping[str, RoadTrack], tit
     with saved_figure(path, (width, 6.0), title, textwrap.fill(caption, round(12.0 * width))) as figure:
         axes = figure.subplots(2, len(tracks), sharex=True, sharey="row", height_ratios=(2.0, 1.0), squeeze=False)
         for column, (heading, track) in zip(axes.T, tracks.items(), strict=True):
-            for label, height, colour in zip(("road", "as the tyre takes it"), track[:2], COLOURS, strict=False):
+            for label, height, colour in zip(("road", "after averaging by the tyre"), track[:2], COLOURS, strict=False):
                 column[0].plot(distance, 1e3 * height, color=colour, label=label)
             column[1].plot(distance, 1e2 * track.slope, color=COLOURS[1])
             column[0].set_title(heading)

@@ -157,7 +157,7 @@ class Shot:
         if scene.road is not None:
             road = [
                 f"road passes at {3.6 * scene.road.speed:.4g} km/h, a stripe is {scene.road.stripe:g} m long; "
-                "heights in numbers: effective, as the tyre takes them"
+                "heights in numbers: after averaging by the tyre"
             ]
             exaggerated = "motion and road"
         return [
@@ -180,7 +180,7 @@ def excerpt_of(run: RecordedRun, take: Take) -> Excerpt:
     recording, vehicle = run.recording, run.car.model.vehicle
     record = float(recording.time[-1])
     if take.start is not None and not 0.0 <= take.start < record:
-        raise ConfigurationError(f"film, start: found {take.start:g} s, the record goes from 0 to {record:g} s")
+        raise ConfigurationError(f"film, start: found {take.start:g} s, must be 0 to {record:g} s, within the record")
     slip = vehicle.damper.slip_velocity if dampers_of(recording) else 0.0
     hub = hub_channel(vehicle.composition, run.wheel)
     return choose_excerpt(recording, run.wheel, hub, slip, start=take.start, duration=take.duration, slow=take.slow)

@@ -201,7 +201,7 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
                 )
     if not soft and not hard:
         raise ConfigurationError(
-            f"axle of {', '.join(wheels)}: nothing ties its wheels to the body; add joints or bushings"
+            f"axle of {', '.join(wheels)}: nothing connects the wheels to the body; add joints or bushings"
         )
     struts = []
     for index in np.flatnonzero(model.actuator_biastype == mujoco.mjtBias.mjBIAS_USER).tolist():

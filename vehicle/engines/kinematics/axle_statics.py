@@ -182,16 +182,16 @@ class AxleStatics:
                 break
         else:
             raise SimulationError(
-                f"axle: no position with wheel travels {[round(1e3 * value, 3) for value in travel]} mm; reduce the "
-                "travel and its steps"
+                f"axle: found no equilibrium at wheel travels of {[round(1e3 * value, 3) for value in travel]} "
+                "mm; reduce the travel or its steps"
             )
         mujoco.mj_fwdPosition(model, data)
         gaps = self._open(self._gaps(self.hard)[0], travel)
         if np.max(np.abs(gaps)) > 1e-7:
             raise SimulationError(
-                f"axle: its joints leave a gap of {1e3 * np.max(np.abs(gaps)):.3g} mm at wheel travels "
-                f"{[round(1e3 * value, 3) for value in travel]} mm, which the linkage cannot reach: ask for less travel"
-                + (", or let its bushings give way (without --ideal)" if self.ideal else "")
+                f"axle: the linkage cannot reach wheel travels of {[round(1e3 * value, 3) for value in travel]} "
+                f"mm (its joints open by {1e3 * np.max(np.abs(gaps)):.3g} mm); use less travel"
+                + (", or elastic bushings (without --ideal)" if self.ideal else "")
             )
         # K dq + B' lambda = f: lambda opposes the force, and the load is its negative.
         loads_now = -reactions[-len(self.wheels) :]

@@ -108,7 +108,9 @@ def decoupling(
     """
     rows, inertia = _rigid(matrices, part)
     if not np.linalg.norm(crankshaft) > 0.0:
-        raise ConfigurationError(f"crankshaft: found {list(crankshaft)}, must be a direction")
+        raise ConfigurationError(
+            f"crankshaft: found {list(crankshaft)}, must be a direction of three numbers, not all zero"
+        )
     system, hung = matrices.system, _hung(matrices, rows, part)
     stiffness = _mount_stiffness(system, rows, hung)
     shaft = np.array(crankshaft) / np.linalg.norm(crankshaft)
@@ -154,7 +156,7 @@ def _rigid(matrices: CarMatrices, part: str) -> tuple[Vector, Vector]:
     bodies = [body for body in matrices.body_rows if matrices.carried_by[body] == part]
     if not bodies:
         names = sorted({owner for body, owner in matrices.carried_by.items() if body in matrices.body_rows})
-        raise ConfigurationError(f"part {part!r}: unknown; this car has {', '.join(names)}")
+        raise ConfigurationError(f"part {part!r}: unknown; choose from {', '.join(names)}")
     masses = np.array([matrices.body_masses[body][0, 0] for body in bodies])
     centres = np.array([matrices.body_centres[body] for body in bodies])
     centre = masses @ centres / np.sum(masses)
@@ -179,7 +181,9 @@ def _hung(matrices: CarMatrices, rows: Vector, part: str) -> Vector:
         member |= more
     wheels = np.any(matrices.tyre_rows[:, member] != 0.0)
     if wheels or np.linalg.matrix_rank(rows[:, member]) != 6 or np.any(rows[:, body]):
-        raise ConfigurationError(f"part {part!r}: is on joints or wheels; give a part that is free on its mounts")
+        raise ConfigurationError(
+            f"part {part!r}: is held by joints or wheels; give a part that is held only by its mounts"
+        )
     joints = system.constraints[:, member]
     joints = joints[np.any(joints != 0.0, axis=1)]
     free = scipy.linalg.null_space(joints) if len(joints) else np.eye(int(np.count_nonzero(member)))

@@ -122,7 +122,7 @@ def participation(
     body = car.superelement
     if not (car.vehicle.body.flexible and len(body.frequencies)):
         raise ConfigurationError(
-            f"{car.vehicle.name}: the body is rigid; set body.flexible = true and give a body model to get its modes"
+            f"{car.vehicle.name}: the body is rigid, so it has no modes; set body.flexible = true and give a body model"
         )
     lines = np.atleast_1d(np.asarray(frequency, dtype=float))
     driven = [float(name == wheel) for name in car.vehicle.wheels]

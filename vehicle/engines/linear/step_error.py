@@ -104,9 +104,9 @@ def accurate_step(car: CarModel, matrices: CarMatrices) -> float:
     while (violation := check.worst(step)) is not None:
         if 0.5 * step < SMALLEST_STEP:
             raise ConfigurationError(
-                f"no time step from {first:g} s down to {number(step, 2)} s suits this car: {number(step, 2)} s, "
-                f"{check.cause(violation, step)}; correct that parameter, or the mass of the part; the reduced engine "
-                "does not need this step"
+                f"no time step from {first:g} s down to {number(step, 2)} s is short enough for this car: "
+                f"{number(step, 2)} s, {check.cause(violation, step)}; correct this parameter, or the mass of "
+                "the part, or use --engine reduced, which does not need this step"
             )
         step *= 0.5
     return step
@@ -129,9 +129,9 @@ def require_accurate_step(car: CarModel, matrices: CarMatrices) -> None:
         step /= 2.0
     cause = check.cause(violation, timestep)
     remedy = (
-        f"set solver.timestep={step:g}, or correct that parameter"
+        f"set solver.timestep={step:g}, or correct this parameter"
         if step >= SMALLEST_STEP
-        else f"every step down to {SMALLEST_STEP:g} s is too long: check that parameter and the mass of the part"
+        else f"every step down to {SMALLEST_STEP:g} s is too long: check this parameter and the mass of the part"
     )
     raise ConfigurationError(
         f"solver.timestep: found {timestep:g} s, {cause}; {remedy}; the reduced engine does not depend on this step"
@@ -211,8 +211,8 @@ class _StepCheck:
         message = (
             "at which the integration is unstable"
             if angle >= 2.0
-            else "at which a vibration on a stiffer segment of a table is "
-            f"{100.0 * (2.0 * np.arcsin(angle / 2.0) / angle - 1.0):.0f} % high"
+            else "at which the frequency on a stiffer segment of a table is "
+            f"{100.0 * (2.0 * np.arcsin(angle / 2.0) / angle - 1.0):.0f} % too high"
         )
         element = f"{laws[worst].name}, up to {laws[worst].stiffness_increase:.3g} N/m stiffer than at rest"
         severity = angle / SEGMENT_LIMIT
@@ -257,7 +257,7 @@ class _StepCheck:
         pole = complex(exact[row[worst]])
         message = (
             f"at which the peak of a {'vibration' if pole.imag else 'creeping motion'} of the car is "
-            f"{100.0 * error[worst]:.0f} % off, must be at most {100.0 * POLE_LIMIT:g} %"
+            f"{100.0 * error[worst]:.0f} % wrong, must be at most {100.0 * POLE_LIMIT:g} %"
         )
         severity = float(error[worst]) / POLE_LIMIT
         form = self.forms[stuck]
@@ -291,7 +291,7 @@ class _StepCheck:
         index = int(np.argmax(share))
         message = (
             f"at which the ringing of {self.names[worst]} after the damper breaks away is "
-            f"{100.0 * error[worst]:+.0f} % off, must be at most {100.0 * LOCAL_LIMIT:g} %"
+            f"{100.0 * error[worst]:+.0f} % wrong, must be at most {100.0 * LOCAL_LIMIT:g} %"
         )
         severity = float(abs(error[worst])) / LOCAL_LIMIT
         return StepError(

@@ -93,7 +93,7 @@ class LinearSystem:
             ConfigurationError: the output is unknown.
         """
         if name not in self.outputs:
-            raise ConfigurationError(f"output {name!r}: unknown; this model has {', '.join(self.outputs)}")
+            raise ConfigurationError(f"output {name!r}: unknown; choose from {', '.join(self.outputs)}")
         row = self.outputs[name]
         return row[..., : self.size], row[..., self.size :]
 

@@ -287,6 +287,6 @@ def _require_rising(law: DisplacementLaw, slopes: Vector) -> None:
     """Check that all slopes of x + G g(x)/2 of a law are positive."""
     if np.any(slopes <= 0.0):
         raise SimulationError(
-            f"{law.name}: its tangent at rest is not positive in this car, so the reduced engine cannot follow its "
-            "softer segments; use the MuJoCo engine"
+            f"{law.name}: its stiffness at rest is not above 0 in this car, so the reduced engine cannot compute "
+            "its softer segments; use --engine mujoco"
         )

@@ -218,7 +218,7 @@ def error_sentence(errors: Mapping[str, float]) -> tuple[str, ...]:
         return ()
     texts = [f"{name} by {100.0 * errors[name]:+.0f} %" for name in off[:NAMED]]
     more = f" and {len(off) - NAMED} more" if len(off) > NAMED else ""
-    return (f"linear geometry leaves the RMS off, by about: {', '.join(texts)}{more}{REMEDY}",)
+    return (f"the linear geometry of the reduced engine makes the RMS wrong by about {', '.join(texts)}{more}{REMEDY}",)
 
 
 def misses_main(errors: Mapping[str, float]) -> bool:

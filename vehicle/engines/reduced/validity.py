@@ -74,14 +74,14 @@ class Validity:
         largest = max(self.angles, key=lambda body: self.angles[body])
         if not self.within_limits:
             messages.append(
-                f"{largest} rotated by {self.angles[largest]:.3f} rad; the reduced engine, whose geometry is linear, "
-                f"is valid up to {LARGEST_ANGLE:g} rad{REMEDY}"
+                f"{largest} rotates by {self.angles[largest]:.3f} rad, but the reduced engine with its linear "
+                f"geometry is valid up to {LARGEST_ANGLE:g} rad{REMEDY}"
             )
         for wheel, load in self.loads.items():
             if load < 0.0 and wheel not in self.one_sided:
                 messages.append(
-                    f"tyre {wheel} would lift off its plate (lowest load {load:.0f} N); its linear tyre pulls, so the "
-                    "result is outside the valid range"
+                    f"tyre {wheel} would lift off its plate (lowest load {load:.0f} N); the linear tyre then "
+                    "pulls the wheel down, so the result is not valid"
                 )
         return tuple(messages)
 

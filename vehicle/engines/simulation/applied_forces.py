@@ -163,8 +163,8 @@ def require_step_of_forces(forces: Sequence[PlacedForce], step: float) -> None:
     needed = step_for(forces, step, GIVEN_ERROR)
     if needed < step:
         raise ConfigurationError(
-            f"solver.timestep: found {step:g} s, too long for a force of {highest_frequency(forces):.4g} Hz; leave it "
-            f"out, or set at most {needed:g} s"
+            f"solver.timestep: found {step:g} s, must be at most {needed:g} s for a force of "
+            f"{highest_frequency(forces):.4g} Hz; leave it out, or set a shorter step"
         )
 
 
@@ -172,7 +172,7 @@ def force_notices(forces: Sequence[PlacedForce]) -> tuple[str, ...]:
     """Return the messages on the records of some forces."""
     from_python = [force.path for force in forces if force.given is not None]
     messages = (
-        [f"{', '.join(from_python)}: history from Python, which the vehicle file of this run has not"]
+        [f"{', '.join(from_python)}: comes from Python, so the vehicle file of this run does not contain it"]
         if from_python
         else []
     )
@@ -195,17 +195,20 @@ def require_resolved(forces: Sequence[PlacedForce], record_rate: float) -> None:
             continue
         if force.speed == 0.0:
             remedy = (
-                "set the speed of the crankshaft, --set crank.rpm=750"
+                "set the speed of the crankshaft [1/min], for example --set crank.rpm=750"
                 if law.angle == CRANK
-                else "the wheels stand: drive on a road, --road level --speed 110, or set driving.speed [m/s]"
+                else (
+                    "the wheels stand; drive on a road, for example --road level --speed 110, or set "
+                    "driving.speed [m/s]"
+                )
             )
             raise ConfigurationError(f"{force.path}.angle: {law.angle} does not turn; {remedy}")
     highest = highest_frequency(forces)
     if highest > RESOLVED * record_rate:
         rate = 1000.0 * np.ceil(highest / (1000.0 * RESOLVED))
         raise ConfigurationError(
-            f"solver.record_rate: found {record_rate:g} Hz, which shows a force of {highest:.4g} Hz more than 2 % low; "
-            f"set at least {rate:g} Hz"
+            f"solver.record_rate: found {record_rate:g} Hz, must be at least {rate:g} Hz, or a force of "
+            f"{highest:.4g} Hz appears more than 2 % too low"
         )
 
 

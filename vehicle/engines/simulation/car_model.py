@@ -58,7 +58,8 @@ def build_model(vehicle: Vehicle, trimmed_body: Superelement) -> CarModel:
         model = assembly.spec.compile()
     except ValueError as error:
         raise SimulationError(
-            f"MuJoCo refuses the generated car: {' '.join(str(error).split())}; check the parameters changed last"
+            f"MuJoCo refuses the generated car: {' '.join(str(error).split())}; check the parameters that "
+            "you changed last"
         ) from None
     rows = Rows(model)
     static = trim(rows)

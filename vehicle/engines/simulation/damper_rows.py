@@ -88,8 +88,9 @@ def side_forces(
         record = unpack(numbers[f"actuator/{law.dampers[damper]}"])[0]
         if record["side_force"] > 0.0 and len(sides) == before:
             raise ConfigurationError(
-                f"{law.dampers[damper]}: side_force_coefficient is {record['side_force']:g}, but no bushing holds the "
-                "rod, whose force it needs; set the coefficient to 0, or give the mount of the rod a stiffness"
+                f"{law.dampers[damper]}: side_force_coefficient is {record['side_force']:g}, but its side force "
+                "is unknown, because no bushing holds the rod; set the coefficient to 0, or give the mount of "
+                "the rod a stiffness"
             )
     return SideForces(
         dampers=whole_numbers([side[0] for side in sides]),

@@ -36,14 +36,15 @@ def require_samples(samples: float, channels: int) -> None:
     """
     if samples < 1.0 - 1e-6:
         raise ConfigurationError(
-            f"solver.record_rate: the signal ends after {number(samples, 2)} of an interval between two recorded "
-            "samples, needed is 1; give a longer signal"
+            f"solver.record_rate: the signal has {number(samples, 2)} intervals of the recorded samples, must be "
+            "at least 1; give a longer signal"
         )
     needed, there = 8.0 * samples * channels, physical_memory()
     if needed > 0.5 * there:
         raise ConfigurationError(
-            f"solver.record_rate: {channels} channels of {samples:.3g} samples need {needed / 1e9:.3g} GB, allowed is "
-            f"half the memory of this machine, {0.5 * there / 1e9:.3g} GB; lower the rate, or cut the record into parts"
+            f"solver.record_rate: {channels} channels of {samples:.3g} samples need {needed / 1e9:.3g} GB, must "
+            f"be at most {0.5 * there / 1e9:.3g} GB, half the memory of this machine; lower the rate, or cut the "
+            "record into parts"
         )
 
 
@@ -58,8 +59,8 @@ def require_finite(recording: Recording) -> None:
         if not -LARGEST < values.min() <= values.max() < LARGEST:
             bad = int(np.argmin(np.abs(values) < LARGEST))
             raise SimulationError(
-                f"channel {name} is {values[bad]:.3g} {recording.units[name]} at t = {recording.time[bad]:.4f} s: the "
-                "car does not hold this motion; check the input and the parameters that you changed"
+                f"channel {name} is {values[bad]:.3g} {recording.units[name]} at t = {recording.time[bad]:.4f} "
+                "s: this is impossible for a car; check the input and the parameters that you changed"
             )
 
 
@@ -82,12 +83,12 @@ def judge_energy(energies: Energies, rate: float) -> tuple[str, ...]:
     if missing <= ENERGY_ROUND_OFF or residual <= RESIDUAL_WARNED:
         return ()
     whole = f"{lost:.3g} J dissipated" if lost > work else f"{energies.work_in:.3g} J put in by the plates"
-    said = f"energy residual {number(residual, 2)}: of {whole} {missing:.3g} J are unaccounted for"
+    said = f"energy balance: {missing:.3g} J of {whole} are missing (residual {number(residual, 2)})"
     if rate < BALANCED_RATE:
-        return (f"{said}; it is summed from samples at {rate:g} Hz, too few to judge the run by",)
+        return (f"{said}; this says little, because {rate:g} Hz are too few samples a second for the sum",)
     if residual > RESIDUAL_FAILED:
         raise SimulationError(
-            f"{said}, allowed are {RESIDUAL_FAILED:g}: the integration does not hold the laws of this car. Reduce "
-            "solver.timestep, or check the parameters that you changed"
+            f"{said}, must be at most {RESIDUAL_FAILED:g}: the time steps are too long for the force laws of "
+            "this car. Reduce solver.timestep, or check the parameters that you changed"
         )
-    return (f"{said} (up to {RESIDUAL_WARNED:g} is usual); check the run with half its solver.timestep",)
+    return (f"{said}, usual is up to {RESIDUAL_WARNED:g}; check the run with half its solver.timestep",)

@@ -75,7 +75,7 @@ class Page:
         with self._added:
             search = gui.add_text("search", "", hint="words in path or meaning, as: strut top")
             paths = gui.add_dropdown(
-                "parameter", self._matches(""), hint="points and stiffnesses have an axis at the end"
+                "parameter", self._matches(""), hint="points and stiffnesses end with an axis, for example .z"
             )
             add = gui.add_button("Add slider")
         with gui.add_folder("Picture"):
@@ -102,7 +102,7 @@ class Page:
 
     def _matches(self, text: str) -> tuple[str, ...]:
         """Return the paths of a search for the list; a message without any, since a list needs an entry."""
-        return tuple(self.state.search(text)) or ("no parameter has these words",)
+        return tuple(self.state.search(text)) or ("no parameter contains these words",)
 
     def _guarded(self, act: Callable[[], object]) -> None:
         """Handle an event of the page under the lock; show the message of an error."""
@@ -226,7 +226,8 @@ class Page:
             if present.warnings:
                 warnings = "; ".join(text.removesuffix(REMEDY) for text in present.warnings)
                 self._say(
-                    f"outside the valid range: {warnings}; write the vehicle file and run it with --engine mujoco"
+                    f"the fast model is not valid here: {warnings}; save the vehicle file and run it with "
+                    "--engine mujoco"
                 )
 
     def _changed(self, car: Car) -> str:

@@ -80,7 +80,7 @@ class BenchState:
         setting = self.setting(path)
         if not setting.accepts(value):
             raise ConfigurationError(
-                f"{path}: found {value!r}, must be {setting.low:g} to {setting.high:g} {setting.unit}"
+                f"{path}: found {value!r} {setting.unit}, must be {setting.low:g} to {setting.high:g} {setting.unit}"
             )
         changes = {**self.changes, path: float(value)}
         # The value of the file is no change, so the car stays bitwise equal.

@@ -123,18 +123,18 @@ def numbers_with(
             "a car with dampers at its wheels"
         )
     for damper in composition:
-        user_laws = {"function": "viscous law, as points of a table", "friction_function": "friction law"}
+        user_laws = {"function": "viscous law, for example as points of a table", "friction_function": "friction law"}
         for name, other in user_laws.items():
             if (found := getattr(damper.law, name)) is not None:
                 raise ConfigurationError(
-                    f"{damper.name}.{name}: found {found!r}, a function of this process, which neither an FMU nor a "
-                    f"page can contain; set the {other}"
+                    f"{damper.name}.{name}: found the Python function {found!r}, which an FMU or a page cannot "
+                    f"contain; set the {other}"
                 )
         if damper.law.controlled is not None and damper.law.controlled.law == FMU:
             raise ConfigurationError(
-                f"{damper.name}.control.law: found {FMU!r}; an FMU of a car does not contain another FMU: set law = "
-                f"skyhook, and in the other simulator {damper.name}_control = 0 and {damper.name}_coefficient_command "
-                "from the controller"
+                f"{damper.name}.control.law: found {FMU!r}; an FMU of a car cannot contain another FMU; set law "
+                f"= skyhook, and in the other simulator set {damper.name}_control = 0 and connect the controller "
+                f"to {damper.name}_coefficient_command"
             )
     model, forces = pushed or (car.poles.without_forces(), {})
     wheels = model.matrices.system.inputs

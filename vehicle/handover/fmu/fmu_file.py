@@ -81,12 +81,12 @@ def write_fmu(
         MissingPartError: the libraries are not in the package.
     """
     if str(fmi) not in FMI_VERSIONS:
-        raise ConfigurationError(f"fmi: found {fmi!r}, allowed are {', '.join(FMI_VERSIONS)}")
+        raise ConfigurationError(f"fmi: found {fmi!r}, must be one of {', '.join(FMI_VERSIONS)}")
     if not SHORTEST_STEP <= step <= LONGEST_STEP:
         raise ConfigurationError(f"step: found {step:g} s, must be {SHORTEST_STEP:g} to {LONGEST_STEP:g} s")
     target = Path(path)
     if target.suffix != ".fmu":
-        raise ConfigurationError(f"{target}: an FMU has the ending .fmu")
+        raise ConfigurationError(f"{target}: the name of an FMU must end in .fmu")
     names = car.vehicle.channels if channels is None else tuple(channels)
     car.vehicle.require_channels(names, (*car.vehicle.channels, *car.vehicle.requested_channels))
     car.check("reduced")
@@ -95,9 +95,9 @@ def write_fmu(
     speed = car.vehicle.driving.speed if car.vehicle.driving.rolling else 0.0
     description = (
         f"{car.vehicle.name}, {f'rolling at {3.6 * speed:.4g} km/h' if speed else 'on plates'}; valid for small "
-        "rotations (warnings say where not). Inputs belong to the END of a communication step: a "
-        "master that gives them at its beginning moves the car one step late. Communication steps are multiples of "
-        f"{step:g} s."
+        "rotations (a warning appears beyond). Inputs are values at the END of a communication step: if the "
+        "master sets values of its beginning, the car moves a step late. Communication steps must be multiples "
+        f"of {step:g} s."
     )
     text = model_description(car.vehicle.name, numbers.token, entries, fmi=str(fmi), step=step, description=description)
     files = {"modelDescription.xml": text.encode(), "resources/car.bin": numbers.content}
@@ -121,8 +121,7 @@ def _libraries(fmi: str) -> dict[str, bytes]:
             continue
         if not library.is_file():
             raise MissingPartError(
-                f"{library}: is missing; build the libraries with python tools/core.py fmu, or install the package "
-                "again"
+                f"{library} is missing; build it with python tools/core.py fmu, or install the package again"
             )
         entries[f"binaries/{folder}/{library.name}"] = library.read_bytes()
     return entries

@@ -118,7 +118,7 @@ def car_outputs(car: Car, channels: Sequence[str], model: PoleModel | None = Non
         add(Output(name=f"{point}_displacement_{axis}", unit="m", meaning=title), rows)
     for name, rows in zip(accelerations, _each(_second_derivative(model, displacements)), strict=True):
         point, _, axis = name.rpartition("_acc_")
-        title = f"acceleration of {point_words(point)} along {axis}, at the instant and not filtered"
+        title = f"acceleration of {point_words(point)} along {axis}, not filtered"
         add(Output(name=name, unit="m/s2", meaning=title), rows)
     tyres = {f"tyre_{wheel}_force_z": wheel for wheel in system.inputs}
     for name in channels:
@@ -133,7 +133,7 @@ def car_outputs(car: Car, channels: Sequence[str], model: PoleModel | None = Non
         nothing = _linear(model, _no_outputs(model))
         for ending, reading, title in (
             ("velocity", VELOCITY, "velocity of the damper, extension positive"),
-            ("force", FORCE, "force of the damper at the instant, with friction, gas, stop and force command"),
+            ("force", FORCE, "force of the damper, with friction, gas, stop and force command"),
             ("coefficient", COEFFICIENT, "damping coefficient in the last step"),
         ):
             name = f"{damper}_{ending}"
@@ -154,7 +154,9 @@ def car_outputs(car: Car, channels: Sequence[str], model: PoleModel | None = Non
     for name, rows in zip(names, sensors, strict=True):
         add(Output(name=name, unit="m/s", meaning="sensor along the damper: absolute velocity of this end"), rows)
     if not outputs:
-        raise ConfigurationError("--channels: all of them are plate displacements, which are inputs of an FMU")
+        raise ConfigurationError(
+            "--channels: contains only plate displacements, which are inputs of an FMU; name other channels"
+        )
     assert all(rows.force.shape[1] == d for rows in parts)
     return outputs, joined_rows(parts)
 
@@ -272,7 +274,10 @@ def watched_outputs(car: Car, model: PoleModel | None = None) -> Watched:
         for index in linear
     ]
     notices += [
-        f"{body} turned by more than {LARGEST_ANGLE:g} rad about {axis}; this car is valid up to there"
+        (
+            f"{body} rotates by more than {LARGEST_ANGLE:g} rad about {axis}, where the linear geometry of this "
+            "car is not valid"
+        )
         for body in bodies
         for axis in "xyz"
     ]

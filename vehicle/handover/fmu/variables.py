@@ -33,23 +33,22 @@ UNITS = {
 
 _MEANING = {
     "coulomb_friction": "Coulomb friction Fd",
-    "static_friction": "static friction Fs of the Stribeck law, at least Fd",
-    "stribeck_velocity": "velocity vs of the Stribeck law",
-    "stribeck_exponent": "exponent of the Stribeck law",
-    "curve_scale": "factor on the force over velocity without friction and gas; the poles of the car keep the damping "
-    "at 1, so other values are exact to about 0.1 %",
-    "control": "1: the control law of the car acts; 0: softest setting, for a controller outside that sets the "
+    "static_friction": "static friction Fs of the Stribeck law, must be at least Fd",
+    "stribeck_velocity": "velocity vs of the transition from static to sliding friction (Stribeck law)",
+    "stribeck_exponent": "exponent of the transition from static to sliding friction (Stribeck law)",
+    "curve_scale": "factor on the damping curve (without friction and gas); other values than 1 are exact to 0.1 %",
+    "control": "1: the control law of the car acts; 0: softest setting, for an external controller that sets the "
     "coefficient command",
     "displacement": "displacement of the plate or road at the END of the communication step, upwards",
-    "velocity": "velocity of the plate or road at the END of the communication step, upwards; needed: without it the "
-    "tyre forces are wrong",
+    "velocity": "velocity of the plate or road at the END of the communication step, upwards; must be set, or the tyre "
+    "forces are wrong",
     "slope_excess": "V tan(beta) - z' of a road whose slope under the tyre is not the derivative of its height (a tyre "
     "that envelops an obstacle), mean over the communication step; 0 otherwise",
-    "applied": "force or moment [force.NAME] of the vehicle file beside its mean at the END of the communication step, "
-    "linear over the step",
-    "force": "force added to that of the damper, constant over the communication step; positive pulls body and wheel "
-    "together",
-    "coefficient": "damping added to the curve of the damper, constant over the communication step",
+    "applied": "force or moment [force.NAME] that is added to its mean in the vehicle file: value at the END of the "
+    "communication step; it changes linearly during the step",
+    "force": "force that is added to the damper force, constant over the communication step; positive pulls body and "
+    "wheel together",
+    "coefficient": "damping constant that is added to the damping curve, constant over the communication step",
 }
 
 

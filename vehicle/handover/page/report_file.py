@@ -49,7 +49,7 @@ def write_report(
         put_in_order(folder)
     missing = next((folder for folder in folders if not folder.is_dir()), None)
     if missing is not None:
-        raise ConfigurationError(f"{missing}: is no folder; give the folder of a run, as runs/low")
+        raise ConfigurationError(f"{missing}: is not a folder; give the folder of a run, for example runs/low")
     path = Path(file)
     check_file(path, ending=".html", force=force)
     figures = None if targets is None else read_targets(targets)

@@ -170,7 +170,7 @@ def _require(car: Car, signal: Signal, skip: float) -> None:
     car.check("reduced")
     car.vehicle.require_channels([f"{POINT}_acc_{axis}" for axis in AXES], car.vehicle.acceleration_channels)
     if signal.slope_velocity or abs(signal.timestep * car.vehicle.solver.record_rate - 1.0) > 1e-6:
-        raise ConfigurationError("the input must be heights of the plates at the record rate")
+        raise ConfigurationError("the input must be plate displacements at the sampling rate of the recorded channels")
     shortest = skip + SHORTEST * WINDOW * signal.timestep
     if min(signal.duration, LONGEST) < shortest:
         raise ConfigurationError(

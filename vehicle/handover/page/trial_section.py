@@ -53,7 +53,9 @@ def _numbers(run: FinishedRun) -> str:
     begin, _ = run.summary.get("evaluated_s") or (0.0, 0.0)
     road = run.summary["input"].get("road") or {}
     if road.get("tyre_contact"):
-        raise ConfigurationError("the tyres see the obstacle through cams, whose slopes are not in the record")
+        raise ConfigurationError(
+            "the tyres roll over the obstacle with cams, and the record does not contain the slopes of the cams"
+        )
     signal = recorded_signal(run)
     speed = road.get("speed_kmh")
     driven = RunRoad(road_class=road.get("class"), speed=speed, behind=road["behind_m"]) if speed else None

@@ -68,9 +68,9 @@ def coupled_law(connection: PlacedConnection, flexibility: FloatArray) -> dict[s
     if nonlinear:
         key, shown = next(iter(nonlinear.items()))
         raise ConfigurationError(
-            f"{connection.path}.{key}: found {shown} in series with an attachment whose residual flexibility couples "
-            f"the axes; remove {key}, use a model with one stiffness for each axis, or "
-            "body.attachment_flexibility = false"
+            f"{connection.path}.{key}: found {shown}, but the body is flexible at this point and its flexibility "
+            f"couples the axes, which excludes {key}; remove {key}, use a body model with a separate stiffness "
+            "for each axis, or set body.attachment_flexibility = false"
         )
     axes = np.eye(3) if connection.axes is None else np.array(connection.axes)
     bushing_stiffness = (axes.T * law.stiffness) @ axes

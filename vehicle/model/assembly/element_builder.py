@@ -283,8 +283,9 @@ class ElementBuilder:
                     and (self.superelement.rotations.get(self.nodes[force.at]) is None)
                 ):
                     raise DataError(
-                        f"{force.path}: a moment on the body, whose model has no rotations at {list(force.at)} m; "
-                        "apply two forces with a distance, or a body model with rotations at this node"
+                        f"{force.path}: a moment acts on the body at {list(force.at)} m, where its model has no "
+                        "rotations; apply two opposite forces at two points, or use a body model with rotations "
+                        "at this node"
                     )
 
     def add_output(self, output: PlacedOutput) -> None:

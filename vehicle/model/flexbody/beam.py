@@ -32,7 +32,7 @@ class BeamSection:
             value = getattr(self, name)
             if not (np.isfinite(value) and value >= 0.0):
                 raise ConfigurationError(
-                    f"beam section: {name} is {value}, must be finite and not negative. Correct the section."
+                    f"beam section: {name} is {value}, must be a finite number of at least 0. Correct the section."
                 )
 
 
@@ -88,7 +88,9 @@ def local_axes(start: ArrayLike, end: ArrayLike, reference: ArrayLike = (0.0, 0.
     along = np.asarray(end, dtype=float) - np.asarray(start, dtype=float)
     length = float(np.linalg.norm(along))
     if not length > 0.0:
-        raise ConfigurationError(f"beam from {list(np.asarray(start))} to the same point: its ends must differ.")
+        raise ConfigurationError(
+            f"beam: both ends are at {np.asarray(start).tolist()} m; they must be different points."
+        )
     x = along / length
     up = np.asarray(reference, dtype=float)
     y = _cross(up, x)

@@ -34,7 +34,7 @@ class DesignNode:
     def __post_init__(self) -> None:
         validate(self)
         if self.place is not None and self.mirror is not None:
-            raise ConfigurationError("DesignNode.mirror: found together with place; set at most one of the two")
+            raise ConfigurationError("DesignNode.mirror: found together with place; remove one of them")
         if self.place is not None and self.place[1] < 0.0:
             raise ConfigurationError(
                 f"DesignNode.place: found y = {self.place[1]} m, must be at least 0; the left side is mirrored"
@@ -57,8 +57,8 @@ class MemberGroup:
         dimensions = [name for name in ("width", "wall", "area") if getattr(self, name) is not None]
         if dimensions not in (["width", "wall"], ["area"]):
             raise ConfigurationError(
-                f"MemberGroup.between: found a section with {', '.join(dimensions) or 'no dimension'}; set width and "
-                "wall of a tube, or the area of a strut"
+                f"MemberGroup.between: the section has {', '.join(dimensions) or 'no dimension'}; must have "
+                "width and wall (a tube) or area (a strut)"
             )
         if not self.between:
             raise ConfigurationError("MemberGroup.between: found an empty list, must contain at least one member")
@@ -143,13 +143,13 @@ class BodyDesign:
                 hardpoint = node.mirror or name
                 similar = nearest(hardpoint, [*points, *(key.removesuffix("_fr") for key in points)])
                 raise ConfigurationError(
-                    f"nodes.{name}: the vehicle has no hardpoint {hardpoint}; the nearest is {similar}. "
-                    "Set the place of the node, or name it after a hardpoint"
+                    f"nodes.{name}: the vehicle has no hardpoint {hardpoint}; the most similar name is "
+                    f"{similar}. Set the place of the node, or name it after a hardpoint"
                 )
         names = [name for nodes in positions.values() for name in nodes]
         duplicates = sorted({name for name in names if names.count(name) > 1})
         if duplicates:
-            raise ConfigurationError(f"nodes: {', '.join(duplicates)} defined by two entries; rename one entry")
+            raise ConfigurationError(f"nodes: {', '.join(duplicates)} defined twice; rename one entry")
         return positions
 
     def member_ends(self, group: str, placed: Mapping[str, Mapping[str, Point]]) -> list[tuple[str, str]]:
@@ -170,7 +170,7 @@ class BodyDesign:
             for name in names:
                 if name not in sides:
                     raise ConfigurationError(
-                        f"members.{group}.between: {member!r} has no node {name!r}; the nearest is "
+                        f"members.{group}.between: {member!r} has no node {name!r}; the most similar name is "
                         f"{nearest(name, sides)}"
                     )
             if len(names) == 1:

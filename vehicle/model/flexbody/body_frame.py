@@ -149,7 +149,7 @@ def body_frame(design: BodyDesign, points: Mapping[str, Point], properties: Node
     loose = [name for i, name in enumerate(base.nodes) if i not in base.edges]
     if loose:
         raise ConfigurationError(
-            f"nodes: no tube ends at {', '.join(loose)}, which could turn freely; add members with width and wall"
+            f"nodes: {', '.join(loose)} could turn freely, because no tube ends there; add members with width and wall"
         )
     fixed = np.zeros((6 * count, 6 * count))
     groups: dict[str, FloatArray] = {}

@@ -47,9 +47,9 @@ def body_model(vehicle: Vehicle, folder: Path | None = None) -> Superelement:
         if body.superelement is not None and (body.flexible or body.attachment_flexibility):
             package_files = ", ".join(sorted(path.name for path in PACKAGE_FOLDER.glob("*.toml")))
             raise ConfigurationError(
-                f"body.superelement: no file {body.superelement!r} in the folder of the vehicle file or in the package "
-                f"(files: {package_files}). Name an existing file, or set body.flexible = false and "
-                "body.attachment_flexibility = false for a rigid body"
+                f"body.superelement: the file {body.superelement!r} is neither in the folder of the vehicle file "
+                f"nor in the package (which has {package_files}). Name an existing file, or set body.flexible = "
+                "false and body.attachment_flexibility = false for a rigid body"
             )
         return _bare(vehicle)
     status = file.stat()
@@ -142,7 +142,7 @@ def _find(name: str, folder: Path | None) -> Path | None:
             continue
         if (directory / name).resolve().parent != directory.resolve():
             raise ConfigurationError(
-                f"body.superelement: {name} is a link that points outside {directory}; put the file itself there"
+                f"body.superelement: {name} is a link to a file outside {directory}; put the file itself there"
             )
         return directory / name
     return None
@@ -169,5 +169,5 @@ def _bare(vehicle: Vehicle) -> Superelement:
         damping_ratio=np.zeros(0),
         shapes=np.zeros((0, len(points), 3)),
         mode_names=(),
-        provenance="Rigid body on the hardpoints of the vehicle, attachments rigid.",
+        provenance="Rigid body at the hardpoints of the vehicle, with rigid attachments.",
     )

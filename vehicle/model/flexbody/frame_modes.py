@@ -34,8 +34,8 @@ def condense_rotations(stiffness: FloatArray) -> tuple[FloatArray, FloatArray]:
         factor = scipy.linalg.cho_factor(stiffness[np.ix_(r, r)])
     except np.linalg.LinAlgError as error:
         raise ConfigurationError(
-            "space frame: a node can rotate freely (its rotational stiffness is singular). "
-            "Connect every node to a beam that resists bending and torsion."
+            "space frame: a node can rotate freely, because no beam resists its rotation. Connect every node to "
+            "a beam that resists bending and torsion."
         ) from error
     recovery = np.zeros((6 * count, 3 * count))
     recovery[t, np.arange(3 * count)] = 1.0
@@ -95,8 +95,8 @@ def free_free_modes(
     values, vectors = scipy.linalg.eigh(dynamic, subset_by_index=(0, count - 1))
     if not values[0] > ROUNDING * shift:
         raise DataError(
-            "body frame: a part of it moves without stiffness, or with so little that rounding hides it; check the "
-            "sections, materials and masses of its design"
+            "body frame: a part can move with no or almost no stiffness; check the sections, materials and "
+            "masses of the body design"
         )
     plain = vectors / root[:, None] if added is None else scipy.linalg.solve_triangular(lower.T, vectors)
     shapes = plain.T.reshape(count, -1, 3)

@@ -107,8 +107,9 @@ def nearest_physical(inertia: ArrayLike) -> PhysicalInertia:
     values, axes = np.linalg.eigh(second_moments(tensor))
     if values[-1] <= 0.0:
         raise ConfigurationError(
-            f"inertia tensor {tensor.tolist()}: no principal second moment is positive, so no physical tensor is near. "
-            "Check signs, units [kg m2] and the reference point (centre of gravity)."
+            f"inertia tensor {tensor.tolist()}: no real body has these moments, nor nearly these (none of its "
+            "principal second moments is positive). Check signs, units [kg m2] and the reference point (centre "
+            "of gravity)."
         )
     floor = _FLOOR * float(values[values > 0.0].sum())
     if values[0] >= floor:

@@ -50,9 +50,9 @@ def require_unit_of_mass(model: Superelement, body: TrimmedBody) -> None:
     """
     if body.flexible and len(model.frequencies) and powers_of_thousand(model.mass, body.mass):
         raise DataError(
-            f"superelement {model.name!r}, mass: found {model.mass:.4g} kg, body.mass is {body.mass:.4g} kg: another "
-            "unit of mass. Import the model again with --mass-unit (t for matrices in mm, N and s), or correct "
-            "body.mass of the vehicle."
+            f"superelement {model.name!r}: its mass is {model.mass:.4g} kg, but body.mass is {body.mass:.4g} kg, "
+            "so the units of mass differ. Import the model again with --mass-unit (t for matrices in mm, N and "
+            "s), or correct body.mass of the vehicle."
         )
 
 
@@ -75,10 +75,10 @@ def mass_difference(model: Superelement, body: TrimmedBody, loads: Sequence[Body
     cog = ", ".join(f"{value:z.3f}" for value in model.cog)
     return [
         f"body model {model.name}: {model.mass:.1f} kg with the CoG at [{cog}] m; the vehicle file has "
-        f"{vehicle_properties.mass:.1f} kg and a CoG {1e3 * distance:.0f} mm away. More than "
-        f"{100 * MASS_DIFFERENCE:g} % or {1e3 * COG_DISTANCE:g} mm means two different bodies: rigid motions use the "
-        "vehicle file, modes the model, and their inertia coupling is neglected. `python -m vehicle body show` prints "
-        "the table [body] of the model"
+        f"{vehicle_properties.mass:.1f} kg and a CoG {1e3 * distance:.0f} mm away. With more than "
+        f"{100 * MASS_DIFFERENCE:g} % or {1e3 * COG_DISTANCE:g} mm these are different bodies: rigid motions "
+        "then use the values of the vehicle file, modes those of the model, without the inertia coupling "
+        "between them. `python -m vehicle body show` prints a section [body] that fits the model"
     ]
 
 

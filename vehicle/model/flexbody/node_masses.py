@@ -89,9 +89,9 @@ def matched_masses(
                 break
         multiplier = multiplier + step * direction
     raise ConfigurationError(
-        f"node masses: no positive masses at the {len(guess)} nodes have mass {mass:g} kg, CoG "
-        f"{np.asarray(cog).tolist()} m and the required inertia. "
-        "Check the inertia (triangle inequality, reference point) and the node positions."
+        f"node masses: the {len(guess)} nodes cannot have positive masses that give the mass {mass:g} kg, the "
+        f"CoG {np.asarray(cog).tolist()} m and the required inertia. Check the inertia (triangle inequality, "
+        "reference point) and the node positions."
     )
 
 

@@ -145,7 +145,8 @@ def fit_factors(frame: BodyFrame, start: Mapping[str, float], weights: tuple[flo
     missed = np.abs(residuals(frame, best, 1.0)[:3])
     if missed.max() > 0.1:
         raise ConfigurationError(
-            f"body fit: first, last and torsion frequency are {missed.round(3).tolist()} Hz away from {FIRST_HZ:g}, "
-            f"{LAST_HZ:g} and {TORSION_HZ:g} Hz, must be at most 0.1 Hz. Start nearer or change the nominal sections."
+            f"body fit: first, last and torsion frequency differ by {missed.round(3).tolist()} Hz from "
+            f"{FIRST_HZ:g}, {LAST_HZ:g} and {TORSION_HZ:g} Hz, must be at most 0.1 Hz. Change the nominal "
+            "sections of the design, so that the fit starts nearer."
         )
     return best

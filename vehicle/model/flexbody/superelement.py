@@ -84,8 +84,8 @@ class Superelement:
                 put(name, _frozen(getattr(self, name)))
             except (TypeError, ValueError) as error:
                 raise DataError(
-                    f"superelement {self.name!r}, {name}: not a regular array of numbers ({error}). "
-                    "Specify one row of three numbers for every node."
+                    f"superelement {self.name!r}, {name}: is not a regular array of numbers ({error}). Give one "
+                    "row of three numbers for every node."
                 ) from error
         put("edges", _frozen(np.asarray(self.edges, dtype=int).reshape(-1, 2), int))
         put("nodes", tuple(self.nodes))
@@ -251,11 +251,11 @@ def attached_nodes(body: Superelement, points: Mapping[str, Point]) -> dict[Poin
             continue
         if not distance <= tolerance:
             raise DataError(
-                f"superelement {body.name!r}: no node at {name} {list(point)} m, an attachment of the car; the nearest "
-                f"is {body.nodes[best]!r} at {body.positions[best].tolist()} m, {distance * 1e3:.4g} mm away, must be "
-                f"at most {tolerance * 1e3:g} mm. Name the car of this body (--vehicle), move the hardpoint, use a "
-                "body model with a node there, or compute the body from the hardpoints (body.superelement = "
-                "body_design.toml)."
+                f"superelement {body.name!r}: no node at the attachment {name} of the car, {list(point)} m; the "
+                f"nearest is {body.nodes[best]!r} at {body.positions[best].tolist()} m, {distance * 1e3:.4g} mm "
+                f"away, must be at most {tolerance * 1e3:g} mm. Name the car of this body (--vehicle), move the "
+                "hardpoint, use a body model with a node there, or compute the body from the hardpoints "
+                "(body.superelement = body_design.toml)."
             )
         nodes[point] = body.nodes[best]
     return nodes

@@ -61,14 +61,14 @@ def _counts(body: Superelement) -> Iterator[str]:
         actual = getattr(body, name).shape
         if actual != shape:
             yield (
-                f"{name}: shape {actual}, but {nodes} nodes and {modes} frequencies need {shape}. "
+                f"{name}: has the shape {actual}, must be {shape} for {nodes} nodes and {modes} frequencies. "
                 "Export every array for the same nodes and modes."
             )
     if len(body.mode_names) != modes:
-        yield f"mode_names: {len(body.mode_names)} names for {modes} frequencies. Specify a name per mode."
+        yield f"mode_names: found {len(body.mode_names)} names for {modes} frequencies. Give a name for each mode."
     duplicates = sorted(name for name, count in Counter(body.nodes).items() if count > 1)
     if duplicates:
-        yield f"nodes: {', '.join(map(repr, duplicates))} given more than once. Node names must be unique."
+        yield f"nodes: {', '.join(map(repr, duplicates))} appear more than once. Node names must be unique."
     if body.edges.size and not (body.edges.min() >= 0 and body.edges.max() < nodes):
         yield f"edges: found index {body.edges.min()} to {body.edges.max()}, must be 0 to {nodes - 1}."
     for name, node_values in (("rotations", body.rotations), ("residual", body.residual)):
@@ -77,30 +77,43 @@ def _counts(body: Superelement) -> Iterator[str]:
                 yield f"{name}: no node {node!r}. Its nodes are: {', '.join(body.nodes)}."
     for node, rotation in body.rotations.items():
         if rotation.shape != (modes, 3) or not np.all(np.isfinite(rotation)):
-            yield f"rotations of {node!r}: shape {rotation.shape}, must be {modes} rows of three finite numbers."
+            yield (
+                f"rotations of node {node!r}: found the shape {rotation.shape}, must be {modes} rows of three "
+                "finite numbers."
+            )
     for node, flexibility in body.residual.items():
         if flexibility.shape != (3, 3):
-            yield f"residual of {node!r}: shape {flexibility.shape}, must be three rows of three numbers."
+            yield (
+                f"residual flexibility of node {node!r}: found the shape {flexibility.shape}, must be three rows "
+                "of three numbers."
+            )
         yield from _residual(node, flexibility)
 
 
 def _residual(node: str, flexibility: FloatArray) -> Iterator[str]:
     if not np.all(np.isfinite(flexibility)):
-        yield f"residual of {node!r}: {flexibility.tolist()}; every number must be finite. Correct the export."
+        yield (
+            f"residual flexibility of node {node!r}: found {flexibility.tolist()} m/N, every number must be "
+            "finite. Correct the export."
+        )
     largest = float(np.abs(flexibility).max())
     if np.abs(flexibility - flexibility.T).max() > _SYMMETRY * largest:
-        yield f"residual of {node!r}: {flexibility.tolist()} m/N is not symmetric. Specify G = G'."
+        yield (
+            f"residual flexibility of node {node!r}: {flexibility.tolist()} m/N is not symmetric. Give a "
+            "symmetric matrix."
+        )
     lowest = float(np.linalg.eigvalsh(flexibility)[0])
     if lowest < -_SYMMETRY * largest:
         yield (
-            f"residual of {node!r}: its smallest principal value is {lowest:.4g} m/N, must not be negative (negative "
-            "spring in series). Use modes and residual of the same model."
+            f"residual flexibility of node {node!r}: its smallest principal value is {lowest:.4g} m/N, must be "
+            "at least 0 (below 0 is a negative spring). Use modes and residual flexibility of the same model."
         )
     if largest > _SOFTEST_RESIDUAL:
         yield (
-            f"residual of {node!r}: found {largest:.4g} m/N, must be at most {_SOFTEST_RESIDUAL:g} for a car; probably "
-            "mm/N, or a node at a soft spot. Use m/N in a file, [mm/N] in the head of a --residual table; import "
-            "matrices with their --length-unit and --mass-unit, and points on more nodes with --spread."
+            f"residual flexibility of node {node!r}: found {largest:.4g} m/N, must be at most "
+            f"{_SOFTEST_RESIDUAL:g} m/N for a car; the file is probably in mm/N, or the node lies at a soft "
+            "spot. Convert to m/N, or write [mm/N] into the header of a --residual table; import matrices with "
+            "their --length-unit and --mass-unit, and soft spots with --spread."
         )
 
 
@@ -109,12 +122,12 @@ def _values(body: Superelement) -> Iterator[str]:
         array = getattr(body, name)
         if array is not None and not np.all(np.isfinite(array)):
             where = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
-            yield f"{name}{list(where)}: {array[where]}; every number must be finite. Correct the export."
+            yield f"{name}{list(where)}: found {array[where]}, every number must be finite. Correct the export."
     if body.node_mass is not None and (body.node_mass.min() < 0.0 or body.node_mass.sum() <= 0.0):
         worst = int(body.node_mass.argmin())
         yield (
-            f"node_mass of {body.nodes[worst]!r}: {body.node_mass[worst]:g} kg; masses must not be negative and "
-            "their sum must be positive."
+            f"node_mass of {body.nodes[worst]!r}: found {body.node_mass[worst]:g} kg; masses must be at least 0 "
+            "and their sum above 0."
         )
     if not 0.0 < body.hardpoint_tolerance <= LARGEST_TOLERANCE:
         yield (
@@ -125,20 +138,20 @@ def _values(body: Superelement) -> Iterator[str]:
         worst = int(body.frequencies.argmin())
         yield (
             f"frequencies[{worst}]: {body.frequencies[worst]:g} Hz; elastic modes have positive frequencies. "
-            "Omit rigid-body modes: they follow from the masses."
+            "Leave out rigid-body modes: they follow from the masses."
         )
     falls = np.flatnonzero(np.diff(body.frequencies) < 0.0)
     if falls.size:
         i = int(falls[0])
         yield (
             f"frequencies: mode {i + 2} ({body.frequencies[i + 1]:g} Hz) is below mode {i + 1} "
-            f"({body.frequencies[i]:g} Hz). Sort the modes by frequency, their shapes and damping with them."
+            f"({body.frequencies[i]:g} Hz). Sort the modes by frequency, with their shapes and damping."
         )
     bad = np.flatnonzero((body.damping_ratio < 0.0) | (body.damping_ratio > HIGHEST_DAMPING))
     if bad.size:
         i = int(bad[0])
         yield (
-            f"damping_ratio[{i}]: found {body.damping_ratio[i]:g}, must be 0 to {HIGHEST_DAMPING:g}. Specify the "
+            f"damping_ratio[{i}]: found {body.damping_ratio[i]:g}, must be 0 to {HIGHEST_DAMPING:g}. Give the "
             "fraction of critical damping, 0.02 for 2 %."
         )
 
@@ -162,7 +175,7 @@ def _rigid(body: Superelement) -> Iterator[str]:
     """Check mass, CoG and inertia, from the node masses or specified directly."""
     if (body.node_mass is None) == (body.mass_properties is None):
         mass_data = "neither" if body.node_mass is None else "both"
-        yield f"mass: found {mass_data}; specify mass, CoG and inertia, or the mass of every node."
+        yield f"mass: found {mass_data}; give mass, CoG and inertia, or the mass of every node."
     rigid = body.rigid
     numbers = np.array([rigid.mass, *np.ravel(rigid.cog), *np.ravel(rigid.inertia)])
     if numbers.size != 13 or not np.all(np.isfinite(numbers)) or rigid.mass <= 0.0:
@@ -174,20 +187,21 @@ def _rigid(body: Superelement) -> Iterator[str]:
     room = 0.5 * float(np.max(high - low))
     if np.any(rigid.cog < low - room) or np.any(rigid.cog > high + room):
         yield (
-            f"cog: {np.asarray(rigid.cog).tolist()} m lies far outside the nodes, {low.tolist()} to {high.tolist()} m. "
-            "Specify the CoG in the frame and unit of the nodes."
+            f"cog: {np.asarray(rigid.cog).tolist()} m lies far outside the nodes, {low.tolist()} to "
+            f"{high.tolist()} m. Give the CoG in the axes and unit of the nodes."
         )
     if not body.frequencies.size:
         return
     low_moment, middle, top = np.linalg.eigvalsh(rigid.inertia)
     if low_moment <= 1e-9 * top:
-        yield "node_mass: all mass is on one line, so the body has no inertia about the line. Add mass off it."
+        yield "node_mass: all mass is on one line, so the body has no inertia about this line. Add mass beside it."
     if not np.allclose(rigid.inertia, np.transpose(rigid.inertia), rtol=0.0, atol=_SYMMETRY * top):
         yield f"inertia: {np.asarray(rigid.inertia).tolist()} kg m2 is not symmetric."
     if low_moment + middle < top * (1.0 - 1e-6):
         yield (
             f"inertia: principal moments {low_moment:.4g}, {middle:.4g} and {top:.4g} kg m2; the sum of the two "
-            "smaller must be at least the largest. Specify the tensor about the CoG with negative products."
+            "smaller must be at least the largest. Give the tensor about the CoG, with the products of inertia "
+            "as negative integrals."
         )
 
 
@@ -209,21 +223,22 @@ def _modes(body: Superelement) -> Iterator[str]:
     flat = body.shapes.reshape(len(body.shapes), -1)
     still = np.flatnonzero(~flat.any(axis=1))
     if still.size:
-        yield f"shapes: mode {still[0] + 1} is zero at all nodes. Omit the mode, or add nodes that it moves."
+        yield f"shapes: mode {still[0] + 1} is zero at all nodes. Leave the mode out, or add nodes that it moves."
     share = np.sum((flat @ basis) ** 2, axis=1) / np.sum(flat**2, axis=1)
     if share.max() > _RIGID_LIKENESS:
         mode = int(share.argmax())
         yield (
-            f"shapes: mode {mode + 1} ({body.frequencies[mode]:g} Hz) is a rigid motion (share {share[mode]:.4%}, must "
-            f"be at most {_RIGID_LIKENESS:.1%}). Omit rigid-body modes: they follow from mass and inertia."
+            f"shapes: mode {mode + 1} ({body.frequencies[mode]:g} Hz) is a rigid motion (share "
+            f"{share[mode]:.4%}, must be at most {_RIGID_LIKENESS:.1%}). Leave out rigid-body modes: they follow "
+            "from mass and inertia."
         )
     twins = mac(body.shapes, body.shapes) - np.eye(len(body.shapes))
     if twins.max(initial=0.0) > _RIGID_LIKENESS:
         mode_a, mode_b = sorted(int(k) for k in np.unravel_index(int(twins.argmax()), twins.shape))
         yield (
             f"shapes: modes {mode_a + 1} ({body.frequencies[mode_a]:g} Hz) and {mode_b + 1} "
-            f"({body.frequencies[mode_b]:g} Hz) have the same shape (MAC {twins.max():.4f}). Omit one mode, or add "
-            "nodes."
+            f"({body.frequencies[mode_b]:g} Hz) have the same shape (MAC {twins.max():.4f}). Leave out one of "
+            "them, or add nodes."
         )
 
 
@@ -241,8 +256,8 @@ def _normalised(body: Superelement, node_mass: FloatArray) -> Iterator[str]:
         i, j = (int(k) for k in np.unravel_index(int(error.argmax()), error.shape))
         yield (
             f"shapes: modes {i + 1} and {j + 1} have phi^T M phi = {gram[i, j]:.8g} instead of {float(i == j):g} "
-            f"(within {NORMALISATION:g}): not mass-normalised with these node masses. Export mass-normalised modes "
-            "and the corresponding masses."
+            f"(within {NORMALISATION:g}), so the modes are not mass-normalised with these node masses. Export "
+            "mass-normalised modes and the corresponding masses."
         )
     rigid, _ = body.rigid.rigid_motions(body.positions)
     content = np.abs(np.einsum("ank,bnk,n->ab", rigid, body.shapes, node_mass))
@@ -250,8 +265,8 @@ def _normalised(body: Superelement, node_mass: FloatArray) -> Iterator[str]:
         motion, mode = (int(k) for k in np.unravel_index(int(content.argmax()), content.shape))
         rigid_motion = "translation along" if motion < 3 else "rotation about"
         yield (
-            f"shapes: mode {mode + 1} ({body.frequencies[mode]:g} Hz) contains {content[motion, mode]:.3g} of the "
-            f"rigid {rigid_motion} {'xyz'[motion % 3]}, must be at most {NORMALISATION:g}: "
-            "not a free-free mode of these masses. Export free-free modes and the masses of their computation, without "
-            "rigid-body modes."
+            f"shapes: mode {mode + 1} ({body.frequencies[mode]:g} Hz) contains {content[motion, mode]:.3g} of "
+            f"the rigid {rigid_motion} {'xyz'[motion % 3]}, must be at most {NORMALISATION:g}, so it is not a "
+            "free-free mode of these masses. Export free-free modes and the masses of their computation, "
+            "without rigid-body modes."
         )

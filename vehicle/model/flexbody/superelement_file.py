@@ -32,15 +32,15 @@ def read_superelement(path: Path) -> Superelement:
     try:
         raw = path.read_bytes()
     except FileNotFoundError as error:
-        raise DataError(f"{path}: no such file. Specify the path of a body model.") from error
+        raise DataError(f"{path}: the file does not exist. Give the path of a body model.") from error
     except OSError as error:
-        raise DataError(f"{path}: cannot be read ({error}). Specify a body model in TOML or npz.") from error
+        raise DataError(f"{path}: cannot be read ({error}). Give a body model in TOML or npz.") from error
     try:
         return of_arrays(raw) if raw.startswith(b"PK") else of_tables(tomllib.loads(raw.decode("utf-8")))
     except UnicodeDecodeError as error:
         raise DataError(f"{path}: cannot be read as UTF-8 text ({error}). Use a body model in TOML or npz.") from error
     except (tomllib.TOMLDecodeError, RecursionError) as error:
-        raise DataError(f"{path}: no valid TOML, perhaps cut off: {error}. Write the file again.") from error
+        raise DataError(f"{path}: is not valid TOML, perhaps cut off: {error}. Write the file again.") from error
     except DataError as error:
         raise DataError(f"{path}: {error}") from error
 

@@ -42,14 +42,14 @@ def of_arrays(raw: bytes) -> Superelement:
             content = {name: np.asarray(file[name]) for name in file.files}
         head = json.loads(str(content.get("head", "null")))
     except (ValueError, OSError, EOFError, KeyError, zipfile.BadZipFile, zlib.error, NotImplementedError) as error:
-        raise DataError(f"not a valid npz, perhaps truncated: {error}. Write the file again.") from error
+        raise DataError(f"is not a valid npz, perhaps truncated: {error}. Write the file again.") from error
     if not isinstance(head, dict) or head.get("format") != FORMAT:
         file_format = head.get("format") if isinstance(head, dict) else None
         raise DataError(f"format is {file_format!r}, must be {FORMAT!r} for npz.")
     for name in sorted(content.keys() ^ _NPZ):
         if name not in _NPZ:
             similar = difflib.get_close_matches(name, sorted(_NPZ), n=1, cutoff=0.0)
-            raise DataError(f"unknown array {name!r}; the nearest valid one is {similar[0]!r}.")
+            raise DataError(f"unknown array {name!r}; the most similar known name is {similar[0]!r}.")
         if name not in _NPZ_OPTIONAL:
             raise DataError(f"array {name!r} is missing. The file is incomplete; write it again.")
     for name in _NPZ - {"head"} & content.keys():
@@ -68,7 +68,7 @@ def of_arrays(raw: bytes) -> Superelement:
         raise DataError(f"head: key {missing[0]!r} is missing. The file is incomplete; write it again.")
     tolerance = numbers(head["hardpoint_tolerance_m"], "hardpoint_tolerance_m")
     if tolerance.shape != ():
-        raise DataError(f"hardpoint_tolerance_m: found {tolerance.tolist()}, must be one number.")
+        raise DataError(f"hardpoint_tolerance_m: found {tolerance.tolist()}, must be a single number.")
     node_arrays = {}
     for quantity, key in _OWNED.items():
         owners, values = content[f"{quantity}_nodes"], content[key]

@@ -47,7 +47,7 @@ def of_tables(content: dict[str, Any]) -> Superelement:
     names = tuple(str(node["name"]) for node in nodes)
     tolerance = numbers(content.get("hardpoint_tolerance_m", 1e-3), "hardpoint_tolerance_m")
     if tolerance.shape != ():
-        raise DataError(f"hardpoint_tolerance_m: found {tolerance.tolist()}, must be one number.")
+        raise DataError(f"hardpoint_tolerance_m: found {tolerance.tolist()}, must be a single number.")
     index = {name: i for i, name in enumerate(names)}
     edges = []
     edge_list = content.get("edges", [])
@@ -59,8 +59,8 @@ def of_tables(content: dict[str, Any]) -> Superelement:
         shape = numbers(mode["shape_per_sqrt_kg"], f"mode {i + 1}, shape_per_sqrt_kg").shape
         if shape != (len(names), 3):
             raise DataError(
-                f"mode {i + 1}, shape_per_sqrt_kg: {shape[0] if shape else 0} rows, must be {len(names)} rows of three "
-                "numbers, one per node."
+                f"mode {i + 1}, shape_per_sqrt_kg: found {shape[0] if shape else 0} rows, must be {len(names)} "
+                "rows of three numbers, a row for each node."
             )
     residual, with_mass = {}, ["mass_kg" in node for node in nodes]
     for node in nodes:
@@ -100,8 +100,8 @@ def _of_stiffness(stiffness: FloatArray) -> FloatArray:
     """Return the flexibility of three springs along the axes [m/N], shape (3, 3)."""
     if stiffness.shape != (3,) or not np.all(np.isfinite(stiffness) & (stiffness > 0.0)):
         raise DataError(
-            f"{_OF_VERSION_1}: found {stiffness.tolist()} N/m, must be three positive finite numbers. Omit the key "
-            "for a rigid attachment."
+            f"{_OF_VERSION_1}: found {stiffness.tolist()} N/m, must be three positive finite numbers. Leave the "
+            "key out for a rigid attachment."
         )
     return np.diag(1.0 / stiffness)
 
@@ -125,7 +125,7 @@ def _check_keys(table: dict[str, Any], table_type: str, where: str, older: bool)
     for key in table:
         if key not in valid_keys:
             similar = difflib.get_close_matches(key, valid_keys, n=1, cutoff=0.0)
-            raise DataError(f"{where}: unknown key {key!r}; the nearest valid one is {similar[0]!r}.")
+            raise DataError(f"{where}: unknown key {key!r}; the most similar known key is {similar[0]!r}.")
     for key in valid_keys:
         if key not in table and key not in _OPTIONAL and key != _OF_VERSION_1:
             raise DataError(f"{where}: key {key!r} is missing. The file is incomplete or truncated; write it again.")
@@ -134,11 +134,11 @@ def _check_keys(table: dict[str, Any], table_type: str, where: str, older: bool)
 def _tables(content: dict[str, Any], table_type: str, older: bool) -> list[dict[str, Any]]:
     tables, count = content[table_type], content[f"{table_type}_count"]
     if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
-        raise DataError(f"{table_type}: must be a list of [[{table_type}]] tables.")
+        raise DataError(f"{table_type}: must be written as sections [[{table_type}]].")
     if len(tables) != count:
         raise DataError(
-            f"{len(tables)} [[{table_type}]] tables, but {table_type}_count = {count!r}. The file is incomplete or "
-            "truncated, or the count is outdated."
+            f"found {len(tables)} sections [[{table_type}]], but {table_type}_count = {count!r}. The file is "
+            "truncated, or the count is outdated; write it again, or correct the count."
         )
     if not tables:
         raise DataError(f"{table_type}_count is 0, must be at least 1. For a rigid body, set body.flexible = false.")
@@ -162,7 +162,7 @@ def numbers(value: Any, where: str) -> FloatArray:
     try:
         array = np.array(value)
     except ValueError as error:
-        raise DataError(f"{where}: rows of different length. Specify three numbers in each row.") from error
+        raise DataError(f"{where}: the rows have different lengths. Give three numbers in each row.") from error
     if array.dtype.kind not in "if":
         raise DataError(f"{where}: found {str(value)[:40]!r}, must be numbers.")
     return array.astype(float)

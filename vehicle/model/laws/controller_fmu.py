@@ -107,20 +107,23 @@ def read_controller(path: Path, digest: str | None) -> ControllerFile:
     """
     fmpy = _fmpy()
     if not path.is_file():
-        raise ConfigurationError(f"controller {path}: there is no such file; set the path of an FMU")
+        raise ConfigurationError(f"controller {path}: the file does not exist; set the path of an FMU")
     if path.stat().st_size > LARGEST:
-        raise DataError(f"controller {path}: {path.stat().st_size / 1e6:.4g} MB, must be at most {LARGEST / 1e6:g} MB")
+        raise DataError(
+            f"controller {path}: the file has {path.stat().st_size / 1e6:.4g} MB, must be at most {LARGEST / 1e6:g} MB"
+        )
     content = path.read_bytes()
     actual_digest = hashlib.sha256(content).hexdigest()
     if digest is None:
         raise ConfigurationError(
-            f"controller {path}: an FMU is native code, which runs with all your rights; if you trust its source, add "
-            f'fmu_sha256 = "{actual_digest}" to its table control, or give --trust to shaker'
+            f"controller {path}: an FMU is native code, which runs with all your rights; if you trust its "
+            f'source, add fmu_sha256 = "{actual_digest}" to its section control in the vehicle file, or start '
+            "shaker with --trust"
         )
     if digest.lower() != actual_digest:
         raise ConfigurationError(
-            f"controller {path}: its SHA-256 is {actual_digest}, in the vehicle file fmu_sha256 is {digest}: the file "
-            "has changed; if you trust the new file, set its digest"
+            f"controller {path}: the FMU has changed: its SHA-256 is {actual_digest}, but fmu_sha256 in the "
+            f"vehicle file is {digest}; if you trust the new FMU, set fmu_sha256 to the new value"
         )
     try:
         require_archive("its archive", io.BytesIO(content), limit=LARGEST)
@@ -150,9 +153,9 @@ def _with_variables(path: Path, content: bytes, description: Any) -> ControllerF
     wrong = [name for name in inputs if name not in SENSORS or name not in numbers]
     if wrong or not inputs or COEFFICIENT not in outputs:
         raise DataError(
-            f"controller {path}: found inputs {_listed(inputs)} and outputs {_listed(outputs)}; "
-            f"inputs must be among {', '.join(SENSORS)}, and an output must be {COEFFICIENT} [N s/m], all "
-            "scalar real numbers: rename the variables in the tool of the controller"
+            f"controller {path}: found inputs {_listed(inputs)} and outputs {_listed(outputs)}; must be inputs "
+            f"among {', '.join(SENSORS)} and an output {COEFFICIENT} [N s/m], all real numbers; rename the "
+            "variables in the tool that made the controller"
         )
     return ControllerFile(
         path=path,
@@ -282,9 +285,9 @@ class Controller:
         if step_size:
             hint += f", the step in its model description {step_size} s"
         raise SimulationError(
-            f"{self.damper}: controller {self.file.path.name} {STATUS.get(status, f'returns the status {status}')} at "
-            f"t = {memory.readings * self.period:.4f} s{self._last_message()}; {hint}: check the step "
-            "and the inputs"
+            f"{self.damper}: controller {self.file.path.name} "
+            f"{STATUS.get(status, f'returns the status {status}')} at t = {memory.readings * self.period:.4f} "
+            f"s{self._last_message()}; {hint}; check step and inputs"
         )
 
     def close(self) -> None:

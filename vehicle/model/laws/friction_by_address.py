@@ -110,8 +110,8 @@ def register_friction(name: str, function: Any, memory: int = 0) -> FrictionByAd
         limit = CALL(address)(memory, USUAL, velocity)
         if not 0.0 <= limit < np.inf:
             raise ConfigurationError(
-                f"friction law {name!r}: found a limit of {limit:.4g} N at {velocity:g} m/s, must be finite and at "
-                "least 0 in both directions; the engines give the force its sign"
+                f"friction law {name!r}: found a limit of {limit:.4g} N at {velocity:g} m/s, must be finite and "
+                "at least 0 in both directions, because the simulation adds the sign"
             )
     return _LAWS.setdefault(name, FrictionByAddress(name=name, call=call, kept=function))
 

@@ -125,14 +125,14 @@ def register_law(name: str, function: Any, memory: int = 0) -> LawByAddress:
     largest = float(np.max(np.abs(at_rest)))
     if largest > AT_REST * np.max(np.abs(ends)):
         raise ConfigurationError(
-            f"damper law {name!r}: found a force of {largest:.4g} N at rest, must be zero at every displacement; a gas "
-            "force and a spring are the parameters gas_force and stop of the damper"
+            f"damper law {name!r}: found a force of {largest:.4g} N at rest, must be zero at every displacement; "
+            "for a gas force or a spring use the parameters gas_force and stop of the damper"
         )
     viscous = float(ends[1] - ends[0]) / (2.0 * STEP)
     if viscous < 0.0:
         raise ConfigurationError(
-            f"damper law {name!r}: the force falls at rest, by {-viscous:.4g} N s/m; its sign is that of the velocity: "
-            "positive in extension"
+            f"damper law {name!r}: the force falls with velocity, by {-viscous:.4g} N s/m at rest; it must have "
+            "the sign of the velocity, positive in extension"
         )
     _LAWS[name] = LawByAddress(name=name, address=address, memory=memory, viscous=viscous, kept=function)
     return _LAWS[name]
@@ -152,7 +152,7 @@ def law_by_address(name: str) -> LawByAddress:
 def taken(kind: str, name: str) -> ConfigurationError:
     """Return the error of a name that another function of a kind has in this process."""
     return ConfigurationError(
-        f"{kind} {name!r}: the name belongs to another function in this process, and cars that have it would change; "
+        f"{kind} {name!r}: the name already belongs to another function, and cars that use it would change; "
         "register the new function under another name"
     )
 
@@ -160,8 +160,8 @@ def taken(kind: str, name: str) -> ConfigurationError:
 def missing(kind: str, name: str, known: Iterable[str], register: str) -> ConfigurationError:
     """Return the error of a name that no law of a kind has in this process."""
     return ConfigurationError(
-        f"{kind} {name!r}: not registered in this process, which knows {', '.join(known) or 'none'}; call "
-        f"vehicle.{register} first, and run sweeps of such a car with jobs=1"
+        f"{kind} {name!r}: is not registered in this process (registered: {', '.join(known) or 'none'}); call "
+        f"vehicle.{register} first, and run sweeps of this car with jobs=1"
     )
 
 
@@ -172,7 +172,7 @@ def checked_address(name: str, function: Any) -> int:
         ConfigurationError: the object has none, or the name is not valid.
     """
     if not re.fullmatch(r"[A-Za-z0-9_.-]+", name):
-        raise ConfigurationError(f"law {name!r}: a name has letters, digits, '_', '.' and '-' only")
+        raise ConfigurationError(f"law {name!r}: a name must consist of letters, digits, '_', '.' and '-'")
     value = getattr(function, "address", function)
     if callable(value):
         try:

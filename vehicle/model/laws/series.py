@@ -25,7 +25,11 @@ def in_series(local_stiffness: Numbers, element: Kelvin | Maxwell) -> Maxwell:
     Raises:
         ConfigurationError: a local stiffness that is not a finite number above zero.
     """
-    check("local_stiffness", local_stiffness, quantity("N/m", "stiffness of the attachment", above=0.0).metadata)
+    check(
+        "local_stiffness",
+        local_stiffness,
+        quantity("N/m", "stiffness of the body at the attachment", above=0.0).metadata,
+    )
     local = np.asarray(local_stiffness, dtype=float)
     static = np.asarray(element.stiffness)
     share = local / (local + static)

@@ -23,9 +23,13 @@ class Stribeck(Friction):
     Source: Bommer 2006, equation 3.2; Armstrong-Helouvry 1990.
     """
 
-    static_limit: Numbers = quantity("N", "friction limit Fs near rest", at_least=0.0)
-    stribeck_velocity: Numbers = quantity("m/s", "velocity vs of the transition", above=0.0)
-    stribeck_exponent: Numbers = quantity("-", "exponent delta of the transition", above=0.0, at_most=20.0)
+    static_limit: Numbers = quantity("N", "friction limit Fs near rest (static friction)", at_least=0.0)
+    stribeck_velocity: Numbers = quantity(
+        "m/s", "velocity vs of the transition from static to sliding friction", above=0.0
+    )
+    stribeck_exponent: Numbers = quantity(
+        "-", "exponent delta of the transition from static to sliding friction", above=0.0, at_most=20.0
+    )
 
     def __post_init__(self) -> None:
         Friction.__post_init__(self)

@@ -60,7 +60,7 @@ def named_point(path: str, table: Mapping[str, Any], points: Mapping[str, Point]
     if isinstance(value, str):
         if value not in points:
             near = nearest(value, points)
-            raise ConfigurationError(f"{path}.at: found {value!r}, unknown point; the nearest is {near}")
+            raise ConfigurationError(f"{path}.at: unknown point {value!r}; the most similar name is {near}")
         return points[value], value
     return point_of(f"{path}.at", value), name
 
@@ -68,10 +68,12 @@ def named_point(path: str, table: Mapping[str, Any], points: Mapping[str, Point]
 def named_part(path: str, table: Mapping[str, Any], key: str, names: set[str]) -> str:
     """Return the name of a part that a table gives under a key."""
     if key not in table:
-        raise ConfigurationError(f"{path}.{key}: missing; set the name of a part, as body")
+        raise ConfigurationError(f"{path}.{key}: missing; set the name of a part, for example body")
     name: str = convert(str, table[key], f"{path}.{key}")
     if name not in names:
-        raise ConfigurationError(f"{path}.{key}: found {name!r}, unknown part; the nearest is {nearest(name, names)}")
+        raise ConfigurationError(
+            f"{path}.{key}: unknown part {name!r}; the most similar name is {nearest(name, names)}"
+        )
     return name
 
 
@@ -112,10 +114,10 @@ def _axes(path: str, table: Mapping[str, Any], points: Mapping[str, Point]) -> A
     for name in names:
         if name not in points:
             near = nearest(name, points)
-            raise ConfigurationError(f"{path}.axes: found {name!r}, unknown point; the nearest is {near}")
+            raise ConfigurationError(f"{path}.axes: unknown point {name!r}; the most similar name is {near}")
     if len(names) != 2 or table.get("ground"):
         raise ConfigurationError(
-            f"{path}.axes: found {list(names)}; must be two points of a connection that is not on the ground"
+            f"{path}.axes: found {list(names)}, must be two points of a connection that does not touch the ground"
         )
     require_apart({f"{path}.axes, {name}": points[name] for name in names})
     return axes_along(points[names[0]], points[names[1]])
@@ -131,7 +133,7 @@ def further_output(name: str, value: Any, names: set[str], points: Mapping[str, 
     table = convert(dict, value, path)
     for key in table:
         if key not in ("on", "at"):
-            raise ConfigurationError(f"{path}.{key}: unknown parameter; must be on or at")
+            raise ConfigurationError(f"{path}.{key}: unknown parameter {key}; must be on or at")
     at, point = named_point(path, table, points)
     return PlacedOutput(name=name, on=named_part(path, table, "on", names), at=at, point=point)
 

@@ -20,7 +20,7 @@ Harmonics = tuple[tuple[float, ...], ...]
 
 
 def require_harmonics(
-    path: str, harmonics: Harmonics, remedy: str = "set mean for the constant part", *, of_wheel: bool = False
+    path: str, harmonics: Harmonics, remedy: str = "for the constant part set mean", *, of_wheel: bool = False
 ) -> None:
     """Check the harmonics of a history.
 
@@ -44,11 +44,15 @@ def require_harmonics(
         if not 0.0 < order <= HIGHEST_ORDER:
             raise ConfigurationError(f"{message}; the order must be above 0 and at most {HIGHEST_ORDER:g}")
         if of_wheel and order % 1.0:
-            raise ConfigurationError(f"{path}: a wheel has whole orders; half orders are those of a crank")
+            raise ConfigurationError(
+                f'{path}: found a half order, but a wheel has whole orders only; use whole orders, or angle = "crank"'
+            )
         if amplitude < 0.0:
-            raise ConfigurationError(f"{message}; the amplitude must be at least 0: add 180 degrees to the phase")
+            raise ConfigurationError(
+                f"{message}; the amplitude must be at least 0; for the opposite sign add 180 degrees to the phase"
+            )
         if order in orders:
-            raise ConfigurationError(f"{message}, a second harmonic of order {order:g}; give each order once")
+            raise ConfigurationError(f"{message} repeats order {order:g}; give each order once")
         orders.append(order)
 
 
@@ -64,29 +68,34 @@ class AppliedForce:
     harmonics: Harmonics = ()
     """lists of order [-], amplitude A [N or N m] and phase [deg]"""
     angle: str | None = quantity(
-        "-", "what turns by the angle: crank, or a wheel, as wheel_fr; or none, with a frequency", default=None
+        "-",
+        "rotating part whose angle the orders refer to: crank, or a wheel, for example wheel_fr; leave it "
+        "out if frequency is set",
+        default=None,
     )
     frequency: float | None = quantity(
-        "Hz", "turns of the angle per second, in place of a part that turns", above=0.0, at_most=500.0, default=None
+        "Hz", "frequency of order 1, instead of a rotating part", above=0.0, at_most=500.0, default=None
     )
     reference_frequency: float | None = quantity(
         "Hz",
-        "the amplitudes hold at this frequency of the angle and grow with its square; by default they are constant",
+        "amplitudes are those at this frequency and grow with its square; not given: constant amplitudes",
         above=0.0, at_most=500.0, default=None,
     )  # fmt: skip
     mean: float = quantity(
-        "N", "constant part [N or N m], in equilibrium from the start", at_least=-1e5, at_most=1e5, default=0.0
+        "N", "constant part [N or N m]; the car starts in equilibrium with it", at_least=-1e5, at_most=1e5, default=0.0
     )
-    factor: float = quantity("-", "factor of all harmonics, or of the file", at_least=-1e3, at_most=1e3, default=1.0)
-    file: str | None = quantity("-", "file with a measured history, in place of harmonics", is_file=True, default=None)
+    factor: float = quantity(
+        "-", "factor on all harmonics, or on the history from the file", at_least=-1e3, at_most=1e3, default=1.0
+    )
+    file: str | None = quantity("-", "file with a measured history, instead of harmonics", is_file=True, default=None)
     channel: str | None = quantity(
         "-",
-        "channel of the file by number, name or pattern; by default the only one with a unit of the force",
+        "channel of the file by number, name or pattern; not given: the only channel in N or N m",
         is_file=True,
         default=None,
     )
     unit: str | None = quantity(
-        "-", "unit of the channel in place of that of the file, as lbf", is_file=True, default=None
+        "-", "unit of the channel, replaces the unit in the file, for example lbf", is_file=True, default=None
     )
     ends_at_zero: bool = False
     """true for a file that is shorter than the run: the force is zero after its end"""
@@ -96,13 +105,15 @@ class AppliedForce:
     def __post_init__(self) -> None:
         validate(self)
         if self.file is None and (self.channel, self.unit, self.ends_at_zero) != (None, None, False):
-            raise ConfigurationError("AppliedForce.file: missing; channel, unit and ends_at_zero belong to a file")
+            raise ConfigurationError(
+                "AppliedForce.file: file is missing, although channel, unit or ends_at_zero is set, which belong to it"
+            )
         if self.file is not None and self.harmonics:
-            raise ConfigurationError("AppliedForce.file: a force has harmonics or a file; apply two forces for both")
+            raise ConfigurationError("AppliedForce.file: found together with harmonics; define two forces for both")
         require_harmonics("AppliedForce.harmonics", self.harmonics)
         if self.harmonics and (self.angle is None) == (self.frequency is None):
             raise ConfigurationError(
-                "AppliedForce.angle: needed is either an angle (crank, or a wheel, as wheel_fr) or a frequency [Hz]"
+                "AppliedForce.angle: give either an angle (crank, or a wheel, for example wheel_fr) or a frequency [Hz]"
             )
 
     def amplitudes(self, speed: float) -> dict[float, complex]:

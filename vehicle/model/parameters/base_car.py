@@ -32,7 +32,7 @@ def vehicle_table(path: Path, above: tuple[Path, ...] = ()) -> dict[str, Any]:
         return table
     del table["base"]
     if base.resolve() in (*above, file.resolve()):
-        raise ConfigurationError(f"base: {file} is its own base, directly or not; name another car")
+        raise ConfigurationError(f"base: {file} uses itself as base, directly or through other files; name another car")
     return with_body(vehicle_table(base, (*above, file.resolve())), table)
 
 
@@ -49,7 +49,7 @@ def base_file(file: Path) -> Path | None:
     beside = file.parent / name
     if not beside.is_file() and name not in CARS:
         raise ConfigurationError(
-            f"base: found {name!r}; must be a shipped car ({', '.join(CARS)}) or a vehicle file in the same folder"
+            f"base: found {name!r}, must be a shipped car ({', '.join(CARS)}) or a vehicle file in the same folder"
         )
     return beside if beside.is_file() else vehicle_file(name)
 

@@ -32,12 +32,12 @@ class BodyMode(Validated):
         "factor on the natural frequency of this mode",
         at_least=0.1,
         at_most=10.0,
-        why="a mode a hundred times as stiff or soft is no correction of a body model",
+        why="a mode a hundred times as stiff or soft is not the same body",
         default=1.0,
     )
     damping_ratio: float | None = quantity(
         "-",
-        "share of critical damping of this mode; that of the body model by default",
+        "share of critical damping of this mode; not given: damping of the body model",
         at_least=0.0,
         at_most=0.3,
         why="trimmed bodies have 0.01 to 0.08",
@@ -53,7 +53,10 @@ class BodyInertia(Validated):
     """
 
     about: str = quantity(
-        "-", "point of reference: cog, or origin of the vehicle frame", choices=("cog", "origin"), default="cog"
+        "-",
+        "point that the moments of inertia refer to: cog, or origin of the vehicle axes",
+        choices=("cog", "origin"),
+        default="cog",
     )
     ixx: float = quantity("kg m2", "integral of y2 + z2", above=0.0)
     iyy: float = quantity("kg m2", "integral of x2 + z2", above=0.0)
@@ -69,7 +72,7 @@ class TrimmedBody:
 
     mass: float = quantity(
         "kg",
-        "mass of the trimmed body",
+        "mass of the trimmed body (with seats and interior)",
         above=0.0,
         at_least=100.0,
         at_most=5000.0,
@@ -79,14 +82,18 @@ class TrimmedBody:
     inertia: BodyInertia
     superelement: str | None = quantity(
         "-",
-        "body design or modal superelement: file beside the vehicle file, or of the package; with --set any path",
+        "file of the body design or body model, in the folder of the vehicle file or in the package; with "
+        "--set any path",
         is_file=True,
         default=None,
     )
     flexible: bool = True
     attachment_flexibility: bool = True
     modes_up_to: float | None = quantity(
-        "Hz", "modes above act statically, as residual flexibility; all are kept by default", above=0.0, default=None
+        "Hz",
+        "modes above this frequency act statically (residual flexibility); not given: all modes are kept",
+        above=0.0,
+        default=None,
     )
     frequency_scale: float = quantity(
         "-",
@@ -98,7 +105,8 @@ class TrimmedBody:
     )
     model_mass: float | None = quantity(
         "kg",
-        "mass of the body that the elastic model is of; its masses are scaled by mass / model_mass. None: as it is",
+        "mass of the body that the elastic model describes; its masses are scaled by mass / model_mass; not "
+        "given: they stay unchanged",
         above=0.0,
         default=None,
     )
@@ -120,8 +128,8 @@ class TrimmedBody:
 
         if self.modes_up_to is not None and not (self.flexible and self.attachment_flexibility):
             raise ConfigurationError(
-                "TrimmedBody.modes_up_to: found without flexible = true and attachment_flexibility = true, which carry "
-                "the flexibility of the modes above"
+                "TrimmedBody.modes_up_to: needs flexible = true and attachment_flexibility = true, which keep "
+                "the flexibility of the higher modes; set both, or leave modes_up_to out"
             )
 
     @property

@@ -24,7 +24,9 @@ def body_notices(vehicle: Vehicle, overrides: Iterable[str]) -> list[str]:
     now = f"{moments} kg m2 about the {'CoG' if body.inertia.about == 'cog' else 'origin'}"
     if body.flexible and body.model_mass is not None:
         root = body.model_factor**-0.5
-        now += f"; masses of the body model times {body.model_factor:.6g}, its frequencies times {root:.6g}"
+        now += (
+            f"; the masses of the body model are multiplied by {body.model_factor:.6g}, its frequencies by {root:.6g}"
+        )
     return [f"{text}; {now}" for text in notices]
 
 
@@ -46,13 +48,15 @@ def _notices(vehicle: Vehicle, texts: Mapping[str, str]) -> list[str]:
         with contextlib.suppress(ConfigurationError):
             text_of_path |= dict.fromkeys(meant(vehicle.table, path), text)
     inertia_set = any(path.startswith("body.inertia.") for path in text_of_path)
-    exception = ", but for what is given of body.inertia" if inertia_set else ""
+    exception = ", except the given values of body.inertia" if inertia_set else ""
     moved = dict.fromkeys(
         text for path, text in text_of_path.items() if path == "body.cog" or path.startswith("body.cog.")
     )
     notices = (
-        [f"{text_of_path['body.mass']}: the whole body is scaled, radii of gyration stay{exception}"]
+        [f"{text_of_path['body.mass']}: the whole body is scaled, so its radii of gyration stay the same{exception}"]
         if ("body.mass" in text_of_path)
         else []
     )
-    return notices + ([f"{', '.join(moved)}: the inertia about the CoG stays{exception}"] if moved else [])
+    return notices + (
+        [f"{', '.join(moved)}: the inertia about the centre of gravity stays the same{exception}"] if moved else []
+    )

@@ -67,7 +67,9 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
         if side is not None or not i.template.mirrored
     }
     if twice := sorted(set(file_points) & set(points)):
-        raise ConfigurationError(f"hardpoints.{twice[0]}: an instance has a point of this name; rename one of both")
+        raise ConfigurationError(
+            f"hardpoints.{twice[0]}: a template already has a point of this name; rename one of them"
+        )
     points = {**file_points, **points}
     require_geometry(car)
     wheels = list(placed_wheels(car))

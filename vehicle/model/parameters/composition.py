@@ -351,7 +351,7 @@ class Composition:
         first = next((force.law.angle or force.name for force in self.forces if force.harmonics), None)
         chosen = name or first or next(iter(speeds), None)
         if chosen not in speeds:
-            message = f"these turn: {', '.join(speeds)}" if speeds else "nothing turns: drive, or set crank.rpm"
+            message = f"these turn: {', '.join(speeds)}" if speeds else "nothing turns; set --speed or crank.rpm"
             raise ConfigurationError(f"angle: found {chosen!r}, which does not turn; {message}")
         return chosen, speeds[chosen]
 

@@ -48,8 +48,8 @@ def require_curve(where: str, key: str, positions: Sequence[float], forces: Sequ
                                      "points, and give each once")  # fmt: skip
     for f, following in itertools.pairwise(forces):
         if following < f:
-            raise ConfigurationError(f"{where}.force: found {following!r} N after {f!r} N, must not fall; {key} and "
-                                     "force are positive in extension (rebound)")  # fmt: skip
+            raise ConfigurationError(f"{where}.force: found {following!r} N after {f!r} N, must not decrease; {key} "
+                "and force are positive in extension (rebound)")  # fmt: skip
     if key == "velocity" and not positions[0] < 0.0 < positions[-1]:
         raise ConfigurationError(f"{where}.{key}: found {positions[0]!r} to {positions[-1]!r}, must lie on both sides "
                                  "of 0: compression (bump) is negative, extension (rebound) positive")  # fmt: skip
@@ -104,8 +104,8 @@ def _filled(table: Mapping[str, Any], folder: Path, prefix: str, sources: dict[s
         else:
             if not isinstance(value, str) or (twice := sorted({"force", "stiffness"} & set(table))):
                 raise ConfigurationError(
-                    f"{path}: found {value!r}; must be the name of a file, without "
-                    f"{' and '.join(twice) if isinstance(value, str) else 'force'} in the same table"
+                    f"{path}: found {value!r}, must be the name of a file, without "
+                    f"{' and '.join(twice) if isinstance(value, str) else 'force'} in the same section"
                 )
             numbers, source = _numbers(table, _file(folder, value, path), path)
             filled |= {name: number for name, number in numbers.items() if name not in table}
@@ -118,7 +118,8 @@ def _file(folder: Path, name: str, path: str) -> Path:
     file = _beside(folder, name)
     if not file.exists():
         raise ConfigurationError(
-            f"{path}: {file}: no such file; give the name of a file beside the vehicle file or in the working folder"
+            f"{path}: the file {file} does not exist; give a file in the folder of the vehicle file or in "
+            "the current folder"
         )
     return file
 
@@ -153,16 +154,16 @@ def _numbers(table: Mapping[str, Any], file: Path, path: str) -> tuple[dict[str,
     damper = "viscous_law" in table
     if not is_property_file(file):
         if bushing and not of_points:
-            raise ConfigurationError(f"{path}: {file} is no property file; name a file of one axis in a table "
-                                     f"{path.removesuffix('curve')}table_z")  # fmt: skip
+            raise ConfigurationError(f"{path}: {file} is not a property file; name a file with the curve of a single "
+                f"axis in a section {path.removesuffix('curve')}table_z")  # fmt: skip
         points = _points(file, path, "velocity" if damper else "displacement")
         if damper or of_points:
             return points, file.name
         rows = list(zip(points["displacement"], points["force"], strict=True))
         return _within(path, lambda: spring_of_points(rows, "table", str(file))), file.name
     if of_points:
-        raise ConfigurationError(f"{path}: {file} is a property file; name it in the table above: "
-                                 f"{'.'.join(above)}.{'stop.bump.curve' if name == 'stop' else 'curve'}")  # fmt: skip
+        raise ConfigurationError(f"{path}: {file} is a property file; name it one level higher: "
+            f"{'.'.join(above)}.{'stop.bump.curve' if name == 'stop' else 'curve'}")  # fmt: skip
     properties = _within(path, lambda: read_property_file(file))
     if damper or (properties.file_type == "dpr" and {"left", "right"} & set(above)):
         numbers = _within(path, lambda: damper_numbers(properties))
@@ -184,8 +185,8 @@ def _stop(stop: Mapping[str, Any], folder: Path, path: str, sources: dict[str, s
         keys = set(entry) if isinstance(entry, Mapping) else set()
         if end not in ("bump", "rebound") or keys != {"curve", "clearance"} or not isinstance(entry["curve"], str):
             raise ConfigurationError(
-                f"{path}.{end}: found {entry!r}; a stop from files has bump and rebound alone, each with curve (a "
-                "file) and clearance [m]"
+                f"{path}.{end}: found {entry!r}; a stop from files must have only bump and rebound, each with "
+                "curve (a file) and clearance [m]"
             )
         where = f"{path}.{end}.curve"
         file = _file(folder, entry["curve"], where)
@@ -221,8 +222,8 @@ def _points(file: Path, path: str, key: str) -> dict[str, Any]:
 
     def column(header: Header) -> int:
         if missing := set(heads.values()) - set(header.cells):
-            raise ConfigurationError(f"{header.where}: no column {min(missing)!r}; found {header.found}, must have "
-                                     f"{needed}")  # fmt: skip
+            raise ConfigurationError(f"{header.where}: column {min(missing)!r} is missing; found {header.found}, "
+                f"must have {needed}")  # fmt: skip
         return header.cells.index(HEADS[key])
 
     try:

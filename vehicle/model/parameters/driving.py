@@ -29,7 +29,7 @@ class Driving(Validated):
 
     speed: float = quantity(
         "m/s",
-        "speed of the car, forward; 0: the tyres stand",
+        "speed of the car, forwards; 0: the tyres stand on the plates",
         at_least=0.0,
         at_most=120.0,
         why="400 km/h",
@@ -37,14 +37,16 @@ class Driving(Validated):
     )
     hold_frequency: float = quantity(
         "Hz",
-        "natural frequency of the mass of the car on the hold of its course, along x, y and in yaw, up to 200 km/h; "
+        "natural frequency of the car on the soft springs that keep its course (x, y, yaw), up to 200 km/h; "
         "above, it falls with 1/speed",
         at_least=0.01,
         at_most=0.5,
         why="a driver corrects the course at 0.05 to 0.3 Hz; modes of the car begin at 1 Hz",
         default=0.1,
     )
-    hold_damping: float = quantity("-", "damping ratio of that motion", at_least=0.1, at_most=2.0, default=0.7)
+    hold_damping: float = quantity(
+        "-", "damping ratio of the car on the soft springs that keep its course", at_least=0.1, at_most=2.0, default=0.7
+    )
 
     @property
     def rolling(self) -> bool:
@@ -87,7 +89,7 @@ class Crank(Validated):
 
     rpm: float | None = quantity(
         "1/min",
-        "speed of the crankshaft, in a run-up at its beginning",
+        "speed of the crankshaft; in a run-up the speed at its beginning",
         at_least=300.0,
         at_most=HIGHEST_RPM,
         why="engines idle at 600 to 1000",
@@ -95,7 +97,7 @@ class Crank(Validated):
     )
     end_rpm: float | None = quantity(
         "1/min",
-        "speed at the end of a run-up; by default constant",
+        "speed at the end of a run-up; not given: constant speed",
         at_least=300.0,
         at_most=HIGHEST_RPM,
         default=None,
@@ -103,12 +105,10 @@ class Crank(Validated):
     run_up_time: float | None = quantity(
         "s", "time from the beginning of the run to the end of the run-up", at_least=1.0, at_most=3600.0, default=None
     )
-    file: str | None = quantity(
-        "-", "file with a measured speed over time, in place of rpm", is_file=True, default=None
-    )
+    file: str | None = quantity("-", "file with a measured speed over time, instead of rpm", is_file=True, default=None)
     channel: str | None = quantity(
         "-",
-        "channel of the file by number or name; by default the only one in 1/min or rpm",
+        "channel of the file by number or name; not given: the only channel in 1/min or rpm",
         is_file=True,
         default=None,
     )
@@ -116,13 +116,15 @@ class Crank(Validated):
     def __post_init__(self) -> None:
         validate(self)
         if (self.rpm is None) == (self.file is None):
-            raise ConfigurationError("Crank.rpm: needed is either rpm or the file of a measured speed")
+            raise ConfigurationError("Crank.rpm: give either rpm or the file of a measured speed")
         if (self.end_rpm is None) != (self.run_up_time is None):
             raise ConfigurationError("Crank.end_rpm: a run-up needs end_rpm and run_up_time; set both")
         if self.file is None and self.channel is not None:
-            raise ConfigurationError("Crank.file: missing; channel belongs to a file")
+            raise ConfigurationError("Crank.file: missing, although channel is set, which belongs to a file")
         if self.file is not None and self.end_rpm is not None:
-            raise ConfigurationError("Crank.end_rpm: belongs to rpm; a file has the whole run-up")
+            raise ConfigurationError(
+                "Crank.end_rpm: belongs to rpm, but a file is set, which contains the whole run-up; leave end_rpm out"
+            )
 
     @property
     def run_up(self) -> RunUp | None:

@@ -26,22 +26,25 @@ class EngineOrders:
     stroke: float = quantity("m", "stroke of a piston", at_least=0.02, at_most=0.25)
     rod: float = quantity("m", "length of the connecting rod between its bearings", at_least=0.03, at_most=0.6)
     reciprocating_mass: float = quantity(
-        "kg", "piston, pin, rings and small-end share of the rod, of one cylinder", at_least=0.0, at_most=5.0
+        "kg",
+        "oscillating mass of a cylinder: piston, pin, rings and small-end share of the connecting rod",
+        at_least=0.0,
+        at_most=5.0,
     )
     spacing: float = quantity("m", "distance of two cylinders along the crankshaft", at_least=0.0, at_most=0.4)
     firing: tuple[float, ...] = ()
     """firing order, as [1, 3, 4, 2], cylinder 1 at the end that the crank axis points to; needed"""
     crank_axis: Point = quantity(
-        "-", "direction about which the crankshaft turns by the right-hand rule", length=3, default=(0.0, 1.0, 0.0)
+        "-", "direction of the crankshaft; it turns about it by the right-hand rule", length=3, default=(0.0, 1.0, 0.0)
     )
     cylinder_axis: Point = quantity("-", "direction of the cylinders", length=3, default=(0.0, 0.0, 1.0))
     torque: float = quantity(
-        "N m", "mean torque of the gas of all cylinders", at_least=0.0, at_most=2000.0, default=0.0
+        "N m", "mean gas torque of all cylinders together", at_least=0.0, at_most=2000.0, default=0.0
     )
     pressure: str | None = quantity(
         "-",
-        "file with the absolute pressure in a cylinder over the crank angle, 0 at the top dead centre of combustion; "
-        "in place of torque and compression of the modelled gas",
+        "file with the absolute cylinder pressure over the crank angle (0 at the top dead centre of "
+        "combustion); replaces torque and compression",
         is_file=True,
         default=None,
     )
@@ -51,14 +54,14 @@ class EngineOrders:
     )
     counterweight_share: float = quantity(
         "-",
-        "share of the pistons that counterweights of the crankshaft balance in order 1; half is usual",
+        "share of the piston masses that crankshaft counterweights balance in order 1; one half is usual",
         at_least=0.0,
         at_most=1.0,
         default=0.0,
     )
     backward_balance_share: float = quantity(
         "-",
-        "share of the part of order 1 that turns against the crankshaft and that a balance shaft cancels",
+        "share of the backward-rotating part of order 1 that a balance shaft cancels",
         at_least=0.0,
         at_most=1.0,
         default=0.0,
@@ -66,7 +69,7 @@ class EngineOrders:
     highest_order: float = quantity("-", "highest order that is applied", at_least=1.0, at_most=16.0, default=6.0)
     at: Point | None = quantity(
         "m",
-        "middle of the cylinders on the crankshaft; centre of gravity of the engine by default",
+        "middle of the cylinders on the crankshaft; not given: centre of gravity of the engine",
         length=3,
         default=None,
     )
@@ -76,13 +79,13 @@ class EngineOrders:
         count = round(self.cylinders)
         if count != self.cylinders or sorted(self.firing) != list(range(1, count + 1)):
             raise ConfigurationError(
-                f"EngineOrders.firing: found {list(self.firing)}, must name each of the {self.cylinders:g} cylinders "
-                "once, as [1, 3, 4, 2]"
+                f"EngineOrders.firing: found {list(self.firing)}, must name each of the {self.cylinders:g} "
+                "cylinders once, for example [1, 3, 4, 2]"
             )
         if self.pressure is not None and self.torque:
             raise ConfigurationError(
-                f"EngineOrders.torque: found {self.torque:g} N m and a file of the pressure, which determines it; set "
-                "torque or pressure"
+                f"EngineOrders.torque: given twice, as {self.torque:g} N m and by the pressure file; keep only "
+                "one of torque and pressure"
             )
         if self.rod <= 0.5 * self.stroke:
             raise ConfigurationError(f"EngineOrders.rod: found {self.rod:g} m, must be above half the stroke")

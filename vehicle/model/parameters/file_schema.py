@@ -65,10 +65,14 @@ TEXT: Schema = {"type": "string"}
 PART: Schema = {**TEXT, "description": "name of a part"}
 END: Schema = {
     "type": "object",
-    "description": "end of the travel of a damper: file of its stop, and travel from the design position to it",
+    "description": "end stop of a damper: file of the stop, and travel from the design position to the stop [m]",
     "properties": {
-        "curve": {"type": "string", "description": "property file, or file with penetration and force"},
-        "clearance": {"type": "number", "minimum": 0.0, "description": "[m] travel to the contact"},
+        "curve": {"type": "string", "description": "property file, or file with penetration [m] and force [N]"},
+        "clearance": {
+            "type": "number",
+            "minimum": 0.0,
+            "description": "[m] travel from the design position to the contact",
+        },
     },
     "required": ["curve", "clearance"],
     "additionalProperties": False,
@@ -165,7 +169,7 @@ def _vehicle(*, complete: bool) -> Schema:
         "moving": PART,
         "carrier": PART,
         **at,
-        "ground": {"type": "boolean", "description": "the car stands on it"},
+        "ground": {"type": "boolean", "description": "the car stands on this contact"},
         "axes": {"type": "array", "items": TEXT, "minItems": 2, "maxItems": 2, "description": "points, x along them"},
     }
     properties: Schema = {
@@ -189,13 +193,13 @@ def _vehicle(*, complete: bool) -> Schema:
 def _force_places() -> Schema:
     """Return the schema of the keys that place a force of a vehicle file."""
     directions = {key: {**_vector(-1e6, 1e6), "description": f"direction of the {key}"} for key in ("force", "moment")}
-    parts = {"on": PART, "against": {**TEXT, "description": "part with the reaction"}}
+    parts = {"on": PART, "against": {**TEXT, "description": "part that receives the opposite force"}}
     return {
         **parts,
         "at": PLACE,
         **directions,
         "axes": {"enum": list(AXES_OF)},
-        "joint": {**TEXT, "description": "joint with a torque, in place of on"},
+        "joint": {**TEXT, "description": "joint that the torque acts on, instead of the part in `on`"},
     }
 
 

@@ -17,7 +17,7 @@ from vehicle.names import AXES
 STIFFEST: dict[str, Any] = {"at_most": 1e10, "why": "a block of steel of 5 cm has 1e10 N/m"}
 STRONGEST: dict[str, Any] = {"at_most": 1e6, "why": "a truck's damper has 1e5 N s/m"}
 MOVING: dict[str, Any] = {"at_least": 1e-6, "at_most": 10.0, "why": "dampers on a shaker move by 1e-6 to a few m/s"}
-RUBBED: dict[str, Any] = {"at_most": 1e6, "why": "a seal rubs with 50 to 500 N, and 1e5 N lock a damper for good"}
+RUBBED: dict[str, Any] = {"at_most": 1e6, "why": "seals have 50 to 500 N; 1e5 N lock a damper completely"}
 TWISTED: dict[str, Any] = {"at_most": 1e6, "why": "a stabilizer bar has 1e4 N m/rad"}
 
 FRICTION_LAWS = ("coulomb", "stribeck", "presliding")
@@ -67,14 +67,14 @@ SHORTEST_STROKE = 1e-6
 
 def _friction_force() -> Any:
     return quantity(
-        "N", "Fmax on each axis: friction force of rubber at large displacements; 0 for none", at_least=0.0,
+        "N", "Fmax on each axis: friction force of rubber at large displacements; 0: none", at_least=0.0,
         at_most=1e6, length=3, why="a suspension bushing has 10 to 1000 N", default=NO_FRICTION,
     )  # fmt: skip
 
 
 def _friction_stroke() -> Any:
     return quantity(
-        "m", "x2 on each axis: displacement from rest at which this friction is Fmax / 2", at_least=0.0, at_most=0.1,
+        "m", "x2 on each axis: displacement from rest where rubber friction is Fmax / 2", at_least=0.0, at_most=0.1,
         length=3, why="rubber mounts of cars have 1e-4 to 2e-3 m", default=NO_FRICTION,
     )  # fmt: skip
 
@@ -120,24 +120,24 @@ class Tyre(LinearBushing):
     stiffness"""
 
     slip_stiffness: float | None = quantity(
-        "N", "C_kappa, force over longitudinal slip of the rolling tyre at its static load", default=None, **SLIPPING
+        "N", "C_kappa, force per longitudinal slip of the rolling tyre at its static load", default=None, **SLIPPING
     )
     cornering_stiffness: float | None = quantity(
-        "N/rad", "C_alpha, force over slip angle of the rolling tyre at its static load", default=None, **SLIPPING
+        "N/rad", "C_alpha, side force per slip angle of the rolling tyre at its static load", default=None, **SLIPPING
     )
     carcass_longitudinal: float | None = quantity(
-        "N/m", "stiffness of the carcass along x; C_kappa over it is the relaxation length", default=None, **CARCASS
+        "N/m", "stiffness of the carcass along x; relaxation length = C_kappa / this value", default=None, **CARCASS
     )
     carcass_lateral: float | None = quantity(
-        "N/m", "stiffness of the carcass along y; C_alpha over it is the relaxation length", default=None, **CARCASS
+        "N/m", "stiffness of the carcass along y; relaxation length = C_alpha / this value", default=None, **CARCASS
     )
     trail: float = quantity(
         "m", "pneumatic trail, by which the side force acts behind the middle of the contact patch", at_least=0.0,
         at_most=0.1, why="a third of half the contact length by the brush model, 0.02 to 0.04 m", default=0.0,
     )  # fmt: skip
     rolling_radius: float | None = quantity(
-        "m", "effective rolling radius, for the angle of forces that turn with the wheel; the height of its centre by "
-        "default, which is 3 to 5 % less", above=0.1, at_most=1.0, default=None,
+        "m", "effective rolling radius, for forces that turn with the wheel; not given: height of the wheel "
+            "centre, which is 3 to 5 % less", above=0.1, at_most=1.0, default=None,
     )  # fmt: skip
 
 
@@ -157,33 +157,33 @@ class Hydromount:
     damping: Point = quantity("N s/m", "Dx, Dy, Dz1", at_least=0.0, length=3, **STRONGEST)
     rotational_stiffness: float = quantity("N m/rad", "stiffness about each axis", at_least=0.0, **TWISTED)
     maxwell_stiffness: float | None = quantity(
-        "N/m", "Kz2, spring of the Maxwell branch; 0 takes it out", at_least=0.0, default=None, **STIFFEST
+        "N/m", "Kz2, spring of the Maxwell branch; 0: no branch", at_least=0.0, default=None, **STIFFEST
     )
     maxwell_damping: float | None = quantity(
-        "N s/m", "Dz2, dashpot of the Maxwell branch; 0 takes the branch out", at_least=0.0, default=None, **STRONGEST
+        "N s/m", "Dz2, damper of the Maxwell branch; 0: no branch", at_least=0.0, default=None, **STRONGEST
     )
     chamber_stiffness: float | None = quantity(
         "N/m", "Kb, bulge stiffness of the upper chamber against the displaced fluid", above=0.0, default=None,
         **STIFFEST,
     )  # fmt: skip
     track_mass: float | None = quantity(
-        "kg", "mt, mass of the fluid in the track at the rubber: rho L Ap^2/At", default=None, **TRACKED
+        "kg", "mt, mass of the fluid in the track, as at the rubber: rho L Ap^2/At", default=None, **TRACKED
     )
     track_damping: float | None = quantity(
-        "N s/m", "ct, linear flow resistance of the track at the rubber", at_least=0.0, default=None, **STRONGEST
+        "N s/m", "ct, linear flow resistance of the track, as at the rubber", at_least=0.0, default=None, **STRONGEST
     )
     friction_force: Point = _friction_force()
     friction_stroke: Point = _friction_stroke()
 
     decoupler_gap: float | None = quantity(
-        "m", "free displacement of the decoupler to each side, at the rubber", at_least=2e-5, at_most=0.02,
+        "m", "free displacement of the decoupler to each side, as at the rubber", at_least=2e-5, at_most=0.02,
         why="decouplers of engine mounts move by 0.1 to 1 mm", default=None,
     )  # fmt: skip
     decoupler_mass: float | None = quantity(
-        "kg", "md, mass of the decoupler and its fluid at the rubber", default=None, **TRACKED
+        "kg", "md, mass of the decoupler and its fluid, as at the rubber", default=None, **TRACKED
     )
     decoupler_damping: float | None = quantity(
-        "N s/m", "cd, flow resistance of the decoupler at the rubber", at_least=0.0, default=None, **STRONGEST
+        "N s/m", "cd, flow resistance of the decoupler, as at the rubber", at_least=0.0, default=None, **STRONGEST
     )
     decoupler_stiffness: float | None = quantity(
         "N/m", "Km, membrane of the decoupler, which centres it", above=0.0, at_least=1.0, default=None, **STIFFEST
@@ -197,7 +197,7 @@ class Hydromount:
         _require_stroke(self)
         if self.decoupler_gap is not None and self.chamber_stiffness is None:
             raise ConfigurationError(
-                f"Hydromount.chamber_stiffness: missing; decoupler_gap needs {' and '.join(TRACK)} of a track"
+                f"Hydromount.chamber_stiffness: missing; decoupler_gap needs an inertia track, {' and '.join(TRACK)}"
             )
         for keys in (MAXWELL, TRACK, DECOUPLER):
             missing = [key for key in keys if getattr(self, key) is None]
@@ -253,7 +253,7 @@ class Stabilizer(Validated):
     """Torsion spring between the two halves of the stabilizer bar."""
 
     torsional_stiffness: float = quantity(
-        "N m/rad", "torque over relative angle of the halves", at_least=0.0, **TWISTED
+        "N m/rad", "torque per relative angle of its two halves", at_least=0.0, **TWISTED
     )
 
 
@@ -284,31 +284,33 @@ class Damper:
     """
 
     viscous: float | None = quantity("N s/m", "D, damping constant", at_least=0.0, default=None, **STRONGEST)
-    viscous_law: str = quantity("-", "law of the damping", choices=("linear", "degressive", "table"))
+    viscous_law: str = quantity("-", "damping law", choices=("linear", "degressive", "table"))
     degressive_viscous: float | None = quantity(
-        "N s/m", "Ddeg, slope of the degressive law below Vdeg", at_least=0.0, default=None, **STRONGEST
+        "N s/m", "Ddeg, damping constant of the degressive law below Vdeg", at_least=0.0, default=None, **STRONGEST
     )
     degressive_velocity: float | None = quantity(
-        "m/s", "Vdeg, where the degressive law turns flatter", above=0.0, default=None, **MOVING
+        "m/s", "Vdeg, velocity above which the degressive law is flatter", above=0.0, default=None, **MOVING
     )
     velocity: tuple[float, ...] = quantity(
-        "m/s", "velocities of the table law, bump negative", default=(), at_least=-10.0, at_most=10.0
+        "m/s",
+        "velocities of the force-velocity table; compression (bump) is negative",
+        default=(),
+        at_least=-10.0,
+        at_most=10.0,
     )
     force: tuple[float, ...] = quantity(
-        "N", "forces of the table law, bump negative", default=(), at_least=-1e6, at_most=1e6
+        "N", "forces of the force-velocity table; compression is negative", default=(), at_least=-1e6, at_most=1e6
     )
-    gas_force: float = quantity(
-        "N", "force of the gas that pushes the damper apart", default=0.0, at_least=0.0, at_most=1e4
-    )
-    function: str | None = quantity("-", "law of `vehicle.register_law` in place of the viscous law", default=None)
+    gas_force: float = quantity("N", "gas force, which pushes the damper apart", default=0.0, at_least=0.0, at_most=1e4)
+    function: str | None = quantity("-", "`vehicle.register_law` name that replaces viscous_law", default=None)
     stop: ForceTable | None = None
     control: SemiActiveDamper | None = None
     friction_law: str = quantity("-", "friction law", choices=FRICTION_LAWS)
-    friction_function: str | None = quantity("-", "law of `vehicle.register_friction` for the limit", default=None)
+    friction_function: str | None = quantity("-", "`vehicle.register_friction` name of the limit", default=None)
     coulomb_friction: float = quantity("N", "Fd, Coulomb friction", at_least=0.0, **RUBBED)
     smoothing: float = quantity(
-        "s/m", "eps: friction has the slope (2/pi) Fd eps at rest", above=0.0, at_least=10.0, at_most=1e8,
-        why="friction is full at a few times 1/eps; beyond 1e9 the integration drowns in round-off",
+        "s/m", "eps: slope of the friction at rest is (2/pi) Fd eps", above=0.0, at_least=10.0, at_most=1e8,
+        why="friction is complete at a few times 1/eps; above 1e9 rounding errors spoil the result",
     )  # fmt: skip
     stribeck_friction: float | None = quantity(
         "N", "Fs, friction at rest of the Stribeck law", at_least=0.0, default=None, **RUBBED
@@ -320,18 +322,18 @@ class Damper:
         "-", "delta, exponent of the Stribeck law", above=0.0, at_most=20.0, why="1 and 2 are usual", default=None
     )
     side_force_coefficient: float = quantity(
-        "-", "growth of the friction limit with the side force on the rod: limit + coefficient |Q|", at_least=0.0,
+        "-", "growth of the friction limit with the side force Q on the rod: limit + coefficient |Q|", at_least=0.0,
         at_most=2.0, why="0.1 to 0.4 for a sliding bush and its lever; 0 for a damper between two joints", default=0.0,
     )  # fmt: skip
     presliding_stiffness: float | None = quantity(
-        "N/m", "K, stiffness of presliding friction after a reversal", above=0.0, default=None, **STIFFEST
+        "N/m", "K, stiffness of the stuck damper after a reversal", above=0.0, default=None, **STIFFEST
     )
     presliding_force: tuple[float, ...] = quantity(
-        "-", "ends of the segments of the presliding curve, shares of Fd", above=0.0, at_most=1.0,
+        "-", "ends of the segments of the presliding curve, as shares of Fd", above=0.0, at_most=1.0,
         default=(0.25, 0.5, 0.75, 1.0),
     )  # fmt: skip
     presliding_slope: tuple[float, ...] = quantity(
-        "-", "slopes of these segments over K", above=0.0, at_most=1.0, default=(1.0, 0.75, 0.5, 0.25)
+        "-", "slopes of these segments, as shares of K", above=0.0, at_most=1.0, default=(1.0, 0.75, 0.5, 0.25)
     )
     slip_velocity: float = quantity("m/s", "velocity above which the damper counts as slipping", above=0.0, **MOVING)
 
@@ -340,11 +342,11 @@ class Damper:
         for key, law in (("viscous_law", self.viscous_law), ("friction_law", self.friction_law)):
             for name, unit in NUMBERS.get(law, {}).items():
                 if getattr(self, name) is None:
-                    raise ConfigurationError(f"Damper.{name}: missing; {key} = {law} needs it [{unit}]")
+                    raise ConfigurationError(f"Damper.{name}: missing; {key} = {law} needs this value [{unit}]")
         self._check_presliding()
         if self.function is not None and self.controlled is not None:
             raise ConfigurationError(
-                f"Damper.function: found {self.function!r} with control.law = {self.controlled.law}; remove one"
+                f"Damper.function: found {self.function!r} with control.law = {self.controlled.law}; remove one of them"
             )
         if self.friction_function is not None and self.friction_law != "coulomb":
             found = f"found {self.friction_function!r} with friction_law = {self.friction_law}"
@@ -366,7 +368,7 @@ class Damper:
         """Check that the presliding curve rises to the limit, with falling slopes that begin with K."""
         ends, slopes = self.presliding_force, self.presliding_slope
         if len(ends) != len(slopes) or not 1 <= len(ends) <= MAX_SLIDERS:
-            numbers = f"found {len(slopes)} numbers for {len(ends)} of presliding_force"
+            numbers = f"found {len(slopes)} numbers for the {len(ends)} of presliding_force"
             raise ConfigurationError(f"Damper.presliding_slope: {numbers}; set a slope for each, 1 to {MAX_SLIDERS}")
         orders = ("force", ends, ends[::-1], "rise to 1"), ("slope", slopes, slopes, "fall from 1")
         for name, values, falling, shape in orders:

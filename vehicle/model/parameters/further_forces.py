@@ -111,7 +111,7 @@ def further_force(name: str, value: Any, targets: ForceTargets) -> PlacedForce:
     law = build(AppliedForce, {key: inner for key, inner in table.items() if key not in PLACE_KEYS}, path)
     if law.angle is not None and law.angle not in targets.speeds:
         near = nearest(law.angle, targets.speeds)
-        raise ConfigurationError(f"{path}.angle: found {law.angle!r}, no angle; the nearest is {near}")
+        raise ConfigurationError(f"{path}.angle: unknown angle {law.angle!r}; the most similar name is {near}")
     speed = 2.0 * math.pi * law.frequency if law.frequency else targets.speeds.get(law.angle or "", 0.0)
     require_harmonics(f"{path}.harmonics", law.harmonics, of_wheel=law.angle not in (None, CRANK))
     if "joint" in table:
@@ -119,7 +119,7 @@ def further_force(name: str, value: Any, targets: ForceTargets) -> PlacedForce:
     directions = [key for key in ("force", "moment") if key in table]
     if len(directions) != 1:
         number = "both" if directions else "none"
-        raise ConfigurationError(f"{path}: found {number} of force and moment; set the direction of one of them")
+        raise ConfigurationError(f"{path}: found {number} of force and moment; set exactly one of them, as a direction")
     direction = _direction(f"{path}.{directions[0]}", table[directions[0]])
     if directions == ["moment"]:
         _require_torque(path, law)
@@ -129,12 +129,14 @@ def further_force(name: str, value: Any, targets: ForceTargets) -> PlacedForce:
     on = named_part(path, table, "on", {*targets.parts})
     if axes == "part" and on in targets.spinning:
         raise ConfigurationError(
-            f"{path}.axes: found 'part' on {on}, which turns with a rolling wheel; set harmonics over the angle of the "
-            "wheel along two axes of the vehicle, as an imbalance has"
+            f"{path}.axes: found 'part' on {on}, which turns with the wheel; instead set harmonics over the "
+            "angle of the wheel along two axes of the vehicle, as for an imbalance"
         )
     against = named_part(path, table, "against", {*targets.parts}) if "against" in table else ""
     if against == on:
-        raise ConfigurationError(f"{path}.against: found {against!r}, the part that the force acts on; name another")
+        raise ConfigurationError(
+            f"{path}.against: found {against!r}, which is the part that the force acts on; name another part"
+        )
     at = named_point(path, table, targets.points)[0] if "at" in table else targets.parts[on]
     return PlacedForce(
         name=name,
@@ -177,12 +179,12 @@ def _torque(path: str, table: Mapping[str, Any], targets: ForceTargets, law: App
     joint = convert(str, table["joint"], f"{path}.joint")
     if joint not in targets.joints:
         near = nearest(joint, targets.joints)
-        raise ConfigurationError(f"{path}.joint: found {joint!r}, no hinge or slide; the nearest is {near}")
+        raise ConfigurationError(f"{path}.joint: {joint!r} is not a hinge or slide; the most similar name is {near}")
     if targets.joints[joint] == "hinge":
         _require_torque(path, law)
     if law.mean and joint.startswith("spin_"):
         raise ConfigurationError(
-            f"{path}.mean: found {law.mean:g} N m on a wheel that turns freely, which has no equilibrium; set 0"
+            f"{path}.mean: found {law.mean:g} N m on a wheel that turns freely, so there is no equilibrium; set 0"
         )
     return PlacedForce(
         name=path.partition(".")[2],

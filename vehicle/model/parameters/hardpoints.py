@@ -52,11 +52,13 @@ def require_point(path: str, point: Point, *, right: bool) -> None:
     if not all(map(math.isfinite, point)):
         raise ConfigurationError(f"{path}: found {list(point)} m, must be finite numbers")
     if max(map(abs, point)) > LARGEST_M:
-        raise ConfigurationError(f"{path}: found {list(point)} m, farther than {LARGEST_M} m: probably mm; set metres")
+        raise ConfigurationError(
+            f"{path}: found {list(point)} m, must be within {LARGEST_M} m; probably mm: set metres"
+        )
     if right and point[1] <= 0.0:
         raise ConfigurationError(
-            f"{path}: found y = {point[1]} m, side points are those of the right side (y > 0); the left side is "
-            "mirrored from them"
+            f"{path}: found y = {point[1]} m, must be above 0: give the points of the right side, the left side "
+            "is mirrored"
         )
 
 

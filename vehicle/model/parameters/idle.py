@@ -42,10 +42,10 @@ def idle_parameters(vehicle: Vehicle, overrides: Iterable[str]) -> tuple[str, ..
             frictionless = not any(connection.law.friction_force)
             off[f"{connection.path}.friction_stroke"] = (frictionless, f"{connection.path}.friction_force above zero")
         if isinstance(connection.law, Hydromount):
-            off[f"{connection.path}.maxwell_"] = (connection.law.maxwell is None, "both of its values above zero")
+            off[f"{connection.path}.maxwell_"] = (connection.law.maxwell is None, "both Maxwell values above zero")
     paths = {text: meant(vehicle.table, text.partition("=")[0].strip()) for text in overrides}
     return tuple(
-        f"{override.strip()}: without effect; it belongs to {needed}"
+        f"{override.strip()}: has no effect; it acts only with {needed}"
         for override, whole_paths in paths.items()
         for path, (idle, needed) in off.items()
         if idle and any(whole.startswith(path) and not whole.endswith(".viscous_law") for whole in whole_paths)

@@ -102,7 +102,7 @@ class Instance:
                     self.missing(f"{group}.{key}", ", ".join(pools[group]))
 
     def _unknown(self, path: str, key: str, names: list[str]) -> None:
-        near = f"the nearest known name is {nearest(key, names)}" if names else f"{self.template.file} has none"
+        near = f"the most similar known name is {nearest(key, names)}" if names else f"{self.template.file} has none"
         raise ConfigurationError(f"{self.name}.{path}: unknown parameter; {near}")
 
     def missing(self, path: str, needed: str) -> None:
@@ -205,8 +205,8 @@ class Instance:
             require_point(f"{self.name}.{side}.hardpoints.{name}", point, right=False)
             if point[1] * SIDE_SIGN[side] < 0.0:
                 raise ConfigurationError(
-                    f"{self.name}.{side}.hardpoints.{name}: found y = {point[1]} m, which is on the other side; points "
-                    "of one side are not mirrored, y > 0 on the right"
+                    f"{self.name}.{side}.hardpoints.{name}: found y = {point[1]} m, which is on the other side; "
+                    "points of a single side are not mirrored, y > 0 is on the right"
                 )
             self.taken.add(f"{side}.hardpoints.{name}")
             return point
@@ -216,12 +216,13 @@ class Instance:
             other, _, other_point = value.rpartition(".")
             if other not in self.others or other_point not in self.others[other].template.hardpoints:
                 raise ConfigurationError(
-                    f"{path}: found {value!r}; must be coordinates, the name of a point of [hardpoints], or "
-                    "INSTANCE.POINT of another instance"
+                    f"{path}: found {value!r}, must be coordinates, the name of a point of [hardpoints], or "
+                    "SECTION.POINT for a point of another section"
                 )
             if path in asked:
                 raise ConfigurationError(
-                    f"{path}: found {value!r}, which refers back to this point; set the coordinates of one point"
+                    f"{path}: found {value!r}, which refers back to this point; set the coordinates of one "
+                    "of the points"
                 )
             other_side = (side or None) if self.others[other].template.mirrored else None
             return self.others[other].point(other_point, other_side, (*asked, path))
@@ -277,11 +278,11 @@ def _instance_tables(table: Mapping[str, Any], prefix: str, instance: str) -> It
         elif isinstance(value, Mapping) and _contains_instance(value):
             yield from _instance_tables(value, f"{path}.", "")
         elif isinstance(value, Mapping) and set(value) & set(INSTANCE_KEYS):
-            raise ConfigurationError(f"{path}.template: missing; an instance needs template = NAME")
+            raise ConfigurationError(f"{path}.template: missing; the section needs template = NAME")
         else:
             near = nearest(key, [other for other in (table if prefix else (*VEHICLE_KEYS, *table)) if other != key])
             raise ConfigurationError(
-                f"{path}: unknown parameter; the nearest known name is {near}. A new table needs template = NAME"
+                f"{path}: unknown parameter; the most similar known name is {near}. A new section needs template = NAME"
             )
 
 

@@ -15,13 +15,15 @@ class Load:
     """Mass properties of a load; axes are those of the vehicle frame in the design position."""
 
     mass: float = quantity(
-        "kg", "mass of the load; 0 is none", at_least=0.0, at_most=5000.0, why="a loaded van carries 3000 kg"
+        "kg", "mass of the load; 0: no load", at_least=0.0, at_most=5000.0, why="a loaded van carries 3000 kg"
     )
     inertia: Point | None = quantity(
         "kg m2", "Ixx, Iyy, Izz about the load's own centre of gravity; a point mass by default", above=0.0,
         at_most=5000.0, length=3, default=None,
     )  # fmt: skip
-    products: Point = quantity("kg m2", "integrals of x y, z x, y z about it", length=3, default=(0.0, 0.0, 0.0))
+    products: Point = quantity(
+        "kg m2", "integrals of x y, z x, y z about the load's own centre of gravity", length=3, default=(0.0, 0.0, 0.0)
+    )
 
     def __post_init__(self) -> None:
         validate(self)

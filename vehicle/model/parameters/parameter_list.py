@@ -20,7 +20,7 @@ from vehicle.names import AXES, SIDE_SIGN
 DEFAULT = "default"
 """Source of a parameter that the vehicle file leaves out."""
 
-CHANGED = "set, or computed from what is set"
+CHANGED = "set, or computed from set values"
 """Source of a parameter whose value is not that of the vehicle file."""
 
 
@@ -124,7 +124,9 @@ def _settable(vehicle: Vehicle, path: str, file: Path | None) -> Parameter:
     """Return the parameter with a whole path, which the file need not contain."""
     value, sideless = value_at(vehicle.table, path), ".".join(key for key in path.split(".") if key not in SIDE_SIGN)
     if isinstance(value, Mapping):
-        raise ConfigurationError(f"{path} is a table or a component; car.search({path!r}) lists its parameters")
+        raise ConfigurationError(
+            f"{path} is a section or a component, not a parameter; car.search({path!r}) lists its parameters"
+        )
     if value is not None:
         return _parameter(vehicle, path, value, _source(file, path, value))
     if (value := value_at(vehicle.table, sideless)) is not None:

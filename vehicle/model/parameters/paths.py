@@ -61,7 +61,9 @@ def _existing(table: Mapping[str, Any], path: str) -> list[str]:
 def _only(matches: Sequence[str], path: str) -> str:
     if len(matches) > 1:
         more = f" or one of {len(matches) - SHOWN} others" if len(matches) > SHOWN else ""
-        raise ConfigurationError(f"parameter {path} may be {', '.join(matches[:SHOWN])}{more}; give more of its path")
+        raise ConfigurationError(
+            f"parameter {path} is ambiguous: it may be {', '.join(matches[:SHOWN])}{more}; give more of its path"
+        )
     return matches[0]
 
 
@@ -93,10 +95,10 @@ def _missing(table: Mapping[str, Any], path: str, candidates: Iterable[str]) -> 
     """Return the error of a path that does not exist, with the nearest path or the law that lacks the parameter."""
     law = next(iter(_existing(table, f"{path}_law")), "")
     if not law.endswith("viscous_law"):
-        return ConfigurationError(f"no parameter {path}; the nearest is {nearest(path, candidates)}")
+        return ConfigurationError(f"unknown parameter {path}; the most similar path is {nearest(path, candidates)}")
     return ConfigurationError(
-        f"no parameter {path}: {law} is {value_at(table, law)}, which has none; --set {law}=linear --set {path}=VALUE "
-        "gives the car one"
+        f"unknown parameter {path}, because {law} = {value_at(table, law)} has none; to add it, set --set "
+        f"{law}=linear --set {path}=VALUE"
     )
 
 
@@ -145,7 +147,7 @@ def assignments(overrides: Iterable[str] | Mapping[str, Any]) -> list[str]:
     """
     if isinstance(overrides, str | bytes):
         raise ConfigurationError(
-            f"overrides: found the text {overrides!r}; must be a list, as [{str(overrides)!r}], or {{path: value}}"
+            f"overrides: found the text {overrides!r}, must be a list, [{str(overrides)!r}], or {{path: value}}"
         )
     if isinstance(overrides, Mapping):
         return [f"{path}={_toml(path, value)}" for path, value in overrides.items()]
@@ -182,7 +184,9 @@ def override(table: Mapping[str, Any], assignments: Iterable[str], optional: Opt
     for assignment in assignments:
         name, separator, text = (part.strip() for part in assignment.partition("="))
         if not separator or not name:
-            raise ConfigurationError(f"--set {assignment}: must be PATH=VALUE, as in damper.coulomb_friction=93.75")
+            raise ConfigurationError(
+                f"--set {assignment}: must be PATH=VALUE, for example damper.coulomb_friction=93.75"
+            )
         try:
             paths = meant(result, name, optional)
         except ConfigurationError as error:
@@ -201,8 +205,8 @@ def _set(table: dict[str, Any], path: str, assignment: str, text: str) -> None:
     value = parsed_value(assignment, text, "" if old is None else old)
     if _is_vector(old) and isinstance(value, int | float):
         raise ConfigurationError(
-            f"--set {assignment}: {set_path} is a vector; set all components as [x, y, z], or one by adding "
-            f"its axis to the path: {set_path}.z={text}"
+            f"--set {assignment}: {set_path} is a vector; set all components as [x, y, z], or a single one with "
+            f"its axis, for example {set_path}.z={text}"
         )
     *parents, name = path.split(".")
     outer: Any = table
@@ -231,17 +235,17 @@ def value_of(vehicle: Any, path: str) -> float:
         default = component(declared.get("default"), path)
         if _is_number(default):
             return float(default)
-        raise ConfigurationError(f"parameter {path}: not given in this vehicle, and without a default; give its value")
+        raise ConfigurationError(f"parameter {path}: is not given in this vehicle and has no default; set its value")
     try:
         value = value_at(table, full_path(table, path))
         if _is_number(value):
             return float(value)
-        raise ConfigurationError(f"the nearest is {nearest(path, _numbers(table))}")
+        raise ConfigurationError(f"the most similar path is {nearest(path, _numbers(table))}")
     except ConfigurationError as error:
         # For a misspelt path, show the nearest number, not the nearest text.
-        misspelt = str(error).startswith("no parameter")
-        reason = f"the nearest is {nearest(path, _numbers(table))}" if misspelt else str(error)
-        raise ConfigurationError(f"parameter {path}: no number of a vehicle; {reason}") from None
+        misspelt = str(error).startswith("unknown parameter")
+        reason = f"the most similar path is {nearest(path, _numbers(table))}" if misspelt else str(error)
+        raise ConfigurationError(f"parameter {path}: is not a number of the vehicle; {reason}") from None
 
 
 def overrides_of(vehicle: Any, values: Mapping[str, float]) -> tuple[str, ...]:
@@ -306,7 +310,7 @@ def quantity_of(car: Any, path: str) -> Mapping[str, Any]:
     declared = field_quantity(car, path) if isinstance(car, type) else car.quantity_of(full_path(as_table(car), path))
     if "unit" not in declared:
         owner = car.__name__ if isinstance(car, type) else "a vehicle"
-        raise ConfigurationError(f"parameter {path}: no quantity of {owner}; give the whole path of a value")
+        raise ConfigurationError(f"parameter {path}: is not a value of {owner}; give the whole path of a value")
     return declared
 
 
@@ -369,5 +373,6 @@ def parsed_value(assignment: str, text: str, old: Any) -> Any:
             pass
         comma = "; decimals have a point, a list has brackets" if "," in text else ""
         raise ConfigurationError(
-            f"--set {assignment}: {text!r} is not a number, a list of numbers or a text{comma}"
+            f"--set {assignment}: cannot read {text}; give a number (3.5), a list ([1, 2, 3]) or a text in "
+            f'quotes ("abc"){comma}'
         ) from None

@@ -180,8 +180,9 @@ def _damper(i: Instance, e: topology.Damper, side: str | None) -> PlacedDamper:
         ends = []
     elif len(ends) < 2:
         raise ConfigurationError(
-            f"{i.name}.{e.name}.control.law: found {law.controlled.law!r}, but {i.template.file} has no positions of "
-            f"its sensors; set both ends of its damper {e.name}, lower and upper = {{ part = NAME, at = POINT }}"
+            f"{i.name}.{e.name}.control.law: found {law.controlled.law!r}, but {i.template.file} does not state "
+            f"where its sensors are; set both ends of its damper {e.name}: lower and upper = {{ part = NAME, at "
+            f"= POINT }}"
         )
     return PlacedDamper(
         name=i.label(e.name, side),

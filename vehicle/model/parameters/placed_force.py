@@ -104,11 +104,11 @@ def force_named(name: str, forces: Sequence[PlacedForce], *, own: bool = False) 
     if name not in indices:
         table = "no table [force.NAME]" if own else "no force"
         raise ConfigurationError(
-            f"force: found {name!r}, {table} of this car; "
+            f"force: unknown name {name!r}, {table} of this car; "
             + (
-                f"the nearest is {nearest(name, indices)}"
+                f"the most similar name is {nearest(name, indices)}"
                 if indices
-                else "add a table [force.NAME] to the vehicle file"
+                else "add a section [force.NAME] to the vehicle file"
             )
         )
     return indices[name]

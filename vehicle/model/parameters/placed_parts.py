@@ -48,7 +48,9 @@ def _held_parts(car: Mapping[str, Instance]) -> dict[str, _Held]:
             label, parent = i.part(child, side), i.part(joint.parent, side)
             where = f"{i.template.file}: joint of {child}"
             if name not in i.template.parts:
-                raise ConfigurationError(f"{where}: not a part of this template, so a joint cannot hold it")
+                raise ConfigurationError(
+                    f"{where}: is not a part of this template, so a joint cannot hold it; name a part of the template"
+                )
             if parent == "body" and (joint.kind != "fixed" or joint.at is None):
                 raise ConfigurationError(
                     f"{where}: a part on the trimmed body must be fixed, with a point in at; for a moving part use "
@@ -57,17 +59,19 @@ def _held_parts(car: Mapping[str, Instance]) -> dict[str, _Held]:
             part = held.setdefault(label, _Held(i, name, child_side or side, parent))
             if part.parent != parent:
                 raise ConfigurationError(
-                    f"{where}: it has the parent {part.parent} already; close a loop by a connection"
+                    f"{where}: the part already has the parent {part.parent}; to close a loop, use a connection"
                 )
             part.joints.append((joint, side))
             if len(part.joints) > 1 and {"free", "fixed"} & {other.kind for other, _ in part.joints}:
-                raise ConfigurationError(f"{where}: it is {part.joints[0][0].kind} already; remove the further joint")
+                raise ConfigurationError(
+                    f"{where}: the part already has a joint of kind {part.joints[0][0].kind}; remove this joint"
+                )
     for i in car.values():
         for name, side in itertools.product(i.template.parts, i.sides()):
             if (side is not None or not i.template.mirrored) and i.label(name, side) not in held:
                 raise ConfigurationError(
-                    f"{i.template.file}: parts.{name}: {i.label(name, side)} has no joint; add one, or "
-                    'kind = "free" and connections'
+                    f"{i.template.file}: parts.{name}: {i.label(name, side)} has no joint; add a joint, or set "
+                    'kind = "free" and add connections'
                 )
     return held
 
@@ -102,7 +106,7 @@ def _placed_part(label: str, part: _Held) -> PlacedPart:
     if numbers.inertia is None:
         if len(template.points) < 2:
             raise ConfigurationError(
-                f"{i.name}.parts.{name}.inertia: missing; it is optional only for a rod between two points"
+                f"{i.name}.parts.{name}.inertia: missing; only a rod between two points may leave it out"
             )
         start, end = (mirrored(i.point(point, side), sign) for point in template.points[:2])
         rod = (start, end)
@@ -134,7 +138,7 @@ def _mean_point(i: Instance, name: str, side: str | None, points: tuple[str, ...
         if point not in i.template.hardpoints:
             near = nearest(point, i.template.hardpoints)
             raise ConfigurationError(
-                f"{i.name}.parts.{name}.between: unknown hardpoint {point!r}; the nearest is {near}"
+                f"{i.name}.parts.{name}.between: unknown hardpoint {point!r}; the most similar name is {near}"
             )
     chosen = [i.point(point, side) for point in points]
     x, y, z = (sum(axis) / len(chosen) for axis in zip(*chosen, strict=True))

@@ -66,7 +66,7 @@ def require_parts(vehicle: Vehicle) -> None:
             limits = (part.mass * low**2, part.mass * high**2, f"{why}, at {part.mass:g} kg")
             _within(f"{path}.inertia.{axis}", moment, "kg m2", limits)
         for axis, offset in zip(AXES, part.offset, strict=True):
-            limits = (-OFFSET_M, OFFSET_M, "a part is near its hardpoints; set metres")
+            limits = (-OFFSET_M, OFFSET_M, "parts lie near their hardpoints; probably mm: set metres")
             _within(f"{path}.offset.{axis}", offset, "m", limits)
 
 
@@ -83,7 +83,9 @@ def _ground(vehicle: Vehicle) -> None:
     """Check the ground contacts: wheelbase, and no hardpoint below the lowest plate."""
     ground = [contact for contact in vehicle.composition.connections if contact.ground]
     if not ground:
-        raise ConfigurationError(f"{vehicle.name}: has no ground contact; add an axle with wheels, or blocks")
+        raise ConfigurationError(
+            f"{vehicle.name}: the car has no contact with the ground; add an axle with wheels, or blocks"
+        )
     along = [contact.at[0] for contact in ground]
     first, last = (ground[along.index(end)] for end in (min(along), max(along)))
     _within(f"{last.point}.x less {first.point}.x", last.at[0] - first.at[0], "m", WHEELBASE)
@@ -91,8 +93,8 @@ def _ground(vehicle: Vehicle) -> None:
     for name, point in vehicle.points.items():
         if low is not None and point[2] < low.patch[2]:
             raise ConfigurationError(
-                f"{_point_path(vehicle, name)}.z: found {point[2]:g} m, must not lie below the plate "
-                f"({low.paths[1]}.z = {low.patch[2]:g} m)"
+                f"{_point_path(vehicle, name)}.z: found {point[2]:g} m, must be at least {low.patch[2]:g} m, the "
+                f"height of the plate ({low.paths[1]}.z)"
             )
 
 
@@ -126,13 +128,13 @@ def require_rolling(vehicle: Vehicle) -> None:
     driving, car = vehicle.driving, vehicle.composition
     if not driving.rolling:
         return
-    standing = "let the tyres stand: --tyre standing, or driving.speed=0"
+    standing = "to let the tyres stand, set --tyre standing or driving.speed=0"
     remedy = f"set it, or {standing}"
     on_plates = {link.carrier: link for link in car.connections}
     if not car.wheels or any(link.ground and link.rolling is None for link in car.connections):
         raise ConfigurationError(
-            f"driving.speed: found {driving.speed:g} m/s, but {vehicle.name} has other ground contacts "
-            f"than wheels; {standing}"
+            f"driving.speed: found {driving.speed:g} m/s, but {vehicle.name} also stands on the ground without "
+            f"wheels; {standing}"
         )
     for wheel in car.wheels:
         tyre = on_plates[wheel.plate]
@@ -151,8 +153,8 @@ def require_rolling(vehicle: Vehicle) -> None:
             )
         if abs(wheel.center[0] - wheel.patch[0]) > ROUND:
             raise ConfigurationError(
-                f"{wheel.paths[1]}.x: found {wheel.patch[0]:g} m, must be that of {wheel.paths[0]}, "
-                f"{wheel.center[0]:g} m: ahead of the centre the load would drive or brake a rolling wheel"
+                f"{wheel.paths[1]}.x: found {wheel.patch[0]:g} m, must be {wheel.center[0]:g} m as "
+                f"{wheel.paths[0]}.x, or the load would drive or brake the rolling wheel"
             )
         spinning = {part.name for part in car.parts if part.parent == wheel.part and not part.joints} | {wheel.part}
         held = [(link.path, {link.moving, link.carrier}) for link in car.connections]
@@ -170,6 +172,6 @@ def require_rolling(vehicle: Vehicle) -> None:
             ixx, _, izz = part.numbers.inertia or (0.0, 0.0, 0.0)
             if max(abs(x), abs(z), abs(ixx - izz), *map(abs, part.numbers.products)) > ROUND:
                 raise ConfigurationError(
-                    f"{part.path}: turns with the wheel and is no body of revolution about its axle; must have "
-                    "inertia.x = inertia.z, no products, and an offset along y alone"
+                    f"{part.path}: turns with the wheel, so it must be round about the axle: inertia.x = "
+                    "inertia.z, no products, and an offset only along y"
                 )

@@ -61,21 +61,22 @@ def _trace(file: str, changed: int) -> CubicSpline:
     angle = np.degrees(_column(measurement, "angle", "crank angle [deg]"))
     pressure = _column(measurement, "pressure", "pressure [bar]")
     if angle.size != pressure.size:
-        raise DataError(f"{file}: {angle.size} crank angles and {pressure.size} pressures; must be equally many")
+        raise DataError(f"{file}: found {angle.size} crank angles and {pressure.size} pressures, must be equally many")
     steps = np.diff(angle)
     if not (steps > 0.0).all():
         row = int(np.flatnonzero(steps <= 0.0)[0]) + 1
         raise DataError(
-            f"{file}: crank angle {angle[row]:g} deg follows {angle[row - 1]:g} deg; must ascend through one cycle: "
-            "sort the rows, and average the cycles of a longer record"
+            f"{file}: crank angle {angle[row]:g} deg follows {angle[row - 1]:g} deg, must increase through a "
+            "single cycle; sort the rows, and average the cycles of a longer record"
         )
     # The first sample of the next cycle may be there or not.
     span = float(angle[-1] - angle[0])
     largest = float(steps.max(initial=CYCLE - span))
     if span > CYCLE + ROUNDING or largest > COARSEST + ROUNDING:
         raise DataError(
-            f"{file}: crank angles from {angle[0]:g} to {angle[-1]:g} deg in steps of up to {largest:g} deg; must be "
-            f"one cycle of 720 deg in steps of at most {COARSEST:g} deg: fill gaps, or average the cycles of a record"
+            f"{file}: found crank angles from {angle[0]:g} to {angle[-1]:g} deg in steps of up to {largest:g} "
+            f"deg, must be a cycle of 720 deg in steps of at most {COARSEST:g} deg; fill gaps, or average the "
+            "cycles of a record"
         )
     _plausible(file, angle, pressure)
     if span > CYCLE - ROUNDING:
@@ -90,8 +91,8 @@ def _column(measurement: Measurement, quantity: str, example: str) -> Vector:
     if len(channels) != 1:
         shown = ", ".join(f"{channel.name!r} [{channel.unit}]" for channel in measurement.channels[:12]) or "none"
         raise DataError(
-            f"{measurement.path}: {len(channels)} columns are of the quantity {quantity} "
-            f"({allowed_units(quantity)}), must be one, as {example!r}; found {shown}"
+            f"{measurement.path}: {len(channels)} columns have a unit of {quantity} ({allowed_units(quantity)}), "
+            f"must be a single column, for example {example!r}; found {shown}"
         )
     values = np.asarray(channels[0].si_values, dtype=np.float64)
     if not np.isfinite(values).all():
@@ -113,8 +114,8 @@ def _plausible(file: str, angle: Vector, pressure: Vector) -> None:
         )
     if lowest <= 0.0:
         raise DataError(
-            f"{file}: the smallest pressure is {lowest:.4g} bar, must be above 0: pressures are absolute; add the "
-            "ambient pressure, or the offset of the sensor"
+            f"{file}: the smallest pressure is {lowest:.4g} bar, must be above 0 bar, because pressures are "
+            "absolute; add the ambient pressure, or the offset of the sensor"
         )
     behind = math.remainder(float(angle[top]), CYCLE)
     if abs(behind) > NEAR_TOP:

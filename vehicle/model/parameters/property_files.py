@@ -87,8 +87,8 @@ def bushing_numbers(file: PropertyFile, beside: Mapping[str, Any]) -> dict[str, 
     if "damping" not in beside:
         rates = [file.number("DAMPING", f"F{axis.upper()}_DAMPING") for axis in AXES]
         if None in rates:
-            raise DataError(f"{file.path}: [DAMPING] has no FX_DAMPING, FY_DAMPING and FZ_DAMPING; add them, or set "
-                            "damping [N s/m] beside the name of this file")  # fmt: skip
+            raise DataError(f"{file.path}: [DAMPING] lacks FX_DAMPING, FY_DAMPING and FZ_DAMPING; add them, or set "
+                "damping [N s/m] in the same section of the vehicle file")  # fmt: skip
         numbers["damping"] = [rate * force * file.unit("TIME") / length for rate in rates if rate is not None]
     if "rotational_stiffness" not in beside:
         numbers["rotational_stiffness"] = _turning(file)
@@ -101,8 +101,9 @@ def _turning(file: PropertyFile) -> float:
     slopes = [_slope(file.points(f"T{axis.upper()}_CURVE", angle, torque)) for axis in AXES]
     if max(slopes) - min(slopes) > TURNING_AGREES * max(map(abs, slopes)):
         raise DataError(
-            f"{file.path}: TX, TY, TZ_CURVE have {', '.join(f'{slope:.4g}' for slope in slopes)} N m/rad at rest; a "
-            "bushing has one number for all axes here: set rotational_stiffness [N m/rad] beside the name of this file"
+            f"{file.path}: TX, TY, TZ_CURVE have {', '.join(f'{slope:.4g}' for slope in slopes)} N m/rad at "
+            "rest; but a bushing has a single number for all axes; set rotational_stiffness [N m/rad] in the "
+            "same section of the vehicle file"
         )
     return sum(slopes) / len(slopes)
 
@@ -125,15 +126,15 @@ def stop_numbers(stop: Mapping[str, Any], ends: Mapping[str, list[Point]], path:
         clearance = stop[end].get("clearance")
         if not isinstance(clearance, int | float) or isinstance(clearance, bool) or not clearance >= 0.0:
             raise ConfigurationError(
-                f"{path}.{end}.clearance: found {clearance!r}; must be the travel of the damper from its design "
-                "position to the stop, a number of at least 0 [m]"
+                f"{path}.{end}.clearance: found {clearance!r}, must be a number of at least 0 [m]: the travel of "
+                "the damper from its design position to the stop"
             )
         # Rows with zero force before the contact have no effect.
         contact = max((index for index, (_, f) in enumerate(points) if f == 0.0), default=-1)
         if contact < 0 or contact == len(points) - 1 or points[contact][0] < 0.0:
             raise ConfigurationError(
-                f"{path}.{end}.curve: found {points[0][1]:g} N at {points[0][0]:g} m; a stop must have 0 N at its "
-                "contact (penetration 0) and a force behind it"
+                f"{path}.{end}.curve: found {points[0][1]:g} N at {points[0][0]:g} m; a stop must have 0 N at "
+                "its contact (penetration 0) and a force beyond it"
             )
         sign = -1.0 if end == "bump" else 1.0
         displacement += [sign * (clearance + x) for x, _ in points[contact:]]
@@ -173,7 +174,7 @@ def spring_of_points(points: Sequence[Point], table: str, where: str) -> dict[st
         DataError: the curve does not contain zero.
     """
     if not points[0][0] <= 0.0 <= points[-1][0]:
-        raise DataError(f"{where}: a curve from {points[0][0]:g} to {points[-1][0]:g} m, must contain 0")
+        raise DataError(f"{where}: the curve extends from {points[0][0]:g} to {points[-1][0]:g} m, must contain 0")
     # Without the round-off of the units.
     stiffness, scale = float(f"{_slope(points):.12g}"), max(abs(f) for _, f in points)
     if all(abs(f - stiffness * x) <= 1e-9 * scale for x, f in points):

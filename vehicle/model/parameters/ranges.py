@@ -36,9 +36,9 @@ class Range:
     def __post_init__(self) -> None:
         if not math.isnan(self.start) and not 0.0 < self.low < self.start < self.high < math.inf:
             raise ConfigurationError(
-                f"parameter {self.path}: found bounds {self.low:g} and {self.high:g}, start {self.start:g}; needed "
-                "is 0 < lower < start < upper, all finite (the fit moves on a logarithmic scale; a parameter that may "
-                "be zero needs a small positive bound)"
+                f"parameter {self.path}: found bounds {self.low:g} and {self.high:g} and start {self.start:g}, "
+                "must be 0 < lower < start < upper (the fit uses a logarithmic scale); for a parameter that may "
+                "be zero set a small positive bound"
             )
         if not -math.inf < self.low < self.high < math.inf:
             raise ConfigurationError(f"range of {self.path}: found {self.low!r} to {self.high!r}, must be ascending")
@@ -85,8 +85,8 @@ class Variation:
         """
         if self.bounds is not None:
             raise ConfigurationError(
-                f"{self.option}: contains bounds; needed are values, as PATH=A,B,C, or PATH=A:B:N for N equally spaced "
-                f"ones: {self.path}={self.bounds[0]:g}:{self.bounds[1]:g}:5"
+                f"{self.option}: contains bounds, must be values: PATH=A,B,C, or PATH=A:B:N for N equally spaced "
+                f"values, for example {self.path}={self.bounds[0]:g}:{self.bounds[1]:g}:5"
             )
         return self.values
 
@@ -98,7 +98,7 @@ class Variation:
         """
         if self.bounds is None:
             raise ConfigurationError(
-                f"{self.option}: contains values; needed are two bounds, PATH=LOW:HIGH, as damper.viscous=800:4000"
+                f"{self.option}: contains values, must be two bounds PATH=LOW:HIGH, for example damper.viscous=800:4000"
             )
         return Range(path=self.path, low=self.bounds[0], high=self.bounds[1])
 
@@ -119,8 +119,8 @@ def parsed_variation(option: str, text: str) -> Variation:
     items = tuple(item.strip() for item in re.split(r",(?![^\[]*\])", content))
     if not separator or not path or not all(items):
         raise ConfigurationError(
-            f"{typed}: must be PATH=A,B,C, PATH=A:B:N or PATH=A:B, as in damper.coulomb_friction=62.5,125; the path of "
-            "one component of a vector ends with its axis: bushings.tyre.stiffness.z=2e5,2.5e5"
+            f"{typed}: must be PATH=A,B,C, PATH=A:B:N or PATH=A:B, for example damper.coulomb_friction=62.5,125; "
+            "a component of a vector ends with its axis: bushings.tyre.stiffness.z=2e5,2.5e5"
         )
     parts = [_number(part) for part in content.split(":")]
     if len(items) > 1 or len(parts) == 1 or all(math.isnan(part) for part in parts):
@@ -155,11 +155,13 @@ def checked_ranges(ranges: Sequence[Range]) -> tuple[Range, ...]:
     """
     paths = [parameter.path for parameter in ranges]
     if not paths:
-        raise ConfigurationError("parameters: no parameter to fit; set at least one with its bounds")
+        raise ConfigurationError(
+            "the parameters to fit are missing; set at least one with its bounds, for example damper.viscous=800:4000"
+        )
     twice = next((path for path in paths if paths.count(path) > 1), None)
     if twice is not None:
         raise ConfigurationError(f"parameter {twice}: given {paths.count(twice)} times; set each once")
     without = next((parameter.path for parameter in ranges if math.isnan(parameter.start)), None)
     if without is not None:
-        raise ConfigurationError(f"parameter {without}: has no start value; set one")
+        raise ConfigurationError(f"parameter {without}: has no start value; set its value in the car")
     return tuple(ranges)

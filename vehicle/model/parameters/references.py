@@ -31,7 +31,7 @@ def require_ports(car: Mapping[str, Instance], names: set[str]) -> None:
                 if (part := i.part(port, side)) not in names:
                     near = nearest(part, names)
                     raise ConfigurationError(
-                        f"{i.name}.ports.{port}: found {part!r}, unknown part; the nearest is {near}"
+                        f"{i.name}.ports.{port}: unknown part {part!r}; the most similar name is {near}"
                     )
 
 
@@ -46,8 +46,8 @@ def require_geometry(car: Mapping[str, Instance]) -> None:
             top, bottom = (i.point(name, RIGHT) for name in (high, low))
             if top[2] <= bottom[2]:
                 raise ConfigurationError(
-                    f"{i.name}.hardpoints.{high}: found z = {top[2]} m, must lie above {i.name}.hardpoints.{low} "
-                    f"(z = {bottom[2]} m)"
+                    f"{i.name}.hardpoints.{high}: found z = {top[2]} m, must be above {bottom[2]} m, the z of "
+                    f"{i.name}.hardpoints.{low}"
                 )
         for names in _distinct_points(i.template):
             require_apart({f"{i.name}.hardpoints.{name}": i.point(name, RIGHT) for name in names})
@@ -83,7 +83,9 @@ def require_sound(car: Composition) -> None:
     """
     for connection in car.connections:
         if connection.moving == connection.carrier:
-            raise ConfigurationError(f"{connection.path}: connects {connection.moving} to itself; name two parts")
+            raise ConfigurationError(
+                f"{connection.path}: connects {connection.moving} to itself; name two different parts"
+            )
         if getattr(connection.law, "one_sided", False) and not connection.ground:
             raise ConfigurationError(
                 f"{connection.path}.one_sided: found true, must be false; only a contact with the ground lifts off"
@@ -99,7 +101,7 @@ def require_sound(car: Composition) -> None:
         for name, other in itertools.pairwise(sorted(names)):
             if name == other:
                 raise ConfigurationError(
-                    f"{name}: two elements have this name; rename one, or set a prefix for its template"
+                    f"{name}: two elements have this name; rename one of them, or set a prefix for its template"
                 )
 
 
@@ -113,8 +115,14 @@ def require_taken(car: Mapping[str, Instance]) -> None:
         for side in SIDE_SIGN:
             for table in _places(i.numbers.get(side, {})):
                 if f"{side}.{table}" not in i.taken:
-                    why = "what it is for exists once, on no side" if i.template.mirrored else "it is not mirrored"
-                    raise ConfigurationError(f"{i.name}.{side}.{table}: {i.template.file} does not use it; {why}")
+                    why = (
+                        "it describes something that exists only once, not on a side"
+                        if i.template.mirrored
+                        else "it is not mirrored"
+                    )
+                    raise ConfigurationError(
+                        f"{i.name}.{side}.{table}: {i.template.file} does not use this section; {why}"
+                    )
 
 
 def _places(table: Mapping[str, Any]) -> Iterator[str]:

@@ -26,7 +26,10 @@ class Part:
         default=None,
     )
     products: Point = quantity(
-        "kg m2", "integrals of x y, z x, y z about it, right side", length=3, default=(0.0, 0.0, 0.0)
+        "kg m2",
+        "integrals of x y, z x, y z about the part's own centre of gravity, right side",
+        length=3,
+        default=(0.0, 0.0, 0.0),
     )
     between: tuple[str, ...] | None = quantity(
         "-", "hardpoints whose mean is the centre of gravity; by default those of the template", default=None
@@ -39,7 +42,12 @@ class Part:
         why="steering and stabilizer rods have 5 to 15 mm",
         default=ROD_RADIUS,
     )
-    offset: Point = quantity("m", "added to that mean; right side", length=3, default=(0.0, 0.0, 0.0))
+    offset: Point = quantity(
+        "m",
+        "offset of the centre of gravity from the mean of these hardpoints; right side",
+        length=3,
+        default=(0.0, 0.0, 0.0),
+    )
 
     def as_rod(self, start: Point, end: Point) -> Part:
         """Return the part as a rod if it has no inertia: m L2/12 + m r2/4 across, m r2/2 about its axis.
@@ -75,8 +83,8 @@ class Part:
         a, b, c = sorted(self.inertia)
         if a + b < c * (1.0 - 1e-9):
             raise ConfigurationError(
-                f"Part.inertia: found {list(self.inertia)} kg m2, the two smaller must add up to at least the largest "
-                f"(short by {c - a - b:.3g}); no mass distribution has these moments"
+                f"Part.inertia: found {list(self.inertia)} kg m2; the sum of the two smaller must be at least "
+                f"the largest (it is {c - a - b:.3g} kg m2 less), as for every real body"
             )
         self._require_products(self.inertia)
 
@@ -92,5 +100,5 @@ class Part:
         if min(minors) < -1e-12:
             raise ConfigurationError(
                 f"Part.products: found {list(self.products)} kg m2, too large for the moments {list(moments)} kg "
-                "m2; no mass distribution has this tensor"
+                "m2: no real body has this inertia"
             )

@@ -34,14 +34,18 @@ class SemiActiveDamper:
     """
 
     law: str = quantity("-", "control law", choices=(PASSIVE, *LAWS, FMU), default=PASSIVE)
-    fmu: str | None = quantity("-", "FMU of the controller, of the law fmu", is_file=True, default=None)
+    fmu: str | None = quantity("-", "file of the FMU that controls the damper (law = fmu)", is_file=True, default=None)
     fmu_sha256: str | None = quantity(
-        "-", "SHA-256 of this FMU: only the file with it runs, as native code with all rights", default=None
+        "-",
+        "SHA-256 of the FMU that you trust: only this file may run, as native code with all your rights",
+        default=None,
     )
     minimum_damping: float = quantity("N s/m", "softest setting cmin", at_least=0.0)
     maximum_damping: float = quantity("N s/m", "firmest setting cmax", above=0.0, at_most=1e6)
-    skyhook_damping: float = quantity("N s/m", "damper between body and sky", at_least=0.0)
-    groundhook_damping: float = quantity("N s/m", "damper between wheel and ground", at_least=0.0)
+    skyhook_damping: float = quantity("N s/m", "damping constant of the skyhook, between body and sky", at_least=0.0)
+    groundhook_damping: float = quantity(
+        "N s/m", "damping constant of the groundhook, between wheel and ground", at_least=0.0
+    )
     skyhook_share: float = quantity(
         "-", "share of skyhook in the hybrid law, the rest is groundhook", at_least=0.0, at_most=1.0
     )
@@ -56,7 +60,7 @@ class SemiActiveDamper:
     )
     rate: float = quantity(
         "N s/m per s",
-        "fastest change of the coefficient; 1e12 is none",
+        "fastest change of the damping coefficient; 1e12: no limit",
         default=AT_ONCE,
         above=0.0,
         at_most=AT_ONCE,
@@ -65,7 +69,7 @@ class SemiActiveDamper:
     def __post_init__(self) -> None:
         validate(self)
         if self.law == FMU and self.fmu is None:
-            raise ConfigurationError('SemiActiveDamper.fmu: missing; law = fmu needs it: fmu = "FILE.fmu"')
+            raise ConfigurationError('SemiActiveDamper.fmu: missing; law = fmu needs fmu = "FILE.fmu"')
         if self.maximum_damping < self.minimum_damping:
             raise ConfigurationError(
                 f"SemiActiveDamper.maximum_damping: found {self.maximum_damping!r} N s/m, "

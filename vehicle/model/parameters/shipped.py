@@ -34,7 +34,7 @@ def vehicle_file(path: Path | str) -> Path:
     if path.suffix or path.exists() or path.name != str(path):
         return path
     if path.name not in CARS:
-        raise ConfigurationError(f"{path}: no such file, and no shipped car; these are {', '.join(CARS)}")
+        raise ConfigurationError(f"{path}: is neither a file nor a shipped car; shipped cars are {', '.join(CARS)}")
     return VEHICLES / path / "vehicle.toml"
 
 

@@ -102,10 +102,14 @@ def _merged(name: str, options: frozenset[str], searched: tuple[Path, ...], abov
     path = next((folder / f"{name}.toml" for folder in searched if (folder / f"{name}.toml").is_file()), None)
     if path is None or not NAME_PATTERN.fullmatch(name) or name in above:
         names = sorted({file.stem for folder in searched for file in folder.glob("*.toml")})
-        reason = "uses itself" if name in above else "no such file beside the vehicle file nor in the package"
+        reason = (
+            "uses itself"
+            if name in above
+            else "the file is neither in the folder of the vehicle file nor in the package"
+        )
         raise ConfigurationError(
-            f"template {name!r}: {reason}; the nearest is {nearest(name, set(names) - {name})}, there are "
-            f"{', '.join(names)}"
+            f"template {name!r}: {reason}; the most similar name is {nearest(name, set(names) - {name})}; "
+            f"templates are {', '.join(names)}"
         )
     template = read_template_file(path)
     chosen = [use for use in template.pop("use") if use.get("when") is None or use["when"] in options]
@@ -125,7 +129,9 @@ def _merged(name: str, options: frozenset[str], searched: tuple[Path, ...], abov
                 merged[key] = [*merged.get(key, []), *table[key]]
             for key in SINGLE:
                 if merged[key] and table[key]:
-                    raise ConfigurationError(f"{key}: defined twice; a template has one, on both sides")
+                    raise ConfigurationError(
+                        f"{key}: defined twice; a template has only one, which applies to both sides"
+                    )
                 merged[key] = merged[key] or table[key]
     except ConfigurationError as error:
         raise ConfigurationError(f"{path.name}: {error}") from None
@@ -138,12 +144,12 @@ def _renamed(table: dict[str, Any], use: Mapping[str, Any]) -> dict[str, Any]:
     for port in bound:
         if port not in table["ports"] and port not in FREE_PORTS:
             raise ConfigurationError(
-                f"use.with.{port}: {use['template']}.toml has no port of this name; it has {[*table['ports']]}"
+                f"use.with.{port}: {use['template']}.toml has no port of this name, only {[*table['ports']]}"
             )
     free = [port for port in table["ports"] if port not in bound]
     if free:
         raise ConfigurationError(
-            f"use.with.{free[0]}: missing; {use['template']}.toml needs it ({table['ports'][free[0]]})"
+            f"use.with.{free[0]}: missing; {use['template']}.toml needs this port ({table['ports'][free[0]]})"
         )
     elements = [entry["name"] for key in LISTS for entry in table[key] if "name" in entry]
     new_names = {name: prefix + name for name in (*table["parts"], *table["hardpoints"], *elements)}
@@ -190,7 +196,7 @@ def _check(template: Template, raw: Mapping[str, Any]) -> None:
         for word, allowed in ((port, {*template.ports}), (part, parts - {port})):
             if word not in allowed:
                 raise ConfigurationError(
-                    f"port_defaults.{port}: found {word!r}, unknown name; the nearest is {nearest(word, allowed)}"
+                    f"port_defaults.{port}: unknown name {word!r}; the most similar is {nearest(word, allowed)}"
                 )
     used: set[str] = set()
     known: dict[str, Collection[str]] = {"joint": joints, **dict.fromkeys(_PARTS, parts)}
@@ -209,9 +215,9 @@ def _check(template: Template, raw: Mapping[str, Any]) -> None:
                         f"{where}.name: found {word!r}, must consist of letters, digits, '_', '.', '-'"
                     )
                 if allowed is not None and head not in allowed:
-                    besides = f", and in every template there are {', '.join(FREE_PORTS)}" if allowed is parts else ""
+                    besides = f"; every template also has {', '.join(FREE_PORTS)}" if allowed is parts else ""
                     raise ConfigurationError(
-                        f"{where}.{key}: found {word!r}, unknown name; the nearest is {nearest(head, allowed)}{besides}"
+                        f"{where}.{key}: unknown name {word!r}; the most similar is {nearest(head, allowed)}{besides}"
                     )
                 if allowed is not None and side not in ("", "left", "right", "middle"):
                     raise ConfigurationError(f"{where}.{key}: found side {side!r}, must be left, right or middle")

@@ -41,7 +41,9 @@ def read_template_file(path: Path) -> dict[str, Any]:
     try:
         for key, value in table.items():
             if key not in TEMPLATE_KEYS:
-                raise ConfigurationError(f"{key}: unknown; the nearest known name is {nearest(key, TEMPLATE_KEYS)}")
+                raise ConfigurationError(
+                    f"{key}: unknown key; the most similar known key is {nearest(key, TEMPLATE_KEYS)}"
+                )
             convert(TEMPLATE_KEYS[key], value, key)
         for position, use in enumerate(table.get("use", [])):
             if "template" not in use or set(use) - set(USE_KEYS):
@@ -50,7 +52,7 @@ def read_template_file(path: Path) -> dict[str, Any]:
                 convert(USE_KEYS[key], value, f"use.{position}.{key}")
         for pair in table.get("above", []):
             if len(pair) != 2:
-                raise ConfigurationError(f"above: found {pair}; must be two points, the upper one first")
+                raise ConfigurationError(f"above: found {pair}, must be two points, the upper point first")
     except ConfigurationError as error:
         raise ConfigurationError(f"{path.name}: {error}") from None
     return {

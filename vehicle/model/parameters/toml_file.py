@@ -29,15 +29,17 @@ def read_table(path: Path) -> dict[str, Any]:
         ConfigurationError: the file is missing, not a file, too large, not UTF-8 or not TOML.
     """
     if not path.is_file():
-        raise ConfigurationError(f"{path}: no such file; give the path of a parameter file (TOML)")
+        raise ConfigurationError(f"{path}: the file does not exist; give the path of a parameter file (TOML)")
     try:
         if path.stat().st_size > LARGEST_FILE:
-            raise ConfigurationError(f"{path}: larger than {LARGEST_FILE / 1e6:g} MB; this is no parameter file")
+            raise ConfigurationError(f"{path}: is larger than {LARGEST_FILE / 1e6:g} MB, so it is not a parameter file")
         return copy_table(_parsed(path.read_text(encoding="utf-8")))
     except RecursionError:
-        raise ConfigurationError(f"{path}: tables or lists are nested too deep; this is no parameter file") from None
+        raise ConfigurationError(
+            f"{path}: sections or lists are nested too deep, so it is not a parameter file"
+        ) from None
     except UnicodeDecodeError as error:
-        raise ConfigurationError(f"{path}: not UTF-8 at byte {error.start}; save the file as UTF-8") from None
+        raise ConfigurationError(f"{path}: is not UTF-8 text at byte {error.start}; save the file as UTF-8") from None
     except tomllib.TOMLDecodeError as error:
         raise ConfigurationError(f"{path}: not a TOML file: {error}") from None
     except OSError as error:
@@ -64,7 +66,7 @@ def build(cls: type[T], table: Mapping[str, Any], path: str = "") -> T:
     hints, fields = type_hints(cls), _fields(cls)  # type: ignore[arg-type]
     for key in table:
         if key not in fields:
-            near = f"the nearest known name is {nearest(key, fields)}"
+            near = f"the most similar known name is {nearest(key, fields)}"
             raise ConfigurationError(f"{_join(path, key)}: unknown parameter; {near}")
     values: dict[str, Any] = {}
     missing: list[dataclasses.Field[Any]] = []
@@ -77,7 +79,7 @@ def build(cls: type[T], table: Mapping[str, Any], path: str = "") -> T:
         first, *others = missing
         also = f"; so must {', '.join(f'{entry.name}{_needed(entry)}' for entry in others)}" if others else ""
         raise ConfigurationError(
-            f"{_join(path, first.name)}: missing; every parameter must be given{_needed(first)}{also}"
+            f"{_join(path, first.name)}: missing; this parameter must be given{_needed(first)}{also}"
         )
     try:
         return cls(**values)
@@ -185,7 +187,7 @@ def convert(hint: Any, value: Any, path: str) -> Any:
         raise ConfigurationError(f"{path}: found {value!r}, must be a table")
     if dataclasses.is_dataclass(hint):
         if not isinstance(value, Mapping):
-            raise ConfigurationError(f"{path}: found {value!r}, must be a table of parameters")
+            raise ConfigurationError(f"{path}: found {value!r}, must be a section [{path}] with lines name = value")
         return build(typing.cast(type[Any], hint), value, path)
     if origin is not None and isinstance(origin, type) and issubclass(origin, Mapping):
         if not isinstance(value, Mapping):

@@ -14,13 +14,13 @@ from vehicle.model.parameters.quantity import quantity, validate
 class RolePart:
     """Part of a template: role of its visible shape, and its points, whose mean is the centre of gravity."""
 
-    shape: str = quantity("-", "role of its shape; none for no shape", default="rod")
+    shape: str = quantity("-", "role of the part in drawings; none: not drawn", default="rod")
     points: tuple[str, ...] = quantity("-", "points of the part")
 
     def __post_init__(self) -> None:
         validate(self)
         if not self.points:
-            raise ConfigurationError("RolePart.points: found none; a part needs one point or more")
+            raise ConfigurationError("RolePart.points: empty; a part needs at least one point")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -43,17 +43,19 @@ class Joint:
     def __post_init__(self) -> None:
         validate(self)
         if self.kind in ("ball", "hinge", "slide", "cardan", "spin") and self.at is None:
-            raise ConfigurationError(f"Joint.at: missing; a {self.kind} needs a point")
+            raise ConfigurationError(f"Joint.at: missing; a joint of kind {self.kind} needs a point")
         if self.kind in ("hinge", "slide", "cardan") and (self.along is None) == (self.axis is None):
-            raise ConfigurationError(f"Joint.along: a {self.kind} needs either two points in along or an axis")
+            raise ConfigurationError(
+                f"Joint.along: a joint of kind {self.kind} needs either two points in along, or axis"
+            )
         if self.along is not None and (len(self.along) != 2 or self.along[0] == self.along[1]):
-            raise ConfigurationError(f"Joint.along: found {list(self.along)}; must be two different points")
+            raise ConfigurationError(f"Joint.along: found {list(self.along)}, must be two different points")
         if self.axis is not None and not any(self.axis):
-            raise ConfigurationError(f"Joint.axis: found {list(self.axis)}; an axis needs a length above 0")
+            raise ConfigurationError(f"Joint.axis: found {list(self.axis)}, must not be zero")
         if self.kind == "free" and self.parent != "world":
-            raise ConfigurationError(f"Joint.parent: found {self.parent!r}; a free part has no parent")
+            raise ConfigurationError(f"Joint.parent: found {self.parent!r}, but a free part has no parent; remove it")
         if not self.child:
-            raise ConfigurationError("Joint.child: found none; a joint needs one part or more")
+            raise ConfigurationError("Joint.child: empty; a joint needs at least one part")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -76,10 +78,10 @@ class Connection:
 
     def __post_init__(self) -> None:
         if self.axes is not None and (len(self.axes) != 2 or self.axes[0] == self.axes[1]):
-            raise ConfigurationError(f"Connection.axes: found {list(self.axes)}; must be two different points")
+            raise ConfigurationError(f"Connection.axes: found {list(self.axes)}, must be two different points")
         if self.axes is not None and (self.ground or self.carrier == "plate"):
             raise ConfigurationError(
-                "Connection.axes: found on the ground, where axes are those of the car; remove them"
+                "Connection.axes: given for a contact with the ground, which uses the axes of the car; remove them"
             )
 
 
@@ -104,7 +106,7 @@ class Spring:
 
     def __post_init__(self) -> None:
         if (self.lower is None) != (self.upper is None) or (self.lower is None) == (self.joint is None):
-            raise ConfigurationError("Spring.lower: must have lower and upper, or a joint")
+            raise ConfigurationError("Spring.lower: a spring needs lower and upper, or a joint")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -36,8 +36,8 @@ class Solver(Validated):
 
     record_rate: float = quantity("Hz", "sampling rate of the recorded channels", at_least=125.0, at_most=1e5)
     timestep: float | None = quantity(
-        "s", "time step; by default the largest one that is small enough", at_least=1e-6, at_most=0.005,
-        default=None,
+        "s", "time step [s]; not given: the largest one that keeps the calculation stable and accurate", at_least=1e-6,
+        at_most=0.005, default=None,
     )  # fmt: skip
 
     @property
@@ -51,16 +51,16 @@ class Head(Validated):
     """Parameters of a vehicle file outside all tables."""
 
     name: str = quantity("-", "name of the car")
-    gravity: float = quantity("m/s2", "gravity", at_least=0.0, at_most=30.0, why="9.81 on Earth; 0 for no weight")
+    gravity: float = quantity("m/s2", "gravity", at_least=0.0, at_most=30.0, why="9.81 on Earth; 0: no weight")
     shaker_wheel: str = quantity(
         "-",
-        "wheel whose plate follows a column of displacements without a wheel in its name",
+        "wheel whose plate moves if the name of a displacement column states no wheel",
         choices=tuple(CORNERS.values()),
         default="fr",
     )
     shaker_wheel_in_source: str = quantity(
         "-",
-        "side of that wheel in the words of the source of the car",
+        "side of the shaker wheel in the words of the publication of the car",
         choices=("right", "left", "unsaid"),
         default="unsaid",
     )
@@ -138,7 +138,7 @@ class Vehicle:
         """
         position = wheel_words(wheel, self.wheels)
         side_in_source = self.shaker_wheel_in_source if source and wheel == self.shaker_wheel else "unsaid"
-        note = "" if side_in_source == "unsaid" else f"'{side_in_source} wheel' in the words of the source"
+        note = "" if side_in_source == "unsaid" else f"'{side_in_source} wheel' in the words of the publication"
         side = "driver's " if position.split()[0] in SIDE_SIGN else ""
         return f"{side}{position} ({'; '.join(filter(None, (wheel, note)))})"
 
@@ -152,7 +152,9 @@ class Vehicle:
             if wheel not in self.wheels:
                 names = {name: f"{name} ({corner})" for corner, name in CORNERS.items()}
                 has = ", ".join(names.get(name, name) for name in self.wheels)
-                raise ConfigurationError(f"wheel {names.get(wheel, wheel)}: {self.name} does not have it; it has {has}")
+                raise ConfigurationError(
+                    f"wheel {names.get(wheel, wheel)}: {self.name} has no such wheel; choose from {has}"
+                )
 
     def require_channels(self, channels: Iterable[str], existing: Sequence[str]) -> None:
         """Check that channels exist.
@@ -163,7 +165,7 @@ class Vehicle:
         for name in channels:
             if name not in existing:
                 channel_type = "channel" if len(existing) >= len(self.channels) else "acceleration channel"
-                raise ConfigurationError(f"no {channel_type} {name!r}; there are {', '.join(existing)}")
+                raise ConfigurationError(f"no {channel_type} {name!r}; choose from {', '.join(existing)}")
 
     @property
     def seated(self) -> bool:
@@ -225,7 +227,7 @@ class Vehicle:
             ConfigurationError: the car has no damper.
         """
         if not self.composition.dampers:
-            raise ConfigurationError(f"{self.name}: has no damper; add [front.damper], or use another car")
+            raise ConfigurationError(f"{self.name}: has no damper; add a section [front.damper], or use another car")
         return self.composition.dampers[0].law
 
     def quantity_of(self, path: str) -> Mapping[str, Any]:
@@ -262,7 +264,7 @@ def vehicle_of(table: Mapping[str, Any], folder: Path | None = None) -> Vehicle:
     """
     for key in ("name", "gravity", "body", "solver"):
         if key not in table:
-            raise ConfigurationError(f"{key}: missing; every vehicle file has it")
+            raise ConfigurationError(f"{key}: missing; every vehicle file needs it")
     table = with_curve_files(table, folder or Path())
     head = build(Head, {key: table[key] for key in HEAD if key in table})
     require_inertia_table(convert(dict, table["body"], "body"))
@@ -324,7 +326,7 @@ def varied_file(table: Mapping[str, Any], overrides: Iterable[str], folder: Path
                 f"file in the folder of the vehicle file or of the package, or an absolute path: {model_file.resolve()}"
             )
         if not model_file.is_file():
-            raise ConfigurationError(f"--set body.superelement={name}: no such file, or not a file")
+            raise ConfigurationError(f"--set body.superelement={name}: the file does not exist, or is a folder")
         merged["body"]["superelement"] = str(model_file)
     return merged
 

@@ -60,7 +60,8 @@ class Nonuniformity:
     def __post_init__(self) -> None:
         if self.runout and self.rfv:
             raise ConfigurationError(
-                "Nonuniformity.rfv: found with runout; set one of both: a radial force variation contains the run-out"
+                "Nonuniformity.rfv: found together with runout; remove one of them, because a radial force "
+                "variation contains the run-out"
             )
         for name, largest, unit in (
             ("runout", LARGEST_RUNOUT, "m"),
@@ -87,7 +88,7 @@ class BrakeVariation:
 
 def _require_turning(path: str, harmonics: Harmonics, largest: float, unit: str) -> None:
     """Check harmonics of a wheel, and their amplitudes."""
-    require_harmonics(path, harmonics, "a constant part shakes nothing: leave it out", of_wheel=True)
+    require_harmonics(path, harmonics, "a constant part shakes nothing; leave it out", of_wheel=True)
     for _, amplitude, _ in harmonics:
         if amplitude > largest:
             raise ConfigurationError(

@@ -36,7 +36,9 @@ def axle_statics(car: Any, name: str, *, ideal: bool, standing: bool = False) ->
     wheels = [wheel for wheel in car.vehicle.composition.wheels if wheel.axle == name]
     if not wheels:
         axles = ", ".join(axle_names(car))
-        raise ConfigurationError(f"--axle {name!r}: no axle with wheels; {car.vehicle.name} has {axles}")
+        raise ConfigurationError(
+            f"--axle {name!r}: is not an axle with wheels; choose from {axles} of {car.vehicle.name}"
+        )
     return AxleStatics(car.model.model, car.model.static.preload, wheels=wheels, ideal=ideal, standing=standing)
 
 

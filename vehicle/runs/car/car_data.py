@@ -217,29 +217,30 @@ def _notes(car: Any, axles: Sequence[AxleData]) -> Iterator[str]:
     if len(axles) != 2:
         supports = ", ".join(point_words(name) for name in car.static.support_load)
         yield (
-            f"wheelbase, anti-dive in per cent and distribution of roll stiffness: not defined, since {len(axles)} "
-            f"axle has wheels on plates{f'; the rest of the car stands on {supports}' if supports else ''}"
+            "wheelbase, anti-dive [%] and distribution of roll stiffness are not defined, because only "
+            f"{len(axles)} axle has wheels on "
+            f"plates{f'; the rest of the car stands on {supports}' if supports else ''}"
         )
     for axle in axles:
         if not axle.ideal:
             yield (
-                f"{axle.name}: ideal joints would lock this axle, so its geometry, motion ratios and unsprung mass are "
-                "those with its bushings"
+                f"{axle.name}: geometry, motion ratios and unsprung mass are computed with its bushings, because "
+                "ideal joints would lock this axle"
             )
         if axle.curved_damper:
             yield (
-                f"{axle.name}: modes with sliding dampers have the smallest slope of the damper's law, that of fast "
-                "motion; in slower motion damping is larger"
+                f"{axle.name}: modes with sliding dampers use the smallest damping, that of fast motion; in "
+                "slower motion the damping is larger"
             )
         if math.isnan(axle.geometry.caster_deg):
-            yield f"{axle.name}: not steered; its template {axle.template} has no steering_axis"
+            yield f"{axle.name}: no steering figures, because its template {axle.template} has no steering_axis"
         if math.isnan(axle.geometry.side_swing_arm_m):
-            yield f"{axle.name}: no swing centre in the side view; the wheel moves without winding up"
+            yield f"{axle.name}: no swing centre in the side view, because the wheel moves there without rotating"
         if math.isnan(axle.geometry.front_swing_arm_m):
-            yield f"{axle.name}: no swing centre in the front view; the wheel moves without camber"
+            yield f"{axle.name}: no swing centre in the front view, because the wheel moves without change of camber"
         if math.isnan(axle.geometry.roll_centre_height_m):
-            yield f"{axle.name}: no roll centre; the lines from both contact points are parallel"
+            yield f"{axle.name}: no roll centre, because the lines from both contact points are parallel"
         if {"right", "left"} & set(car.vehicle.table[axle.name]):
-            yield f"{axle.name}: the sides have different numbers; values of one wheel are those of the right wheel"
+            yield f"{axle.name}: left and right wheel differ; values of a single wheel are those of the right wheel"
     if not car.vehicle.gravity:
-        yield "sprung masses of the axles and ride frequencies: need gravity"
+        yield "sprung masses of the axles and ride frequencies are not defined without gravity"

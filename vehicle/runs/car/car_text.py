@@ -45,14 +45,14 @@ def number(value: float | None, decimals: int = 0) -> str:
 
 
 SUPPORT_NOTE = (
-    "anti-dive, anti-lift and anti-squat: for an axle that takes all of the brake or drive force; the vehicle file has "
-    "no distribution, so multiply by the share of the axle"
+    "anti-dive, anti-lift and anti-squat hold for an axle that takes the whole brake or drive force; multiply "
+    "them by the share of the axle, which the vehicle file does not contain"
 )
 
 
 FIGURES_NOTE = (
-    "figure: sprung mass or wheels on their rates in this motion alone, dampers at 0.1 m/s; modes with it: modes of "
-    f"the whole car with at least {100.0 * MINIMUM_SHARE:.0f} % of their kinetic energy in this motion"
+    "figure: simple estimate for this motion alone, from masses and rates, dampers at 0.1 m/s; modes with it: "
+    f"modes of the whole car with at least {100.0 * MINIMUM_SHARE:.0f} % of their kinetic energy in this motion"
 )
 
 
@@ -122,7 +122,7 @@ def _axles(data: CarData) -> TextTable:
     for row in axle_figures(data):
         ranges = list(dict.fromkeys(figure.range_text for figure in row))
         rows.append((row[0].name, *(figure.value_text for figure in row), "; ".join(ranges)))
-    heads = ("axle; values of one wheel: the right one", *(axle.name for axle in data.axles), "usual")
+    heads = ("axle (values of a single wheel: right)", *(axle.name for axle in data.axles), "usual")
     notes = (SUPPORT_NOTE,) if data.wheelbase_m is not None else ()
     return TextTable(title="Axles", heads=heads, rows=tuple(rows), notes=notes)
 
@@ -142,7 +142,7 @@ def figures_table(figures: Sequence[MotionFigure]) -> TextTable:
         rows.append((motion, *cells, usual_range(motion)))
     heads = (f"{state} [Hz]" for state in states)
     return TextTable(
-        title=f"Headline figures, dampers {' and '.join(states)}",
+        title=f"Key figures, dampers {' and '.join(states)}",
         heads=(
             "figure",
             *(word for head in heads for word in (head, "damping [%]", "modes with it [Hz] (share)")),

@@ -31,8 +31,9 @@ def decoupling_table(modes: Decoupling, aim: float | None = None) -> str:
         )
     x, y, z = (value + 0.0 for value in modes.roll_axis.round(3))
     lines.append(
-        f"torque roll axis ({x:g}, {y:g}, {z:g}), {modes.angle:.1f} degrees from the crankshaft; a turn about it has "
-        f"{modes.roll_frequency:.2f} Hz with the body fixed, residual {modes.residual:.3f} (0: a mode by itself)"
+        f"torque roll axis ({x:g}, {y:g}, {z:g}), {modes.angle:.1f} degrees from the crankshaft; rotation about "
+        f"it has {modes.roll_frequency:.2f} Hz with the body fixed; residual {modes.residual:.3f} (0: it is "
+        "exactly a mode)"
     )
     return "\n".join(lines)
 

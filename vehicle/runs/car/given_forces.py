@@ -41,7 +41,7 @@ def with_histories(car: Any, forces: Mapping[str, GivenForce], time: Vector) -> 
         index = force_named(name, listed, own=True)
         force = listed[index]
         if not force.law.enabled:
-            raise ConfigurationError(f"forces: {force.path}.enabled is false; set it true, or leave {name} out")
+            raise ConfigurationError(f"forces: {force.path}.enabled is false; set it to true, or leave {name} out")
         law = replace(force.law, harmonics=(), file=None, channel=None, unit=None, ends_at_zero=False)
         record = _recorded(force.path, force.unit, history, time, car.vehicle.solver.record_rate)
         listed[index] = replace(force, law=law, given=record)
@@ -64,8 +64,8 @@ def _recorded(path: str, unit: str, history: GivenForce, time: Vector, record_ra
     values = np.asarray(history, dtype=float)
     if values.shape != time.shape:
         raise DataError(
-            f"forces: {path} has values of the shape {values.shape}, needed is one for each of the {time.size} times "
-            "of the signal; give them, or a function of time"
+            f"forces: {path} has values of the shape {values.shape}, must be a value for each of the {time.size} "
+            "times of the signal, or a function of time"
         )
     if not np.isfinite(values).all():
         raise DataError(f"forces: {path} has a value that is not finite; give a number for each time")

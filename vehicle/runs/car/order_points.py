@@ -104,7 +104,10 @@ class OrderPoints:
         texts = []
         for row, order in enumerate(self.orders):
             top = int(np.argmax(np.abs(self.amplitude[row])))
-            texts.append(f"{np.abs(self.amplitude[row, top]):.3g} in order {order:g} at {self.points[top]:g}")
+            texts.append(
+                f"order {order:g} largest at {self.points[top]:g} {self.point_unit} with "
+                f"{np.abs(self.amplitude[row, top]):.3g} {self.unit}"
+            )
         return (
             f"Orders of {self.angle} over {len(self.points)} points, {self.channel} [{self.unit}]: {', '.join(texts)}"
         )
@@ -199,16 +202,14 @@ def order_points_at(
         channels: names or words of acceleration channels.
     """
     if bool(len(rpm)) == bool(len(speed)):
-        raise ConfigurationError(
-            "orders: needed are speeds of the crankshaft [1/min] or of the car [km/h], one of both"
-        )
+        raise ConfigurationError("orders: give either speeds of the crankshaft [1/min] or speeds of the car [km/h]")
     points = np.array(rpm if len(rpm) else speed, dtype=float)
     if len(points) > MOST:
-        raise ConfigurationError(f"orders: {len(points)} points; at most {MOST}: take a larger step")
+        raise ConfigurationError(f"orders: found {len(points)} points, must be at most {MOST}; use a larger step")
     names = list(dict.fromkeys(channels_named(each, car.vehicle.acceleration_channels)[0] for each in channels))
     chosen = angle or (CRANK if len(rpm) else None)
     if len(rpm) and chosen != CRANK:
-        raise ConfigurationError(f"orders: {chosen} does not turn with the crankshaft; set speeds of the car")
+        raise ConfigurationError(f"orders: {chosen} does not turn with the crankshaft; give speeds of the car")
     drive, results = 3.6 * car.vehicle.driving.speed, list[list[_Point]]()
     # Channel and order to the largest amplitude, the car there, and the share of its time in slip.
     largest: dict[tuple[int, int], tuple[float, Car, float]] = {}

@@ -67,9 +67,14 @@ class Road(RoadSettings):
         kinds, acts = {*vehicle.composition.kinds.values()}, vehicle.table.get(APPLY_FORCES, True)
         if self.road == LEVEL and not vehicle.composition.forces and not (acts and kinds & {*WHEEL_FORCES.values()}):
             raise ConfigurationError(
-                f"--road {LEVEL}: moves no plate, and {vehicle.name} has no force that shakes it; add one, as --set "
-                "front.imbalance.mass=0.02 --set front.imbalance.radius=0.2, or a table [force.NAME]"
-                + ("" if acts else "; its own are left out by --no-forces or apply_forces = false")
+                f"--road {LEVEL}: moves no plate, and {vehicle.name} has no force that shakes it; add a force, "
+                "for example --set front.imbalance.mass=0.02 --set front.imbalance.radius=0.2, or a section "
+                "[force.NAME]"
+                + (
+                    ""
+                    if acts
+                    else "; the forces of the vehicle file are left out by --no-forces or apply_forces = false"
+                )
             )
         road = self.file or (str(self.road).upper() if len(str(self.road)) == 1 else str(self.road))
         driving = self._driving(vehicle, overrides)
@@ -91,10 +96,13 @@ class Road(RoadSettings):
         """Return the drive over a road that was recorded over time."""
         if not isinstance(road, Path):
             raise ConfigurationError(
-                f"--speed {self.speed}: belongs to a recorded road, --road FILE; {road} is a class"
+                f"--speed {self.speed}: belongs to a recorded road (--road FILE), but {road} is a class; "
+                "give the speed in km/h"
             )
         for name in self.given(without=("duration", "rate", "tyre")):
-            raise ConfigurationError(f"--{name}: belongs to a class or a profile; a recorded road is used unchanged")
+            raise ConfigurationError(
+                f"--{name}: belongs to a road class or a profile; a recorded road is used unchanged; leave --{name} out"
+            )
         return RecordedDrive(
             road=road,
             channel=str(self.speed).removeprefix(PREFIX),
@@ -111,7 +119,9 @@ class Road(RoadSettings):
         """
         if any(text.partition("=")[0].strip() in ("driving.speed", "speed") for text in overrides):
             if self.tyre is not None:
-                raise ConfigurationError(f"--tyre {self.tyre} and --set driving.speed: set only one of them")
+                raise ConfigurationError(
+                    f"--tyre {self.tyre} and --set driving.speed exclude each other; leave one of them out"
+                )
             return None
         if self.tyre not in (None, "rolling", "standing"):
             raise ConfigurationError(f"tyre: found {self.tyre!r}, must be rolling or standing")

@@ -252,7 +252,7 @@ class Run:
         """
         run_up = self.car.vehicle.composition.crank_run_up
         if run_up is None:
-            raise ConfigurationError("order_cut: belongs to a run-up; set crank.end_rpm and crank.run_up_time")
+            raise ConfigurationError("order_cut needs a run-up; set crank.end_rpm and crank.run_up_time")
         names = self._accelerations(None) if channels is None else self._named(channels)
         inside = self.time <= run_up.duration
         time, histories = self.time[inside], np.array([self.recording[name][inside] for name in names])
@@ -340,8 +340,8 @@ class Run:
 
         if not all(run.recording.poses.size for run in (self, beside) if run is not None):
             raise ConfigurationError(
-                f"{file}: the run has no poses, which neither the reduced engine nor a saved run stores; run the car "
-                "with engine='mujoco'"
+                f"{file}: the run has no positions of the parts, which the reduced engine and saved runs do not "
+                "store; run the car with engine='mujoco'"
             )
         speed = (self.road or {}).get("speed_kmh")
         profile = (self.signal.time, self.signal.profile) if self.signal.profile else None

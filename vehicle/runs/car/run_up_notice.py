@@ -52,7 +52,8 @@ def run_up_notice(car: Any) -> tuple[str, ...]:
     direction = "late" if fastest > slowest else "early"
     return (
         f"the run-up passes the mode at {number(mode.frequency)} Hz ({number(100.0 * mode.damping_ratio, 2)} %, "
-        f"{mode.description}) in order {order:g} with {number(rate, 2)} Hz/s: its peak is "
-        f"{100.0 * (1.0 - amplitude):.0f} % low, in an order cut over {TURNS} turns {100.0 * (1.0 - read):.0f} %, "
-        f"and {number(late, 2)} Hz {direction}; steady points have all of it: python -m vehicle orders --rpm A:B:STEP",
+        f"{mode.description}) in order {order:g} with {number(rate, 2)} Hz/s, which is fast: its peak is "
+        f"{100.0 * (1.0 - amplitude):.0f} % too low, in an order cut over {TURNS} turns "
+        f"{100.0 * (1.0 - read):.0f} %, and {number(late, 2)} Hz {direction}. For full peaks use steady speeds: "
+        "python -m vehicle orders --rpm A:B:STEP",
     )

@@ -39,11 +39,11 @@ def simulated_run(
         VehicleError: see `Car.run`.
     """
     if engine not in ENGINES:
-        raise ConfigurationError(f"engine: found {engine!r}, allowed are {', '.join(ENGINES)}")
+        raise ConfigurationError(f"engine: found {engine!r}, must be one of {', '.join(ENGINES)}")
     defaults = car.vehicle.channels
     if isinstance(channels, str):
         raise ConfigurationError(
-            f"channels: found the text {channels!r}, must be a list of names; for loads, set "
+            f"channels: found the text {channels!r}, must be a list of names; for loads use "
             "[*car.vehicle.channels, *car.vehicle.load_channels]"
         )
     car.vehicle.require_channels(channels or (), (*defaults, *car.vehicle.requested_channels))
@@ -75,7 +75,7 @@ def simulated_run(
         recording = _with_forces(recording, car, names, shown)
         if engine == "reduced" or recording.statistics.within_validity:
             if engine == "auto":
-                reason = "the motion stayed within the validity of the reduced engine"
+                reason = "the motion stayed in the range where the reduced engine is valid"
             return car, recording, reason
         reason = "; ".join(recording.statistics.warnings)
     stepped = car.stepped()
@@ -84,7 +84,10 @@ def simulated_run(
     require_finite(recording)
     recording = _with_forces(recording, car, names, shown)
     if wanted_step is not None and used_step < wanted_step:
-        said = f"time step {used_step:g} s: that of the vehicle file, {wanted_step:g} s, is too long for this car"
+        said = (
+            f"the time step is {used_step:g} s, because the {wanted_step:g} s of the vehicle file are too long "
+            "for this car"
+        )
         recording = _with_notices(recording, [said])
     if channels is not None:
         recording = recording.only(channels)

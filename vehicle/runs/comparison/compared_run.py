@@ -90,16 +90,16 @@ def compare(
     if isinstance(measured, Run):
         if channels or choice is not None or inverted:
             raise ConfigurationError(
-                "channels, choice, inverted: for a measurement file; a run has the channels of the model, so leave "
-                "them out"
+                "channels, choice, inverted: work only with a measurement file; a run has the channels of the "
+                "model, so leave them out"
             )
         if isinstance(run, Run):
             simulated = replace(simulated, name=run_words(run))
         measured = reference_of(measured, window)
     if isinstance(measured, Measured) and delays:
         raise ConfigurationError(
-            f"delay {delays}: delays of groups are taken out of a file as it is read; give the file, or "
-            "Choice(delays=...) to read_measured"
+            f"delay {delays}: the delay of a group of channels can be removed only while the file is read; give "
+            "the file name instead of read data, or Choice(delays=...) to read_measured"
         )
     if not isinstance(measured, Measured):
         asked = choice or Choice()
@@ -173,7 +173,7 @@ def comparison_of(
         names = [name for name in simulated.record.channels if name in outputs]
         other = simulated.responses(names, window) if names else None
         if other is None:
-            notices.append("the run has no responses to compare with")
+            notices.append("the run has no FRFs to compare with")
         else:
             responses, signatures = compare_responses(measured.frf, other, edges or BANDS)
             notices += other_plates(measured.frf, other)
@@ -203,8 +203,8 @@ def comparison_of(
             notices += response_faults(response.channel, response.measured, response.simulated, weight)
     if not responses and not records:
         raise DataError(
-            f"{measured.file.path}: no channel is also in the run {simulated.name}; set --map CHANNEL=NAME, or record "
-            "the channel in the run (--channels)"
+            f"{measured.file.path}: has no channel in common with the run {simulated.name}; set --map "
+            "CHANNEL=NAME, or record the channel in the run with --channels"
         )
     return Comparison(
         measured=measured.file.path.name,

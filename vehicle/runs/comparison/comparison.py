@@ -94,7 +94,7 @@ class Comparison:
         pictures = pictures_of(self)
         wanted = next(iter(pictures)) if name is None else name
         if wanted not in pictures:
-            raise ConfigurationError(f"no picture {wanted!r}; there are {', '.join(pictures)}")
+            raise ConfigurationError(f"no picture {wanted!r}; choose from {', '.join(pictures)}")
         picture = pictures[wanted]
         look: dict[str, Any] = {"height_ratios": (2.4, 1.0, 0.9), "sharex": True} if picture.rows == 3 else {}
         title = f"{self.measured} and {self.run}"
@@ -250,7 +250,7 @@ class Comparison:
             )
         delays = [
             f"{each.group} {1e3 * each.delay:.3f} +- {number(1e3 * each.error, 1)} ms after the {each.against}"
-            + (f" ({1e3 * each.taken_out:.5g} ms taken out)" if each.taken_out else "")
+            + (f" ({1e3 * each.taken_out:.5g} ms removed)" if each.taken_out else "")
             + (f", in {each.agreeing} of {each.channels} channels" if each.agreeing < each.channels else "")
             for each in self.delays
             if math.isfinite(each.delay)

@@ -72,7 +72,7 @@ def checked_edges(edges: Sequence[float], where: str) -> tuple[float, ...]:
         ConfigurationError: fewer than two numbers, or they do not rise.
     """
     if len(edges) < 2 or not edges[0] >= 0.0 or not all(low < high for low, high in pairwise(edges)):
-        raise ConfigurationError(f"{where}: must be increasing edges in Hz, as 3,8,15,30")
+        raise ConfigurationError(f"{where}: must be increasing frequencies [Hz], for example 3,8,15,30")
     return tuple(edges)
 
 
@@ -95,13 +95,14 @@ def other_plates(measured: FrfData, simulated: FrfData) -> list[str]:
     notices = []
     if left_out := list(dict.fromkeys(unpaired)):
         notices.append(
-            f"measured responses to {', '.join(left_out)} are left out: the run has "
-            f"{', '.join(simulated.inputs) or 'none'}; drive the same plates"
+            f"measured FRFs to {', '.join(left_out)} are left out, because the run moves "
+            f"{', '.join(simulated.inputs) or 'no plate'}; drive the same plates"
         )
     if driven := [plate for plate in dict.fromkeys(driven) if plate not in measured.inputs]:
         notices.append(
-            f"the run also drives {', '.join(driven)}, which the measured responses lack: a plate that moved there "
-            "counts as noise, or as a part of the response if it moved with another; map its displacement too"
+            f"the run also drives {', '.join(driven)}, which the measured FRFs do not contain; if this plate "
+            "moved in the measurement, its effect counts there as noise or as part of another response: map its "
+            "displacement too"
         )
     return notices
 
@@ -128,7 +129,7 @@ def compare_responses(
     if not frequency.size:
         raise DataError(
             f"measured from {measured.frequency[0]:g} to {measured.frequency[-1]:g} Hz, simulated from "
-            f"{simulated.frequency[0]:g} to {simulated.frequency[-1]:g} Hz: no common line; "
+            f"{simulated.frequency[0]:g} to {simulated.frequency[-1]:g} Hz: they have no frequency in common; "
             "measure FRFs in the band of the run"
         )
     bands = list(pairwise(edges))

@@ -106,7 +106,7 @@ class ModeComparison:
         alike = np.argwhere(np.triu(self.measured_auto, 1) > 0.9)
         if alike.size:
             shown = ", ".join(f"{first + 1} and {second + 1}" for first, second in alike[:6])
-            lines.append(f"measured modes that are alike at these points (AutoMAC above 0.9): {shown}")
+            lines.append(f"measured modes that these points cannot tell apart (AutoMAC above 0.9): {shown}")
         return "\n".join(lines)
 
 
@@ -165,7 +165,7 @@ def compare_modes(
     unknown = next((name for name in mapping if name not in geometry.points), None)
     if unknown is not None:
         raise ConfigurationError(
-            f"--map {unknown}=...: the car has no output point of this name; it has {', '.join(geometry.points)}"
+            f"--map {unknown}=...: the car has no output point of this name; choose from {', '.join(geometry.points)}"
         )
     moved = {point for shape in measurement.shapes for point in shape.points}
     nodes = {name: wanted.lower().removeprefix("dof").strip() for name, wanted in mapping.items()}
@@ -174,19 +174,18 @@ def compare_modes(
     missing = next((node for node in nodes.values() if node not in moved), None)
     if missing is not None:
         raise DataError(
-            f"{measurement.path}: no mode moves a node {missing!r}; there are {', '.join(sorted(moved)[:20])}"
+            f"{measurement.path}: no mode has a node {missing!r}; choose from {', '.join(sorted(moved)[:20])}"
         )
     if len(nodes) < 3:
         raise DataError(
-            f"{measurement.path}: {len(nodes)} of its nodes are at output points of the car, at least three needed; "
-            "set --map PLACE=NODE for each, with the output points "
-            f"{', '.join(geometry.points)}"
+            f"{measurement.path}: {len(nodes)} of its nodes lie at output points of the car, must be at least "
+            f"three; set --map POINT=NODE for others, with the output points {', '.join(geometry.points)}"
         )
     measured = [shape for shape in measurement.shapes if set(nodes.values()) <= set(shape.points)]
     if not measured:
         raise DataError(
-            f"{measurement.path}: no mode contains all of the nodes {', '.join(nodes.values())}; set --map PLACE=NODE "
-            "for the nodes of a mode"
+            f"{measurement.path}: no mode contains all of the nodes {', '.join(nodes.values())}; set --map "
+            "POINT=NODE for the nodes of a mode"
         )
     simulated = car.modes(damper)
     truth = np.array(

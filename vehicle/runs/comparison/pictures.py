@@ -90,7 +90,7 @@ def draw_histories(axes: npt.NDArray[Any], histories: Sequence[RecordComparison]
         whole.set_xlim(history.time[0], history.time[-1])
         detail.set_xlim(history.time[inside][0], history.time[inside][-1])
     axes[0, 0].set_title("whole record")
-    axes[0, 1].set_title("excerpt with the highest measured level")
+    axes[0, 1].set_title("part with the highest measured level")
     axes[0, 1].legend(loc="upper right", ncols=2)
     for axis in axes[-1]:
         axis.set_xlabel("time of the run [s]")
@@ -113,7 +113,7 @@ def plot_signatures(path: Path, signatures: Signatures, caption: str) -> None:
 def draw_signatures(axes: npt.NDArray[Any], signatures: Signatures) -> None:
     """Draw CSAC and CSF over frequency on one axes."""
     axis, frequency = axes.item(), signatures.frequency
-    axis.plot(frequency, signatures.csac, color=COLOURS[0], label="CSAC: shape over the points")
+    axis.plot(frequency, signatures.csac, color=COLOURS[0], label="CSAC: agreement of the shape over the points")
     axis.plot(frequency, signatures.csf, color=COLOURS[3], linestyle="--", label="CSF: shape and amplitude")
     axis.set(xscale="log", ylim=(0.0, 1.03), xlim=(frequency[0], frequency[-1]), xlabel="frequency [Hz]",
              ylabel="1 is equal [-]")  # fmt: skip

@@ -76,8 +76,9 @@ def compare_records(
     count = int((end - start) / step + 1e-6) + 1
     if end <= start or count < LEAST_SAMPLES:
         raise DataError(
-            f"measured from {times[0]:.6g} to {times[-1]:.6g} s of the run, simulated from {simulated.time[0]:.6g} to "
-            f"{simulated.time[-1]:.6g} s: too little in common; give --delay S, which is added to the measured times"
+            f"measured from {times[0]:.6g} to {times[-1]:.6g} s of the run, simulated from "
+            f"{simulated.time[0]:.6g} to {simulated.time[-1]:.6g} s: they overlap too little; set --delay S, "
+            "which is added to the measured times"
         )
     grid = start + step * np.arange(count)
     parts = counterparts(measured, simulated, times)
@@ -116,9 +117,9 @@ def offsets(records: Sequence[RecordComparison]) -> list[str]:
         means = float(np.mean(record.measured)), float(np.mean(record.simulated))
         if record.unit == "m/s2" and abs(means[0] - means[1]) > LARGEST_OFFSET * float(np.std(record.measured)):
             said.append(
-                f"{record.channel}: the mean is {means[0]:.3g} m/s2 in the measurement and {number(means[1], 2)} m/s2 "
-                "in the run, and the RMS ratio contains it: gravity, or the offset of a sensor? Subtract it with "
-                "--detrend, or with --highpass 0.5"
+                f"{record.channel}: the mean is {means[0]:.3g} m/s2 in the measurement and {number(means[1], 2)} "
+                "m/s2 in the run, and it spoils the RMS ratio: gravity, or the offset of a sensor? Subtract the "
+                "mean with --detrend, or with --highpass 0.5"
             )
     return said
 
@@ -133,7 +134,7 @@ def unlike_copies(records: Sequence[RecordComparison]) -> list[str]:
             same = np.array_equal(record.measured, other.measured)
             if same and not np.allclose(record.simulated, other.simulated, atol=1e-3 * float(np.std(record.simulated))):
                 said.append(
-                    f"{other.channel} and {record.channel} have equal samples in the measurement, but not in the run: "
-                    f"was a channel copied? Choose another channel: --map {record.channel}=NAME"
+                    f"{other.channel} and {record.channel} have the same samples in the measurement, but not in "
+                    f"the run: was a channel copied? Choose another channel: --map {record.channel}=NAME"
                 )
     return said

@@ -49,7 +49,7 @@ def of_folder(folder: Path) -> Simulated:
     """
     file = next((folder / name for name in ("time.npz", "time.csv") if (folder / name).is_file()), None)
     if file is None:
-        raise ConfigurationError(f"{folder}: holds no time.npz or time.csv; give the folder of a run, or an input")
+        raise ConfigurationError(f"{folder}: contains no time.npz or time.csv; give the folder of a run, or an input")
     record = read_columns(file)
     summary = available_summary(folder)
 

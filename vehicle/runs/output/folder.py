@@ -41,7 +41,9 @@ def output_folder(path: Path, *, force: bool, protect: tuple[Path, ...] = ()) ->
     def check() -> None:
         if path.exists():
             if not force:  # made meanwhile
-                raise ConfigurationError(f"{path}: exists by now; give --force or another --output")
+                raise ConfigurationError(
+                    f"{path}: was created meanwhile; give --force to replace it, or another --output"
+                )
             refuse_foreign(path)
 
     with folder_lock(path), new_folder(path, check=check) as work:
@@ -86,18 +88,18 @@ def check_study(folder: Path, *, force: bool, resume: bool = False, rows: Sequen
         OutputError: the folder cannot be made, or is no folder.
     """
     if resume and force:
-        raise ConfigurationError("--resume keeps the finished rows, --force deletes them: set only one of them")
+        raise ConfigurationError("--resume keeps the finished rows, --force deletes them; leave one of them out")
     if folder.exists() and not folder.is_dir():
-        raise OutputError(f"--output {folder}: cannot be made: is a file; give another folder")
+        raise OutputError(f"--output {folder}: cannot be created, because a file has this name; give another folder")
     put_in_order(folder)
     begun = folder.exists() and (
         (folder / rows[0]).exists() if rows else any(path.name != MARKER for path in folder.iterdir())
     )
     if (begun or (rows and unfinished(folder.resolve()))) and not (resume or force):
         ways = (
-            "finished runs; --resume goes on, --force starts anew"
+            "finished runs; continue them with --resume, or start again with --force"
             if rows
-            else "files already; give another folder, or --force to overwrite"
+            else "files; give another folder, or --force to overwrite"
         )
         raise ConfigurationError(f"--output {folder}: holds {ways}")
     return check_output(folder, force=True, changes_only=resume and begun)
@@ -127,9 +129,9 @@ def check_output(path: Path, *, force: bool, protect: tuple[Path, ...] = (), cha
     for file in protect:
         source = file.resolve()
         if folder == source or folder in source.parents:
-            raise ConfigurationError(f"--output {path}: holds the input {file}; choose another folder")
+            raise ConfigurationError(f"--output {path}: contains the input {file}; choose another folder")
     if folder == current or folder in current.parents:
-        raise ConfigurationError(f"--output {path}: is the working folder, or contains it; set another folder")
+        raise ConfigurationError(f"--output {path}: is the current folder, or contains it; give another folder")
     if folder.exists() and not folder.is_dir():
         raise ConfigurationError(f"--output {path}: is a file; give a folder")
     if folder.exists() and not force:
@@ -143,7 +145,7 @@ def check_output(path: Path, *, force: bool, protect: tuple[Path, ...] = (), cha
         raise ConfigurationError(f"--output {path}: is the root of a file system; give a folder in it")
     parent = next(parent for parent in folder.parents if parent.exists())
     if not os.access(parent, os.W_OK) or not parent.is_dir():
-        raise OutputError(f"--output {path}: {parent} cannot be written; choose another folder")
+        raise OutputError(f"--output {path}: {parent} cannot be written to; choose another folder")
     if folder.exists():
         refuse_foreign(folder, changes_only=changes_only)
     return folder
@@ -166,7 +168,7 @@ def check_file(
         OutputError: its folder cannot be made or written.
     """
     if ending and path.suffix != ending:
-        raise ConfigurationError(f"{option} {path}: this file is written as {ending}; give FILE{ending}")
+        raise ConfigurationError(f"{option} {path}: the name must end in {ending}; give FILE{ending}")
     if path.is_dir():
         raise ConfigurationError(f"{option} {path}: is a folder; give FILE{ending}")
     put_in_order(path)
@@ -178,9 +180,9 @@ def check_file(
         refuse_foreign_file(path, option)
     above = next(folder for folder in path.absolute().parents if folder.exists())
     if not above.is_dir():
-        raise ConfigurationError(f"{option} {path}: {above.name} is a file, no folder; give another name")
+        raise ConfigurationError(f"{option} {path}: {above.name} is a file, not a folder; give another name")
     if not os.access(above, os.W_OK):
-        raise OutputError(f"{option} {path}: {above} cannot be written; choose another folder")
+        raise OutputError(f"{option} {path}: {above} cannot be written to; choose another folder")
 
 
 def check_files(folder: Path, names: Iterable[str], *, force: bool) -> None:
@@ -213,7 +215,7 @@ def whole_file(path: Path) -> Iterator[Path]:
         note(path, digest_of(path))
         return
     if path.is_dir():
-        raise OutputError(f"{path}: cannot be written: is a folder; nothing is left behind")
+        raise OutputError(f"{path}: cannot be written, because it is a folder; no file was changed")
     put_in_order(path)
     with folder_lock(path.parent.resolve() / path.name):
         refuse_foreign_file(path)
@@ -223,7 +225,7 @@ def whole_file(path: Path) -> Iterator[Path]:
                 yield temporary
                 note(path, digest_of(temporary))
         except OSError as error:
-            kept = "the file of before is unchanged" if path.exists() else "nothing is left behind"
+            kept = "the earlier file is unchanged" if path.exists() else "no file was changed"
             raise OutputError(f"{path}: cannot be written: {error.strerror or error}; {kept}") from None
 
 

@@ -81,7 +81,7 @@ def _numbered(path: Path, number: int) -> Path:
 def _claimed_if_free(held: ExitStack, path: Path, number: int) -> bool:
     """Lock a free path; return False if the path exists or another process writes there."""
     if number > MOST:
-        raise ConfigurationError(f"{path}: exists, as do the {MOST} names before it; give --output")
+        raise ConfigurationError(f"{path}: exists, like the {MOST} names before it; choose a name with --output")
     put_in_order(path)
     if path.exists() or path.is_symlink() or unfinished(path.parent.resolve() / path.name):
         return False

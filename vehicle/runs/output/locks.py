@@ -26,7 +26,7 @@ def claim(path: Path) -> Iterator[None]:
         OccupiedError, OutputError: see `folder_lock`.
     """
     if path in _claimed:
-        raise OccupiedError(f"--output {path}: is written twice by this command; give another name")
+        raise OccupiedError(f"--output {path}: would be written twice by this command; give another name")
     with folder_lock(path), claimed(path):
         yield
 
@@ -117,7 +117,8 @@ def _lock(descriptor: int, folder: Path) -> None:
         os.lseek(descriptor, 0, os.SEEK_SET)
         owner = os.read(descriptor, 20).decode(errors="replace").strip()
         raise OccupiedError(
-            f"--output {folder}: process {owner or '(unknown)'} is writing there; wait for it, or give another folder"
+            f"--output {folder}: process {owner or '(unknown)'} is writing there; wait until it ends, or "
+            "give another folder"
         ) from None
     except OSError:
         pass  # the file system does not support locks

@@ -19,7 +19,7 @@ RAIL, SEAT = "seat_rail", "seat"
 
 NO_SEAT = (
     "comfort of the seat: the car has no seat, so 'seat' is a point of its body, and there is no SEAT value; "
-    'for a seat add a table [seat.driver] with template = "seat_occupant" to the vehicle file'
+    'for a seat add a section [seat.driver] with template = "seat_occupant" to the vehicle file'
 )
 
 
@@ -68,8 +68,9 @@ def comfort_notices(run: Run) -> list[str]:
     if not _recorded(run, RAIL) or "obstacle" in (run.road or {}):
         return bare
     drifting = [
-        f"comfort of the seat rail, {axis}: the two halves of the record differ by {100 * abs(part.drift):.0f} %, "
-        f"more than chance ({300 * part.standard_error:.0f} %): no stationary signal, so its RMS depends on the length"
+        f"comfort of the seat rail, {axis}: the RMS values of both halves of the record differ by "
+        f"{100 * abs(part.drift):.0f} %, more than chance ({300 * part.standard_error:.0f} %), so the RMS "
+        "depends on the length of the record"
         for axis, part in zip(
             AXES, settling(run.recording.timestep, run.at(RAIL), run.signal.band(COMFORT_BAND)), strict=True
         )

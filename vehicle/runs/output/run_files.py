@@ -73,7 +73,7 @@ def require_plates(signal: Signal, *, separable: bool = True) -> None:
             motions = common_motions(signal.timestep, plates, names, band)
     except DependentInputsError as error:
         if separable:
-            raise DataError(f"{error}, or run without FRFs (--any-level)") from None
+            raise DataError(f"{error}, or run without FRFs with --any-level") from None
         return
     if motions and signal.duration < shortest_record(len(motions), band[1]):
         plates = plates[[min(group) for group in motions]]

@@ -50,7 +50,8 @@ def save_run(
     missing = [name for name in run.car.vehicle.channels if name not in run.recording.channels]
     if missing:
         raise ConfigurationError(
-            f"{folder}: the run has no channel {missing[0]}, which its files need; run the car without channels=[...]"
+            f"{folder}: channel {missing[0]} was not recorded, but the files of the run need it; run again "
+            "with all channels (leave out channels=[...])"
         )
     with output_folder(Path(folder), force=force) as work:
         write_run(work, run, time_format=time_format, formats=formats, figures=figures)
@@ -109,10 +110,10 @@ def file_of_run(folder: Path, summary: RunSummary, purpose: str) -> Path:
         DataError: the summary does not name the file, or it is missing.
     """
     if purpose not in summary["files"]:
-        raise DataError(f"{folder / SUMMARY_FILE}: is damaged (files.{purpose}: missing); run the simulation again")
+        raise DataError(f"{folder / SUMMARY_FILE}: is damaged (files.{purpose} is missing); run the simulation again")
     path = folder / summary["files"][purpose]
     if not path.is_file():
-        raise DataError(f"{path}: missing, though summary.json lists it as {purpose}; run it again")
+        raise DataError(f"{path}: is missing, although summary.json lists it as {purpose}; run the simulation again")
     return path
 
 

@@ -58,5 +58,5 @@ def third_octaves_text(runs: Mapping[str, RecordSpectra], caption: str) -> str:
             bands.nominal, bands.edges[:-1], bands.edges[1:], bands.rms, bands.standard_error, strict=True
         )
     ]
-    note = "third octaves of IEC 61260-1 (base ten), rectangular; empty: the record is shorter than 1/bandwidth"
+    note = "third octaves of IEC 61260-1 (base ten), rectangular; empty where the record is shorter than 1/bandwidth"
     return table_text([heads, *rows], [f"{caption}; {note}"])

@@ -119,7 +119,7 @@ def _failures_undone(goal: Path, result_type: str) -> Iterator[None]:
         in_place = _abandon(goal)
         with suppress(OSError):
             if rows := unfinished(goal):
-                say(f"{goal}: the finished rows are kept ({work.name}/{rows}); --resume goes on")
+                say(f"{goal}: the finished rows are kept in {work.name}/{rows}; continue with --resume")
         if not isinstance(error, OSError):
             raise
         if in_place:
@@ -163,7 +163,7 @@ def _put_goal_in_order(goal: Path) -> None:
     except (OSError, OutputError) as error:
         names = ", ".join(name for name in remains if not name.endswith(".lock"))
         reason = error.strerror if isinstance(error, OSError) else "the folder cannot be written"
-        say(f"{goal}: a killed command left {names or 'a lock file'} there, which cannot be put in order: {reason}")
+        say(f"{goal}: a killed command left {names or 'a lock file'} there, which cannot be cleaned up: {reason}")
 
 
 def _remains(goal: Path) -> list[str]:
@@ -180,27 +180,28 @@ def _put_in_order(goal: Path, remains: Sequence[str]) -> list[str]:
     said = []
     if (work / COMPLETE).exists() or (goal / COMPLETE).exists():
         _put_in_place(goal)
-        said.append(f"{goal}: the complete results of a killed command are in place now")
+        said.append(f"{goal}: the complete results of a killed command were put in place")
     elif old.exists() and not goal.exists():
         old.rename(goal)
-        said.append(f"{goal}: a killed command had moved the results of before away; they are back")
+        said.append(f"{goal}: a killed command had moved the earlier results away; they were put back")
     if rows := unfinished(goal):
         if goal in _named:
             return said
         _named.add(goal)
         said.append(
-            f"{goal}: a killed command left finished rows ({work.name}/{rows}); --resume goes on, --force starts anew"
+            f"{goal}: a killed command left finished rows in {work.name}/{rows}; continue with --resume, or "
+            "start again with --force"
         )
     elif _is_own_work(work):
         _remove(work)
-        said.append(f"{goal}: a killed command left unfinished results; they are removed")
+        said.append(f"{goal}: a killed command left unfinished results; they were removed")
     for name in remains:
         number, path = name.removeprefix(f".{goal.name}.").partition(".")[0], goal.parent / name
         if number.isdigit() and not _lives(int(number)) and (not path.is_dir() or (path / MARKER).exists()):
             shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)  # a folder: of an earlier version
-            said.append(f"{goal}: a killed command left an unfinished file; it is removed")
+            said.append(f"{goal}: a killed command left an unfinished file; it was removed")
     if not said and lock_file(goal).name in remains:
-        said.append(f"{goal}: an earlier command left only its lock there, which is removed")
+        said.append(f"{goal}: an earlier command left only its lock file; it was removed")
     return said
 
 
@@ -282,7 +283,7 @@ def _put_in_place(goal: Path) -> None:
             (work / COMPLETE).rename(work / UNFINISHED)
             _remove(work)
         except OSError:
-            say(f"{goal}: is complete; the empty folder {work.name} is left, which the next command there removes")
+            say(f"{goal}: is complete; the empty folder {work.name} remains, until the next command there removes it")
         return
     if result_type:
         if not goal.exists():
@@ -298,7 +299,7 @@ def _put_in_place(goal: Path) -> None:
                 _retire(replaced, goal)
         (goal / COMPLETE).unlink(missing_ok=True)
     except OSError:
-        say(f"{goal}: is complete; files of the earlier results remain, which the next command there removes")
+        say(f"{goal}: is complete; files of the earlier results remain, until the next command there removes them")
 
 
 def _retire(replaced: Path, goal: Path) -> None:
@@ -336,8 +337,8 @@ def _outcome(goal: Path) -> str:
     if (work / COMPLETE).exists() or (goal / COMPLETE).exists():
         return "the new results are complete, and the next command there puts them in place"
     if old.exists() and not goal.exists():
-        return "the next command there puts the results of before back"
-    there = "the results of before are unchanged" if goal.exists() else "nothing is left behind"
+        return "the next command there puts the earlier results back"
+    there = "the earlier results are unchanged" if goal.exists() else "nothing is left behind"
     if work.exists():
         remainder = "the finished rows" if unfinished(goal) else "an unfinished folder, which the next command removes"
         return f"{there.replace('nothing is left behind', 'no results are there')}; left is {remainder}"

@@ -200,13 +200,13 @@ def refuse_foreign(folder: Path, *, changes_only: bool = False) -> None:
         ConfigurationError: the message lists the files.
     """
     others = [] if changes_only else foreign(folder)
-    faults = [f"files that no run wrote: {_some(others)}"] if others else []
+    faults = [f"files that are not results of a run: {_some(others)}"] if others else []
     if edited := changed(folder):
-        faults.append(f"files that were changed since a run wrote them: {_some(edited)}")
+        faults.append(f"results that were edited afterwards: {_some(edited)}")
     if faults:
         raise ConfigurationError(
-            f"--output {folder}: holds {'; and '.join(faults)}; --force replaces only files of a run; move the "
-            "others, or set another folder"
+            f"--output {folder}: contains {'; and '.join(faults)}; --force replaces only unchanged results of a "
+            "run; move the other files, or give another folder"
         )
 
 
@@ -225,8 +225,8 @@ def refuse_foreign_file(path: Path, option: str = "--output") -> None:
     """
     if (path.is_file() or path.is_symlink()) and not is_own(path):
         raise ConfigurationError(
-            f"{option} {path}: is not as this program wrote it there, and other files are never replaced; move "
-            "the file, or set another name"
+            f"{option} {path}: was not written by this program, or was changed since, so it is not replaced; "
+            "move the file, or give another name"
         )
 
 

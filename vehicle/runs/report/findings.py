@@ -64,13 +64,13 @@ def damper_sentences(summary: RunSummary) -> list[str]:
         if share <= STICKS < summary["friction_saturated_share"][wheel]:
             state = f"at times sliding slowly, seldom or never faster than {limit:g} mm/s"
         elif summary["first_slip_s"][wheel] is None:
-            state = "all the time stuck: almost no energy is dissipated, and the strut acts as a rigid link"
+            state = "stuck all the time: almost no energy is dissipated, and the strut acts as a rigid link"
         elif share <= STICKS:
             state = "almost always stuck: almost no energy is dissipated, and the strut acts as a rigid link"
         elif share >= WORKS:
-            state = "often in slip: friction and viscous damping act during much of the time"
+            state = "slipping often: friction and viscous damping act much of the time"
         else:
-            state = "at times stuck, at times in slip: the effect depends on the level of the input"
+            state = "partly stuck, partly slipping: the effect depends on the level of the input"
         by_state.setdefault(state, []).append(wheel)
     sentences = []
     for state, wheels in by_state.items():
@@ -112,8 +112,8 @@ def _resonances(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[s
     if not sentences and not run.summary["input"]["rms_m"]:
         return ["No plate moves, so there are no FRFs and no resonances."]
     if not sentences and not run.responses:
-        return ["Resonances are read from FRFs, and this run has none; the modes of the car are listed below."]
-    return sentences or ["The FRFs have no resonance that the input excites."]
+        return ["This run has no FRFs, so it shows no resonances; the modes of the car are listed below."]
+    return sentences or ["The input excites no resonance."]
 
 
 def main_points(run: FinishedRun, wheel: str) -> dict[str, str]:

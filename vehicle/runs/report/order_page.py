@@ -92,7 +92,7 @@ def draw_map(path: Path, orders: OrderPoints, name: str, caption: str) -> None:
     """Write the Campbell map as a picture; arguments as in `order_page`."""
     modes = [(mode.frequency, mode.name) for mode in orders.modes]
     spectra = (orders.frequency, orders.spectrum)
-    title = f"{name}: {channel_words(orders.channel)}, Campbell map; modes with dampers that stick"
+    title = f"{name}: {channel_words(orders.channel)}, Campbell map; the modes are computed with stuck dampers"
     plot_campbell(path, orders.points, orders.turns, orders.orders, *spectra, modes, _labels(orders), title, caption)
 
 

@@ -64,7 +64,7 @@ def _chance(line: OrderSummary, point: str) -> str:
         f"{number(low)} to {number(high)} m/s²"
         for low, high in (line["stuck_range"][name], line["without_friction_range"][name])
     )
-    return f" These figures hang on the phases of the wheels among each other: over all of them {stuck} and {free}."
+    return f" These values depend on the phase between the wheels: over all phases {stuck} and {free}."
 
 
 def line_words(line: OrderSummary) -> str:

@@ -75,7 +75,7 @@ def report_page(
         ConfigurationError: no run.
     """
     if not runs:
-        raise ConfigurationError("report: no run; give at least one folder, as runs/low")
+        raise ConfigurationError("report: the runs are missing; give at least one folder, for example runs/low")
     runs = told_apart(runs)
     done = progress or (lambda fraction: None)
     modes = [modes_of(run) for run in runs]

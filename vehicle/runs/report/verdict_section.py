@@ -42,8 +42,8 @@ def verdict_section(figures: Mapping[str, Figure], runs: Sequence[FinishedRun]) 
         sentences=[sentence(figures, car, each) for car, each in rated.items()],
         cars=list(rated),
         rows=rows,
-        caption="value and its 95 % interval on a random road; undecided where the limit lies inside it; of several "
-        "runs, the worst",
+        caption="value and its 95 % interval on a random road; undecided if the limit lies inside the interval; the "
+        "worst of several runs",
     )
 
 

@@ -50,7 +50,8 @@ QUANTITIES = {
         unit="s",
     ),
     "ratio": Quantity(
-        meaning="RMS of the channels over that of the channels of `over` [-]", unit="-", needs=("channels", "over"),
+        meaning="RMS of the channels divided by that of the channels in "
+            "`over` [-]", unit="-", needs=("channels", "over"),
         takes=("band", "weighting"),
     ),
     "stick_share": Quantity(
@@ -58,7 +59,7 @@ QUANTITIES = {
         takes=("wheels",),
     ),
     "tyre_load": Quantity(
-        meaning="RMS of the dynamic over the static tyre load, all wheels together [-]", unit="-", needs=(),
+        meaning="RMS of the dynamic tyre load divided by the static load, all wheels together [-]", unit="-", needs=(),
         takes=("wheels",),
     ),
     "travel": Quantity(
@@ -125,12 +126,13 @@ class Figure:
             if key in definition.needs and not is_set:
                 raise ConfigurationError(f"Figure.{key}: missing; {self.quantity} needs it")
             if is_set and key not in (*definition.needs, *definition.takes):
-                raise ConfigurationError(f"Figure.{key}: {self.quantity} does not have it; omit it")
+                raise ConfigurationError(f"Figure.{key}: not used by {self.quantity}; leave it out")
         if (self.at_most is None) == (self.at_least is None):
-            raise ConfigurationError("Figure.at_most: set either at_most or at_least")
+            raise ConfigurationError("Figure.at_most: set exactly one of at_most and at_least")
         if not (math.isfinite(self.limit) and self.weight > 0.0):
             raise ConfigurationError(
-                f"Figure.at_most: limit {self.limit:g} and weight {self.weight:g}; must be finite, the weight above 0"
+                f"Figure.at_most: found limit {self.limit:g} and weight {self.weight:g}; both must be "
+                "finite, the weight above 0"
             )
         if self.band is not None and not (len(self.band) == 2 and 0.0 < self.band[0] < self.band[1]):
             raise ConfigurationError(f"Figure.band: found {list(self.band)}, must be [LOWEST, HIGHEST] in Hz, above 0")

@@ -111,7 +111,9 @@ def value_of(figure: Figure, ride: Histories, *, checked: bool = False) -> tuple
     channels = ride.named(figure.channels) if figure.channels else ()
     unit = definition.unit or ride.unit(channels[0])
     if not checked and figure.unit != unit:
-        raise ConfigurationError(f"unit: found {figure.unit!r}, {figure.quantity} of {channels or 'it'} has {unit!r}")
+        raise ConfigurationError(
+            f"unit: found {figure.unit!r}, must be {unit!r} for {figure.quantity} of {channels or 'the car'}"
+        )
     value, error = _VALUES[figure.quantity](figure, ride, channels)
     return value, error if ride.random else None
 
@@ -168,7 +170,7 @@ def _dose(figure: Figure, ride: Histories, channels: Sequence[str]) -> tuple[flo
 
 def _settling(_: Figure, ride: Histories, channels: Sequence[str]) -> tuple[float, None]:
     if ride.left_obstacle is None:
-        raise ConfigurationError('settling: the run has no obstacle; set obstacle, as obstacle = "cleat"')
+        raise ConfigurationError('settling: the run has no obstacle; set it, for example obstacle = "cleat"')
     time = ride.time[ride.evaluated]
     times = [settling_time(time, row, ride.left_obstacle) for row in ride.stacked(channels)]
     # Not settled at the end of the record.
@@ -178,7 +180,7 @@ def _settling(_: Figure, ride: Histories, channels: Sequence[str]) -> tuple[floa
 def _selected_wheels(figure: Figure, car_wheels: Sequence[str]) -> Sequence[str]:
     """Return the wheels of a figure; by default all."""
     if missing := [wheel for wheel in figure.wheels if wheel not in car_wheels]:
-        raise ConfigurationError(f"wheels: found {', '.join(missing)}, must be of {', '.join(car_wheels)}")
+        raise ConfigurationError(f"wheels: found {', '.join(missing)}, must be among {', '.join(car_wheels)}")
     return figure.wheels or car_wheels
 
 

@@ -103,11 +103,13 @@ def read_targets(file: Path | str) -> dict[str, Figure]:
     path = Path(str(resources.files("vehicle.runs.targets") / f"{SHIPPED}.toml")) if shipped else Path(file)
     tables = read_table(path)
     if not tables:
-        raise ConfigurationError(f"{path}: no target; needed is a table for each figure, as [primary_ride]")
+        raise ConfigurationError(
+            f"{path}: contains no target; write a section for each figure, for example [primary_ride]"
+        )
     figures = {}
     for name, table in tables.items():
         if not isinstance(table, Mapping):
-            raise ConfigurationError(f"{path}: {name}: found {table!r}, must be a table, as [{name}]")
+            raise ConfigurationError(f"{path}: {name}: found {table!r}, must be a section [{name}]")
         try:
             figures[name] = build(Figure, table, name)
         except ConfigurationError as error:
@@ -165,7 +167,7 @@ def sentence(figures: Mapping[str, Figure], car: str, rated: Mapping[str, Rated]
 
     met, missed, undecided, absent = (named(state) for state in (MET, MISSED, UNDECIDED, NOT_RUN))
     if len(absent) == len(rated):
-        return f"No target was tried for {car}: none of its runs is on an input of the file."
+        return f"No target was checked for {car}: the target file has none of the inputs of its runs."
     text = f"{car} meets {len(met)} of {len(rated) - len(absent)} targets"
     if missed:
         text += f" and misses {_enumeration(missed)}"

@@ -68,7 +68,9 @@ def comfort_values(
     """
     array = np.asarray(acceleration, dtype=np.float64)
     if array.ndim != 3 or array.shape[1] != 3:
-        raise DataError(f"acceleration: found shape {array.shape}, must be (r, 3, n) with the three axes x, y, z")
+        raise DataError(
+            f"acceleration: found shape {array.shape}, must be (r, 3, n): r signals, the axes x, y and z, n samples"
+        )
     spectrum = band_periodogram(time_step, array.reshape(-1, array.shape[2]), band)
     axes = rms_of(spectrum).reshape(-1, 3)
     x, y, z = axes.T

@@ -86,12 +86,14 @@ class CumulativeSpectrum:
         """
         numbers = np.array([n for n in range(-30, 51) if lowest * 0.999 <= nominal_midband(n) <= highest * 1.001])
         if not numbers.size:
-            raise DataError(f"{lowest:g} to {highest:g} Hz: contains no midband frequency of a third octave")
+            raise DataError(
+                f"{lowest:g} to {highest:g} Hz: contains no centre frequency of a third octave; choose a wider range"
+            )
         edges = 10.0 ** (np.append(numbers, numbers[-1] + 1) / 10.0) / HALF_BAND
         if edges[-1] > self._edges[-1]:
             raise DataError(
-                f"the highest third octave ends at {edges[-1]:.4g} Hz, above the {self._edges[-1]:.4g} Hz that the "
-                "sampling rate allows; choose a lower range, or a record with a higher rate"
+                f"the highest third octave ends at {edges[-1]:.4g} Hz, above the {self._edges[-1]:.4g} Hz that "
+                "the sampling rate allows; choose a lower range, or a record with a higher sampling rate"
             )
         width = np.diff(edges)
         resolved = width * self.duration >= 1.0

@@ -53,11 +53,12 @@ def exposure(values: Mapping[str, Any], hours: float) -> dict[str, Any]:
     contact = values["place"]
     if contact not in EXPOSURE_VALUES:
         raise ConfigurationError(
-            f"exposure: {contact} has no action value; the point of contact must be {', '.join(EXPOSURE_VALUES)}"
+            f"exposure: the directive has no action value for {contact}; the point of contact must be "
+            f"{', '.join(EXPOSURE_VALUES)}"
         )
     missing = [axis for axis in AXES if values[axis] is None]
     if missing:
-        raise DataError(f"exposure: {' and '.join(missing)} missing; A(8) needs x, y and z")
+        raise DataError(f"exposure: A(8) needs x, y and z; {' and '.join(missing)} missing")
     if contact == "hand":
         axis, acceleration = "all", values["vector_sum"]["weighted_rms"]
     else:

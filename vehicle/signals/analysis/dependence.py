@@ -164,17 +164,22 @@ def what_moves(motions: Sequence[Mapping[str, float]], chosen: int | None = None
     if len(motions) > 1 and chosen is None:
         subject += " independently of each other" if len(motions) == len(wheels) else ""
         shared = [f"; {', '.join(motion)} move {motion_words(motion)}" for motion in motions if len(motion) > 1]
-        message = f"{subject}{''.join(shared)}: the FRFs are separated, to {', '.join(next(iter(m)) for m in motions)}"
-        return f"{message}; the coherence counts {every} plates together"
+        message = (
+            f"{subject}{''.join(shared)}: the FRFs are separated into responses to each of "
+            f"{', '.join(next(iter(m)) for m in motions)}"
+        )
+        return f"{message}; the coherence is that of {every} plates together"
     motion = motions[chosen or 0]
     first = f"plate_{next(iter(motion))}_displacement"
     if len(motion) == 1:
-        return f"{subject}: the FRFs are those to {first} alone, the coherence counts {every} plates together"
+        return (
+            f"{subject}: the FRFs are the responses to {first} alone, the coherence is that of {every} plates together"
+        )
     if len(motions) > 1:
         plates = ", ".join(f"plate_{wheel}_displacement" for wheel in motion)
         subject, every = f"{subject}, of them {plates}", "these"
     manner = motion_words(motion)
-    return f"{subject} {manner}: the FRFs are those to " + (
+    return f"{subject} {manner}: the FRFs are the responses to " + (
         "their common motion" if manner == "alike" else f"{first} while {every} do"
     )
 
@@ -185,9 +190,9 @@ def _refusal(first: str, second: str, relation: Copy) -> DependentInputsError:
     early = f", ahead by {-relation.delay:.4g} s" if relation.delay < 0.0 else ""
     scaling = "a filtered" if np.isnan(relation.factor) else f"{relation.factor:.4g} times"
     return DependentInputsError(
-        f"excitations: fully correlated inputs: {second} is {scaling} {first}{late}{early} "
-        f"(coherence {relation.coherence:.4f}, must be below {DEPENDENT:g}), so their responses cannot be "
-        "separated; drive them with independent signals, or drive a single input",
+        f"excitations: {second} is {scaling} {first}{late}{early} (coherence {relation.coherence:.4f}, must be "
+        f"below {DEPENDENT:g}). The responses to fully correlated inputs cannot be separated; drive the plates "
+        "with independent signals, or only one plate",
         relation.delay,
         relation.factor,
     )

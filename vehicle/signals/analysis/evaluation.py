@@ -130,8 +130,9 @@ def _axis(
     weighted, settled = span.whole(response), span.settled(response, name)
     if not settled.size:
         raise DataError(
-            f"acceleration: found {response.size * step:g} s, but weighting {name} settles in "
-            f"{weighting(name).settling_s:g} s; use a longer record, or set --offset keep if it starts at rest"
+            f"acceleration: the record has {response.size * step:g} s, must be longer than the "
+            f"{weighting(name).settling_s:g} s in which weighting {name} settles; use a longer record, or set "
+            "--offset keep if the record starts at rest"
         )
     duration = weighted.size * step
     rms = weighted_rms(weighted)
@@ -142,17 +143,18 @@ def _axis(
     remarks = []
     if duration < weighting(name).shortest_record_s * (1.0 - 1e-9):
         remarks.append(
-            f"{duration:g} s hold {duration * weighting(name).lowest_frequency:.1f} periods of "
-            f"{weighting(name).lowest_frequency:g} Hz, where {name} begins; {weighting(name).shortest_record_s:.3g} s "
-            "are needed to resolve it: take the values for this event alone, not for a ride"
+            f"the record has only {duration * weighting(name).lowest_frequency:.1f} periods of "
+            f"{weighting(name).lowest_frequency:g} Hz, where weighting {name} begins ({duration:g} s, for a ride "
+            f"at least {weighting(name).shortest_record_s:.3g} s): the values describe this event, not a ride"
         )
     peak, with_it = np.abs(settled).max(), np.abs(weighted).max()
     if rms > 0.0 and with_it > (1.0 + START_UP_EFFECT) * peak:
         remarks.append(
-            f"MTVV and crest factor leave out the first {weighting(name).settling_s:g} s, in which {name} settles; "
-            f"with them MTVV is {mtvv(step, weighted, average=average):.3g} instead of {transient:.3g} m/s2 and the "
-            f"peak {with_it:.3g} instead of {peak:.3g} m/s2; the weighted RMS, {rms:.3g} m/s2 with them, is "
-            f"{settled_rms:.3g} m/s2 without (--offset keep for a record that starts at rest)"
+            f"MTVV and crest factor leave out the first {weighting(name).settling_s:g} s, in which weighting "
+            f"{name} settles. With these seconds MTVV would be {mtvv(step, weighted, average=average):.3g} "
+            f"instead of {transient:.3g} m/s2 and the peak {with_it:.3g} instead of {peak:.3g} m/s2. The "
+            f"weighted RMS is {rms:.3g} m/s2 with them and {settled_rms:.3g} m/s2 without. If the record starts "
+            "at rest, set --offset keep"
         )
     values = {
         "weighting": name,
@@ -191,10 +193,16 @@ def _about_motion_sickness(duration: float) -> list[str]:
     if duration >= MOTION_SICKNESS_PERIOD * (1.0 - 1e-9):
         return []
     shortest = curve.shortest_record_s
-    held = f"{duration:g} s hold {duration * curve.lowest_frequency:.1f} periods of {curve.lowest_frequency:g} Hz"
+    held = (
+        f"the record has {duration:g} s, {duration * curve.lowest_frequency:.1f} periods of "
+        f"{curve.lowest_frequency:g} Hz"
+    )
     if duration < shortest * (1.0 - 1e-9):
-        return [f"msdv: {held}, at least {shortest:.3g} s are needed to resolve that frequency, so there is no value"]
-    return [f"msdv: {held}; ISO 2631-1, D.1, requires {MOTION_SICKNESS_PERIOD:g} s: a rough estimate"]
+        return [f"motion sickness dose (msdv): {held}; at least {shortest:.3g} s are needed, so there is no value"]
+    return [
+        f"motion sickness dose (msdv): only a rough estimate; {held}, and ISO 2631-1, D.1, requires "
+        f"{MOTION_SICKNESS_PERIOD:g} s"
+    ]
 
 
 def evaluate(
@@ -279,14 +287,14 @@ def evaluate(
             "health_weighted_rms": None if health is None else vector_sum(rms, health),
         }
     reasons = [
-        f"{axis}: zero throughout, so crest factor and ratios are undefined"
+        f"{axis}: the acceleration is zero throughout, so crest factor and ratios are undefined"
         for axis in axes
         if values[axis]["crest_factor"] is None
     ]
     reasons += remarks + (_about_motion_sickness(duration) if contact_point.doses else [])
     if sums is None:
         missing = [axis for axis in AXES if axis not in axes]
-        reasons.append(f"{' and '.join(missing)}: missing, so there is no vector sum")
+        reasons.append(f"{' and '.join(missing)} missing: no vector sum")
     band = USABLE / step if highest is None else min(highest, USABLE / step)
     range_end = max(weighting(name).highest_frequency for name in contact_point.weightings)
     limited = band < range_end * (1.0 - CLOCK_TOLERANCE)
@@ -296,7 +304,7 @@ def evaluate(
             f"{range_end:g} Hz in {contact_point.standard.partition(':')[0]})"
         )
     if contact_point.health_factors is None:
-        reasons.append(f"vector_sum.health_weighted_rms: the standard has no health factors for {contact}")
+        reasons.append(f"vector_sum.health_weighted_rms has no value: the standard has no health factors for {contact}")
     return {
         "place": contact,
         "standard": contact_point.standard,

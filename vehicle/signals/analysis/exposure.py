@@ -50,7 +50,9 @@ def mtvv(
     square = _one(weighted) ** 2
     length = round(integration_s / step)
     if length < 1:
-        raise ConfigurationError(f"integration_s: found {integration_s:g} s, must be at least one time step")
+        raise ConfigurationError(
+            f"integration_s: found {integration_s:g} s, must be at least the time step of the record"
+        )
     if average == "linear":
         total = np.cumsum(square, out=square)
         window_sums = total[length:] - total[: max(square.size - length, 0)]
@@ -90,7 +92,9 @@ def estimated_vibration_dose_value(rms: float, duration_s: float) -> float:
     Valid for crest factors below about 6. Source: ISO 2631-1:1997, annex B; BS 6841:1987.
     """
     if not (np.isfinite([rms, duration_s]).all() and rms >= 0.0 and duration_s > 0.0):
-        raise ConfigurationError(f"eVDV: found RMS {rms!r} and duration {duration_s!r}; must be >= 0 and > 0")
+        raise ConfigurationError(
+            f"eVDV: found RMS {rms!r} m/s2, must be at least 0, and duration {duration_s!r} s, must be above 0"
+        )
     return float(1.4 * rms * duration_s**0.25)
 
 
@@ -113,6 +117,8 @@ def vector_sum(values: Sequence[float], factors: Sequence[float], *, power: floa
     Source: ISO 2631-1:1997, 6.5 and 8.2.3; BS 6841:1987.
     """
     if len(values) != len(factors):
-        raise ConfigurationError(f"vector sum: found {len(values)} values and {len(factors)} factors")
+        raise ConfigurationError(
+            f"vector sum: found {len(values)} values and {len(factors)} factors, must be a factor for each value"
+        )
     scaled = np.abs(np.asarray(values, dtype=np.float64) * np.asarray(factors, dtype=np.float64))
     return float(np.sum(scaled**power) ** (1.0 / power))

@@ -168,14 +168,14 @@ def frequency_responses(
     inflation[:, separable] = np.real(np.einsum("mii->im", np.linalg.inv(scaled[separable])))
     reasons = [f"{outputs[i]}: constant, so its FRF and its coherence are undefined" for i in np.flatnonzero(still)]
     if cut.averages < 2.0:
-        reasons.append(f"coherence: undefined with {cut.averages:.3g} averages (a single average always gives 1)")
+        reasons.append(f"the coherence is undefined with {cut.averages:.3g} averages: a single average always gives 1")
     else:
         explained = np.real(np.einsum("mpk,mpk->km", cross.conj(), solution))
         share = np.full(explained.shape, np.nan)
         np.divide(explained, syy[:, separable], out=share, where=(syy[:, separable] > 0.0) & ~still[:, None])
         coherence[:, separable] = share
     for lost, cause in (
-        (~reached, "not excited, so the FRF is undefined"),
+        (~reached, "the input has no power there, so the FRF is undefined"),
         (
             reached & ~separable,
             "the inputs are fully correlated there, so their responses cannot be separated; use one input",
@@ -218,8 +218,8 @@ def _refuse_dependent(scaled: Complex, independence: Vector, labels: tuple[str, 
     ]
     which = "copies: " + ", ".join(pairs) if pairs else f"one of {', '.join(labels)} depends linearly on the others"
     raise DataError(
-        f"excitations: fully correlated inputs, the matrix Gxx is rank-deficient (median minimum eigenvalue "
-        f"{np.median(independence):.3g}, must be at least {INDEPENDENCE:g}): {which}; their responses cannot be "
-        "separated. Use one input alone (its FRF is the response to the common motion), or drive them with "
-        "independent signals"
+        f"excitations: {which}, so the responses to the inputs cannot be separated (smallest eigenvalue of their "
+        f"normalised spectral matrix Gxx {np.median(independence):.3g}, must be at least {INDEPENDENCE:g}). Use "
+        "one input alone (its FRF is the response to the common motion), or drive the inputs with independent "
+        "signals"
     )

@@ -54,11 +54,11 @@ mean of the window. The spectrum of a random input is rough. A smooth spectrum i
 and cannot be separated from the transient of the car."""
 
 CAUSES = (
-    "the input is below the floor of its rounding and leakage",
-    "the input has less than 3 % of the power of the adjacent lines, at the edge of its band",
-    "fewer than five lines of the input are driven, as by a sine: FRF and transient cannot be separated",
-    "the input has at most 1e-4 of the power within an octave: it is leakage",
-    "the spectrum of the input is smooth, as that of a bump: FRF and transient cannot be separated",
+    "the input is weaker than its rounding errors and leakage",
+    "the input has less than 3 % of the power of the adjacent lines, at the edge of its frequency band",
+    "the input has power at fewer than five lines, like a sine, so FRF and transient cannot be separated",
+    "the input has at most 1e-4 of the power within an octave, which is leakage",
+    "the input is a single event such as a bump (smooth spectrum), so FRF and transient cannot be separated",
 )
 """Causes of an undefined FRF at a line, for messages."""
 

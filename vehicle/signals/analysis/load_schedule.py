@@ -72,7 +72,10 @@ def scheduled_loads(
     every = [*runs, *([] if reference is None else [reference])]
     common = [name for name in runs[0].loads if all(name in run.loads for run in every)]
     if not common:
-        raise ConfigurationError(f"{', '.join(run.name for run in every)}: no channel that all runs have")
+        raise ConfigurationError(
+            f"{', '.join(run.name for run in every)}: these runs have no channel in common; record the same "
+            "channels in all runs"
+        )
     time = sum(count * run.duration for count, run in zip(repeats, runs, strict=True))
     rows = []
     for name in common:

@@ -144,8 +144,8 @@ def local_rational_responses(
     centres = centres[(centres > least_half) & (centres < last - least_half)]
     if not centres.size:
         raise DataError(
-            f"record: sampled at {1.0 / step:g} Hz, too few lines for an FRF from {band[0]:g} Hz on; record at a "
-            "higher rate"
+            f"record: sampled at {1.0 / step:g} Hz, which is too slow for an FRF from {band[0]:g} Hz on; record "
+            "at a higher rate"
         )
     halves = np.clip(np.round(RELATIVE_WIDTH * centres), least_half, MOST_HALF_WIDTH).astype(int)
     halves = np.minimum(halves, np.minimum(centres - 1, last - centres))

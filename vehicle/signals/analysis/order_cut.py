@@ -57,10 +57,15 @@ def order_cut(
     turned = angle / (2.0 * np.pi)
     first = float(turned[min(int(np.searchsorted(time, begin - 1e-9)), time.size - 1)])
     if turned[-1] - first < TURNS:
-        raise DataError(f"orders: {turned[-1] - first:.3g} turns are evaluated; needed are {TURNS}")
+        raise DataError(
+            f"orders: {turned[-1] - first:.3g} turns are evaluated, must be at least {TURNS}; use a longer run"
+        )
     highest, rate = max(orders) * float(np.max(speed)) / (2.0 * np.pi), 1.0 / float(time[1] - time[0])
     if highest >= 0.5 * rate:
-        raise DataError(f"orders: {max(orders):g} is up to {highest:.4g} Hz, above half the sampling rate {rate:g} Hz")
+        raise DataError(
+            f"orders: order {max(orders):g} reaches {highest:.4g} Hz, must be below half the sampling rate of "
+            f"{rate:g} Hz"
+        )
     middles = np.arange(first + 0.5 * TURNS, turned[-1] - 0.5 * TURNS + 1e-9, 0.5 * TURNS)
     amplitudes = np.zeros((len(middles), len(channels), len(orders)), dtype=complex)
     speeds = np.zeros(len(middles))

@@ -65,12 +65,14 @@ def order_lines(
     length, count = round(TURNS / (turns * interval)), time.size - first
     if count < length:
         raise DataError(
-            f"orders: {count * interval:.3g} s evaluated are {count * interval * turns:.3g} turns; needed are {TURNS}"
+            f"orders: the evaluated {count * interval:.3g} s contain {count * interval * turns:.3g} turns, "
+            f"must be at least {TURNS}; use a longer run"
         )
     highest = max(orders) * turns
     if highest >= 0.5 / interval:
         raise DataError(
-            f"orders: {max(orders):g} is {highest:.4g} Hz, above half the sampling rate {1.0 / interval:g} Hz"
+            f"orders: order {max(orders):g} is {highest:.4g} Hz, must be below half the sampling rate of "
+            f"{1.0 / interval:g} Hz"
         )
     # Whole segments to the end of the record, which is farthest from the start.
     step = max(round(length * (1.0 - OVERLAP)), 1)

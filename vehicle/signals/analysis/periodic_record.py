@@ -208,10 +208,9 @@ def _periodic_response(
         noisy = spectra[earlier[-1] + 1 if earlier.size else 0 :]
         if not changes[-1] <= SETTLED * size and len(noisy) < NOISE_PERIODS:
             return count * period, (
-                f"the input repeats every {period * step:g} s, but {name} changes by "
-                f"{number(100.0 * changes[-1] / size if size else math.inf, 2)} % from the period before to the last "
-                f"one (settled: at most {100.0 * SETTLED:g} %), so the record is evaluated as a random one; record "
-                "more periods"
+                f"the input repeats every {period * step:g} s, but {name} is not settled: it changes by "
+                f"{number(100.0 * changes[-1] / size if size else math.inf, 2)} % between the last two periods, "
+                f"must be at most {100.0 * SETTLED:g} %. The record is evaluated as random; record more periods"
             )
         variance = np.sum(np.abs(noisy - noisy.mean(axis=0)) ** 2, axis=0) / (len(noisy) - 1)
         # Two periods do not distinguish noise from the end of a transient, which has decayed more in the last one.
@@ -222,10 +221,10 @@ def _periodic_response(
         distortion = distortion - noise if distortion > DISTINCT * noise else 0.0
         if not distortion <= DISTORTED**2:
             return period, (
-                f"the input repeats every {period * step:g} s, but the lines of {name} scatter by "
-                f"{number(100.0 * math.sqrt(distortion), 2)} % around a smooth FRF (at most {100.0 * DISTORTED:g} %), "
-                "because the car is nonlinear or the lines are too far apart, so the last period is evaluated as a "
-                "random record"
+                f"the input repeats every {period * step:g} s, but the FRF of {name} scatters by "
+                f"{number(100.0 * math.sqrt(distortion), 2)} % from line to line, must be at most "
+                f"{100.0 * DISTORTED:g} %: the car is nonlinear, or the lines are too far apart. The last period "
+                "is evaluated as a random record"
             )
         response[row] = mean / drive[lines]
         error = np.maximum(variance / averaged, distortion * power_of_mean)

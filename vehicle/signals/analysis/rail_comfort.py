@@ -57,15 +57,15 @@ def rail_comfort(
     """
     step, rows = checked_time_step(time_step), checked_rows("acceleration", xyz)
     if len(rows) != len(WEIGHTINGS):
-        raise DataError(f"EN 12299: found {len(rows)} axes; needed are x, y and z")
+        raise DataError(f"EN 12299: found {len(rows)} axes, must be the three axes x, y and z")
     begin = max(skip, 0.0 if from_rest else max(weighting(name).settling_s for name in WEIGHTINGS))
     first, interval = round(begin / step), round(INTERVAL / step)
     count = (rows[0].size - first) // interval
     in_zone = round(ZONE / INTERVAL)
     if count < in_zone:
         raise DataError(
-            f"EN 12299: {(rows[0].size - first) * step:.4g} s are left after {begin:g} s; the mean comfort is that of "
-            f"{ZONE:g} s; use a longer record"
+            f"EN 12299: only {(rows[0].size - first) * step:.4g} s are left after the first {begin:g} s, must be "
+            f"at least {ZONE:g} s for the mean comfort; use a longer record"
         )
     kept = slice(first, first + count * interval)
     squares = [weighted_record(step, row, name)[kept] ** 2 for row, name in zip(rows, WEIGHTINGS, strict=True)]

@@ -79,7 +79,9 @@ def count_cycles(load: npt.ArrayLike) -> Cycles:
     try:
         rainflow = import_module("rainflow")
     except ImportError:
-        raise MissingPartError("load cycles: needs rainflow, of the extra 'loads' (pip install rainflow)") from None
+        raise MissingPartError(
+            "load cycles: the Python package rainflow is missing; install it with: pip install rainflow"
+        ) from None
     values = np.asarray(load, dtype=np.float64)
     pairs = [pair for pair in rainflow.count_cycles(values.tolist()) if pair[0] > 0.0]
     table = np.array(pairs, dtype=np.float64).reshape(-1, 2)

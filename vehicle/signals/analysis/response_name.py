@@ -77,8 +77,8 @@ def row_of(name: ResponseName, names: Sequence[ResponseName]) -> tuple[int, floa
         inputs = list(dict.fromkeys(names[row].input for row in rows))
         if len(rows) > 1:
             raise DataError(
-                f"{name.output}: the FRF names no plate, and there are {len(inputs)}; name it by --map "
-                f"{name.output}/{inputs[0]}=NAME (plates: {', '.join(inputs)})"
+                f"{name.output}: the FRF does not state which of the {len(inputs)} plates moves; name the plate, "
+                f"for example --map {name.output}/{inputs[0]}=NAME (plates: {', '.join(inputs)})"
             )
         return rows[0], 1.0
     first = name.motion[0][0]

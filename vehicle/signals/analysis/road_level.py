@@ -69,7 +69,7 @@ def road_level(time_step: float, height: ArrayLike, speed: float, *, window_s: f
     """
     record = np.asarray(height, dtype=np.float64)
     if not speed > 0.0:
-        raise DataError(f"speed: found {speed:g} m/s, must be above 0 for a density over the wavenumber")
+        raise DataError(f"speed: found {speed:g} m/s, must be above 0 for a road spectrum over the wavenumber")
     spectrum = power_spectral_density(time_step, record, window_s=min(window_s, record.size * time_step / 2.0))
     nyquist = 0.4 / time_step
     bands = CumulativeSpectrum(time_step, record).third_octaves(
@@ -78,8 +78,8 @@ def road_level(time_step: float, height: ArrayLike, speed: float, *, window_s: f
     usable = np.isfinite(bands.rms) & (bands.rms > 0.0)
     if np.count_nonzero(usable) < LEAST_BANDS:
         raise DataError(
-            f"road: {np.count_nonzero(usable)} third octaves between {FITTED[0]:g} and {FITTED[1]:g} cycles/m "
-            f"have a level, {LEAST_BANDS} are needed for a class; record a longer road"
+            f"road: the record gives {np.count_nonzero(usable)} third octaves between {FITTED[0]:g} and "
+            f"{FITTED[1]:g} cycles/m, must be at least {LEAST_BANDS} for a road class; record a longer road"
         )
     low, high = bands.edges[:-1][usable] / speed, bands.edges[1:][usable] / speed
     density = bands.rms[usable] ** 2 / (high - low)

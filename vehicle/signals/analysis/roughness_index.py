@@ -89,11 +89,11 @@ def roughness_index(step: float, height: ArrayLike, *, segment: float = 100.0) -
     length = (profile.size - 1) * step
     if step > COARSEST:
         raise DataError(
-            f"IRI: a sample every {step:g} m; needed is one every {COARSEST:g} m or less, as longer steps lose waves "
-            "to which the standard quarter car responds"
+            f"IRI: the heights are {step:g} m apart, must be at most {COARSEST:g} m, or waves to which the "
+            "standard quarter car responds are lost"
         )
     if length < STARTED:
-        raise DataError(f"IRI: the road is {length:.4g} m long; needed are {STARTED:g} m or more")
+        raise DataError(f"IRI: the road is {length:.4g} m long, must be at least {STARTED:g} m")
     averaged = max(1, round(AVERAGED / step))
     slope = (profile[averaged:] - profile[:-averaged]) / (averaged * step)
     start = round(STARTED / step)

@@ -108,5 +108,7 @@ def checked_names(label: str, names: Sequence[str] | None, count: int) -> tuple[
     if names is None:
         return tuple(f"{label} {i}" for i in range(count))
     if len(names) != count:
-        raise ConfigurationError(f"names: found {len(names)} for {count} {label} signals; set a name for each signal")
+        raise ConfigurationError(
+            f"names: found {len(names)} names for {count} {label} signals; set a name for each signal"
+        )
     return tuple(names)

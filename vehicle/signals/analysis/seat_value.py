@@ -49,7 +49,7 @@ def seat_value(
     above, below = (weighted_record(time_step, record, name)[round(skip / time_step) :] for record in (seat, rail))
     base = weighted_rms(below)
     if base == 0.0:
-        raise DataError("SEAT value: the acceleration of the rail is zero; check the channel of the rail")
+        raise DataError("SEAT value: the acceleration of the seat rail is zero throughout; check its channel")
     doses = [vibration_dose_value(time_step, record) for record in (above, below)]
     return SeatValue(rms=weighted_rms(above) / base, vdv=doses[0] / doses[1], weighting=name)
 

@@ -93,9 +93,10 @@ def cut_into_segments(
         while effective_averages(window, step, needed) < minimum_averages:
             needed += 1
         raise DataError(
-            f"record too short: {samples * time_step:g} s hold {averages:.3g} effective averages of {window_s:g} s "
-            f"windows with {100 * overlap:g} % overlap; must be at least {minimum_averages:g}; use at least "
-            f"{(length + (needed - 1) * step) * time_step:g} s, or a shorter window (coarser lines)"
+            f"record too short: {samples * time_step:g} s give {averages:.3g} averages with windows of "
+            f"{window_s:g} s and {100 * overlap:g} % overlap, must be at least {minimum_averages:g}; record at "
+            f"least {(length + (needed - 1) * step) * time_step:g} s, or use a shorter window (coarser frequency "
+            "lines)"
         )
     return Segments(length=length, step=step, count=count, averages=averages, window=window)
 

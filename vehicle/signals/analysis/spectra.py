@@ -122,8 +122,8 @@ def band_periodogram(time_step: float, signals: ArrayLike, band: tuple[float, fl
     inside = np.flatnonzero(lines_in_band(np.fft.rfftfreq(array.shape[1], step).astype(np.float64), edges))
     if not inside.size:
         raise DataError(
-            f"record too short: the line spacing is {1.0 / (array.shape[1] * step):g} Hz, without a line in "
-            f"{edges[0]:g} to {edges[1]:g} Hz; use at least {1.0 / (edges[1] - edges[0]):g} s"
+            f"record too short: its frequency lines are {1.0 / (array.shape[1] * step):g} Hz apart, and none "
+            f"lies in {edges[0]:g} to {edges[1]:g} Hz; record at least {1.0 / (edges[1] - edges[0]):g} s"
         )
     return _periodogram(step, array, slice(inside[0], inside[-1] + 1))
 

@@ -84,7 +84,10 @@ def vibration_spectra(
     """
     lowest, highest = frequency_range[0], min(frequency_range[1], 0.4 / time_step)
     if not 0.0 < lowest < highest:
-        raise DataError(f"spectra: {lowest:g} to {highest:g} Hz is no range; the record has {1.0 / time_step:g} Hz")
+        raise DataError(
+            f"spectra: found {lowest:g} to {highest:g} Hz, must be an increasing range up to half the sampling "
+            f"rate of {1.0 / time_step:g} Hz"
+        )
     spectra = []
     for name, record in channels.items():
         density = power_spectral_density(time_step, record, window_s=min(WINDOW, record.size * time_step / 4.0))

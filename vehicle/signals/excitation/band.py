@@ -37,7 +37,8 @@ def samples_of(duration: float, rate: float) -> int:
     whole = round(steps)
     if abs(steps - whole) > 1e-6 or whole < 32:
         raise ConfigurationError(
-            f"duration {duration:g} s at {rate:g} Hz makes {steps:.9g} steps; allowed: a whole number from 32 on"
+            f"duration {duration:g} s at {rate:g} Hz gives {steps:.9g} time steps; must be a whole number of "
+            "at least 32"
         )
     return whole
 
@@ -59,7 +60,8 @@ def lines_in_band(*, steps: int, rate: float, lower: float, upper: float) -> NDA
     last = int(np.floor(upper / line * (1.0 + 1e-12)))
     if last < first:
         raise ConfigurationError(
-            f"band {lower:g} to {upper:g} Hz holds no multiple of {line:g} Hz; take a longer record"
+            f"band {lower:g} to {upper:g} Hz contains no multiple of {line:g} Hz, the line spacing; use a "
+            "longer duration"
         )
     return np.arange(first, last + 1)
 

@@ -51,12 +51,13 @@ def chosen_plates(path: Path, choice: Choice | None, wheel: str | None) -> tuple
         plain = [channel for channel in measurement.channels if channel.name == "displacement"] or measurement.channels
         if not assigned and (plain[0].name == "displacement" or len(plain) == 1):
             if wheel is None:
-                raise DataError(f"{path}: channel {plain[0].name!r} names no wheel; {WHEEL_REMEDY}")
+                raise DataError(f"{path}: the name of channel {plain[0].name!r} states no wheel; {WHEEL_REMEDY}")
             assigned = {wheel: "1" if len(measurement.channels) == 1 else plain[0].name}
         if not assigned:
             raise DataError(
-                f"{path}: {len(measurement.channels)} channels: {measurement.listed()}; select the channel of the "
-                f"plate: --channel {wheel or 'fl'}=NAME, with its number, exact name, or a pattern with *"
+                f"{path}: which of the {len(measurement.channels)} channels is the plate? set --channel "
+                f"{wheel or 'fl'}=NAME with a number, exact name or pattern with *; the file has "
+                f"{measurement.listed()}"
             )
         choice = replace(choice, channels={**choice.channels, **assigned})
     chosen = choose(measurement, choice)

@@ -90,9 +90,9 @@ class ForceRecord:
         history = self.read()
         if history.duration < duration - 1e-6 and not self.ends_at_zero:
             raise DataError(
-                f"{self.file}: lasts {history.duration:.6g} s, the run {duration:.6g} s; set --duration "
-                f"{history.duration:.4g}, use a longer file, or set {self.path}.ends_at_zero = true for a force that "
-                "is zero after its end"
+                f"{self.file}: the force lasts {history.duration:.6g} s, less than the run, {duration:.6g} s; "
+                f"set --duration {history.duration:.4g}, use a longer file, or set {self.path}.ends_at_zero = "
+                "true for a force that is zero after its end"
             )
 
 
@@ -137,8 +137,8 @@ def _history(record: ForceRecord, changed: int) -> RecordedForce:
         notices.append(f"time of {record.file} begins at {chosen.time[0]:.6g} s and was shifted to 0")
     if record.ends_at_zero and abs(values[-1]) > AT_REST * size:
         raise DataError(
-            f"{where}.ends_at_zero: the last value of {record.file} is {values[-1]:.4g} {record.needed}, not 0; let "
-            "the record end at zero, or leave the key out"
+            f"{where}.ends_at_zero: the last value of {record.file} is {values[-1]:.4g} {record.needed}, not 0; "
+            "let the record end at zero, or leave ends_at_zero out"
         )
     return recorded_force(where, record.needed, time, values, notices)
 
@@ -156,7 +156,10 @@ def recorded_force(path: str, unit: str, time: Vector, values: Vector, notices: 
     messages = list(notices)
     rests = bool(abs(values[0]) <= AT_REST * np.sqrt(np.mean(values**2)))
     if not rests:
-        messages.append(f"{path} begins with {values[0]:.4g} {unit} and rises from rest within {RISE_S:g} s")
+        messages.append(
+            f"{path} does not begin at zero but at {values[0]:.4g} {unit}; the simulation fades it in over the "
+            f"first {RISE_S:g} s"
+        )
     return RecordedForce(
         spline=CubicSpline(time, values),
         duration=float(time[-1]),
@@ -180,8 +183,8 @@ def _channel(record: ForceRecord, measurement: Measurement) -> int:
                 f"{n} {channel.name!r} [{channel.unit}]" for n, channel in enumerate(measurement.channels, 1)
             )
             raise DataError(
-                f"{record.file}: {len(named)} channels are in {UNITS[record.needed]}; set {record.path}.channel to a "
-                f"number or name of: {listed}"
+                f"{record.file}: {len(named)} channels have the unit {UNITS[record.needed]}, must be one "
+                f"channel; set {record.path}.channel to a number or name of: {listed}"
             )
         (index,) = named
     channel = measurement.channels[index]
@@ -193,7 +196,8 @@ def _channel(record: ForceRecord, measurement: Measurement) -> int:
     if unit.quantity != quantity.quantity:
         raise DataError(
             f"{where} is a {unit.quantity} in [{record.unit or channel.unit}]; {record.path} needs "
-            f"{UNITS[record.needed]}: choose another channel, or give the force the direction of a {unit.quantity}"
+            f"{UNITS[record.needed]}; choose another channel, or define it as a {unit.quantity} in the vehicle "
+            "file"
         )
     return index
 

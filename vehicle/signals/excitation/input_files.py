@@ -28,8 +28,8 @@ def find_input(name: str | Path) -> Path:
     close = get_close_matches(path.name, names, n=1)
     hint = f" Did you mean {close[0]}?" if close else ""
     raise ConfigurationError(
-        f"input {str(name)!r} not found: no such file, and no shipped input of that name.{hint} "
-        f"Set the path of a measurement file or one of: {', '.join(names)}"
+        f"input {str(name)!r} is neither a file nor a shipped input.{hint} Set the path of a measurement file or "
+        f"one of: {', '.join(names)}"
     )
 
 

@@ -117,7 +117,9 @@ class IsoRoad:
                 f"wavenumbers {self.lowest!r} to {self.highest!r} cycles/m; allowed: 0 < lowest < highest"
             )
         if self.coherence is not None and not 0.0 <= self.coherence <= 1.0:
-            raise ConfigurationError(f"coherence {self.coherence!r}; allowed: 0 to 1, or none for the isotropic plane")
+            raise ConfigurationError(
+                f"coherence {self.coherence!r}; allowed: 0 to 1, or none: coherence of an isotropic road surface"
+            )
         if not 0.0 <= self.patch < 1.0:
             raise ConfigurationError(f"contact patch {self.patch!r} m; allowed: 0 to 1 m")
 
@@ -230,7 +232,9 @@ def drive(
         )
     behind = [distance for distance, _ in wheels.values()]
     if not wheels or min(behind) < 0.0 or not np.isfinite(behind).all():
-        raise ConfigurationError(f"distances of the wheels {behind} m; allowed: 0 for the foremost, above for others")
+        raise ConfigurationError(
+            f"distances of the wheels {behind} m; must be 0 for the foremost axle and above 0 for the others"
+        )
     # Longer than the record by the delay of the last wheel: no wheel reaches the repetition of the road.
     period = steps + 1 + (int(np.ceil(max(behind) / speed * rate)) if road.repeats else 0)
     step, displacement, slopes, profile = speed / rate, {}, {}, {}

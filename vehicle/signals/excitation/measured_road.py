@@ -136,8 +136,8 @@ class MeasuredRoad:
         """
         if positions.max() > self.length * (1.0 + 1e-9):
             raise DataError(
-                f"{self.source}: the road ends after {self.length:.6g} m, {positions.max():.6g} m are driven; set a "
-                "shorter --duration"
+                f"{self.source}: the road is {self.length:.6g} m long, but the car drives {positions.max():.6g} "
+                "m; set a shorter --duration"
             )
         track_heights = self.right if side == "right" else self.left
         degree = 3 if self.sampled else 1
@@ -194,7 +194,7 @@ def read_road(path: Path, track: float, patch: float = 0.0, envelope: TyreEnvelo
     if steps.size < 3 or not (steps > 0.0).all():
         row = int(np.argmin(steps)) + 1 if steps.size else 0
         where = source or table.place(row)
-        raise DataError(f"{where}: the distance must increase from row to row, over four rows or more")
+        raise DataError(f"{where}: the distance must increase from row to row, in at least four rows")
     return MeasuredRoad(
         distance=columns["distance"],
         right=columns["right"],
@@ -218,7 +218,7 @@ def _named_tracks(path: Path) -> tuple[dict[str, Vector], tuple[str, ...]]:
         name_of_track = tracks[0].strip().lower()
         columns = named_columns(path, dict.fromkeys(("distance", name_of_track), "m"))
         track_heights = columns[name_of_track]
-        notice = f"{path.name}: one track, {tracks[0]!r}: both sides of the car drive on it"
+        notice = f"{path.name}: the file has one track, {tracks[0]!r}: both sides of the car drive on it"
         return {"distance": columns["distance"], "left": track_heights, "right": track_heights}, (notice,)
     left, right = ((names[side] or side).strip().lower() for side in ("left", "right"))
     columns = named_columns(path, dict.fromkeys(("distance", left, right), "m"))
@@ -234,9 +234,9 @@ def _surface_road(path: Path, track: float, patch: float) -> MeasuredRoad:
         missing = np.flatnonzero(~np.isfinite(tracks[side]))
         if missing.size:
             raise DataError(
-                f"{path}: the {side} track, v = {v:.3f} m, is outside the road at {missing.size} of {surface.u.size} "
-                f"points, first at u = {surface.u[missing[0]]:g} m; the road has v from {surface.v[0]:g} to "
-                f"{surface.v[-1]:g} m; repair the surface, or cut it off there"
+                f"{path}: the {side} wheels, {v:.3f} m to the left of the reference line, leave the road at "
+                f"{missing.size} of {surface.u.size} points, first after {surface.u[missing[0]]:g} m; the road "
+                f"extends from {surface.v[0]:g} to {surface.v[-1]:g} m; repair the surface, or cut it off there"
             )
     return MeasuredRoad(
         distance=surface.u,
@@ -258,5 +258,5 @@ def _columns(header: Header) -> dict[str, tuple[int, float]]:
                 raise DataError(f"{header.where}: column {cell!r}; needed are {NEEDED}")
             columns[name] = index, UNITS[unit]
     if len(columns) < 3 or len(columns) < len(header.cells):
-        raise DataError(f"{header.where}: found {header.found}; needed are {NEEDED}, each once")
+        raise DataError(f"{header.where}: found {header.found}, must be {NEEDED}, each once")
     return columns

@@ -138,11 +138,11 @@ class Obstacle:
             if not (1.0 <= size <= largest):
                 raise ConfigurationError(f"obstacle {text!r}: {size_name} {size:g}; allowed: 1 to {largest:g}")
             if size_name == "number" and size != round(size):
-                raise ConfigurationError(f"obstacle {text!r}: number {size:g}; must be a whole number of stones")
+                raise ConfigurationError(f"obstacle {text!r}: found {size:g} stones, must be a whole number")
         if shape.arc and sizes[0] > 0.5 * sizes[1]:
             raise ConfigurationError(
-                f"obstacle {text!r}: height {sizes[0]:g} over length {sizes[1]:g}; must be at most {0.5 * sizes[1]:g}, "
-                "half of the length, or the arc would overhang"
+                f"obstacle {text!r}: height {sizes[0]:g} mm, must be at most {0.5 * sizes[1]:g} mm, half of the "
+                "length, or the arc would overhang"
             )
         return cls(
             name=name,
@@ -184,8 +184,8 @@ class Obstacle:
         x, tracks = self._outline()
         if self.begin < 1.0 or self.begin + x[-1] >= length:
             raise ConfigurationError(
-                f"obstacle from {self.begin:g} to {self.begin + x[-1]:g} m; must be within 1 to {length:.4g} m, which "
-                "are driven; set another place (@METRES), or a longer --duration"
+                f"obstacle from {self.begin:g} to {self.begin + x[-1]:g} m; must be within 1 to {length:.4g} m, "
+                "the distance that is driven; set another place (@METRES), or a longer --duration"
             )
         distance = np.concatenate(([0.0], self.begin + x, [length]))
         for side, z in tracks.items():

@@ -75,7 +75,7 @@ def check_level(
         unit = (units or {}).get(wheel, "m")
         per_metre, other_unit = (1e3, "um") if unit == "mm" else (1.0, "mm")
         question, remedy = (
-            f"looks like {other_unit}? The column is declared in [{unit}]",
+            f"are the values in {other_unit}? The header of the column says [{unit}]",
             "write its unit into the header ([m] or [mm])",
         )
         if not unit:
@@ -83,22 +83,24 @@ def check_level(
         index = int(np.argmax(np.abs(z)))
         if abs(z[index]) > LARGEST_DISPLACEMENT and rare_events(z, LARGEST_DISPLACEMENT):
             events.append(
-                f"plate {wheel} is displaced by {per_metre * z[index]:.4g} {unit} at t = {index * timestep:.6g} s, "
-                f"beyond {per_metre * LARGEST_DISPLACEMENT:g} {unit}: a pothole or a kerb?"
+                f"plate {wheel} is displaced by {per_metre * z[index]:.4g} {unit} at t = {index * timestep:.6g} "
+                f"s, more than the usual {per_metre * LARGEST_DISPLACEMENT:g} {unit}: a pothole or a kerb?"
             )
         elif abs(z[index]) > LARGEST_DISPLACEMENT:
             raise ImplausibleError(
-                f"{path}: plate {wheel} is displaced by {per_metre * z[index]:.6g} {unit} at sample {index} "
-                f"(t = {index * timestep:.6g} s); allowed {per_metre * LARGEST_DISPLACEMENT:g} {unit}",
+                f"{path}: plate {wheel} is displaced by {per_metre * z[index]:.6g} {unit} at sample {index} (t = "
+                f"{index * timestep:.6g} s); must be at most {per_metre * LARGEST_DISPLACEMENT:g} {unit}",
                 f"{question}; {remedy}, or remove a constant offset (--remove-mean)",
             )
         rms = float(np.std(z))
         if rms < SMALLEST_RMS and not (moving and np.ptp(z) == 0.0):
             question = (
-                "does the column, declared in [mm], hold metres?" if unit == "mm" else "does the column hold metres?"
+                "does the column contain metres, although its header says [mm]?"
+                if unit == "mm"
+                else "does the column contain metres?"
             )
             raise ImplausibleError(
-                f"{path}: RMS of plate {wheel} is {per_metre * rms:.3g} {unit}; allowed from "
+                f"{path}: RMS of plate {wheel} is {per_metre * rms:.3g} {unit}; must be at least "
                 f"{per_metre * SMALLEST_RMS:g} {unit}",
                 f"{question} Otherwise it is another quantity, or a dead sensor",
             )
@@ -107,15 +109,17 @@ def check_level(
         # A pothole has high accelerations: 60 mm within 12 ms give 800 m/s2. Its depth is checked above.
         if abs(acceleration[index]) > LARGEST_ACCELERATION and rare_events(acceleration, LARGEST_ACCELERATION, np.inf):
             events.append(
-                f"plate {wheel} accelerates by {acceleration[index]:.4g} m/s2 at t = {index * timestep:.6g} s (below "
-                f"{ACCELERATION_BAND:g} Hz), beyond {LARGEST_ACCELERATION:g} m/s2: a pothole, or a spike of the logger?"
+                f"plate {wheel} accelerates by {acceleration[index]:.4g} m/s2 at t = {index * timestep:.6g} s "
+                f"(below {ACCELERATION_BAND:g} Hz), more than the usual {LARGEST_ACCELERATION:g} m/s2: a "
+                "pothole, or a spike of the logger?"
             )
         elif abs(acceleration[index]) > LARGEST_ACCELERATION:
             raise ImplausibleError(
-                f"{path}: plate {wheel} accelerates by {acceleration[index]:.4g} m/s2 at t = {index * timestep:.6g} s "
-                f"(below {ACCELERATION_BAND:g} Hz); allowed {LARGEST_ACCELERATION:g} m/s2",
-                f"{question}; {remedy}. Otherwise look there for a jump or a spike in the record, or set --any-level "
-                "if it is a road, not a shaker signal",
+                f"{path}: plate {wheel} accelerates by {acceleration[index]:.4g} m/s2 at t = "
+                f"{index * timestep:.6g} s (below {ACCELERATION_BAND:g} Hz), must be at most "
+                f"{LARGEST_ACCELERATION:g} m/s2",
+                f"{question}; {remedy}. If it is right, look for a jump or spike at this time; for a road record "
+                "set --any-level",
             )
     return events
 
@@ -198,9 +202,9 @@ def aliasing_notices(displacement: Mapping[str, Vector], timestep: float) -> tup
     limit = 0.4 / timestep
     shares = {wheel: velocity_share_near_nyquist(z) for wheel, z in displacement.items()}
     return tuple(
-        f"plate {wheel}: {100.0 * share:.1f} % of the velocity variance lies above {limit:.4g} Hz (0.8 of Nyquist; "
-        "expected below "
-        f"{100.0 * ALIAS_SHARE:g} %): recorded without anti-alias filter?"
+        f"plate {wheel}: recorded without an anti-alias filter? {100.0 * share:.1f} % of the velocity variance "
+        f"lies above {limit:.4g} Hz (0.8 of half the sampling rate), expected are less than "
+        f"{100.0 * ALIAS_SHARE:g} %"
         for wheel, share in shares.items()
         if share > ALIAS_SHARE
     )
@@ -218,8 +222,9 @@ def drifts(displacement: Mapping[str, Vector]) -> list[str]:
         drift, rms = slope * (z.size - 1), float(np.std(z - slope * offsets))
         if abs(drift) > DRIFT_SHARE * rms:
             notices.append(
-                f"plate {wheel} drifts by {1e3 * drift:.4g} mm from beginning to end (RMS about that line "
-                f"{1e3 * rms:.4g} mm): a drifting sensor or integrator? Nothing was subtracted"
+                f"plate {wheel} drifts by {1e3 * drift:.4g} mm from beginning to end (RMS without the drift "
+                f"{1e3 * rms:.4g} mm): a drifting sensor or integrator? The drift was not subtracted; --detrend "
+                "subtracts it"
             )
     return notices
 
@@ -237,8 +242,8 @@ def pauses(wheel: str, time: Vector, values: Vector) -> list[str]:
     moves = np.flatnonzero(np.diff(values) != 0.0)
     further = int(np.count_nonzero(time[moves[1:]] - time[moves[:-1] + 1] >= PAUSE)) - 1
     return [
-        f"plate {wheel} stands still for {time[part[1]] - time[part[0]]:.4g} s from t = {time[part[0]]:.6g} s on, "
-        "between two motions: a pause of the record? RMS, comfort and slip shares include it"
+        f"plate {wheel} stands still for {time[part[1]] - time[part[0]]:.4g} s from t = {time[part[0]]:.6g} s "
+        "on, between two motions: a pause of the record? RMS, comfort and slip shares include this pause"
         + (f"; {further} further shorter pauses" if further else "")
     ]
 
@@ -250,8 +255,8 @@ def clipping(wheel: str, values: Vector) -> list[str]:
         values: displacement of the plate in any unit, shape (n,).
     """
     return [
-        f"plate {wheel}: clipped? {100.0 * share:.3g} % of the samples are equal to the {side}, {level:.4g}, with "
-        "sharp edges, where the velocity jumps; measure with a larger range, or select an "
-        "unclipped part (--from S, --to S)"
+        f"plate {wheel}: clipped? {100.0 * share:.3g} % of the samples are exactly at the {side}, {level:.4g} m, "
+        "and the velocity jumps there; measure with a larger range, or select an unclipped part (--from S, --to "
+        "S)"
         for side, level, share in clipped(values)
     ]

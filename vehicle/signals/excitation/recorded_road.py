@@ -108,7 +108,7 @@ class RecordedDrive:
         distance = scipy.integrate.cumulative_trapezoid(speed, time, initial=0.0)
         if distance[-1] < max(behind for _, behind, _ in self.wheels):
             raise DataError(
-                f"{self.road}: the distance of {distance[-1]:.4g} m is less than the wheelbase; use a longer record"
+                f"{self.road}: the car drives {distance[-1]:.4g} m, less than its wheelbase; use a longer record"
             )
         grid = uniform_time(samples=self._samples(float(time[-1] - time[0])), timestep=1.0 / self.rate)
         plates = {}
@@ -122,8 +122,9 @@ class RecordedDrive:
         moving = speed[speed > STANDING]
         if self.driving is not None and math.isnan(self.driving):
             notices.append(
-                f"the tyres roll at the mean speed of the record, {moving.mean():.4g} m/s: their slip at "
-                f"{moving.min():.3g} to {moving.max():.3g} m/s is that of the mean"
+                f"the tyres roll at the mean speed of the record, {moving.mean():.4g} m/s: the slip of the tyres "
+                f"is calculated with this mean, although the speed is {moving.min():.3g} to {moving.max():.3g} "
+                "m/s"
             )
         return Signal(
             time=grid,
@@ -160,8 +161,9 @@ class RecordedDrive:
         speed = choose(measurement, self._choice_of_speed())
         if speed.quantities["speed"] != "velocity":
             raise DataError(
-                f"{self.road}: --speed {PREFIX}{self.channel}: a {speed.quantities['speed']}, must be a velocity; "
-                "choose another channel, or set --unit speed=km/h or speed=m/s if the unit in the file is wrong"
+                f"{self.road}: --speed {PREFIX}{self.channel}: is a {speed.quantities['speed']}, must be a "
+                "velocity; choose another channel, or set --unit speed=km/h or speed=m/s if the unit in the "
+                "file is wrong"
             )
         v, notices = self._speed(speed, time)
         return v, [*notices, *speed.notices]
@@ -197,10 +199,12 @@ class RecordedDrive:
             notices.append(notice)
         limited = chosen.highest < USABLE * SMOOTH_RATE * (1.0 - UNIFORM_TOLERANCE)
         if limited:
-            notices.append(f"the heights are valid up to {chosen.highest:.4g} Hz, the limit of FRFs and comfort")
+            notices.append(f"the heights are valid up to {chosen.highest:.4g} Hz; FRFs and comfort end there")
         if len(values) == 1:
             (role,) = values
-            notices.append(f"{self.road.name}: one track, {roles[role]!r}: both sides of the car drive on it")
+            notices.append(
+                f"{self.road.name}: the file has one track, {roles[role]!r}: both sides of the car drive on it"
+            )
             values = dict.fromkeys(("left", "right"), values[role])
         return time, values, chosen.highest if limited else None, notices
 
@@ -209,7 +213,7 @@ class RecordedDrive:
         roles = {role: name for role, name in self.choice.channels.items() if role != "time"}
         unknown = next((role for role in roles if role not in NAMES), None)
         if unknown is not None:
-            raise ConfigurationError(f"--channel {unknown}=...: must be left, right, or height for a recorded road")
+            raise ConfigurationError(f"--channel {unknown}=...: must be left, right or height for a recorded road")
         receiver = of_receiver(measurement.channels)
         if not roles:
             names_in_file = {channel.name.strip().rstrip(".").lower(): channel.name for channel in measurement.channels}
@@ -221,7 +225,11 @@ class RecordedDrive:
             listed = ", ".join(
                 f"{n} {channel.name!r} [{channel.unit}]" for n, channel in enumerate(measurement.channels[:20], 1)
             )
-            above_sea = "; a height next to latitude and longitude is that of a receiver, no road" if receiver else ""
+            above_sea = (
+                "; the height next to latitude and longitude is that of the GPS receiver, not of the road"
+                if receiver
+                else ""
+            )
             raise DataError(
                 f"{self.road}: which channels are the heights? set --channel left=NAME --channel right=NAME, or "
                 f"--channel height=NAME for both tracks; the file has {listed}{above_sea}"
@@ -241,9 +249,8 @@ class RecordedDrive:
         low, high = float(values.min()), float(values.max())
         if low < -BACKWARDS or high > FASTEST or high <= STANDING:
             raise DataError(
-                f"{self.road}: the speed {self.channel!r} is {low:.4g} to {high:.4g} m/s, must be "
-                f"{-BACKWARDS:g} to {FASTEST:g} m/s, with some motion; is its unit right? set --unit speed=km/h "
-                "or speed=m/s"
+                f"{self.road}: the speed {self.channel!r} is {low:.4g} to {high:.4g} m/s, must be {-BACKWARDS:g} "
+                f"to {FASTEST:g} m/s, with some motion; is the unit right? set --unit speed=km/h or speed=m/s"
             )
         resampled_speed = np.maximum(np.interp(time, speed_time, values), 0.0)
         standing = float(np.mean(resampled_speed < STANDING))

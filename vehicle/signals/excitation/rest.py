@@ -63,7 +63,9 @@ def start_from_rest(
     samples = next(iter(plates.values())).size
     length = min(RAMP_S, 0.1 * (samples - 1) * timestep)
     weights = half_cosine(samples=samples, timestep=timestep, length=length)
-    done = f"half-cosine ramp applied to all plates over the first {length:.3f} s; nothing was subtracted"
+    done = (
+        f"the motion of all plates is faded in over the first {length:.3f} s (half-cosine ramp); no mean was subtracted"
+    )
     # Adding 0.0 avoids -0.0 for a negative first value.
     return {wheel: z * weights + 0.0 for wheel, z in plates.items()}, tuple(f"{cause}; {done}" for cause in causes)
 
@@ -72,8 +74,11 @@ def _causes(wheel: str, z: Vector, timestep: float) -> list[str]:
     rms = float(np.std(z))
     first = float(z[0])
     if abs(first) > OFFSET_SHARE * rms:
-        return [f"plate {wheel} begins at {first:.6g} m (RMS {rms:.6g} m): a step at t = 0"]
+        return [f"plate {wheel} begins at {first:.6g} m instead of 0 (RMS {rms:.6g} m), which is a step at t = 0"]
     steps = np.diff(z)
     if abs(steps[0]) > VELOCITY_SHARE * float(np.sqrt(np.mean(steps**2))):
-        return [f"plate {wheel} begins with {steps[0] / timestep:.6g} m/s: a jump of velocity at t = 0"]
+        return [
+            f"plate {wheel} begins with {steps[0] / timestep:.6g} m/s instead of 0, which is a jump of velocity "
+            "at t = 0"
+        ]
     return []

@@ -107,18 +107,18 @@ class RoadDrive:
         if isinstance(self.road, Path):
             if self.coherence is not None:
                 raise ConfigurationError(
-                    "--coherence: valid for a road class only, not for a measured profile; omit it"
+                    "--coherence: works only with a road class, not with a measured profile; leave it out"
                 )
         elif is_obstacle(self.road) or self.road == LEVEL:
             if self.coherence is not None:
                 named = "a level road" if self.road == LEVEL else "an obstacle"
-                raise ConfigurationError(f"--coherence: valid for a road class only, not for {named}; omit it")
+                raise ConfigurationError(f"--coherence: works only with a road class, not with {named}; leave it out")
             if self.road != LEVEL:
                 Obstacle.parse(self.road)
         elif self.road not in CLASSES:
             raise ConfigurationError(
-                f"road class {self.road!r}: must be one of {', '.join(CLASSES)}, from good to poor, the file of a "
-                f"measured profile, an obstacle, as cleat:20x50, or {LEVEL}"
+                f"road class {self.road!r}: must be one of {', '.join(CLASSES)}, from good to poor, the file of "
+                f"a measured profile, an obstacle, for example cleat:20x50, or {LEVEL}"
             )
         if not 0.0 <= self.patch < 1.0:
             raise ConfigurationError(f"contact patch {self.patch!r} m; allowed: 0 to 1 m")
@@ -145,8 +145,8 @@ class RoadDrive:
             return None
         if not 0.0 < self.patch < 1.0:
             raise ConfigurationError(
-                f"contact patch {self.patch!r} m; allowed with cams, whose distance is proportional to it: above 0 to "
-                "1 m; for contact at a point set --contact patch --patch 0"
+                f"contact patch {self.patch!r} m; must be above 0 and at most 1 m with cams, whose distance is "
+                "proportional to the patch; for contact at a point set --contact patch --patch 0"
             )
         return TyreEnvelope.of(CAMS, radius=self.radius, patch=self.patch)
 
@@ -222,7 +222,7 @@ class RoadDrive:
             ConfigurationError, DataError: see `signal` and `roughness_index`.
         """
         if self.road == LEVEL:
-            raise ConfigurationError("IRI: a level road has none; give a class, a profile or an obstacle")
+            raise ConfigurationError("IRI: a level road has no roughness; give a road class, a profile or an obstacle")
         road, duration = self._road()
         length, step = duration * self.speed / 3.6, ROUGHNESS_STEP
         if isinstance(road, MeasuredRoad):

@@ -11,23 +11,31 @@ from vehicle.settings import Settings, setting
 class RoadSettings(Settings):
     """Settings of a road; None is the default of each."""
 
-    duration: float | None = setting("length [s]; 60, or the whole profile, by default", type=float, metavar="S")
-    rate: float | None = setting("samples a second; 1000 by default", type=float, metavar="HZ")
-    seed: int | None = setting("one seed is one road; 1 by default", type=int, metavar="N")
+    duration: float | None = setting(
+        "length of the drive [s]; default: 60, or the whole profile", type=float, metavar="S"
+    )
+    rate: float | None = setting("sampling rate of the plate signals [Hz]; default: 1000", type=float, metavar="HZ")
+    seed: int | None = setting(
+        "number that selects the random road; the same seed gives the same road; default: 1", type=int, metavar="N"
+    )
     coherence: float | None = setting(
-        "of the tracks: 1 equal, 0 unrelated; isotropic plane by default", type=float, metavar="G"
+        "coherence of left and right track: 1 equal, 0 unrelated; default: that of an isotropic road surface",
+        type=float,
+        metavar="G",
     )
     patch: float | None = setting(
-        "length of the contact patch that averages the road [m], 0 for none; 0.1 by default", type=float, metavar="M"
+        "length of the contact patch over which the tyre averages the road [m]; 0: contact at a point; default: 0.1",
+        type=float,
+        metavar="M",
     )
     contact: str | None = setting(
-        "patch: the road is averaged over the contact patch; cams: two elliptical cams envelop the road; patch by "
-        "default, cams on an obstacle",
+        "patch: the tyre averages the road over its contact patch; cams: the road is enveloped by two "
+        "elliptical cams, as in MF-Swift; default: patch, on an obstacle cams",
         choices=("patch", "cams"),
     )
     tyre: str | None = setting(
-        "rolling: tyres roll at the speed, the default on a road; standing: tyres on moving plates, as on a rig, the "
-        "default for a car that is on blocks too",
+        "rolling: the tyres roll at the speed of the car (default on a road); standing: the tyres stand on "
+        "moving plates, as on a rig (default if the car also stands on blocks)",
         choices=("rolling", "standing"),
     )
 

@@ -82,7 +82,9 @@ class Signal:
             object.__setattr__(self, name, columns)
         self._check_time()
         if not self.displacement:
-            raise DataError(f"{self.source}: the signal drives no wheel; set a displacement for one of {_wheels()}")
+            raise DataError(
+                f"{self.source}: the signal moves no wheel; set the displacement of at least one of {_wheels()}"
+            )
         for wheel in self.displacement:
             if not is_wheel(wheel):
                 raise DataError(f"{self.source}: unknown wheel {wheel!r}; must be one of {_wheels()}")
@@ -90,8 +92,8 @@ class Signal:
             columns, name = getattr(self, name), name.replace("_", " ")
             if columns and columns.keys() != self.displacement.keys():
                 raise DataError(
-                    f"{self.source}: {name} of {', '.join(columns)}; set it for the wheels of the displacements, "
-                    f"{', '.join(self.displacement)}, or for none"
+                    f"{self.source}: has the {name} of {', '.join(columns)}; set it for the wheels with a "
+                    f"displacement, {', '.join(self.displacement)}, or leave it out"
                 )
             for wheel, values in columns.items():
                 if values.shape != self.time.shape:
@@ -102,23 +104,25 @@ class Signal:
                 if not np.isfinite(values).all():
                     bad = int(np.flatnonzero(~np.isfinite(values))[0])
                     raise DataError(
-                        f"{self.source}: {name} of {wheel} is {values[bad]} at sample {bad}; allowed: finite"
+                        f"{self.source}: {name} of {wheel} is {values[bad]} at sample {bad}; must be a finite number"
                     )
 
     def _check_time(self) -> None:
         time = self.time
         if time.ndim != 1 or time.size < MINIMUM_SAMPLES:
             raise DataError(
-                f"{self.source}: time has shape {time.shape}; needed is one axis with at least {MINIMUM_SAMPLES} "
-                "samples"
+                f"{self.source}: time has shape {time.shape}; must be (n,) with at least {MINIMUM_SAMPLES} samples"
             )
         if not np.isfinite(time).all() or time[0] != 0.0 or time[-1] <= 0.0:
-            raise DataError(f"{self.source}: time must be finite, begin at 0 s and increase; it begins at {time[0]} s")
+            raise DataError(
+                f"{self.source}: the time begins at {time[0]} s; it must begin at 0 s, increase and be finite"
+            )
         deviation = float(np.max(np.abs(np.diff(time) / self.timestep - 1.0)))
         if deviation > STEP_TOLERANCE:
             raise DataError(
-                f"{self.source}: a time step deviates by {deviation:.3g} of the mean step {self.timestep:.6g} s; "
-                f"allowed {STEP_TOLERANCE:g}; resample the signal to a uniform grid first"
+                f"{self.source}: a time step deviates by the factor {deviation:.3g} from the mean step of "
+                f"{self.timestep:.6g} s, must be at most {STEP_TOLERANCE:g}; resample the signal to a uniform "
+                "grid first"
             )
 
     @property

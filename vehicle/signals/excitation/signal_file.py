@@ -138,7 +138,7 @@ def read_signal(
         notices.append(f"time begins at {time[0]:.9g} s in the file and was shifted to 0")
     if remove_mean:
         for driven, displacement in columns.items():
-            notices.append(f"mean {np.mean(displacement):.6g} m of plate {driven} removed on request")
+            notices.append(f"mean {np.mean(displacement):.6g} m of plate {driven} was subtracted, as requested")
             columns[driven] = displacement - np.mean(displacement)
     if not any(np.ptp(displacement) > 0.0 for displacement in columns.values()):
         raise DataError(f"{path}: no plate moves: all columns are constant; use a record with motion")
@@ -177,7 +177,9 @@ def plate_columns(header: Header, wheel: str | None) -> dict[str, tuple[int, str
             plain `displacement` column without `wheel`.
     """
     if any(_is_number(cell) for cell in header.cells):
-        raise DataError(f"{header.where}:1: no header line: found {header.found}; needed are the columns {NEEDED}")
+        raise DataError(
+            f"{header.where}:1: the header line is missing: found {header.found}; must name the columns {NEEDED}"
+        )
     named = [(index, cell, *name_and_unit(cell)) for index, cell in enumerate(header.cells)]
     of_road = [match is not None and is_wheel(match[1]) for match in (_OF_ROAD.fullmatch(row[2]) for row in named)]
     named = [row for row, beside in zip(named, of_road, strict=True) if not beside]
@@ -197,10 +199,9 @@ def plate_columns(header: Header, wheel: str | None) -> dict[str, tuple[int, str
         where = f"{header.where}:{index + 1}: column {cell!r}"
         if _OTHER_UNIT.fullmatch(unit or "") or _OTHER_QUANTITY.search(name):
             raise DataError(
-                f"{where} is an acceleration or a velocity; the plate needs a displacement. Because of "
-                "drift, integration needs a high-pass filter chosen by you: set column and corner frequency, as "
-                f"--channel {wheel or 'fl'}={name!r} --highpass 0.5; "
-                f"or use {NEEDED}"
+                f"{where} is an acceleration or a velocity, but the plate needs a displacement. To integrate it, "
+                f"choose a high-pass against drift, for example --channel {wheel or 'fl'}={name!r} --highpass "
+                f"0.5; or use {NEEDED}"
             )
         key = keys.get(name.lower())
         if key == "":
@@ -210,16 +211,16 @@ def plate_columns(header: Header, wheel: str | None) -> dict[str, tuple[int, str
         elif key in columns:
             first = columns[key][0]
             raise DataError(
-                f"{where} gives the same quantity as column {first + 1} ({header.cells[first]!r}); each may appear "
-                f"once; found {header.found}"
+                f"{where} repeats the quantity of column {first + 1} ({header.cells[first]!r}); remove one of "
+                f"them; found {header.found}"
             )
         else:
             columns[key] = index, _checked_unit(where, key, unit)
     if unknown:
         raise (DataError if columns else ForeignTableError)(
-            f"{header.where}: unknown column {', '.join(unknown)}; found {header.found}; needed are {NEEDED}; remove "
-            f"the others, or assign a column to a wheel: --channel {wheel or 'fl'}=NAME (python -m vehicle inspect "
-            "FILE prints the command)"
+            f"{header.where}: unknown column {', '.join(unknown)}; must be {NEEDED}; remove other columns, or "
+            f"assign a column to a wheel: --channel {wheel or 'fl'}=NAME (python -m vehicle inspect FILE prints "
+            f"the command); found {header.found}"
         )
     if "time" not in columns or len(columns) == 1:
         missing = "displacement" if "time" in columns else "time"
@@ -235,8 +236,8 @@ def _checked_unit(where: str, key: str, unit: str | None) -> str:
         unit_entry, hint = find_unit(unit), ""
         if unit_entry is not None and unit_entry.si == ("s" if key == "time" else "m"):
             hint = (
-                "; with --channel, as --channel fl=displacement, the shaker reads any unit of `python -m vehicle "
-                "inspect`, and every command reads the time.npz of its run"
+                "; or name the channel, for example --channel fl=displacement: the shaker then reads every unit "
+                "that `python -m vehicle inspect` knows"
             )
         raise DataError(f"{where} has the unit [{unit}], must be {expected}{hint}")
     return unit

@@ -60,7 +60,7 @@ OTHERS = (
 def sets_text() -> str:
     """Describe the chosen set and the other sets in one paragraph."""
     return (
-        "Slip velocity, lower edge of the shaker inputs and of the roads are one set, not published and chosen with "
-        f"sides and body on half of the statements of the source (in brackets its log-likelihood): {CHOSEN.text()}. "
-        f"Others: {'; '.join(other.text() for other in OTHERS)}."
+        "The source does not publish the slip velocity and the lower band edges of shaker inputs and roads. "
+        f"They were chosen together with sides and body on half of the source's statements: {CHOSEN.text()}. In "
+        f"brackets: log-likelihood, larger is better. Other sets: {'; '.join(other.text() for other in OTHERS)}."
     )

@@ -30,7 +30,7 @@ def check_rate(path: Path, rate: float) -> tuple[str, ...]:
         DataError: the rate is too low.
     """
     if rate < LOWEST_RATE * (1.0 - 1e-9):  # tolerance for a rate from rounded times
-        hint = "; the time looks like ms" if FULL_RATE <= rate * 1000.0 <= 5e3 else ""
+        hint = "; are the times in ms?" if FULL_RATE <= rate * 1000.0 <= 5e3 else ""
         raise DataError(
             f"{path}: sampling rate {rate:.6g} Hz, must be at least {LOWEST_RATE:g} Hz (usable up to "
             f"{USABLE * LOWEST_RATE:g} Hz){hint}; measure or export with a higher rate"
@@ -39,8 +39,8 @@ def check_rate(path: Path, rate: float) -> tuple[str, ...]:
         return ()
     ends = "; FRFs and comfort end there" if rate < SMOOTH_RATE * (1.0 - UNIFORM_TOLERANCE) else ""
     return (
-        f"sampling rate {rate:.6g} Hz: usable up to {USABLE * rate:.4g} Hz, from {FULL_RATE:g} Hz on up to "
-        f"100 Hz{ends}",
+        f"sampling rate {rate:.6g} Hz: results are valid up to {USABLE * rate:.4g} Hz; with at least "
+        f"{FULL_RATE:g} Hz up to 100 Hz{ends}",
     )
 
 
@@ -64,7 +64,7 @@ def fill_missing(table: Table, time: Vector, column: int) -> tuple[Vector, list[
     if not (valid[0] and valid[-1]) or np.count_nonzero(valid) < MINIMUM_SAMPLES:
         raise DataError(
             f"{table.place(first)}:{column + 1}: {name} has missing values at its beginning or end, or too few "
-            "others; interpolation needs values on both sides; remove those rows"
+            "values; interpolation needs values on both sides; remove these rows"
         )
     gaps = np.diff(time[valid])
     limit = longest_gap(float(np.median(np.diff(time))))
@@ -72,8 +72,8 @@ def fill_missing(table: Table, time: Vector, column: int) -> tuple[Vector, list[
     if gaps[largest] > limit * (1.0 + UNIFORM_TOLERANCE):
         begin = int(np.flatnonzero(valid)[largest]) + 1
         raise DataError(
-            f"{table.place(begin)}:{column + 1}: {name} has no value for {gaps[largest]:.6g} s from this line on; "
-            f"interpolation bridges at most {limit:.6g} s; use the part before or after it"
+            f"{table.place(begin)}:{column + 1}: {name} has no value for {gaps[largest]:.6g} s from this line "
+            f"on; interpolation can fill at most {limit:.6g} s; use the part before or after it"
         )
     filled = values.copy()
     filled[~valid] = scipy.interpolate.CubicSpline(time[valid], values[valid])(time[~valid])

@@ -112,7 +112,7 @@ class TyreEnvelope:
         positive("distance of the cams", self.distance, "m")
         positive("half length of a cam", self.half_length, "m")
         positive("half height of a cam", self.half_height, "m")
-        positive("order of a cam above 1", self.order - 1.0, "")
+        positive("exponent of the cam shape, above 1", self.order - 1.0, "")
 
     @classmethod
     def of(cls, cams: CamSet, *, radius: float, patch: float) -> Self:

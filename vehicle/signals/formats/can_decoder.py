@@ -113,13 +113,15 @@ def decode(
     frame_count, names = sum(frames.time.size for frames in log.values()), ", ".join(file.name for file in databases)
     if not databases:
         raise DataError(
-            f"{path}: log of a CAN bus ({container}) with {frame_count} frames of {len(_identifiers(log))} messages "
-            f"({_shown(log)}), not channels; set --dbc FILE to the database of this bus"
+            f"{path}: log of a CAN bus ({container}) with {frame_count} raw frames of {len(_identifiers(log))} "
+            f"messages ({_shown(log)}); set --dbc FILE, the database that decodes them into channels"
         )
     loaded = [load_database(database) for database in databases]
     messages = {source: message for source in log if (message := _message(source, loaded)) is not None}
     if not messages:
-        raise DataError(f"{path}: no message of the log ({_shown(log)}) is in {names}; use the database of this bus")
+        raise DataError(
+            f"{path}: {names} describes none of the messages of the log ({_shown(log)}); use the database of this bus"
+        )
     channels: list[Channel] = []
     missing: Counter[str] = Counter()
     try:
@@ -133,8 +135,8 @@ def decode(
     notices = [f"log of a CAN bus: {frame_count} frames, {decoded} decoded by {names}"]
     if undecoded:
         notices.append(
-            f"{frame_count - decoded} frames of {len(_identifiers(undecoded))} messages are not in {names}: "
-            f"{_shown(undecoded)}"
+            f"{names} does not describe {frame_count - decoded} frames of {len(_identifiers(undecoded))} "
+            f"messages, which are left out: {_shown(undecoded)}"
         )
     notices += [f"{text}: {count}" for text, count in missing.items()]
     return tuple(channels), tuple(notices)
@@ -200,7 +202,7 @@ def _signals(
         raw = raw_values(signal, frames.payload[rows])
         values = raw * float(signal.factor) + float(signal.offset)
         for reason, where in _without_value(signal, raw, values, j1939).items():
-            missing[f"{label}: values {reason}, read as missing values"] += int(np.count_nonzero(where))
+            missing[f"{label}: values {reason} are read as missing"] += int(np.count_nonzero(where))
             values[where] = np.nan
         yield Channel(
             name=f"{signal.name} {suffix}".rstrip(),

@@ -152,7 +152,7 @@ def _asc_parser(lines: Sequence[str]) -> Parser:
             identifier = int(match["id"], base)
             data = bytes(int(byte, base) for byte in match["data"].split())
         except ValueError:
-            return f"number that is not of base {base}"
+            return f"a number that is not written to base {base}"
         code = int(match["code"], 16)
         length = int(match["length"]) if "length" in match.groupdict() else min(code, 8)
         source = Source(f"CAN{match['bus']}", match["way"], identifier, bool(match["long"]))

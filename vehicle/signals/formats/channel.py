@@ -188,7 +188,7 @@ def clock_step(step: float, digits: int = 6) -> tuple[float, str]:
         return step, ""
     if abs(step * rate - 1.0) < 1e-12:
         return step, ""
-    return 1.0 / rate, f"time step {step:.9g} s is rounded: taken as a clock of {rate} Hz"
+    return 1.0 / rate, f"time step {step:.9g} s is rounded; the sampling rate is assumed to be {rate} Hz"
 
 
 def check_length(path: Path, claimed: float, available: float, part: str) -> None:
@@ -199,6 +199,6 @@ def check_length(path: Path, claimed: float, available: float, part: str) -> Non
     """
     if claimed < 0 or claimed > available:
         raise DataError(
-            f"{path}: {part} claims {claimed:.0f} bytes of data, the file contains {available:.0f}; it is truncated or "
-            "damaged; export it again"
+            f"{path}: {part} should have {claimed:.0f} bytes of data, but the file has only {available:.0f}; it "
+            "is truncated or damaged; export it again"
         )

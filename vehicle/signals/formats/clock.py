@@ -48,14 +48,14 @@ def check_uniform(table: Table, time: Vector, remedy: str = "resample it to unif
     step = time[row] - time[row - 1]
     if worst > UNIFORM_TOLERANCE and step >= PAUSE:
         raise DataError(
-            f"{table.place(row)}: the record pauses for {step:.6g} s, from {time[row - 1]:.9g} to {time[row]:.9g} s; "
-            "pauses are not filled; use the part before or after it"
+            f"{table.place(row)}: the record has a gap of {step:.6g} s, from {time[row - 1]:.9g} to "
+            f"{time[row]:.9g} s, and gaps are not filled; use the part before or after it"
         )
     if worst > UNIFORM_TOLERANCE:
         raise DataError(
-            f"{table.place(row)}: time is not uniform: the step of {step:.9g} s deviates by {worst:.3g} of the median "
-            f"step {float(np.median(np.diff(time))):.9g} s, must be at most {UNIFORM_TOLERANCE:g}; write the time "
-            f"with more digits, or {remedy}"
+            f"{table.place(row)}: time steps are not uniform: a step of {step:.9g} s deviates from the median "
+            f"{float(np.median(np.diff(time))):.9g} s by the factor {worst:.3g}, must be at most "
+            f"{UNIFORM_TOLERANCE:g}; write the time with more digits, or {remedy}"
         )
 
 
@@ -64,7 +64,7 @@ def without_rounding(time: Vector) -> tuple[Vector, tuple[str, ...]]:
     clock = None if is_uniform(time) else clock_of_rounded(time)
     if clock is None:
         return time, ()
-    notice = f"time stamps are rounded to {clock[1]} decimals: taken as a clock of {clock[0]:.9g} Hz"
+    notice = f"time stamps are rounded to {clock[1]} decimals; the sampling rate is assumed to be {clock[0]:.9g} Hz"
     return time[0] + np.arange(time.size) / clock[0], (notice,)
 
 
@@ -177,8 +177,8 @@ def time_remarks(time: Vector) -> tuple[str, ...]:
     if rounded or is_uniform(time):
         return rounded
     return (
-        f"times are not uniform: steps of {steps.min():.6g} to {steps.max():.6g} s; set {remedy}, or --rate HZ if the "
-        "samples are uniform and the time stamps jitter",
+        f"times are not uniform: steps of {steps.min():.6g} to {steps.max():.6g} s; set {remedy}, or --rate HZ "
+        "if the samples are uniform and only the time stamps are irregular",
     )
 
 

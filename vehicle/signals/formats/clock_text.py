@@ -78,7 +78,9 @@ def clock_seconds(cells: Sequence[str], days: Sequence[str] | None = None) -> tu
         offsets, notices = _day_offsets(dates)
         return DAY * offsets + (clocks - clocks[0]), start, notices
     backward = np.flatnonzero(np.diff(clocks) < -0.5 * DAY)
-    notices = [] if not backward.size else [f"the clock passes midnight {backward.size} times: 24 h added after each"]
+    notices = (
+        [] if not backward.size else [f"the clock passes midnight {backward.size} times; 24 h are added each time"]
+    )
     offset = np.zeros(clocks.size)
     for at in backward:
         offset[at + 1 :] += DAY

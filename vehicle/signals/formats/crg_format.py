@@ -89,10 +89,10 @@ def read_surface(path: Path) -> Surface:
     longs = [index for index, name in enumerate(names) if _SECTION.fullmatch(name)]
     if number_format not in WIDTHS and number_format not in BINARY:
         raise DataError(
-            f"{path}: numbers in the format {number_format!r}; must be one of {', '.join([*WIDTHS, *BINARY])}"
+            f"{path}: the numbers have the format {number_format!r}; must be one of {', '.join([*WIDTHS, *BINARY])}"
         )
     if len(longs) < 2 or any(units[index] not in ("m", "") for index in longs):
-        raise DataError(f"{path}: {len(longs)} long sections in m, must be at least 2")
+        raise DataError(f"{path}: has {len(longs)} long sections (columns of heights), must be at least 2")
     step = numbers.get("reference_line_increment", 0.0)
     if not 0.0 < step < 100.0:
         raise DataError(f"{path}: reference_line_increment {step:g} m; must be above 0")
@@ -101,8 +101,8 @@ def read_surface(path: Path) -> Surface:
     table = _table(path, data[end.end() :], number_format, len(names), rows)
     if float(np.nanmax(np.abs(table), initial=0.0)) > LARGEST:
         raise DataError(
-            f"{path}: height {np.nanmax(np.abs(table)):.3g} m, must be at most {LARGEST:g} m; the file is damaged, "
-            "perhaps by a transfer that changes line ends; copy it as a binary file"
+            f"{path}: has a height of {np.nanmax(np.abs(table)):.3g} m, must be at most {LARGEST:g} m; the file "
+            "is damaged, perhaps by a transfer that changes line ends; copy it as a binary file"
         )
     jump = np.nan_to_num(np.abs(np.diff(table[:, longs], axis=0))).max(axis=1)
     high = np.flatnonzero(jump > STEEPEST + 2.0 * step)
@@ -153,10 +153,10 @@ def road_words(surface: Surface) -> str:
     step = float(surface.u[1] - surface.u[0])
     outside = int(np.count_nonzero(np.isnan(surface.z)))
     return (
-        f"road surface of {surface.u[-1] - surface.u[0]:.6g} m by {surface.v[-1] - surface.v[0]:.4g} m, every "
-        f"{step:.4g} m along and {surface.v.size} sections across (v to the left)"
+        f"road surface of {surface.u[-1] - surface.u[0]:.6g} m by {surface.v[-1] - surface.v[0]:.4g} m, with a "
+        f"height every {step:.4g} m along the road and {surface.v.size} sections across (v to the left)"
         + (f"; {outside} points are missing" if outside else "")
-        + ("; its reference line is curved, and used as a straight line" if surface.curved else "")
+        + ("; its curved reference line is used as a straight line" if surface.curved else "")
     )
 
 
@@ -196,7 +196,10 @@ def _places(path: Path, names: list[str], numbers: dict[str, float]) -> Vector:
     else:
         step = numbers.get("long_section_v_increment")
         if step is None:
-            raise DataError(f"{path}: long_section_v_increment is missing, and the section names contain no v")
+            raise DataError(
+                f"{path}: the lateral positions v are missing; add long_section_v_increment, or name the "
+                "sections by their v"
+            )
         right = numbers.get("long_section_v_right", -0.5 * step * (len(names) - 1))
         positions = right + step * np.arange(len(names))
     if not (np.diff(positions) > 0.0).all():
@@ -214,8 +217,8 @@ def _table(path: Path, data: bytes, number_format: str, columns: int, rows: int 
         check_length(path, needed, len(data), "its header")
         if len(data) - needed >= LINE + 2:
             raise DataError(
-                f"{path}: {len(data)} bytes of numbers, {needed} according to its header; it is damaged, perhaps by a "
-                "transfer that changes line ends; copy it as a binary file"
+                f"{path}: has {len(data)} bytes of numbers, but its header states {needed}; it is damaged, "
+                "perhaps by a transfer that changes line ends; copy it as a binary file"
             )
         with np.errstate(invalid="ignore"):  # the caller rejects invalid numbers by their magnitude
             return np.frombuffer(data, number_type, rows * columns).astype(np.float64).reshape(rows, columns)
@@ -224,10 +227,10 @@ def _table(path: Path, data: bytes, number_format: str, columns: int, rows: int 
     lines = [line for line in data.decode("latin-1").splitlines() if line.strip()]
     per_row = -(-columns // per_line)
     if len(lines) % per_row or not lines or (rows is not None and len(lines) != rows * per_row):
-        claim = "" if rows is None else f", {rows} rows according to its header"
+        claim = "" if rows is None else f"; its header states {rows} rows"
         raise DataError(
-            f"{path}: {len(lines)} lines of numbers, {per_row} for each row of {columns}{claim}; the file is "
-            "truncated or damaged; export it again"
+            f"{path}: {len(lines)} lines of numbers, must be {per_row} for each row of {columns} values{claim}; "
+            "the file is truncated or damaged; export it again"
         )
     cells = []
     for start in range(0, len(lines), per_row):

@@ -49,7 +49,7 @@ def read(path: Path) -> Measurement:
             f"{path}:2: binary numbers (KEYNUM {number_format}) are not supported; export the profile as text ERD"
         )
     if count < 1 or step <= 0.0:
-        raise DataError(f"{path}:2: {count} channels every {step:g}; both must be above 0")
+        raise DataError(f"{path}:2: {count} channels with a step of {step:g}; both must be above 0")
     keywords = _keywords(lines[2:end])
     names = _fields(keywords.get("SHORTNAM", ""), count)
     units = [_unit(unit) for unit in _fields(keywords.get("UNITSNAM", ""), count)]
@@ -67,7 +67,8 @@ def read(path: Path) -> Measurement:
     if values.size % count or not values.size or (samples > 0 and values.size != samples * count):
         claim = f"{samples} samples of " if samples > 0 else ""
         raise DataError(
-            f"{path}: {values.size} numbers; {claim}{count} channels in the header; the file is truncated or damaged"
+            f"{path}: contains {values.size} numbers, but the header states {claim}{count} channels; the "
+            "file is truncated or damaged; export it again"
         )
     table = values.reshape(-1, count)
     start = float(keywords["XSTART"]) if "XSTART" in keywords and _is_number(keywords["XSTART"]) else 0.0

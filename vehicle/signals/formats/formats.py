@@ -87,7 +87,7 @@ def recognised_format(path: Path) -> Format:
         DataError: an unsupported format, or binary data.
     """
     if not path.is_file():
-        raise ConfigurationError(f"{path}: no such file; give the path of a measurement file")
+        raise ConfigurationError(f"{path}: the file does not exist; give the path of a measurement file")
     try:
         with path.open("rb") as file:
             data = file.read(HEAD_BYTES)

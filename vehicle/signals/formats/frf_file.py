@@ -21,7 +21,7 @@ from vehicle.signals.formats.text_format import write_table
 SUFFIXES = ("_magnitude", "_phase [deg]", "_coherence")
 RANDOM_ERROR = "_random_error"
 FREQUENCY = "frequency [Hz]"
-NEEDED = f"{FREQUENCY!r} and {', '.join(f'<channel>{end}' for end in SUFFIXES)}"
+NEEDED = f"{FREQUENCY!r} and, for each channel, {', '.join(f'<channel>{end}' for end in SUFFIXES)}"
 LIMITS = {"_phase [deg]": (-math.inf, math.inf), "_coherence": (0.0, 1.0)}
 """Minimum and maximum values of columns that are not limited to 0 and above."""
 
@@ -168,7 +168,7 @@ def _channels(header: Header) -> tuple[str, ...]:
         )
     channels = tuple(dict.fromkeys(name.removesuffix(end or "") for name, end in suffix_of.items()))
     if not channels:
-        raise DataError(f"{header.where}: no channel; needed are {NEEDED}")
+        raise DataError(f"{header.where}: contains no channel; needed are {NEEDED}")
     missing = next((channel + end for channel in channels for end in SUFFIXES if channel + end not in names), None)
     if missing is not None:
         raise DataError(f"{header.where}: no column {missing!r}; a channel needs magnitude, phase and coherence")

@@ -58,7 +58,7 @@ def read(path: Path) -> Measurement:
             channels, start = _walk(path, file, h5py, notices)
             program = _attribute(file, "program")
     if not channels:
-        raise DataError(f"{path}: no numeric array; export the channels as arrays")
+        raise DataError(f"{path}: contains no numeric array; export the channels as arrays of numbers")
     return Measurement(
         path=path,
         format="hdf5",
@@ -175,7 +175,7 @@ def _arrays(name: str, dataset: Any, notices: list[str]) -> list[Channel]:
             place=_attribute(dataset, "place"),
             direction=_attribute(dataset, "direction"),
             reference=_attribute(dataset, "reference"),
-            remark=f"{fault}: the unit {unit!r} is not taken" if fault and unit else "",
+            remark=f"{fault}, so the unit {unit!r} is ignored" if fault and unit else "",
         )
         for n in range(values.shape[1])
     ]
@@ -200,7 +200,7 @@ def _coordinate(dataset: Any, count: int) -> Vector | None:
 def _fields(name: str, dataset: Any, notices: list[str]) -> list[Channel]:
     """Return the fields of a record array as channels; a time field becomes their axis."""
     if dataset.ndim != 1:
-        notices.append(f"array {name!r} of records with {dataset.ndim} axes is ignored")
+        notices.append(f"array {name!r} is ignored: it has records in {dataset.ndim} dimensions, must be one dimension")
         return []
     table = dataset[()]
     numeric = [field for field in table.dtype.names if table[field].dtype.kind in "fiu" and table[field].ndim == 1]

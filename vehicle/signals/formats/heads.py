@@ -169,8 +169,8 @@ def _lines_of_heads(
             similar = len(cells) > 2 and abs(len(cells) - count) <= 2 and not any(map(_is_number, cells))
             if similar and not above and delimiter:
                 raise DataError(
-                    f"{path}:{index + 1}: {len(cells)} names for {count} columns: {', '.join(map(repr, cells[:4]))}; "
-                    "write one name per column"
+                    f"{path}:{index + 1}: found {len(cells)} names for {count} columns: "
+                    f"{', '.join(map(repr, cells[:4]))}; write one name per column"
                 )
             break
         if not any(cells):
@@ -181,7 +181,7 @@ def _lines_of_heads(
             break
         if not above and _is_number(cells[0]) and not all(_is_number(cell) for cell in cells if cell):
             shown = ", ".join(map(repr, cells[:4]))
-            raise DataError(f"{path}:{index + 1}: a mixture of names and numbers: {shown}; repair or remove the line")
+            raise DataError(f"{path}:{index + 1}: the line mixes names and numbers: {shown}; repair or remove it")
         if above and any(_is_number(cell) for cell in cells) and not all(_is_number(cell) for cell in cells if cell):
             break
         above.append(cells)

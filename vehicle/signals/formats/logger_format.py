@@ -63,15 +63,16 @@ def read_lines(path: Path, text: Text, format_name: str) -> Measurement:
     heads = read_heads(path, lines, start, delimiter, len(table.kinds))
     if not heads.named and delimiter == "," and not any("." in line for line in lines[start : start + AGREEING]):
         raise DataError(
-            f"{path}:{start + 1}: rows of {len(table.kinds)} numbers without a decimal point, and no line of as many "
-            "names above: 1,5 is ambiguous; with decimal commas, separate the columns by ';' or tabs"
+            f"{path}:{start + 1}: are the commas decimal commas? The rows have {len(table.kinds)} numbers "
+            "without a decimal point, and no line above with as many names; with decimal commas, separate the "
+            "columns by ';' or tabs"
         )
     numbers = [n + 1 for n in range(start, len(lines)) if lines[n].strip()]
     rows = [lines[n - 1] for n in numbers]
     kinds = settled_kinds(path, rows, table, heads.names)
     notices = [*text.notices, *remarks]
     if not heads.named:
-        notices.append(f"no line of names above line {start + 1}: the columns are numbered")
+        notices.append(f"no line with names above line {start + 1}; the columns are named by their numbers")
     texts, rows, delimiter = _texts(path, numbers, rows, delimiter, kinds)
     if not delimiter:
         rows = [" ".join(row.split()) for row in rows]
@@ -90,7 +91,7 @@ def read_lines(path: Path, text: Text, format_name: str) -> Measurement:
     text_columns = [name for name, column_type, n in zip(heads.names, kinds, range(len(kinds)), strict=True)
             if column_type != "number" and n not in axis.columns]  # fmt: skip
     if text_columns:
-        notices.append(f"columns of text are ignored: {', '.join(map(repr, text_columns[:12]))}")
+        notices.append(f"text columns are ignored: {', '.join(map(repr, text_columns[:12]))}")
     channels = tuple(
         Channel(
             name=name,
@@ -150,7 +151,7 @@ def _texts(
         cells = row.split(delimiter or None) if unquoted else cells_of(row, delimiter)
         if len(cells) != len(kinds):
             raise DataError(
-                f"{path}:{line}: row has {len(cells)} cells, the header {len(kinds)}; repair or remove the row"
+                f"{path}:{line}: the row has {len(cells)} cells, but the header {len(kinds)}; repair or remove the row"
             )
         for column in columns:
             if column in texts:
@@ -220,7 +221,7 @@ def _axis(
 
 
 def _without_unit(quantity: str, name: str) -> str:
-    return f"{quantity} column without a known unit: set --rate HZ, or --channel time={name} --unit time=s"
+    return f"the {quantity} column has no known unit; set --rate HZ, or --channel time={name} --unit time=s"
 
 
 def _start_of(heads: Heads, kinds: Sequence[Kind], values: Vector) -> str:
@@ -264,7 +265,7 @@ def _rates_above(above: Sequence[str]) -> list[str]:
         if match := _RATE.search(line):
             text = match.group().strip()
             return [
-                f"the text above the table contains {text!r}: set --rate {match['rate']} if this is the sampling rate"
+                f"the text above the table contains {text!r}; if this is the sampling rate, set --rate {match['rate']}"
             ]
     return []
 

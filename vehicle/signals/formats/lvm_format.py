@@ -67,8 +67,8 @@ def read(path: Path) -> Measurement:
     layout = head.get("X_Columns", "One").lower()
     if separator is None or layout not in ("no", "one", "multi"):
         raise DataError(
-            f"{path}: Separator {head.get('Separator')!r}, X_Columns {head.get('X_Columns')!r}; must be Tab or "
-            "Comma, and No, One or Multi; export it again"
+            f"{path}: Separator is {head.get('Separator')!r}, must be Tab or Comma; X_Columns is "
+            f"{head.get('X_Columns')!r}, must be No, One or Multi; export it again"
         )
     segments = _segments(path, lines, first, separator)
     sign = {",": ",", ".": "."}.get(head.get("Decimal_Separator", ""), "")
@@ -94,7 +94,7 @@ def _file_header(path: Path, lines: Sequence[str]) -> tuple[dict[str, str], int]
             return header, index + 1
         key, _, value = line.partition("\t") if "\t" in line else line.partition(",")
         header[key.strip()] = value.strip("\t ")
-    raise DataError(f"{path}: no line {END} after the file header; the file is truncated; export it again")
+    raise DataError(f"{path}: the line {END} after the file header is missing; the file is truncated; export it again")
 
 
 def _segments(path: Path, lines: Sequence[str], first: int, separator: str) -> list[_Segment]:
@@ -117,7 +117,8 @@ def _segments(path: Path, lines: Sequence[str], first: int, separator: str) -> l
             segments.append(_Segment(attributes={word: line.split(separator)}))
         elif not segments:
             raise DataError(
-                f"{path}:{index + 1}: {line[:40]!r} before the header of a segment (Channels); export it again"
+                f"{path}:{index + 1}: found {line[:40]!r} where the header of a segment (Channels) must "
+                "begin; export it again"
             )
         elif not segments[-1].names:
             segments[-1].names, segments[-1].line = [cell.strip() for cell in line.split(separator)], index + 1
@@ -139,7 +140,7 @@ def _channels(
     columns = [n for n in range(len(names)) if not (names[n] == "X_Value" and (n == 0 or layout == "multi"))]
     if channel_count.isdecimal() and int(channel_count) != len(columns):
         raise DataError(
-            f"{path}:{segment.line}: {len(columns)} names for {channel_count} channels: "
+            f"{path}:{segment.line}: found {len(columns)} names for {channel_count} channels: "
             f"{', '.join(map(repr, names[:6]))}; export it again"
         )
     values = _numbers(path, segment, names, separator, sign, notices)
@@ -155,7 +156,7 @@ def _channels(
         count = segment.value("Samples", column)
         packet = int(count) if count.isdecimal() else 0
         if packet > samples.size:
-            notices.append(f"{names[column]!r} has {samples.size} samples, {packet} according to its header")
+            notices.append(f"channel {names[column]!r} has {samples.size} samples, but its header states {packet}")
         time_column = column - 1 if layout == "multi" else 0
         times = None if layout == "no" or time_column < 0 else values[: samples.size, time_column]
         if layout == "one" and any(
@@ -168,7 +169,7 @@ def _channels(
         if x_dimension == "time" and axis is not None:
             axis = axis + later[column]
         elif x_dimension not in ("time", "frequency"):
-            axis, remark = None, f"the axis is a {x_dimension}: no times"
+            axis, remark = None, f"the axis is a {x_dimension}, not a time"
         function = {"frequency": "spectrum", "distance": OVER_DISTANCE, "length": OVER_DISTANCE, "angle": OVER_ANGLE}
         channels.append(
             Channel(
@@ -211,16 +212,21 @@ def _numbers(path: Path, segment: _Segment, names: list[str], separator: str, si
         cells = row.split(separator)
         if len(cells) < width:
             raise DataError(
-                f"{path}:{line}: row has {len(cells)} cells for {width} columns; the file is truncated; remove the row"
+                f"{path}:{line}: the row has {len(cells)} cells for {width} columns; the file is truncated; "
+                "remove the row"
             )
         if any(cell.strip() for cell in cells[width:]):
-            notices.append("comments of rows are ignored")
+            notices.append("comments behind rows are ignored")
         rows.append("\t".join(cells[:width]))
     commas = any("," in row for row in rows)
     if commas and any("." in row for row in rows):
-        raise DataError(f"{path}:{segment.line}: decimal points and commas in one segment; export it with one of them")
+        raise DataError(
+            f"{path}:{segment.line}: the segment mixes decimal points and decimal commas; export it with one of them"
+        )
     if commas and sign == ".":
-        raise DataError(f"{path}:{segment.line}: decimal commas, but Decimal_Separator is '.'; export it again")
+        raise DataError(
+            f"{path}:{segment.line}: the numbers have decimal commas, but Decimal_Separator is '.'; export it again"
+        )
     if commas:
         rows = [row.replace(",", ".") for row in rows]
     header = Header(path=path, line=segment.line, cells=tuple(names), delimiter="\t")
@@ -244,13 +250,13 @@ def _times(
         start, text = (segment.value(key, column).replace(",", ".") for key in ("X0", "Delta_X"))
         origin, (step, remark) = float(start or "0"), _step(text)
     except ValueError:
-        return None, "no times: X0 or Delta_X is not a number; set --rate HZ"
+        return None, "the times are missing: X0 or Delta_X is not a number; set --rate HZ"
     if not (step > 0.0 and math.isfinite(origin) and math.isfinite(step)):
-        return None, "no times: Delta_X is not positive; set --rate HZ"
+        return None, "the times are missing: Delta_X is not positive; set --rate HZ"
     if 0 < packet < count:
         return None, (
-            f"packets of {packet} samples under one header, with unknown times between packets: set --rate "
-            f"{1.0 / step:.9g} if there are no pauses between packets"
+            f"the time between packets of {packet} samples is unknown; if there are no gaps between them, set "
+            f"--rate {1.0 / step:.9g}"
         )
     return uniform_axis(count, step, origin), remark
 
@@ -264,9 +270,9 @@ def _step(text: str) -> tuple[float, str]:
     half = 0.5 * 10.0 ** -len(decimals)
     low, high = math.ceil(1.0 / (step + half)), math.floor(1.0 / (step - half)) if step > half else 0
     if low == high and abs(step * low - 1.0) > 1e-12:
-        return 1.0 / low, f"time step {text} s is rounded: taken as a clock of {low} Hz"
+        return 1.0 / low, f"time step {text} s is rounded; the sampling rate is assumed to be {low} Hz"
     if low != high and half / step > 1e-5:
-        uncertainty = f"uncertainty of the rate {1.0 / step:.9g} Hz {number(100 * half / step, 2)} %"
+        uncertainty = f"the sampling rate is {1.0 / step:.9g} Hz +- {number(100 * half / step, 2)} %"
         return step, f"time step {text} s is rounded: {uncertainty}"
     return step, ""
 
@@ -279,14 +285,14 @@ def _joined(
         return tuple(columns[0])
     names = [[(channel.name, channel.unit, channel.axis is None) for channel in of_segment] for of_segment in columns]
     if any(other_names != names[0] for other_names in names):
-        notices.append(f"{len(segments)} segments with different channels: channels are listed by segment")
+        notices.append(f"{len(segments)} segments have different channels; each segment has its channels in the list")
         return tuple(
             replace(channel, place=f"segment {number}")
             for number, of_segment in enumerate(columns, 1)
             for channel in of_segment
         )
     offsets = _starts(path, segments, columns)
-    notices.append(f"{len(segments)} segments concatenated by their times")
+    notices.append(f"{len(segments)} segments are joined by their times")
     joined = []
     for index, channel in enumerate(columns[0]):
         parts = [segment_channels[index] for segment_channels in columns]

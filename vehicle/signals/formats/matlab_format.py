@@ -96,15 +96,18 @@ def channels_of(
     if not channels:
         names = ", ".join(name for name in list(variables)[:12] if not name.startswith("__")) or "nothing"
         raise DataError(
-            f"{path}: contains {names}; needed is a structure with x_values and y_values, or a numeric array"
+            f"{path}: contains {names}; must contain a structure with x_values and y_values, or a numeric array"
         )
     notices = [f"single numbers: {', '.join(scalars[:12])}"] if scalars else []
     if objects:
         notices.append(f"ignored: {remedy}")
     if left_out:
-        notices.append(f"arrays of more than two dimensions are ignored: {', '.join(left_out[:8])}; save their columns")
+        notices.append(
+            f"arrays with more than two dimensions are ignored: {', '.join(left_out[:8])}; save their columns as "
+            "vectors"
+        )
     if any(inner_value.axis is None for inner_value in channels):
-        notices.append("arrays without times: set --rate HZ, or --channel time=NAME --unit time=s")
+        notices.append("the arrays have no times; set --rate HZ, or --channel time=NAME --unit time=s")
     return tuple(channels), notices
 
 
@@ -125,7 +128,7 @@ def _remedy(objects: Mapping[str, str]) -> str:
     line = {"table": f"writetable({name}, '{name}.csv')", "timetable": f"writetimetable({name}, '{name}.csv')"}.get(
         class_name, f"x = double({name})" if class_name != "datetime" else f"x = posixtime({name})"
     )
-    return f"{shown} are MATLAB objects, readable by MATLAB only; convert them there, for example {line}"
+    return f"{shown} are MATLAB objects, which only MATLAB can read; convert them there, for example {line}"
 
 
 def _plain(name: str, values: Any) -> Channel:
@@ -180,8 +183,8 @@ def _signal(path: Path, label: str, record: Mapping[str, Any]) -> list[Channel]:
     axis_values, stated_count = _field(x, "values"), _number(_field(x, "number_of_values"))
     if stated_count is not None and int(stated_count) != columns.shape[0]:
         raise DataError(
-            f"{path}: {label}: {stated_count:g} values stated, {columns.shape[0]} present; the file is damaged; "
-            "save it again"
+            f"{path}: {label}: contains {columns.shape[0]} values, but states {stated_count:g}; the file is "
+            "damaged; save it again"
         )
     axis_unit = find_unit(word(_field(x, "quantity", "label")))
     axis_quantity = axis_unit.quantity if axis_unit is not None else ""
@@ -198,10 +201,10 @@ def _signal(path: Path, label: str, record: Mapping[str, Any]) -> list[Channel]:
     factor, unit_entry = _number(_field(y, "quantity", "unit_transformation", "factor")), find_ratio(unit)
     if factor is not None and unit_entry is not None:
         if abs(factor * unit_entry.factor - 1.0) > 0.01:
-            note = f"the unit is {unit!r}, the factor from SI to it {factor:g}: a contradiction"
+            note = f"unit {unit!r} and its stated factor to SI, {factor:g}, contradict each other"
             unit = ""
         elif unit_entry.factor != 1.0:
-            note = f"in SI units: the file displays {unit!r}, {factor:g} of them are one {unit_entry.si}"
+            note = f"read in SI units; the file displays {unit!r} ({factor:g} {unit} are 1 {unit_entry.si})"
             unit = unit_entry.si
         else:
             note = ""
@@ -239,10 +242,12 @@ def _check_elements(path: Path) -> dict[str, str]:
             file.seek(position)
             data_type, count = struct.unpack(f"{order}II", file.read(8))
             if data_type >> 16:
-                raise DataError(f"{path}: no element at byte {position}; the file is damaged; save it again")
+                raise DataError(
+                    f"{path}: expected a data element at byte {position}; the file is damaged; save it again"
+                )
             check_length(path, count, size - position - 8, f"element at byte {position}")
             if data_type not in (MATRIX, COMPRESSED):
-                raise DataError(f"{path}: no matrix at byte {position}; the file is damaged; save it again")
+                raise DataError(f"{path}: expected a matrix at byte {position}; the file is damaged; save it again")
             body = file.read(count)
             if data_type == COMPRESSED:
                 try:
@@ -253,7 +258,7 @@ def _check_elements(path: Path) -> dict[str, str]:
                     require_unpacked(path, unpacked, size)
                     body = stream.decompress(stream.unconsumed_tail, inside + 1)
                     if len(body) != inside or not stream.eof:
-                        raise zlib.error("incomplete or truncated stream, or one of another size than its tag")
+                        raise zlib.error("the compressed data are truncated, or have another size than stated")
                 except (zlib.error, struct.error) as error:
                     raise DataError(f"{path}: element at byte {position}: {error}; save the file again") from None
             check_matrix(path, body, order, f"element at byte {position}")

@@ -80,7 +80,9 @@ def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
         count = sum(frames.time.size for frames in log.values())
         notices = [f"{count} raw frames of a CAN bus are ignored; set --dbc FILE to decode them", *notices]
     if not channels:
-        raise DataError(f"{path}: no numeric channel; {'; '.join(notices) or 'no channels'}; export numbers")
+        raise DataError(
+            f"{path}: contains no channel with numbers; {'; '.join(notices) or 'no channels'}; export numbers"
+        )
     return Measurement(
         path=path,
         format="mdf",
@@ -105,7 +107,9 @@ def write(path: Path, channels: Sequence[Channel], description: str) -> None:
     groups: dict[int, tuple[Any, list[Any]]] = {}
     for channel in channels:
         if channel.axis is None or channel.kind != "time":
-            raise DataError(f"{path}: {channel.name} is not a time history; MDF has no other functions; leave it out")
+            raise DataError(
+                f"{path}: {channel.name} is not a time history, and MDF stores only time histories; leave it out"
+            )
         _, signals = groups.setdefault(id(channel.axis), (channel.axis, []))
         signals.append(
             asammdf.Signal(
@@ -172,7 +176,7 @@ def _channels(file: Any, buses: Set[int]) -> tuple[list[Channel], list[str]]:
             channels.append(over_time)
     if frames:
         shown = ", ".join(f"{frame_type} {count}" for frame_type, count in frames.items())
-        notices.append(f"frames of other types are left out: {shown}")
+        notices.append(f"frames that are not CAN data are left out: {shown}")
     return channels, [*notices, *([f"{skipped} channels without numbers are ignored"] if skipped else [])]
 
 
@@ -192,7 +196,7 @@ def _axis(file: Any, number: int) -> tuple[Channel | None, float, str]:
         return None, factor, "" if factor == 1.0 else f"times in {unit!r} are converted to s"
     if quantity == "time" and entry is not None:
         quantity = "distance" if entry.quantity == "displacement" else entry.quantity
-    remark = f"the master {block.name!r} is a {quantity}: no times"
+    remark = f"the axis {block.name!r} has the quantity {quantity}, not time"
     function = f"function of {quantity}"
     return (
         Channel(

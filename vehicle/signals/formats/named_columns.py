@@ -31,7 +31,9 @@ def named_columns(path: Path, wanted: Mapping[str, str]) -> dict[str, Vector]:
         matches = [channel for channel in measurement.channels if channel.name.strip().lower() == name]
         if len(matches) != 1:
             shown = ", ".join(f"{channel.name!r} [{channel.unit}]" for channel in measurement.channels[:12]) or "none"
-            raise DataError(f"{path}: {len(matches)} columns are named {name!r}, must be one [{si}]; found {shown}")
+            raise DataError(
+                f"{path}: {len(matches)} columns are named {name!r}, must be a single column [{si}]; found {shown}"
+            )
         unit_entry, needed = find_unit(matches[0].unit), find_unit(si)
         if unit_entry is None or needed is None or unit_entry.quantity != needed.quantity:
             units = allowed_units(needed.quantity if needed is not None else None)
@@ -43,5 +45,5 @@ def named_columns(path: Path, wanted: Mapping[str, str]) -> dict[str, Vector]:
         columns[name] = values
     if len({channel.size for channel in columns.values()}) > 1:
         sizes = ", ".join(f"{name} {channel.size}" for name, channel in columns.items())
-        raise DataError(f"{path}: columns of different length ({sizes}), must be equal")
+        raise DataError(f"{path}: the columns have different lengths ({sizes}), must be equal")
     return columns

@@ -31,8 +31,8 @@ def read(path: Path, wanted: Wanted) -> Table:
     numbers = {name: values for name, values in loaded.items() if values.ndim == 1 and values.dtype.kind in "fiu"}
     if "time" not in numbers:
         raise DataError(
-            f"{path}: no array 'time'; found {', '.join(loaded) or 'no array of one dimension'}; needed are "
-            f"{wanted.needed}"
+            f"{path}: the array 'time' is missing; found {', '.join(loaded) or 'no array of one dimension'}; "
+            f"store time and each channel as a vector: {wanted.needed}"
         )
     count = numbers["time"].size
     for name, values in numbers.items():

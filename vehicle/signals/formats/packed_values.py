@@ -38,23 +38,23 @@ def unpacked(name: str, dataset: Any) -> tuple[NDArray[Any], str, tuple[str, ...
         if scale in attributes or (shift in attributes and shift == "add_offset"):
             numbers = [np.asarray(attributes.get(key, neutral)) for key, neutral in ((scale, 1.0), (shift, 0.0))]
             if any(number.size != 1 or number.dtype.kind not in "fiu" for number in numbers):
-                fault = f"attribute {scale} or {shift} is not one number"
+                fault = f"attribute {scale} or {shift} is not a single number"
             else:
                 factor, offset = (float(number.reshape(-1)[0]) for number in numbers)
             break
     if not fault and packed.dtype.kind in "iu":
         fault = next((
-            f"attribute {key!r} = {attributes[key]} may scale the integers, in a sense that is not known"
+            f"attribute {key!r} = {attributes[key]} may scale the integers in an unknown way"
             for key in attributes
             if key.lower() in UNKNOWN_SCALINGS and not np.array_equal(np.ravel(attributes[key]), [1.0])
         ), "")  # fmt: skip
     if (factor, offset) != (1.0, 0.0):
         values = values * factor + offset
-        notices.append(f"array {name!r}: unpacked by the factor {factor:g} and the offset {offset:g} of its attributes")
+        notices.append(f"array {name!r}: integers are converted by its factor {factor:g} and offset {offset:g}")
     if packed.dtype.kind in "fiu":
         missing = _missing(dataset, packed, values)
         if missing.any():
-            notices.append(f"array {name!r}: {np.count_nonzero(missing)} values are missing by its attributes")
+            notices.append(f"array {name!r}: {np.count_nonzero(missing)} values are marked as missing")
             values[missing] = np.nan
     return values, fault, tuple(notices)
 

@@ -52,8 +52,8 @@ def read(path: Path) -> Measurement:
     ]
     if not channels or not rows:
         raise DataError(
-            f"{path}: no numeric column; it contains {', '.join(map(repr, fields.names[:12])) or 'nothing'}; "
-            "export numbers"
+            f"{path}: contains no column with numbers, only "
+            f"{', '.join(map(repr, fields.names[:12])) or 'nothing'}; export numbers"
         )
     return Measurement(
         path=path,
@@ -81,7 +81,7 @@ def _axis(columns: list[tuple[str, Any, str]], notices: list[str]) -> tuple[Vect
     for index, (name, values, unit) in enumerate(columns):
         epoch = epoch_seconds(values, unit) if unit else None
         if epoch is not None:
-            notices.append(f"dates of column {name!r}: the time begins at {epoch[1]}")
+            notices.append(f"column {name!r} contains dates: the time begins at {epoch[1]}")
             return epoch[0], index, epoch[1]
     for index, (name, values, unit) in enumerate(columns):
         text, unit_in_name = split_head(name)

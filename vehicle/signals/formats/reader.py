@@ -37,7 +37,8 @@ def read_record(path: str | Path, databases: Sequence[Path] = ()) -> Measurement
     recognised = recognised_format(file)
     if databases and not recognised.databases:
         raise ConfigurationError(
-            f"{path}: --dbc decodes the log of a CAN bus (MDF, .asc, .trc, candump); it is {recognised.name}"
+            f"{path}: is a file of the format {recognised.name}, but --dbc decodes logs of a CAN bus (MDF, "
+            ".asc, .trc, candump); leave --dbc out"
         )
     read = recognised.function("reader", "read")
     measurement: Measurement = read(file, databases) if databases else read(file)
@@ -78,11 +79,11 @@ def read_columns(path: Path, needed: str = "'time [s]' and '<channel> [<unit>]'"
     for index, cell in enumerate(table.header.cells):
         name, unit = name_and_unit(cell)
         if name in channels:
-            raise DataError(f"{table.header.where}: column {name!r} appears twice; each may appear once")
+            raise DataError(f"{table.header.where}: column {name!r} appears twice; rename or remove one of them")
         channels[name], units[name] = table.values[:, index], unit or ""
     time, _ = channels.pop("time"), units.pop("time")
     if time.size < MINIMUM_SAMPLES:
-        raise DataError(f"{path}: {time.size} samples, must be at least {MINIMUM_SAMPLES}")
+        raise DataError(f"{path}: contains {time.size} samples, must be at least {MINIMUM_SAMPLES}")
     check_stamps(path, time)
     check_increasing(table, time)
     uniform, notices = without_rounding(time)
@@ -101,4 +102,4 @@ def time_file(run: Path) -> Path:
     for name in ("time.npz", "time.csv"):
         if (run / name).is_file():
             return run / name
-    raise ConfigurationError(f"{run}: holds no time.npz or time.csv; give the folder of a run, or a file")
+    raise ConfigurationError(f"{run}: contains no time.npz or time.csv; give the folder of a run, or a file")

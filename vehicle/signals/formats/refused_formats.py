@@ -12,10 +12,13 @@ SIGNATURES = {
     b"$OP2": ("Nastran OP2", "UFF 55 or CSV"),
     b"CDF": ("netCDF of the classic form", "netCDF-4, as `nccopy -k nc4 IN.nc OUT.nc` does"),
     b"LOGG": (
-        "a log of a CAN bus (Vector BLF)",
-        "MDF4 or ASC, as `python -m can.logconvert IN.blf OUT.asc` of python-can does, and give --dbc FILE with it",
+        "log of a CAN bus (Vector BLF)",
+        (
+            "MDF4 or ASC, for example with `python -m can.logconvert IN.blf OUT.asc` of python-can, and give it "
+            "with --dbc FILE"
+        ),
     ),
-    b"ULog\x01\x12\x35": ("PX4 ULog", "CSV, as `ulog2csv FILE` of pyulog does"),
+    b"ULog\x01\x12\x35": ("PX4 ULog", "CSV, for example with `ulog2csv FILE` of pyulog"),
 }
 """First bytes of a file -> name of the format, and alternative for the export."""
 
@@ -54,10 +57,10 @@ def refuse(head: Head) -> None:
     if data.startswith(EBML_SIGNATURE):
         if b"mide" in data[:64]:
             raise DataError(
-                f"{path}: enDAQ IDE recording, not supported; export CSV from enDAQ Lab, or with Python: "
+                f"{path}: enDAQ IDE recordings are not supported; export CSV from enDAQ Lab, or with Python: "
                 f"endaq.ide.to_pandas(endaq.ide.get_doc({path.name!r}).channels[8]).to_csv('{path.stem}.csv')"
             )
-        raise DataError(f"{path}: film or another EBML file, not supported; use a measurement file")
+        raise DataError(f"{path}: is a film or another EBML file, which is not supported; use a measurement file")
     for signature, (name, instead) in SIGNATURES.items():
         if data.startswith(signature) or (signature == b"<usi:tdm" and signature in data):
             raise DataError(f"{path}: {name}, not supported; export {instead}")

@@ -41,7 +41,7 @@ def with_remarks(lines: list[str], table: TextTable) -> tuple[list[str], TextTab
             if lines[n].strip():
                 filled[n] = filled[n].rstrip() + (names - width) * delimiter
     remark: Kind = "text"
-    notices = [] if names > width else [f"remarks beyond the last column are ignored, the first in line {wide[0] + 1}"]
+    notices = [] if names > width else [f"remarks behind the last column are ignored, the first in line {wide[0] + 1}"]
     kinds = (*table.kinds, *[remark] * (names - width))
     return filled, TextTable(start=start, delimiter=delimiter, kinds=kinds), notices
 

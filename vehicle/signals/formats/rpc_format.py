@@ -39,13 +39,13 @@ def read(path: Path) -> Measurement:
             raise DataError(f"{path}: {key} is {value!r}, must be one of {', '.join(allowed)}")
     numbers = {key: _number(path, head, key) for key in ("CHANNELS", "FRAMES", "PTS_PER_FRAME", "PTS_PER_GROUP")}
     if any(value < 1 or value != int(value) for value in numbers.values()):
-        raise DataError(f"{path}: {numbers}, must be whole numbers of at least 1")
+        raise DataError(f"{path}: found {numbers}, must be whole numbers of at least 1")
     channels, frames, frame, group = (int(value) for value in numbers.values())
     step = _number(path, head, "DELTA_T")
     if step <= 0.0 or group % frame:
         raise DataError(
-            f"{path}: DELTA_T {step:g} s, {group} samples per group, {frame} per frame, must be a positive "
-            "step and whole frames per group"
+            f"{path}: found DELTA_T {step:g} s, {group} samples per group and {frame} per frame; must be a "
+            "positive time step and whole frames per group"
         )
     number_type = WIDTHS[head.get("DATA_TYPE", "SHORT_INTEGER")]
     start = int(_number(path, head, "NUM_HEADER_BLOCKS")) * BLOCK
@@ -55,7 +55,7 @@ def read(path: Path) -> Measurement:
     notices = []
     samples = int(_number(path, head, "SAMPLES")) if "SAMPLES" in head else total
     if not 0 < samples <= total:
-        raise DataError(f"{path}: SAMPLES {samples}, must be 1 to {total}, the size of the frames")
+        raise DataError(f"{path}: SAMPLES is {samples}, must be 1 to {total}, the samples in all frames")
     order = ORDERS[head["FORMAT"]]
     table = np.frombuffer(data, f"{order}{number_type}", groups * group * channels, start).reshape(
         groups, channels, group
@@ -65,8 +65,8 @@ def read(path: Path) -> Measurement:
         samples -= filled
         padding_notice = f"the last {filled} samples are constant in all channels and ignored as padding"
         if not filled:
-            padding_notice = f"up to {frame - 1} samples at the end may be padding; cut with --to"
-        notices.append(f"no SAMPLES in the header: {padding_notice}")
+            padding_notice = f"up to {frame - 1} samples at the end may be padding; cut them off with --to"
+        notices.append(f"SAMPLES is missing in the header: {padding_notice}")
     step, remark = clock_step(step)
     axis = uniform_axis(samples, step)
     channel_list = []
@@ -131,7 +131,9 @@ def _header(path: Path, data: bytes) -> dict[str, str]:
             blocks = _number(path, header, "NUM_HEADER_BLOCKS")
             check_length(path, blocks * BLOCK, len(data), "NUM_HEADER_BLOCKS")
             if count * RECORD > blocks * BLOCK:
-                raise DataError(f"{path}: {count} keywords do not fit into {blocks:g} blocks of the header")
+                raise DataError(
+                    f"{path}: the header has {blocks:g} blocks, too few for its {count} keywords; export it again"
+                )
     return header
 
 
@@ -139,7 +141,7 @@ def _number(path: Path, head: dict[str, str], key: str) -> float:
     try:
         value = float(head[key])
     except KeyError:
-        raise DataError(f"{path}: no {key} in the header; export it again") from None
+        raise DataError(f"{path}: {key} is missing in the header; export it again") from None
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
@@ -150,7 +152,10 @@ def _number(path: Path, head: dict[str, str], key: str) -> float:
 def _check_values(path: Path, head: dict[str, str], number: int, values: np.ndarray) -> None:
     """Reject numbers that are not finite or far beyond the limits in the header (wrong scale)."""
     if not np.isfinite(values).all() or np.abs(values).max() > LARGEST:
-        raise DataError(f"{path}: channel {number} has numbers that are not finite, or above 1e30; is FORMAT wrong?")
+        raise DataError(
+            f"{path}: channel {number} contains numbers that are not finite or above 1e30; is the keyword FORMAT "
+            "wrong? export it again"
+        )
     limits = []
     for key in ("LOWER_LIMIT", "UPPER_LIMIT"):
         try:
@@ -166,8 +171,8 @@ def _check_values(path: Path, head: dict[str, str], number: int, values: np.ndar
         return
     if max(limits) > 0.0 and largest > 2.0 * max(limits):
         raise DataError(
-            f"{path}: channel {number} reaches {largest:g}, its limits in the header are {max(limits):g}; SCALE has "
-            "another meaning or is damaged; export it in floating point"
+            f"{path}: channel {number} reaches {largest:g}, but its limit in the header is {max(limits):g}; the "
+            "keyword SCALE is damaged or used in another sense; export it in floating point"
         )
 
 
@@ -182,10 +187,10 @@ def write(path: Path, channels: tuple[Channel, ...], description: str) -> None:
     for channel in channels:
         if channel.kind != "time" or channel.values.size != first.values.size or channel.rate != rate or rate is None:
             raise DataError(
-                f"{path}: RPC III needs time histories of one rate; {channel.name} has another rate; resample it"
+                f"{path}: {channel.name} has another sampling rate, and RPC III stores a single rate; resample it"
             )
         if not np.isfinite(channel.values).all():
-            raise DataError(f"{path}: {channel.name} has a missing value, not supported by RPC III; leave it out")
+            raise DataError(f"{path}: {channel.name} has a missing value, which RPC III cannot store; leave it out")
     samples, count = first.values.size, len(channels)
     frame = min(FRAMES, key=lambda size: -samples % size)
     frames = math.ceil(samples / frame)

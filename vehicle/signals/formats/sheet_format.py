@@ -44,7 +44,7 @@ def read(path: Path) -> Measurement:
         return replace(measurement, channels=channels)
     if first_error is not None and any(_formulas(path, title) for title in sheets):
         raise DataError(f"{first_error}; the sheet has {NO_VALUES}") from None
-    raise first_error or DataError(f"{path}: no sheet; save it again")
+    raise first_error or DataError(f"{path}: contains no sheet; save it again")
 
 
 def _formulas(path: Path, title: str) -> bool:

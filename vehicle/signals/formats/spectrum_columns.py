@@ -54,7 +54,7 @@ def joined(channels: Sequence[Channel]) -> tuple[Channel, ...]:
         assert match is not None
         name = match["head"].strip() or "frequency response"
         remark = f"of the columns {upper.name!r} and {lower.name!r}" + (
-            "; phase taken in degrees" if first == "magnitude" and not lower.unit else ""
+            "; the phase is read in degrees" if first == "magnitude" and not lower.unit else ""
         )
         result[indices[first]] = replace(upper, name=name, values=values, function="frequency response", remark=remark)
         result[indices[second]] = None

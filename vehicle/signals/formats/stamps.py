@@ -69,8 +69,8 @@ class StampClock(NamedTuple):
         """Return a description of the stamps, with the option to replace them."""
         limits = "" if self.lowest == self.highest else f" ({self.lowest:.6g} to {self.highest:.6g} Hz fit)"
         return (
-            f"time stamps {self.reason}: they do not show when each sample was taken; set --rate {self.option} for "
-            f"uniform samples, from their number over the span{limits}"
+            f"time stamps {self.reason}, so they do not show when each sample was taken; if the samples are "
+            f"uniform, set --rate {self.option}, the mean rate{limits}"
         )
 
 

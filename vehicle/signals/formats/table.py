@@ -162,10 +162,10 @@ def key_column(cell: str, needed: str) -> Callable[[Header], int]:
     def check(header: Header) -> int:
         twice = next((name for name in header.cells if header.cells.count(name) > 1), None)
         if twice is not None:
-            raise DataError(f"{header.where}: column {twice!r} appears twice; each may appear once")
+            raise DataError(f"{header.where}: column {twice!r} appears twice; rename or remove one of them")
         if cell not in header.cells:
             shown = ", ".join(map(repr, header.cells[:8]))
-            raise DataError(f"{header.where}: no column {cell!r}; found {shown}; needed are {needed}")
+            raise DataError(f"{header.where}: column {cell!r} is missing; found {shown}; needed are {needed}")
         return header.cells.index(cell)
 
     return check

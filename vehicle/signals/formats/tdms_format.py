@@ -63,7 +63,7 @@ def _axis(properties: Mapping[str, Any], count: int, later: float) -> dict[str, 
         return {"axis": axis, "kind": "frequency", "function": "spectrum", "remark": ""}
     if unit is not None and unit.quantity != "time":
         function = AXES.get(unit.quantity, "time history")
-        return {"axis": None, "function": function, "remark": f"the axis is in {label!r}: no times"}
+        return {"axis": None, "function": function, "remark": f"the axis is in {label!r}, not a time"}
     factor = 1.0 if unit is None else unit.factor
     step, remark = clock_step(step * factor)
     return {"axis": uniform_axis(count, step, offset * factor + later), "remark": remark}
@@ -94,9 +94,13 @@ def read(path: Path) -> Measurement:
             unit = channel.properties.get("unit_string") or channel.properties.get("NI_UnitDescription") or ""
             axis = _axis(channel.properties, values.size, later)
             if date is None and earliest is not None and axis.get("axis") is not None:
-                axis["remark"] = "; ".join(filter(None, (axis["remark"], "no start time: taken as the earliest one")))
+                axis["remark"] = "; ".join(
+                    filter(
+                        None, (axis["remark"], "the start time is missing; the earliest of the other channels is used")
+                    )
+                )
             if scaling:
-                remark = f"raw values, their scaling is not known ({scaling[0]}): the unit {str(unit)!r} is not taken"
+                remark = f"raw values with an unknown scaling ({scaling[0]}), so the unit {str(unit)!r} is ignored"
                 unit, axis["remark"] = "", remark
             channels.append(
                 Channel(
@@ -108,7 +112,9 @@ def read(path: Path) -> Measurement:
                 )
             )
     if not channels:
-        raise DataError(f"{path}: no numeric channel; {skipped} channels of other types; export numbers")
+        raise DataError(
+            f"{path}: contains no channel with numbers, only {skipped} channels of other types; export numbers"
+        )
     return Measurement(
         path=path,
         format="tdms",

@@ -103,7 +103,7 @@ class PropertyFile:
         """
         if name not in self.blocks:
             present = ", ".join(f"[{other}]" for other in self.blocks) or "none"
-            raise DataError(f"{self.path}: no block [{name}]; found {present}; add it")
+            raise DataError(f"{self.path}: the block [{name}] is missing; found {present}; add it")
         return self.blocks[name]
 
     def unit(self, quantity: str) -> float:
@@ -149,8 +149,8 @@ class PropertyFile:
         for line, row in self.block(block).rows:
             where = f"{self.path}:{line}: [{block}]"
             if len(row) != 2:
-                raise DataError(f"{where} has a row of {len(row)} columns, must be 2; a curve over two "
-                                "variables is not read")  # fmt: skip
+                raise DataError(f"{where} has a row of {len(row)} columns, must be 2: curves over two "
+                    "variables cannot be read")  # fmt: skip
             x, y = (_finite(word, where) for word in row)
             if points and x * x_unit <= points[-1][0]:
                 raise DataError(f"{where} has {x:g} after {points[-1][0] / x_unit:g}, must be ascending; sort the "
@@ -178,9 +178,9 @@ def read_property_file(path: Path) -> PropertyFile:
         DataError: it is no text in TeimOrbit format, or a block is repeated.
     """
     if not path.is_file():
-        raise ConfigurationError(f"{path}: no such file; give the path of a property file")
+        raise ConfigurationError(f"{path}: the file does not exist; give the path of a property file")
     if path.stat().st_size > LARGEST_FILE:
-        raise ConfigurationError(f"{path}: larger than {LARGEST_FILE / 1e6:g} MB; this is no property file")
+        raise ConfigurationError(f"{path}: is larger than {LARGEST_FILE / 1e6:g} MB, so it is not a property file")
     text = path.read_bytes().decode("latin-1")
     if text.lstrip().startswith("<"):
         raise DataError(f"{path}: is an XML property file; save it in TeimOrbit format (text, FILE_TYPE) in the "
@@ -198,25 +198,27 @@ def read_property_file(path: Path) -> PropertyFile:
         if line[0] == "[":
             name = line[1:-1].strip().upper()
             if name in blocks:
-                raise DataError(f"{path}:{number}: the block [{name}] is there twice; remove one of both")
+                raise DataError(f"{path}:{number}: the block [{name}] appears twice; remove one of them")
             current, skipped = blocks.setdefault(name, Block()), False
         elif current is None:
-            raise DataError(f"{path}:{number}: {line[:40]!r} stands before the first block; a property file begins "
-                            "with [MDI_HEADER]")  # fmt: skip
+            raise DataError(f"{path}:{number}: found {line[:40]!r} before the first block; a property file must "
+                "begin with [MDI_HEADER]")  # fmt: skip
         elif line[0] == "(":
             skipped = line[1:-1].strip().upper() == "COMMENTS"
         elif skipped:
             continue
         elif line[0] == "{":
             if current.rows:
-                raise DataError(f"{path}:{number}: a second table in one block; only blocks with one table are read")
+                raise DataError(
+                    f"{path}:{number}: the block contains a second table; only blocks with one table can be read"
+                )
             current.columns = line[1:-1].split()
         elif match := _ASSIGNMENT.fullmatch(line):
             current.values[match[1].upper()] = match[2].strip().strip("'\"").strip()
         else:
             current.rows.append((number, line.replace(",", " ").split()))
     if not blocks:
-        raise DataError(f"{path}: no block in brackets; a property file begins with [MDI_HEADER]")
+        raise DataError(f"{path}: contains no block in brackets; a property file must begin with [MDI_HEADER]")
     return PropertyFile(path=path, blocks=blocks)
 
 

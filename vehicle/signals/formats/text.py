@@ -66,7 +66,7 @@ def read_text(path: Path) -> Text:
         DataError: empty, too large, NUL byte, a line above 1 MB, not readable.
     """
     if not path.is_file():
-        raise ConfigurationError(f"{path}: no such file; give the path of a CSV file")
+        raise ConfigurationError(f"{path}: the file does not exist; give the path of a CSV file")
     try:
         with path.open("rb") as file:
             size = path.stat().st_size
@@ -77,20 +77,20 @@ def read_text(path: Path) -> Text:
     except OSError as error:
         raise DataError(f"{path}: cannot be read ({error.strerror}); check the file and its permissions") from error
     if not data.strip():
-        raise DataError(f"{path}: the file is empty; needed are a header line with units and one row per sample")
+        raise DataError(f"{path}: the file is empty; must have a header line with units and one row per sample")
     _check_bytes(path, data)
     notices = []
     digest = hashlib.sha256(data).hexdigest()
     if data.startswith(BOM):
-        notices.append("byte order mark at the beginning of the file skipped")
+        notices.append("the byte order mark at the beginning of the file is skipped")
         data = data[len(BOM) :]
     if b"\r" in data:
-        notices.append("line ends of Windows (CR LF) or old Mac (CR) read as line ends")
+        notices.append("line ends of Windows (CR LF) or old Mac (CR) are accepted")
         data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     try:
         body = data.decode("utf-8")
     except UnicodeDecodeError:
-        notices.append("the text is not UTF-8: read as Windows text (cp1252)")
+        notices.append("the text is not UTF-8; it is read as Windows text (cp1252)")
         body = data.decode("cp1252", "replace")
     text = Text(body=body, notices=tuple(notices), sha256=digest)
     for number, lines in text.pieces():
@@ -103,10 +103,13 @@ def read_text(path: Path) -> Text:
 def _check_bytes(path: Path, data: bytes) -> None:
     """Reject UTF-16, NUL bytes and a too long first line; for the first megabyte and then the whole file."""
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
-        raise DataError(f"{path}:1:1: the file is UTF-16; allowed is UTF-8; save it as UTF-8 text")
+        raise DataError(f"{path}:1:1: the file is UTF-16, must be UTF-8; save it as UTF-8 text")
     nul = data.find(b"\0")
     if nul >= 0:
-        raise DataError(f"{_place(path, data, nul)}: NUL byte; allowed is UTF-8 text; this is a binary or damaged file")
+        raise DataError(
+            f"{_place(path, data, nul)}: contains a NUL character, so this is a binary or damaged file; must be "
+            "UTF-8 text"
+        )
     if len(data) == LONGEST_LINE + 1 and b"\n" not in data and b"\r" not in data:
         raise _line_too_long(path, 1)
 
@@ -128,5 +131,6 @@ def _place(path: Path, data: bytes, offset: int) -> str:
 
 def _line_too_long(path: Path, line: int) -> DataError:
     return DataError(
-        f"{path}:{line}: line longer than {LONGEST_LINE} characters; allowed is one row per sample; check the line ends"
+        f"{path}:{line}: the line is longer than {LONGEST_LINE} characters; must be one row per sample; "
+        "check the line ends"
     )

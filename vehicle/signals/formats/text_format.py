@@ -40,8 +40,8 @@ def read(path: Path, wanted: Wanted) -> Table:
     numbered = ((n, line) for start, lines in text.pieces() for n, line in enumerate(lines, start))
     head, first = next(((n, line) for n, line in numbered if not _is_comment(line)), (0, ""))
     if not head:
-        raise DataError(f"{path}: only comments; needed are the columns {wanted.needed} in a header line and one row "
-                        "per sample")  # fmt: skip
+        raise DataError(f"{path}: contains only comments; must have the columns {wanted.needed} in a header line and "
+            "one row per sample")  # fmt: skip
     delimiter = next((sign for sign in (";", "\t") if sign in first), ",")
     header = Header(path=path, line=head, cells=tuple(_split(first, delimiter)), delimiter=delimiter)
     key = wanted.key(header)
@@ -53,7 +53,7 @@ def read(path: Path, wanted: Wanted) -> Table:
         lines = text.lines
         numbers = [n for n, line in enumerate(lines[head:], head + 1) if not _is_comment(line)]
         if not numbers:
-            raise DataError(f"{path}:{head}: the file ends after the header; needed is one row per sample below it")
+            raise DataError(f"{path}:{head}: the file ends after the header; must have one row per sample below it")
         rows = [lines[n - 1] for n in numbers]
         if delimiter != "," and any("," in row for row in rows):
             rows = decimal_points(numbers, rows, header)
@@ -198,16 +198,15 @@ def careful(numbers: list[int], rows: list[str], header: Header, key: int, wante
                 continue
             where = f"{header.path}:{line}:{column + 1}: column {header.cells[column]!r}"
             if np.isfinite(number) and wanted.missing != "mark":
-                raise DataError(f"{where} holds {cell!r}; allowed are numbers up to {LARGEST:g}; repair the cell")
+                raise DataError(f"{where} is {cell!r}, must be a number up to {LARGEST:g}; repair the cell")
             if not (_MISSING.fullmatch(cell) or _SPREADSHEET_ERROR.match(cell) or not np.isnan(number)):
-                raise DataError(f"{where} holds {cell!r}; allowed is a number with a decimal point, such as -1.25e-4")
+                raise DataError(f"{where} is {cell!r}, must be a number with a decimal point, such as -1.25e-4")
             if column == key:
                 stamp = "time stamp" if header.cells[column].lower().startswith("time") else "frequency"
-                raise DataError(f"{where} holds {cell!r}; a {stamp} is never interpolated; repair or remove the row")
+                raise DataError(f"{where} is {cell!r}; a {stamp} is never interpolated; repair or remove the row")
             if wanted.missing == "empty":
                 if cell:
-                    raise DataError(f"{where} holds {cell!r}; allowed are finite numbers, or an empty cell where the "
-                                    "value is undefined")  # fmt: skip
+                    raise DataError(f"{where} is {cell!r}, must be a finite number, or empty if undefined")  # fmt: skip
                 continue
             if wanted.missing == "mark":
                 if "inf" in cell.lower():
@@ -216,7 +215,7 @@ def careful(numbers: list[int], rows: list[str], header: Header, key: int, wante
             if not cell and index > 0 and _ends_here(rows[index:], column, header):
                 raise _different_length(where)
             if wanted.missing == "refuse":
-                raise DataError(f"{where} holds {cell!r}; allowed are finite numbers; {wanted.remedy}")
+                raise DataError(f"{where} is {cell!r}, must be a finite number; {wanted.remedy}")
     return values
 
 
@@ -232,20 +231,22 @@ def _wrong_count(index: int, numbers: list[int], rows: list[str], header: Header
         if index < len(rows) - 1:
             return _different_length(f"{header.path}:{numbers[index]}:{width}: column {header.cells[-1]!r}")
         return DataError(
-            f"{where}: the last row has {len(cells)} cells, the header {width}; the file is truncated; remove the row"
+            f"{where}: the last row has {len(cells)} cells, but the header {width}; the file is truncated; "
+            "remove the row"
         )
     hint = "one cell per column"
     if len(cells) < width and any(sign in rows[index] for sign in (";", "\t")):
         hint = f"separate the cells by {header.delimiter!r} as in the header"
     elif len(cells) > width and header.delimiter == ",":
-        hint = "with decimal commas the columns must be separated by ';', in the header too; 1,5 is ambiguous"
-    return DataError(f"{where}: row has {len(cells)} cells, the header {width}; {hint}")
+        hint = (
+            "with decimal commas, separate the columns by ';', in the header too, because 1,5 may be one number or two"
+        )
+    return DataError(f"{where}: the row has {len(cells)} cells, but the header {width}; {hint}")
 
 
 def _different_length(where: str) -> DataError:
     return DataError(
-        f"{where} ends before the other columns: columns of different length, must be equal; export all columns over "
-        "the same time"
+        f"{where} ends before the other columns; all columns must have the same length; export them over the same time"
     )
 
 
@@ -264,9 +265,9 @@ def decimal_points(numbers: list[int], rows: list[str], header: Header) -> list[
             if "," in cell and (pointed is not None or not _DECIMAL_COMMA.fullmatch(cell)):
                 other = f"; line {pointed} has a decimal point" if pointed is not None else ""
                 raise DataError(
-                    f"{header.path}:{line}:{column + 1}: column {header.cells[column]!r} holds {cell!r}{other}; a "
-                    "comma may be a decimal comma or separate thousands; write all numbers with a decimal point and no "
-                    "other sign"
+                    f"{header.path}:{line}:{column + 1}: column {header.cells[column]!r} is {cell!r}{other}; the "
+                    "comma may be a decimal comma or separate thousands; write all numbers with a decimal point "
+                    "and without separators"
                 )
     return [row.replace(",", ".") for row in rows]
 

@@ -65,8 +65,8 @@ def find_table(path: Path, lines: Sequence[str]) -> TextTable:
         if len(following) > 2 and all(kinds_of(line, ";") == ["number"] for line in following):
             return TextTable(start=start, delimiter=";", kinds=("number",))
     raise DataError(
-        f"{path}: no table of numbers in the first {TEXT_LINES} lines; needed are rows of numbers in columns "
-        "separated by ';', tab, ',' or blanks, with a line of names and units above them"
+        f"{path}: found no table of numbers in the first {TEXT_LINES} lines; must be rows of numbers, separated "
+        "by ';', tab, ',' or blanks, with a line of names and units above"
     )
 
 
@@ -190,6 +190,6 @@ def _check_alternation(
         if column_kind == "text" and 1 < len(different) <= LARGEST_KINDS and alternates:
             shown = ", ".join(map(repr, different[:4]))
             raise DataError(
-                f"{path}: column {names[column]!r} alternates between {shown}: rows of different sources are in "
-                "one table; write one file per source"
+                f"{path}: the table mixes rows of different sources: column {names[column]!r} alternates between "
+                f"{shown}; write one file per source"
             )

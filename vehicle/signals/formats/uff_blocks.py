@@ -71,7 +71,7 @@ def numbers(lines: list[bytes]) -> list[float]:
     """
     body = D_EXPONENT.sub(b"E", b" ".join(lines))
     if _NUMBER.sub(b"", body).strip():
-        raise ValueError(f"no number in {raw_text(_NUMBER.sub(b'', body)).strip()[:20]!r}")
+        raise ValueError(f"{raw_text(_NUMBER.sub(b'', body)).strip()[:20]!r} is not a number")
     return [float(part) for part in _NUMBER.findall(body)]
 
 
@@ -79,8 +79,8 @@ def check_values(path: Path, where: str, values: Vector) -> None:
     """Reject numbers that are not finite or above `LARGEST`, as results from a wrong byte order."""
     if not np.isfinite(values).all() or (values.size and float(np.abs(values).max()) > LARGEST):
         raise DataError(
-            f"{path}: {where} has numbers that are not finite, or above {LARGEST:g}; is its byte order wrong? "
-            "export it again, or as text (UFF 58)"
+            f"{path}: {where} contains numbers that are not finite or above {LARGEST:g}; is the byte order "
+            "wrong? export it again, or as text (UFF 58)"
         )
 
 
@@ -88,5 +88,6 @@ def refuse(path: Path, where: str, error: Exception) -> NoReturn:
     """Raise the error for a dataset whose lines do not match its format."""
     text = str(error) if not isinstance(error, (IndexError, KeyError)) else "a line is missing or too short"
     raise DataError(
-        f"{path}: {where} does not match its format ({text}); it is truncated or damaged; export it again"
+        f"{path}: {where} does not match the format that it states ({text}); it is truncated or damaged; "
+        "export it again"
     ) from None

@@ -62,15 +62,15 @@ def read(path: Path) -> Measurement:
     summary = ", ".join(f"{dataset} ({count})" for dataset, count in sorted(others.items()))
     if not channels and not shapes and not nodes.at:
         raise DataError(
-            f"{path}: no function, mode shape or node in this universal file; its datasets: {summary or 'none'}; "
-            "export the time histories or frequency responses as UFF 58, or mode shapes as UFF 55"
+            f"{path}: contains no time history, FRF, mode shape or node, only the datasets {summary or 'none'}; "
+            "export time histories and FRFs as UFF 58, mode shapes as UFF 55"
         )
     geometry = nodes.geometry(units or Units())
     notices = [f"other datasets: {summary}"] if summary else []
     if nodes.at:
         notices.append(f"{len(geometry.points)} nodes, {len(geometry.lines)} lines and elements")
     if units is None and (nodes.at or shapes):
-        notices.append("no dataset 164: coordinates are assumed in m")
+        notices.append("dataset 164 with the units is missing; coordinates are assumed to be in m")
     return Measurement(
         path=path,
         format="uff",

@@ -64,8 +64,8 @@ def read_function(path: Path, data: bytes, block: Block, where: str, units: Unit
         raise DataError(f"{path}: {where} has an invalid header ({error}); export it again") from None
     if data_type not in (2, 4, 5, 6) or points < 1 or spacing not in (0, 1) or not np.isfinite([first, step]).all():
         raise DataError(
-            f"{path}: {where}: data type {data_type} with {points} points and spacing {spacing}, must be type 2, 4, 5 "
-            "or 6, at least one point, spacing 0 or 1"
+            f"{path}: {where}: found data type {data_type}, {points} points, spacing {spacing}; must be type 2, "
+            "4, 5 or 6, at least 1 point, spacing 0 or 1"
         )
     per_point = (2 if data_type > 4 else 1) + (spacing == 0)
     if block.binary:
@@ -128,7 +128,9 @@ def _points(line: bytes) -> list[str]:
         return fixed
     match = _WORDS.fullmatch(text[30:])
     if match is None:
-        raise ValueError(f"no nodes and directions in {text[30:].strip()[:40]!r}: names have up to ten letters")
+        raise ValueError(
+            f"the line {text[30:].strip()[:40]!r} contains no nodes and directions (names have up to ten letters)"
+        )
     return [*fixed[:4], *("" if word.upper() == "NONE" else word for word in match.groups())]
 
 
@@ -184,14 +186,14 @@ def _binary(
     check_length(path, size, len(data) - position, where)
     if stated_bytes not in (0, size):
         raise DataError(
-            f"{path}: {where}: {stated_bytes} bytes of data stated for {shape[0] * shape[1]} numbers of {width} bytes; "
-            "it is damaged; export it again"
+            f"{path}: {where}: states {stated_bytes} bytes of data for {shape[0] * shape[1]} numbers of {width} "
+            "bytes; the file is damaged; export it again"
         )
     tail = data[position + size : position + size + 16].lstrip(b"\r\n ")
     if not tail.startswith(b"-1"):
         raise DataError(
-            f"{path}: {where}: no end after its {size} bytes of data; it is damaged, perhaps sent as text; export "
-            "it again"
+            f"{path}: {where}: has no end after its {size} bytes of data; the file is damaged, perhaps sent as "
+            "text; export it again"
         )
     rows_read = np.frombuffer(data, row, shape[0], position)
     values = (np.column_stack([rows_read["x"], rows_read["y"]]) if row.names else rows_read).astype(np.float64).ravel()
@@ -214,8 +216,8 @@ def _ascii(path: Path, data: bytes, position: int, where: str, count: int) -> tu
     more = values.size - count
     if more < 0 or more > 5 or values[count:].any():
         raise DataError(
-            f"{path}: {where} claims {count} numbers, the file contains {values.size}; it is truncated or damaged; "
-            "export it again"
+            f"{path}: {where} states {count} numbers, but contains {values.size}; the file is truncated or "
+            "damaged; export it again"
         )
     check_values(path, where, values)
     return values[:count], end.end() - 1
@@ -233,7 +235,7 @@ def _axis(code: int, label: str, title: str, function: int) -> tuple[bool, float
     if unit is None:
         return quantity == "time", (0.0 if label else 1.0), f"axis in {label!r}" if label else ""
     if unit.quantity != quantity:
-        return quantity == "time", 0.0, f"the axis is a {quantity} in {label!r}: a contradiction"
+        return quantity == "time", 0.0, f"the axis is stated as a {quantity}, but in {label!r}, which contradicts it"
     return quantity == "time", unit.factor, ""
 
 
@@ -249,7 +251,7 @@ def _unit(code: int, label: str, units: Units | None) -> tuple[str, str]:
         gravity = acceleration and "g" in label.lower()
         if dataset_factor is not None and not gravity and abs(dataset_factor / unit.factor - 1.0) > 1e-6:
             si = "m/s2" if acceleration else "of the SI unit"
-            return "", f"the unit is {label!r}, in dataset 164 {dataset_factor:g} {si}: a contradiction"
+            return "", f"the unit {label!r} contradicts dataset 164, which states {dataset_factor:g} {si}"
         return label, ""
     dataset_factor = _factor(quantity, units)
     if dataset_factor is None:
@@ -259,7 +261,7 @@ def _unit(code: int, label: str, units: Units | None) -> tuple[str, str]:
     for factor, text in by_factor.items():
         if abs(dataset_factor / factor - 1.0) < 1e-9 and find_unit(text) is not None:
             return text, "unit from dataset 164"
-    return "", f"the unit in dataset 164 is {dataset_factor:g} {si}, without a known name"
+    return "", f"dataset 164 states the unit {dataset_factor:g} {si}, which has no known name"
 
 
 def _factor(quantity: str, units: Units | None) -> float | None:

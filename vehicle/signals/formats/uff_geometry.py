@@ -142,7 +142,7 @@ class Nodes:
             below = self.systems.get(reference, GLOBAL)
             if system_type not in (0, 1):
                 raise ValueError(
-                    f"axis system {number} of type {system_type}, must be 0 (Cartesian) or 1 (cylindrical)"
+                    f"axis system {number} has type {system_type}, must be 0 (Cartesian) or 1 (cylindrical)"
                 )
             x_axis = ahead - origin
             y_axis = np.cross(plane - origin, x_axis)  # z is in the plane: y = z x x = (plane - origin) x x
@@ -159,7 +159,7 @@ class Nodes:
         count = wholes(lines[0])[1]
         labels = [label for line in lines[2:] for label in wholes(line)]
         if len(labels) < count or any(labels[count:]):  # a line may be padded with zeros
-            raise ValueError(f"{count} nodes stated, {len(labels)} present")
+            raise ValueError(f"{count} nodes are stated, but {len(labels)} are present")
         # A zero moves the pen without drawing.
         breaks = [-1, *(n for n, label in enumerate(labels[:count]) if label == 0), count]
         strokes = (labels[first + 1 : last] for first, last in pairwise(breaks))

@@ -176,12 +176,12 @@ def _shape(mode: ModeShape, nodes: Mapping[str, int]) -> bytes:
 def _defined(path: Path, channel: Channel) -> tuple[Values, Vector]:
     """Return values and axis of the longest run of defined values of a spectrum."""
     if channel.axis is None or channel.axis.size < 2:
-        raise DataError(f"{path}: {channel.name} has no axis, which UFF requires; leave it out")
+        raise DataError(f"{path}: {channel.name} has no time or frequency axis, which UFF requires; leave it out")
     finite = np.isfinite(channel.values)
     if finite.all():
         return channel.values, channel.axis
     if channel.kind == "time" or not finite.any():
-        raise DataError(f"{path}: {channel.name} has a missing value, not supported by UFF; leave it out")
+        raise DataError(f"{path}: {channel.name} has a missing value, which UFF cannot store; leave it out")
     edges = np.flatnonzero(np.diff(np.concatenate([[False], finite, [False]]).astype(int)))
     runs = edges.reshape(-1, 2)
     begin, end = runs[int(np.argmax(runs[:, 1] - runs[:, 0]))]

@@ -38,13 +38,14 @@ def require_unpacked(
     limit, freely = MEMORY_LIMIT if limit is None else limit, FREELY if freely is None else freely
     if size > limit:
         raise DataError(
-            f"{label}: its data need {size / 1024**3:.3g} GiB unpacked, must be at most {limit / 1024**3:.3g} GiB; cut "
-            "the record into parts"
+            f"{label}: unpacked, its data need {size / 1024**3:.3g} GiB, must be at most {limit / 1024**3:.3g} "
+            "GiB; cut the record into parts"
         )
     if size > freely and size > densest * packed:
         raise DataError(
-            f"{label}: {size / 1e6:.3g} MB are compressed to {packed / 1e6:.3g} MB, {size / max(packed, 1.0):.0f} to "
-            f"1, must be at most {densest:g} to 1: almost constant, unlike data of a sensor; record again"
+            f"{label}: the data are almost constant, unlike those of a sensor: {size / 1e6:.3g} MB are "
+            f"compressed to {packed / 1e6:.3g} MB, {size / max(packed, 1.0):.0f} to 1, must be at most "
+            f"{densest:g} to 1; record again"
         )
 
 

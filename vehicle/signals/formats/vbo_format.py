@@ -56,7 +56,10 @@ def read(path: Path) -> Measurement:
     columns = " ".join(line for _, line in sections.get("column names", [])).split() or heads
     rows = sections.get("data", [])
     if not columns or len(rows) < 2:
-        raise DataError(f"{path}: {len(columns)} columns and {len(rows)} rows; needed are [column names] and [data]")
+        raise DataError(
+            f"{path}: found {len(columns)} columns and {len(rows)} rows; must have the sections [column names] "
+            "and [data]"
+        )
     header = Header(path=path, line=rows[0][0] - 1, cells=tuple(columns), delimiter=" ")
     numbers, data_rows = [number for number, _ in rows], [" ".join(line.split()) for _, line in rows]
     notices = list(text.notices)
@@ -83,7 +86,13 @@ def read(path: Path) -> Measurement:
             if np.nanmax(np.abs(latitude)) > 90.0:
                 unit, remark = "arcmin", "positive to the west" if column == "long" else ""
             else:
-                unit, remark = "", "minutes of arc by the format, but no latitude is above 90: set --unit arcmin or deg"
+                unit, remark = (
+                    "",
+                    (
+                        "the format states minutes of arc, but no latitude is above 90, so degrees are possible; "
+                        "set --unit arcmin or --unit deg"
+                    ),
+                )
         channels.append(Channel(name=column, values=values[:, index].copy(), unit=unit, axis=axis, remark=remark))
     program = next((line.strip() for _, line in sections.get("comments", [])), "VBOX")
     return Measurement(
@@ -105,7 +114,7 @@ def _clock(path: Path, column: Vector, numbers: list[int], notices: list[str]) -
             ) from None
     for at in np.flatnonzero(np.diff(seconds) < -0.5 * DAY):
         seconds[at + 1 :] += DAY
-        notices.append("the clock passes midnight: 24 h added after it")
+        notices.append("the clock passes midnight; 24 h are added after it")
     first = f"{column[0]:09.2f}"
     return seconds - seconds[0], f"{first[:2]}:{first[2:4]}:{first[4:]}"
 
@@ -126,8 +135,8 @@ def _units(columns: list[str], heads: list[str], unit_lines: list[str], notices:
         indices = next((each for each in candidates if len(each) == len(unit_lines)), [])
         if not indices:
             notices.append(
-                f"{len(unit_lines)} units for {len(columns)} columns ({len(own_columns)} not standard): the assignment "
-                f"is ambiguous, no unit is used: {', '.join(unit or '-' for unit in unit_lines)}; set --unit"
+                f"{len(unit_lines)} units for {len(columns)} columns ({len(own_columns)} not standard) cannot be "
+                f"assigned, so no unit is used: {', '.join(unit or '-' for unit in unit_lines)}; set --unit"
             )
         for index, unit in zip(indices, unit_lines, strict=True) if indices else ():
             units[index] = units[index] or ("" if unit.lower() in ("(null)", "null", "-") else unit)

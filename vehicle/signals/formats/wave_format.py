@@ -23,7 +23,7 @@ def read(path: Path) -> Measurement:
         warnings.filterwarnings("ignore", message="Chunk .* not understood")
         rate, data = wavfile.read(path)
     if data.size == 0 or rate <= 0:
-        raise DataError(f"{path}: {data.size} samples at {rate} Hz, must be a record; export it again")
+        raise DataError(f"{path}: contains {data.size} samples at {rate} Hz, must be a record; export it again")
     if not np.isfinite(data).all():
         raise DataError(f"{path}: contains numbers that are not finite; repair the record")
     values = data.reshape(len(data), -1).astype(np.float64)
@@ -32,7 +32,7 @@ def read(path: Path) -> Measurement:
     elif data.dtype.kind == "i":
         values /= -float(np.iinfo(data.dtype).min)
     axis = uniform_axis(len(values), 1.0 / rate)
-    remark = "no unit: fractions of full scale; set the value of full scale, as --unit '12.5 mm'"
+    remark = "no unit, values are fractions of full scale; set the full scale, for example --unit '12.5 mm'"
     channels = tuple(
         Channel(name=f"channel {n + 1}", values=values[:, n].copy(), axis=axis, remark=remark)
         for n in range(values.shape[1])
@@ -53,4 +53,4 @@ def _check_chunks(path: Path) -> None:
         if name == b"data":
             return
         position += 8 + size + size % 2
-    raise DataError(f"{path}: no chunk of data; the file is truncated; export it again")
+    raise DataError(f"{path}: contains no data; the file is truncated; export it again")

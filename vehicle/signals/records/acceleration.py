@@ -35,13 +35,13 @@ def _notices(xyz: Mapping[str, Vector], rate: float) -> tuple[str, ...]:
         power = np.abs(np.fft.rfft(record - record.mean())) ** 2
         total = float(power.sum())
         if np.ptp(record) == 0.0:
-            notices.append(f"{axis}: constant at {record[0]:g} m/s2 (no sensor?)")
+            notices.append(f"{axis}: constant at {record[0]:g} m/s2; is the sensor missing?")
         elif total > 0.0:
             share = float(power[int(0.8 * power.size) :].sum()) / total
             if share > ALIASED_SHARE:
                 notices.append(
-                    f"{axis}: {100 * share:.0f} % of the variance lies above {0.4 * rate:g} Hz (0.8 of Nyquist); "
-                    "the record may be aliased"
+                    f"{axis}: {100 * share:.0f} % of the variance lies above {0.4 * rate:g} Hz (0.8 of half the "
+                    "sampling rate); was it recorded without an anti-alias filter?"
                 )
     return tuple(notices)
 
@@ -60,8 +60,8 @@ def _chosen(path: Path, choice: Choice, names: list[str]) -> Record:
         roles = {axis: name for axis, name in zip(AXES, names, strict=True) if name in names_in_file}
     if not roles or not set(roles) <= set(AXES):
         raise DataError(
-            f"{path}: no axis is assigned; set --channel x=NAME --channel y=NAME --channel z=NAME, or one or two of "
-            f"them, each with a number, an exact name or a pattern with *; the file has {measurement.listed()}"
+            f"{path}: which channels are the axes? set one or more of --channel x=NAME, y=NAME, z=NAME, each "
+            f"with a number, an exact name or a pattern with *; the file has {measurement.listed()}"
         )
     chosen = choose(measurement, replace(choice, channels={**choice.channels, **roles}))
     wrong = next((role for role, quantity in chosen.quantities.items() if quantity != "acceleration"), None)
@@ -118,7 +118,7 @@ def read_acceleration(path: str | Path, point: str | None = None, choice: Choice
             points = dict.fromkeys(channel[:-6] for channel in record.channels if channel.endswith("_acc_x"))
             points_shown = f"; set --channel to one of {', '.join(points)}" if points else ""
             shown = ", ".join(list(record.channels)[:6])
-            raise DataError(f"{file}: no column {name}; found {shown}; needed are {needed}{points_shown}")
+            raise DataError(f"{file}: column {name} is missing; found {shown}; needed are {needed}{points_shown}")
         if (unit := record.units[name]) not in UNITS:
             raise DataError(
                 f"{file}: column {name!r} has the unit {unit!r}, must be one of "

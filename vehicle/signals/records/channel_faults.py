@@ -85,17 +85,17 @@ def faults(
     for name, values in channels.items():
         for side, level, share in clipped(values):
             messages.append(
-                f"{name}: clipped? {100.0 * share:.3g} % of the samples are equal to the {side}, {level:.4g}, with "
-                "sharp edges: its peaks, RMS and spectra are wrong; measure with a larger range, or select an "
-                f"unclipped part ({remedy})"
+                f"{name}: clipped? {100.0 * share:.3g} % of the samples are exactly at the {side}, {level:.4g}, "
+                "with sharp edges, so peaks, RMS and spectra are wrong; measure with a larger range, or select "
+                f"an unclipped part ({remedy})"
             )
         others = [other for channel, other in channels.items() if channel != name and {channel, name} <= grouped]
         interval = stuck(values, time, others)
         if interval is not None:
             begin, end = interval
             messages.append(
-                f"{name}: constant for {end - begin:.4g} s, from {begin:.6g} to {end:.6g} s: a stuck sensor "
-                f"or a pause? Every mean includes it; select the part before or after it ({remedy})"
+                f"{name}: constant for {end - begin:.4g} s, from {begin:.6g} to {end:.6g} s: a stuck sensor or a "
+                f"pause? All means include these seconds; select the part before or after it ({remedy})"
             )
     return messages
 

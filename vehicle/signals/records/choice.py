@@ -104,9 +104,9 @@ class Chosen:
             steps = np.diff(self.time)
             jitter = 100.0 * float(np.max(np.abs(steps / np.median(steps) - 1.0)))
             raise DataError(
-                f"{where}: times are not uniform, steps deviate by up to {jitter:.3g} % of the median; set "
-                f"{' '.join(clock_options(self.time))}, or --rate HZ if the samples are uniform and the time "
-                "stamps jitter"
+                f"{where}: times are not uniform, steps deviate from the median by up to {jitter:.3g} %; set "
+                f"{' '.join(clock_options(self.time))}, or --rate HZ if the samples are uniform and only the "
+                "time stamps are irregular"
             )
 
 
@@ -194,7 +194,7 @@ def choose(measurement: Measurement, choice: Choice) -> Chosen:
         unit = choice.units.get(role, choice.units.get("", ""))
         if unit:
             if channel.unit and channel.unit != unit:
-                notices.append(f"{role}: unit [{unit}] on request; the file has [{channel.unit}]")
+                notices.append(f"{role}: the unit is [{unit}], as requested; the file says [{channel.unit}]")
             channels[role] = channel = replace(channel, unit=unit, remark="")
         where = f"{path}: channel {index + 1} {channel.name!r}"
         if find_unit(channel.unit) is None:
@@ -203,7 +203,7 @@ def choose(measurement: Measurement, choice: Choice) -> Chosen:
         if channel.kind != "time" or np.iscomplexobj(channel.values) or channel.function in NOT_OVER_TIME:
             raise DataError(f"{where} is a {channel.function}, must be a time history; choose another channel")
         if channel.direction.startswith("-"):
-            notices.append(f"{role}: measured along {channel.direction}: sign inverted")
+            notices.append(f"{role}: sign inverted, because it was measured along {channel.direction}")
             channels[role] = channel = replace(channel, values=-channel.values)
         if channel.name != role or channel.unit != channel.si_unit or channel.remark:
             notices.append(
@@ -223,8 +223,8 @@ def choose(measurement: Measurement, choice: Choice) -> Chosen:
         if choice.detrend:
             count = np.arange(time.size)
             line = np.polynomial.Polynomial.fit(count, values[role], 1)(count)
-            notices.append(f"{role}: straight line from {line[0]:.4g} to {line[-1]:.4g} "
-                           f"{channels[role].si_unit} subtracted on request")  # fmt: skip
+            notices.append(f"{role}: straight line from {line[0]:.4g} to {line[-1]:.4g} {channels[role].si_unit} "
+                "subtracted, as requested")  # fmt: skip
             values[role] = values[role] - line
     return Chosen(
         time=time,
@@ -251,13 +251,15 @@ def _blocks(
         if not blocks:
             name = next(channel.name for channel in channels.values() if channel.axis is None)
             raise DataError(
-                f"{path}: channel {name!r} has no times; set --rate HZ, or --channel time=NAME and --unit time=s "
-                "for the channel of the times"
+                f"{path}: channel {name!r} has no times; set --rate HZ, or the channel of the times with "
+                "--channel time=NAME --unit time=s"
             )
         return blocks
     if len({channel.values.size for channel in selected.values()}) > 1:
         sizes = ", ".join(f"{role} {channel.values.size}" for role, channel in selected.items())
-        raise DataError(f"{path}: channels of different length ({sizes}); choose channels of one sampling rate")
+        raise DataError(
+            f"{path}: the channels have different lengths ({sizes}); choose channels with the same sampling rate"
+        )
     time = _times(path, choice, selected, notices)
     return [Block(time=time, channels={role: selected[role] for role in channels})]
 
@@ -270,16 +272,17 @@ def _part(path: Path, block: Block, choice: Choice, notices: list[str]) -> tuple
         first, last = -np.inf if choice.first is None else choice.first, np.inf if choice.last is None else choice.last
         selected = (time >= first) & (time <= last)
         if np.count_nonzero(selected) < 3:
-            raise DataError(f"{path}: the excerpt has {np.count_nonzero(selected)} samples, must have at least 3; "
-                            f"the record is from {time[0]:.6g} to {time[-1]:.6g} s")  # fmt: skip
+            raise DataError(f"{path}: the part between --from and --to has {np.count_nonzero(selected)} samples, "
+                f"must be at least 3; the record is from {time[0]:.6g} to {time[-1]:.6g} s")  # fmt: skip
         time = time[selected]
         notices.append(f"excerpt from {time[0]:.6g} to {time[-1]:.6g} s")
     values = {role: np.asarray(channel.si_values, dtype=np.float64)[selected] for role, channel in channels.items()}
     for role, samples in values.items():
         absurd = np.flatnonzero(np.abs(samples) > LARGEST)
         if absurd.size:
-            raise DataError(f"{path}: {role}: {samples[absurd[0]]:.4g} at {time[absurd[0]]:.6g} s is no measured value "
-                            f"(limit {LARGEST:g}); exclude it with --from and --to, or repair the file")  # fmt: skip
+            raise DataError(f"{path}: {role}: {samples[absurd[0]]:.4g} at {time[absurd[0]]:.6g} s is too large for a "
+                f"measured value, must be at most {LARGEST:g}; exclude it with --from and --to, or repair the "
+                "file")  # fmt: skip
         missing = np.count_nonzero(~np.isfinite(samples))
         if missing == samples.size:
             channel = channels[role]
@@ -304,8 +307,8 @@ def _resampled(
     first, last = max(float(time[0]) for time, _ in parts), min(float(time[-1]) for time, _ in parts)
     if last - first < 2.0 / rate:
         raise DataError(
-            f"{path}: the common span of the channels, {first:.6g} to {last:.6g} s, has fewer than three samples at "
-            f"{rate:g} Hz; set another excerpt, or choose channels recorded together"
+            f"{path}: the common span of the channels, {first:.6g} to {last:.6g} s, has fewer than three samples "
+            f"at {rate:g} Hz; set other --from and --to, or choose channels recorded together"
         )
     values: dict[str, Vector] = {}
     for time, columns in parts:
@@ -325,7 +328,7 @@ def _times(path: Path, choice: Choice, channels: Mapping[str, Channel], notices:
     if choice.rate is not None:
         rate = first.rate
         other = f"; the file has {rate:.9g} Hz" if rate is not None and abs(rate / choice.rate - 1.0) > 1e-6 else ""
-        notices.append(f"rate {choice.rate:g} Hz on request{other}")
+        notices.append(f"sampling rate {choice.rate:g} Hz, as requested{other}")
         return np.arange(first.values.size) / choice.rate
     unit = choice.units.get("time", channels["time"].unit)
     if not (factor := seconds_in(unit)):
@@ -347,16 +350,16 @@ def _uniform(path: object, time: Vector, notices: list[str]) -> Vector:
     if not np.isfinite(time).all() or not (steps > 0.0).all():
         at = int(np.flatnonzero(~(steps > 0.0))[0]) + 1
         raise DataError(
-            f"{path}: sample {at + 1}: the time {time[at]:.9g} s does not follow {time[at - 1]:.9g} s; times must "
-            "increase; cut with --from and --to"
+            f"{path}: sample {at + 1}: the time {time[at]:.9g} s follows {time[at - 1]:.9g} s, but times must "
+            "increase; exclude this part with --from and --to"
         )
     median = float(np.median(steps))
     index = int(np.argmax(steps))
     if steps[index] > longest_step(median):
         raise DataError(
-            f"{path}: the record pauses for {steps[index]:.6g} s, from {time[index]:.9g} to {time[index + 1]:.9g} s; "
-            f"pauses are not filled; select the part before it (--to {time[index]:.9g}) or after it "
-            f"(--from {time[index + 1]:.9g})"
+            f"{path}: the record has a gap of {steps[index]:.6g} s, from {time[index]:.9g} to "
+            f"{time[index + 1]:.9g} s, and gaps are not filled; select the part before it (--to "
+            f"{time[index]:.9g}) or after it (--from {time[index + 1]:.9g})"
         )
     unrounded, rounded = without_rounding(time)
     notices.extend(rounded)

@@ -76,7 +76,7 @@ def cut(where: object, blocks: list[Block]) -> tuple[list[Block], str]:
         time=parts[0].time, channels={role: channel for part in parts for role, channel in part.channels.items()}
     )
     cover = f"the channels cover different times ({_spans(blocks)})"
-    return [whole], f"{cover}: cut to their common span, {first:.6g} to {last:.6g} s"
+    return [whole], f"{cover}, so they are cut to the time that all have, {first:.6g} to {last:.6g} s"
 
 
 def span(where: object, blocks: list[Block]) -> tuple[float, float]:
@@ -88,7 +88,7 @@ def span(where: object, blocks: list[Block]) -> tuple[float, float]:
     first, last = max(float(block.time[0]) for block in blocks), min(float(block.time[-1]) for block in blocks)
     if last - first < 2.0 * max(_step(block.time) for block in blocks):
         raise DataError(
-            f"{where}: the channels have no common span of time ({_spans(blocks)}); choose channels recorded together"
+            f"{where}: the channels have no time in common ({_spans(blocks)}); choose channels recorded together"
         )
     return first, last
 
@@ -114,8 +114,8 @@ def different_spans(channels: Sequence[Channel]) -> str:
         return ""
     (first, first_end, _), (last, last_end, _) = ends.min(axis=0), ends.max(axis=0)
     return (
-        f"channels begin at {first:.6g} to {last:.6g} s and end at {first_end:.6g} to {last_end:.6g} s: commands with "
-        "several channels cut them to the common span"
+        f"channels begin at {first:.6g} to {last:.6g} s and end at {first_end:.6g} to {last_end:.6g} s; commands "
+        "that use several of them cut them to the time that all have"
     )
 
 

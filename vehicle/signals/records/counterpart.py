@@ -146,21 +146,20 @@ def clock_advice(parts: Sequence[Counterpart], step: float, delay: float, drift:
     if drifts:
         low, high = middle - 0.5 * span, middle + 0.5 * span
         message = (
-            f"the clock of the measurement is {100 * abs(slope):.4g} % {'slow' if slope > 0 else 'fast'} relative to "
-            f"the run: the simulated time histories are {1e3 * (lag + slope * (low - middle)):.5g} ms late at "
-            f"{low:.4g} s and {1e3 * (lag + slope * (high - middle)):.5g} ms at {high:.4g} s, {agreement}: "
-            f"set {options}"
+            f"the clock of the measurement is {100 * abs(slope):.4g} % {'slow' if slope > 0 else 'fast'}: the "
+            f"simulated time histories are {1e3 * (lag + slope * (low - middle)):.5g} ms late at {low:.4g} s and "
+            f"{1e3 * (lag + slope * (high - middle)):.5g} ms at {high:.4g} s, {agreement}: set {options}"
         )
     else:
         message = (
-            f"the simulated time histories are {lag:.6g} s late, {agreement}: if the records began at different times, "
-            f"set {options}"
+            f"the simulated time histories are {number(1e3 * lag)} ms late, {agreement}; if the records began at "
+            f"different times, set {options}"
         )
     periods = {round(shift.period, 6) for shift in shifts if shift.period is not None}
     if len(periods) and all(shift.period is not None for shift in shifts):
         message += (
-            f"; the records have a period of {min(periods):.4g} s, so shifts by whole periods fit equally well: begin "
-            "at an event that occurs once"
+            f"; the records repeat every {min(periods):.4g} s, so a shift by whole periods fits equally well; "
+            "start the record at an event that occurs once"
         )
     return [message]
 
@@ -215,7 +214,7 @@ def response_faults(channel: str, measured: Complex, simulated: Complex, weight:
 
 
 def _inverted(channel: str, why: str) -> str:
-    remedy = f"if it was measured in the other direction, set --turn {channel}"
+    remedy = f"if its sensor points the other way, set --turn {channel}"
     return f"{channel} is inverted relative to the run ({why}): {remedy}"
 
 
@@ -228,7 +227,7 @@ def _unit(channel: str, unit: str, ratio: float) -> list[str]:
             )
             full_text = f"{name} {remark[0]}" if remark else name
             return [
-                f"{channel}: the measured level is {size}, close to the factor {max(factor, 1.0 / factor):.4g} of a "
-                f"unit: if its values are in {full_text}, set --unit {channel}={name}"
+                f"{channel}: the measured level is {size}, which is close to the unit factor "
+                f"{max(factor, 1.0 / factor):.4g}; if the values are in {full_text}, set --unit {channel}={name}"
             ]
     return []

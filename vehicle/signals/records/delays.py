@@ -67,7 +67,8 @@ def parsed_delays(texts: Sequence[str]) -> dict[str, float]:
             delays[name] = math.nan
         if not math.isfinite(delays[name]):
             raise ConfigurationError(
-                f"--delay {name}={text}: must be a finite number of seconds, or with the unit ms or us, as 12.3ms"
+                f"--delay {name}={text}: must be a finite number of seconds, or a number with the unit ms or "
+                "us, for example 12.3ms"
             )
     return delays
 
@@ -101,8 +102,8 @@ def channel_delays(channels: Collection[str], delays: Mapping[str, float]) -> di
         if not chosen:
             groups = ", ".join(dict.fromkeys(group_of(channel) for channel in channels)) or "none"
             raise ConfigurationError(
-                f"--delay {name}=...: not a channel or group of the measurement; its groups are {groups}; "
-                f"its channels {', '.join(channels) or 'none'}"
+                f"--delay {name}=...: is not a channel or group of the measurement; groups are {groups}; "
+                f"channels {', '.join(channels) or 'none'}"
             )
         delay_of |= dict.fromkeys(chosen, delays[name])
     return delay_of
@@ -126,8 +127,8 @@ def without_delays(chosen: Chosen, delays: Mapping[str, float]) -> Chosen:
     inside = (chosen.time >= chosen.time[0] - min(every)) & (chosen.time <= chosen.time[-1] - max(every))
     if np.count_nonzero(inside) <= DEGREE:
         raise DataError(
-            f"--delay: delays from {min(every):g} to {max(every):g} s leave no common time of the "
-            f"{chosen.time[-1] - chosen.time[0]:.4g} s of the record; correct them"
+            f"--delay: delays from {min(every):g} to {max(every):g} s are too long for the record of "
+            f"{chosen.time[-1] - chosen.time[0]:.4g} s: no time is left that all channels cover; correct them"
         )
     start, time = chosen.time[0], chosen.time[inside]
     values: dict[str, Vector] = {}
@@ -149,4 +150,4 @@ def responses_without_delays(frf: FrfData, delays: Mapping[str, float]) -> FrfDa
 
 
 def _notices(delays: Mapping[str, float]) -> list[str]:
-    return [f"{name}: delay of {1e3 * value:.6g} ms taken out on request" for name, value in delays.items() if value]
+    return [f"{name}: delay of {1e3 * value:.6g} ms removed, as requested" for name, value in delays.items() if value]

@@ -86,7 +86,7 @@ class GroupDelay:
         others = 0.0 if self.against == RUN else self.delay
         separate = [
             f"{channel} {'lags' if delay > others else 'leads'} the other {self.group} by "
-            f"{1e3 * abs(delay - others):.3g} ms: a delay of this sensor? Take it out with --delay "
+            f"{1e3 * abs(delay - others):.3g} ms: a delay of this sensor? Remove it with --delay "
             f"{channel}={1e3 * delay:.5g}ms{after}"
             for channel, delay in self.unlike.items()
         ]
@@ -96,8 +96,8 @@ class GroupDelay:
             *separate,
             f"the {self.group} {'lag' if self.delay > 0.0 else 'lead'} the {self.against} by "
             f"{1e3 * abs(self.delay):.3g} ms (+- {number(1e3 * self.error, 1)} ms, in {self.agreeing} of "
-            f"{self.channels} channels): a sensor delay, or a car with other phases (tune fits both)? Take it out with "
-            f"--delay {self.group}={1e3 * self.delay:.5g}ms{after}",
+            f"{self.channels} channels): a sensor delay, or a car with other phases? `tune` fits both; remove a "
+            f"sensor delay with --delay {self.group}={1e3 * self.delay:.5g}ms{after}",
         ]
 
 

@@ -40,8 +40,8 @@ def displacement(chosen: Chosen, choice: Choice, where: str) -> tuple[dict[str, 
         if choice.highpass is None:
             if orders[quantity]:
                 raise DataError(
-                    f"{where}: {role} is {'an' if quantity[0] == 'a' else 'a'} {quantity}: the plate needs a "
-                    "displacement; set --highpass HZ below the band of interest to integrate the channel"
+                    f"{where}: {role} is {'an' if quantity[0] == 'a' else 'a'} {quantity}: but the plate needs a "
+                    "displacement; to integrate it, set --highpass HZ below the band of interest"
                 )
             displacements[role] = values
             continue
@@ -49,8 +49,8 @@ def displacement(chosen: Chosen, choice: Choice, where: str) -> tuple[dict[str, 
         displacements[role] = integrate(values, chosen.step, orders[quantity], choice.highpass)
         process = f"{quantity} integrated in the frequency domain, " if orders[quantity] else ""
         notices.append(
-            f"{role}: {process}high-pass {choice.highpass:g} Hz on request (Butterworth, order {ORDER}, forwards and "
-            "backwards)"
+            f"{role}: {process}high-pass {choice.highpass:g} Hz, as requested (Butterworth, order "
+            f"{ORDER}, forwards and backwards)"
         )
     return displacements, tuple(notices)
 
@@ -61,7 +61,7 @@ def filtered(chosen: Chosen, corner: float) -> tuple[dict[str, Vector], tuple[st
     Raises:
         DataError: see `integrate`.
     """
-    notice = f"high-pass {corner:g} Hz on request (Butterworth, order {ORDER}, forwards and backwards)"
+    notice = f"high-pass {corner:g} Hz, as requested (Butterworth, order {ORDER}, forwards and backwards)"
     values = {role: integrate(samples, chosen.step, 0, corner) for role, samples in chosen.values.items()}
     return values, (*chosen.notices, notice)
 

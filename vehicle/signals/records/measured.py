@@ -103,7 +103,7 @@ def read_measured(
             get_close_matches(unknown, model_channels, n=3) or [name for name in model_channels if unknown in name][:3]
         )
         raise ConfigurationError(
-            f"--map {unknown}=...: unknown model channel; names are such as knuckle_fr_acc_z"
+            f"--map {unknown}=...: unknown channel of the model; names look like knuckle_fr_acc_z"
             + (f"; did you mean {' or '.join(close)}?" if close else "")
         )
     # In the order of the model: that of the options and of the file changes nothing.
@@ -114,10 +114,10 @@ def read_measured(
         listed = file.listed() or "none"
         suggested = map_options(suggested_channels(file.channels, model_channels))
         examples = ", ".join(name for name in model_channels if EXAMPLES.fullmatch(name))
-        advice = f"their names suggest {suggested}" if suggested else f"channels of the model are such as {examples}"
+        advice = f"their names suggest {suggested}" if suggested else f"channels of the model look like {examples}"
         raise DataError(
-            f"{path}: no channel has the name of a model channel; set --map CHANNEL=NAME, with a number, exact name or "
-            f"pattern with *; the file has {listed}; {advice}"
+            f"{path}: no channel has the name of a channel of the model; set --map CHANNEL=NAME, with a number, "
+            f"exact name or pattern with *; the file has {listed}; {advice}"
         )
     other = next((name for name in selection.units if name and name not in {*roles, *output_of.values()}), None)
     if other is not None:
@@ -149,7 +149,7 @@ def read_measured(
     named = next((name for name in histories if output_of[name] != name), None)
     if named is not None:
         raise ConfigurationError(
-            f"--map {named}={histories[named]}: names the plate of a frequency response, but the channel is a time "
+            f"--map {named}={histories[named]}: names a plate, which only FRFs have, but the channel is a time "
             f"history; set --map {output_of[named]}={histories[named]}"
         )
     if histories:
@@ -161,11 +161,11 @@ def read_measured(
             estimated = estimated_frf(record, window)
             if estimated is not None:
                 frf, estimator = estimated
-                notices.append(f"responses estimated from the time histories: {estimator}")
+                notices.append(f"FRFs estimated from the time histories: {estimator}")
             elif "m/s2" in record.units.values():
                 notices.append(
-                    "no FRFs: no channel is that of a plate, and time histories need none; name one with --map "
-                    "plate_fl_displacement=NAME"
+                    "no FRFs, because no channel is the motion of a plate; to get FRFs, name it with --map "
+                    "plate_fl_displacement=NAME (time histories need no plate)"
                 )
     return Measured(
         file=file,
@@ -242,7 +242,7 @@ def _record(file: Measurement, choice: Choice, inverted: Collection[str], delays
     for name in inverted:
         if name in channels:
             channels[name] = -channels[name]
-            notices.append(f"{name}: sign inverted on request")
+            notices.append(f"{name}: sign inverted, as requested")
     return Record(time=chosen.time, channels=channels, units=units, notices=tuple(notices), highest=chosen.highest)
 
 

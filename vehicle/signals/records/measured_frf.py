@@ -88,7 +88,7 @@ def measured_frfs(
         response[row, columns] = values
         coherence_channel = coherence_of(measurement, channel)
         if coherence_channel is None:
-            notices.append(f"{name}: no coherence in the file; all lines have equal weight")
+            notices.append(f"{name}: the file has no coherence, so all lines have equal weight")
         elif coherence_channel.axis is not None:
             inside = (coherence_channel.axis >= frequency[0]) & (coherence_channel.axis <= frequency[-1])
             values_coherence = np.clip(np.asarray(coherence_channel.values, dtype=np.float64)[inside], 0.0, 1.0)
@@ -158,8 +158,8 @@ def _acceleration_per_displacement(channel: Channel, where: str, name: str) -> t
         )
     if upper not in ORDERS or lower not in ORDERS:
         raise DataError(
-            f"{where} is in {channel.unit}, must be a motion of a point over a motion of the plate, such as m/s2/m, "
-            f"g/m or m/m; if the unit in the file is wrong, set --unit {name}=UNIT"
+            f"{where} is in {channel.unit}, must be a motion of a point divided by a motion of the plate, such "
+            f"as m/s2/m, g/m or m/m; if the unit in the file is wrong, set --unit {name}=UNIT"
         )
     values = np.asarray(channel.si_values, dtype=np.complex128)
     power = ORDERS["acceleration"] - ORDERS[upper] + ORDERS[lower]
@@ -169,11 +169,14 @@ def _acceleration_per_displacement(channel: Channel, where: str, name: str) -> t
 
 def _sign(channel: Channel, name: str, invert: bool) -> tuple[float, list[str]]:
     """Return the sign of the measured relative to the modelled direction, and messages on it."""
-    sign, notes = (-1.0 if invert else 1.0), ["sign inverted on request"] if invert else []
+    sign, notes = (-1.0 if invert else 1.0), ["sign inverted, as requested"] if invert else []
     backwards = channel.direction.startswith("-") != channel.reference[-2:-1].startswith("-")
     if backwards:
         sign = -sign
-        notes.append(f"measured along {channel.direction or '?'} to {channel.reference or '?'}: sign inverted")
+        notes.append(
+            f"sign inverted, because it was measured along {channel.direction or '?'} with the plate along "
+            f"{channel.reference or '?'}"
+        )
     axis = channel.direction[-1:].lower()
     if re.fullmatch(r"[xyz]", axis) and not name.endswith(f"_{axis}"):
         notes.append(f"measured along {axis} of the sensor axes")

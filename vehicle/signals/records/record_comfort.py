@@ -112,7 +112,7 @@ class RecordComfort:
             lines.append(f"mean comfort N_MV of each 5 minutes (EN 12299)  {means}")
             largest = ", ".join(f"{axis} {value:.3g}" for axis, value in rated["largest_continuous"].items())
             lines.append(f"largest continuous comfort, 5 s  {largest} m/s2")
-        lines.append("values of this record, without statistical error (repeat the ride for the spread)")
+        lines.append("the values are those of this record alone; repeat the ride to see their scatter")
         return "\n".join(lines)
 
 
@@ -170,12 +170,14 @@ def evaluate_comfort(
         raise ConfigurationError(f"offset: found {offset!r}, must be one of {', '.join(OFFSETS)}")
     seated = rail is not None or rail_choice is not None
     if seated and contact not in ("seat", "seat_bs6841"):
-        raise ConfigurationError(f"--place {contact}: --rail is for the SEAT value of a seat; omit --place or --rail")
+        raise ConfigurationError(
+            f"--place {contact}: --rail gives the SEAT value, which only a seat has; leave out --place or --rail"
+        )
     record = _read(file, point, choice, contact, offset)
     axes, xyz = list(record.channels), np.array(list(record.channels.values()))
     copied = [
-        f"{first} and {second} have identical samples, which the vector sum counts twice: was a channel copied, or "
-        f"chosen twice? Choose another channel: --channel {second}=NAME"
+        f"{first} and {second} have identical samples, which the vector sum counts twice: was a channel copied "
+        f"or chosen twice? Choose another channel: --channel {second}=NAME"
         for first, second in copies(record.channels)
     ]
     removed = offset == "remove"
@@ -210,7 +212,7 @@ def evaluate_comfort(
     if seated:
         below = _read(file, rail, rail_choice, contact, offset, checked="z")
         if "z" not in record.channels or "z" not in below.channels:
-            raise ConfigurationError("--rail: the SEAT value needs z at the seat and at the rail; z is missing")
+            raise ConfigurationError("--rail: z is missing; the SEAT value needs z at the seat and at the rail")
         seat_and_rail = np.array([record.channels["z"], below.channels["z"]])
         seat_and_rail = without_offset(seat_and_rail) if removed else seat_and_rail
         summary["seat_value"] = asdict(
@@ -234,9 +236,9 @@ def _read(
     ):
         if axis in checked and (effect > OFFSET_EFFECT or abs(mean) > LARGEST_MEAN):
             raise DataError(
-                f"{file}: the mean of column {axis!r} is {mean:.4g} m/s2, its drift {number(drift, 2)} m/s2; "
-                f"they change its weighted RMS or VDV by {100 * effect:.3g} %, must be at most "
-                f"{100 * OFFSET_EFFECT:g} %, with a mean of at most {LARGEST_MEAN:g} m/s2; set --offset remove for a "
+                f"{file}: the mean of column {axis!r} is {mean:.4g} m/s2, must be at most {LARGEST_MEAN:g} m/s2, "
+                f"and its drift {number(drift, 2)} m/s2; together they change the weighted RMS or VDV by "
+                f"{100 * effect:.3g} %, must be at most {100 * OFFSET_EFFECT:g} %; set --offset remove for a "
                 "sensor offset or gravity, --offset keep if the record begins at rest and the mean is real"
             )
     return record

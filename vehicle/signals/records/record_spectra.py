@@ -200,9 +200,11 @@ def _chosen(
         pattern = re.compile("|".join(by_default))
         if names := [channel for channel in units if pattern.fullmatch(channel)]:
             return names
-        raise ConfigurationError(f"{name}: records no acceleration of a seat or knuckle; name channels (--channels)")
+        raise ConfigurationError(
+            f"{name}: contains no acceleration of a seat or knuckle; name channels with --channels"
+        )
     if missing := next((channel for channel in channels if channel not in units), None):
-        raise ConfigurationError(f"{name} has no channel {missing!r}; it has {', '.join(units)}")
+        raise ConfigurationError(f"{name} has no channel {missing!r}; choose from {', '.join(units)}")
     if other := next((channel for channel in channels if units[channel] != "m/s2"), None):
         raise ConfigurationError(
             f"{name}: {other} is in {units[other] or 'no unit'}; spectra are of accelerations [m/s2]"

@@ -263,7 +263,9 @@ def read_summary(folder: Path) -> RunSummary:
     """
     path = folder / SUMMARY_FILE
     if not path.is_file():
-        raise ConfigurationError(f"{folder}: has no {SUMMARY_FILE}; give the folder of a run, as runs/low")
+        raise ConfigurationError(
+            f"{folder}: contains no {SUMMARY_FILE}; give the folder of a run, for example runs/low"
+        )
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
         fault = _fault(content, RunSummary, "")

@@ -292,7 +292,7 @@ def choose_law(tests: Sequence[DamperTest]) -> tuple[DamperFit, list[DamperFit]]
         DataError: no test.
     """
     if not tests:
-        raise DataError("no test of a damper: name one file or more")
+        raise DataError("the tests are missing; name at least one file with a damper test")
     few = [thinned(test) for test in tests]
     first = DamperLaw()
     size = max(test.scale for test in few) / max(float(np.std(test.velocity)) for test in few)

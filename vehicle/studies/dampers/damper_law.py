@@ -89,7 +89,7 @@ class DamperLaw:
     def title(self) -> str:
         """Parts of the law in words."""
         curve = "linear damping" if not self.bends else f"damping curve with {self.bends} bend{'s'[: self.bends > 1]}"
-        parts = [curve + (", bump and rebound of their own" if self.own_sides else "")]
+        parts = [curve + (", separate for bump and rebound" if self.own_sides else "")]
         elements = f"presliding friction ({self.elements} element{'s'[: self.elements > 1]})"
         parts += [elements] if self.elements else [f"{self.friction.title()} friction"] if self.friction else []
         parts += ["gas stiffness"] if self.gas_stiffness else []

@@ -75,8 +75,8 @@ def _law(fitted: FittedDamper) -> Markup:
         for each in fitted.compared[:SHOWN_LAWS]
     ]
     sentence = (
-        f"{fit.law.title[:1].upper()}{fit.law.title[1:]}: the fewest parameters within one standard error of the least "
-        f"error on tests left out, of {len(fitted.compared)} laws."
+        f"{fit.law.title[:1].upper()}{fit.law.title[1:]}: chosen from {len(fitted.compared)} laws as the "
+        "simplest whose error on left-out tests is within one standard error of the best."
     )
     return fill(
         "law",

@@ -183,16 +183,18 @@ def read_test(path: Path, choice: Choice | None = None, *, compression: bool = F
     chosen.require_uniform(path)
     for role, quantity in chosen.quantities.items():
         if quantity != role:
-            raise DataError(f"{path}: the channel of the {role} is a {quantity}; set --channel {role}=NAME to another")
+            raise DataError(
+                f"{path}: the channel for the {role} is a {quantity}; choose another with --channel {role}=NAME"
+            )
     time, sign = chosen.time, -1.0 if compression else 1.0
     if time.size < LEAST_SAMPLES:
-        raise DataError(f"{path}: {time.size} samples, must be at least {LEAST_SAMPLES}; record a longer test")
+        raise DataError(f"{path}: contains {time.size} samples, must be at least {LEAST_SAMPLES}; record a longer test")
     x, force = sign * chosen.values["displacement"], sign * chosen.values["force"]
     measured = sign * chosen.values["velocity"] if "velocity" in chosen.values else None
     velocity = _velocity(x, measured, float(np.mean(np.diff(time))), notices)
     if np.sum(force * velocity) < 0.0:
         force = -force
-        notices.append("the force is opposite to the velocity, as that of a damper on its machine: sign inverted")
+        notices.append("the force has the sign of the test machine, opposite to the velocity; it is inverted")
     waveform = waveform_of(time, x, velocity)
     settled = waveform.settled
     if not settled.all():
@@ -218,12 +220,14 @@ def _headless(measurement: Measurement, choice: Choice, notices: list[str]) -> C
             largest = float(np.max(np.abs(columns[int(channels["displacement"]) - 1].values)))
             if largest <= LONGEST_STROKE:
                 raise DataError(
-                    f"{measurement.path}: no header, and a displacement of up to {number(largest)}, in m or in mm; set "
-                    "--unit displacement=m or --unit displacement=mm"
+                    f"{measurement.path}: is the displacement, up to {number(largest)}, in m or mm? The file has "
+                    "no header; set --unit displacement=m or --unit displacement=mm"
                 )
         units = assumed | units
         columns_text = ", ".join(f"{role} [{units[role]}]" for role in channels)
-        notices.append(f"no header: columns taken as {columns_text}; --channel and --unit change it")
+        notices.append(
+            f"the file has no header; the columns are read as {columns_text}; change this with --channel and --unit"
+        )
     return dataclasses.replace(choice, channels=channels, units=units)
 
 
@@ -254,15 +258,15 @@ def _complete(measurement: Measurement, choice: Choice) -> Choice:
         elif role != "velocity":
             listed = ", ".join(f"{i + 1} {each.name!r} [{each.unit}]" for i, each in enumerate(measurement.channels))
             raise DataError(
-                f"{measurement.path}: {len(matches) or 'no'} channels may be the {role}; set --channel {role}=NAME, "
-                f"and --unit {role}=UNIT where the file has none, to one of: {listed}"
+                f"{measurement.path}: which channel is the {role}? {len(matches) or 'no'} channels fit; set "
+                f"--channel {role}=NAME, and --unit {role}=UNIT if the file has no unit; the file has {listed}"
             )
     units = _units_by_role(measurement, channels, choice.units)
     unknown = next((name for name in units if name not in ("", "time", *ROLES)), None)
     if unknown is not None:
         raise ConfigurationError(
-            f"--unit {unknown}={units[unknown]}: {unknown!r} is neither a column of the test nor a role; the roles are "
-            f"time, {', '.join(ROLES)}"
+            f"--unit {unknown}={units[unknown]}: {unknown!r} is neither a column of the test nor one of time, "
+            f"{', '.join(ROLES)}"
         )
     return dataclasses.replace(choice, channels=channels, units=units)
 
@@ -279,7 +283,11 @@ def _velocity(x: Vector, measured: Vector | None, step: float, notices: list[str
         samples = np.arange(x.size)
         errors = [np.std((measured - np.interp(samples - d, samples, derivative))[WINDOW:-WINDOW]) for d in delays]
         best = int(np.argmin(errors))
-        late = f"; it is {1e3 * step * delays[best]:.3g} ms late" if errors[best] < 0.5 * errors[20] else ""
+        late = (
+            f"; the measured velocity is {1e3 * step * delays[best]:.3g} ms late"
+            if errors[best] < 0.5 * errors[20]
+            else ""
+        )
         notices.append(f"the measured velocity differs by {number(100.0 * difference / size, 2)} % from the derivative "
                        f"of the displacement, which is used{late}")  # fmt: skip
     weights = scipy.signal.savgol_coeffs(WINDOW, CUBIC, deriv=1, use="dot")
@@ -310,8 +318,9 @@ def _conditions(path: Path, measurement: Measurement, typed: Mapping[str, str], 
         match = re.fullmatch(form, path.stem)
         if not names or match is None:
             raise ConfigurationError(
-                f"--pattern {pattern}: {'has no {condition}' if not names else f'does not match {path.stem}'}; set the "
-                "name of the file with a condition in braces and * for the rest, as '*Hz{current}A'"
+                f"--pattern {pattern}: {'has no {condition}' if not names else f'does not match {path.stem}'}; "
+                "write the file name with the condition in braces and * for the rest, for example "
+                f"'*Hz{{current}}A'"
             )
         values |= {
             n: _number(re.sub("[x,]", ".", text), pattern) for n, text in zip(names, match.groups(), strict=True)

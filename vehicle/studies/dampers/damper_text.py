@@ -178,13 +178,17 @@ def summary_lines(fitted: FittedDamper) -> list[str]:
     for other in fitted.compared[:SHOWN_LAWS]:
         lines.append(f"{other.left_out_error:>9.4f} {len(other.parameters):>10}  {other.law.title}")
     lines.append(
-        f"chosen: {fit.law.title}, the fewest parameters within one standard error of the least error left out"
+        f"chosen: {fit.law.title}, the simplest law whose error on left-out tests is within one standard "
+        "error of the best"
     )
     lines.append(f"{'RMS error over standard deviation of force':<44}{'fitted':>8}{'left out':>10}{'whole':>8}")
     for test, inside, outside, whole in zip(fitted.tests, fit.fitted, fit.left_out, fit.whole, strict=True):
         lines.append(f"{f'{test.name}: {test.caption}':<44}{inside:>8.3f}{outside:>10.3f}{whole:>8.3f}")
     if float(np.max(fit.fitted)) > POOR:
-        lines.append(f"poor fit: an error is above {POOR:g}; look at the pictures, and check signs and time shifts")
+        lines.append(
+            f"poor fit: an error is above {POOR:g}; check signs and time shifts of the channels, and look at the "
+            "pictures"
+        )
     lines.append(f"{'parameter':<22}{'value':>12}   standard error")
     for (name, unit), value, error in zip(fit.law.parameters.items(), fit.values, fit.errors, strict=True):
         lines.append(f"{name:<22}{value:>12.5g}   {number(error, 2)} {unit}")

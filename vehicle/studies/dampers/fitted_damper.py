@@ -80,19 +80,19 @@ class FittedDamper:
         sentences = []
         if slowest > SLOW:
             sentences.append(
-                f"no test below {1e3 * SLOW:.0f} mm/s: friction at rest is not determined; the slowest test reaches "
-                f"{1e3 * slowest:.3g} mm/s"
+                f"the friction at rest is not determined, because the slowest test reaches {1e3 * slowest:.3g} "
+                f"mm/s, must be below {1e3 * SLOW:.0f} mm/s"
             )
-        sentences.append(f"no test above {fastest:.3g} m/s: beyond, the curve is extended with its last slope")
+        sentences.append(f"the tests reach {fastest:.3g} m/s; above, the curve is extended with its last slope")
         if len(self.tests) == 1:
-            sentences.append("one test: whether the law holds for other strokes and frequencies is not determined")
+            sentences.append("with a single test it is unknown whether the law holds for other strokes and frequencies")
         low, high = limits_of(law)
         for name, value, lowest, highest, determined in zip(
             law.parameters, fit.parameters, low, high, fit.determined, strict=True
         ):
             if name not in LINEAR and not lowest * AT_LIMIT < value < highest / AT_LIMIT:
                 quantity = kind_of(name).replace("_", " ")
-                sentences.append(f"{name} is at the limit of its range: the tests give no {quantity} of their own")
+                sentences.append(f"{name} is at the limit of its range: the tests do not determine the {quantity}")
             elif not determined and name not in LINEAR:
                 sentences.append(f"{name} has a standard error above half of its value")
         return sentences
@@ -120,7 +120,7 @@ def fit_damper(
     """
     paths = [Path(file) for file in files]
     if not paths or len(set(paths)) < len(paths):
-        raise ConfigurationError(f"{len(paths)} files of tests: name one or more, each once")
+        raise ConfigurationError(f"found {len(paths)} files of tests; name at least one, each once")
     typed = _typed(conditions or {}, len(paths))
     tests = [
         read_test(path, choice, compression=compression, conditions=of_file, pattern=pattern)
@@ -140,7 +140,8 @@ def _typed(conditions: Mapping[str, str], files: int) -> list[dict[str, str]]:
         values = [text] if text.startswith("channel:") else text.split(",")
         if len(values) not in (1, files):
             raise ConfigurationError(
-                f"--condition {name}={text}: {len(values)} values for {files} files; give one for all, or one for each"
+                f"--condition {name}={text}: found {len(values)} values for {files} files; give a single "
+                "value for all files, or a value for each file"
             )
         columns[name] = values * (files // len(values))
     return [{name: values[number] for name, values in columns.items()} for number in range(files)]

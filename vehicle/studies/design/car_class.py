@@ -49,5 +49,5 @@ def powertrain(name: str | None) -> Mapping[str, Any] | None:
 
 def _class(name: str) -> Mapping[str, Any]:
     if name not in CLASSES:
-        raise ConfigurationError(f"--car-class: found {name!r}, must be one of {', '.join(CLASSES)}")
+        raise ConfigurationError(f"--car-class {name!r}: must be one of {', '.join(CLASSES)}")
     return CLASSES[name]  # type: ignore[no-any-return]

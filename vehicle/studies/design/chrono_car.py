@@ -47,13 +47,13 @@ HEIGHTS_AGREE = 1e-3
 LEFT_OUT = {
     "Driveline": "driveline: the wheels roll freely",
     "Powertrain": "powertrain: its mass is in the chassis",
-    "Steering Subsystems": "steering: the tie rods end on the body",
+    "Steering Subsystems": "steering: the tie rods are attached to the body",
     "Rear Chassis": "rear chassis",
     "Subchassis": "subchassis",
 }
 LEFT_OUT_OF_AXLE = {
     "Left Brake Input File": "brakes",
-    "Antirollbar Input File": "anti-roll bar: add the table stabilizer, its points and parts",
+    "Antirollbar Input File": "anti-roll bar: add the section stabilizer, with its points and parts",
 }
 
 
@@ -101,7 +101,9 @@ def chrono_car(name: str, path: Path, tyre_file: Path | None = None) -> NewCar:
     tyre = _tyre(model, tyre_file)
     positions = vehicle.sections("Axles")
     if len(positions) != 2:
-        raise ConfigurationError(f"{vehicle.path}: {len(positions)} axles, must be 2; name the file of another vehicle")
+        raise ConfigurationError(
+            f"{vehicle.path}: has {len(positions)} axles, must be 2; name the file of another vehicle"
+        )
     positions.sort(key=lambda position: -position.array("Suspension Location", 3)[0])
     suspensions = [position.named_file("Suspension Input File") for position in positions]
     spindles = [
@@ -160,8 +162,8 @@ def _tyre(model: ChronoFile, file: Path | None) -> ChronoTyre:
     if file is not None:
         return chrono_tyre(read_chrono_file(file))
     if "Tire" not in model:
-        raise ConfigurationError(f"{model.path}: names no tyre; add --chrono-tyre FILE.json, a tyre of Chrono, or "
-                                 "name the file of the whole model, which has Vehicle and Tire")  # fmt: skip
+        raise ConfigurationError(f"{model.path}: states no tyre; add the file of a Chrono tyre with "
+            "--chrono-tyre FILE.json, or name the file of the whole model (with Vehicle and Tire)")  # fmt: skip
     return chrono_tyre(model.section("Tire").named_file("Input File"))
 
 
@@ -310,8 +312,9 @@ def _assumptions(car: Car, axles: list[ImportedAxle]) -> list[str]:
         longer = float(np.interp(-force, axle.spring[:, 1], axle.spring[:, 0])) - axle.stretch
         there = -float(np.interp(axle.stretch, axle.spring[:, 0], axle.spring[:, 1]))
         notes.append(
-            f"{word}: a main spring carries {force:.0f} N; in Chrono it has {there:.0f} N at these points, and the car "
-            f"settles until it is {1e3 * abs(longer):.0f} mm {'longer' if longer > 0.0 else 'shorter'}"
+            f"{word}: a main spring carries {force:.0f} N here; in Chrono it has {there:.0f} N at these points, "
+            f"so the Chrono car settles until it is {1e3 * abs(longer):.0f} mm "
+            f"{'longer' if longer > 0.0 else 'shorter'}"
         )
     front, rear = (axle.points["tyre_patch"][2] for axle in axles)
     if abs(rear - front) > HEIGHTS_AGREE:

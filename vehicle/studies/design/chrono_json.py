@@ -69,14 +69,14 @@ class ChronoFile:
         """Return an inner table."""
         value = self._value(name)
         if not isinstance(value, Mapping):
-            raise self._wrong(name, f"has {value!r}, must be a table")
+            raise self._wrong(name, f"has {value!r}, must be an object in braces")
         return ChronoFile(path=self.path, table=value, inside=(*self.inside, name))
 
     def sections(self, name: str) -> list[ChronoFile]:
         """Return a list of inner tables; empty if it is missing."""
         values = self.table.get(name, [])
         if not isinstance(values, list) or not all(isinstance(value, Mapping) for value in values):
-            raise self._wrong(name, "must be a list of tables")
+            raise self._wrong(name, "must be a list of objects in braces")
         inside = (*self.inside, name)
         return [
             ChronoFile(path=self.path, table=value, inside=(*inside[:-1], f"{name}[{index}]"))
@@ -129,8 +129,8 @@ class ChronoFile:
             if candidate.is_file():
                 return read_chrono_file(candidate)
         raise ConfigurationError(
-            f"{self.path}: {' / '.join((*self.inside, name))} names {relative}, which is neither in a folder above "
-            "this file nor beside it; copy it there with its folders, as in Chrono's data/vehicle"
+            f"{self.path}: {' / '.join((*self.inside, name))} names {relative}, which is neither in the folder "
+            "of this file nor in a folder above it; copy it there with its folders, as in Chrono's data/vehicle"
         )
 
 
@@ -142,16 +142,16 @@ def read_chrono_file(path: Path) -> ChronoFile:
         DataError: it is no JSON table.
     """
     if not path.is_file():
-        raise ConfigurationError(f"{path}: no such file; give the JSON file of a vehicle of Chrono")
+        raise ConfigurationError(f"{path}: the file does not exist; give the JSON file of a Chrono vehicle")
     if path.stat().st_size > LARGEST_FILE:
-        raise ConfigurationError(f"{path}: larger than {LARGEST_FILE / 1e6:g} MB; this is no vehicle of Chrono")
+        raise ConfigurationError(f"{path}: is larger than {LARGEST_FILE / 1e6:g} MB, so it is not a Chrono vehicle")
     text = path.read_bytes().decode("utf-8-sig", errors="replace")
     try:
         table = json.loads(_COMMENT.sub(lambda match: " " if match[1] else match[0], text))
     except (json.JSONDecodeError, RecursionError) as error:
         raise DataError(f"{path}: not a JSON file: {error}") from None
     if not isinstance(table, Mapping):
-        raise DataError(f"{path}: must be a JSON table in braces")
+        raise DataError(f"{path}: must be a JSON object in braces")
     return ChronoFile(path=path, table=table)
 
 

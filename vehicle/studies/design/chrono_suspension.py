@@ -96,8 +96,8 @@ def imported_axle(file: ChronoFile, to_vehicle: Callable[[Vector], Vector]) -> I
     elif template == "MacPhersonStrut":
         axle = _strut(file, to_vehicle)
     else:
-        raise DataError(f"{file.path}: a suspension of type {template!r}, must be DoubleWishbone or MacPhersonStrut; "
-                        "build another axle by a template of your own (docs: how to add an axle)")  # fmt: skip
+        raise DataError(f"{file.path}: found a suspension of type {template!r}, must be DoubleWishbone or "
+            "MacPhersonStrut; for other axles write a template (docs: how to add an axle)")  # fmt: skip
     _add_spindle(axle, file, to_vehicle)
     for name in ("Camber Angle (deg)", "Toe Angle (deg)"):
         if name in file and (angle := file.number(name)) != 0.0:
@@ -236,7 +236,9 @@ def _add_tie_rod(axle: ImportedAxle, tie: ChronoFile, name: str, to_vehicle: Cal
 
 def _leave_bushings(axle: ImportedAxle, section: ChronoFile) -> None:
     if "Bushing Data" in section:
-        axle.left_out.append(f"{section.source('Bushing Data')}: its joints have no give here; set bushings")
+        axle.left_out.append(
+            f"{section.source('Bushing Data')}: joints are rigid here; to make them elastic, set bushings"
+        )
 
 
 def _make_rigid(axle: ImportedAxle, name: str) -> None:
@@ -246,7 +248,7 @@ def _make_rigid(axle: ImportedAxle, name: str) -> None:
         "damping": [RIGID_DAMPING] * 3,
         "rotational_stiffness": 0.0,
     }
-    axle.sources[f"bushings.{name}"] = "assumed: Chrono has a joint without give; 0.1 mm under 1 kN here"
+    axle.sources[f"bushings.{name}"] = "assumed: rigid joint in Chrono; here 0.1 mm under 1 kN"
 
 
 def _add_spring(axle: ImportedAxle, spring: ChronoFile, line: Vector) -> None:
@@ -268,7 +270,7 @@ def _add_spring(axle: ImportedAxle, spring: ChronoFile, line: Vector) -> None:
         axle.spring = np.array([[-1.0, -stiffness], [1.0, stiffness]])
     else:
         raise DataError(f"{spring.path}: {' / '.join(spring.inside)} has neither Spring Coefficient nor Spring Curve "
-                        "Data; a map over deformation and velocity is not read; give a curve")  # fmt: skip
+            "Data; a map over deformation and velocity cannot be read; give a curve")  # fmt: skip
     if "Preload" in spring:
         axle.spring = axle.spring - [0.0, spring.number("Preload")]
     if "Minimum Length" in spring or "Maximum Length" in spring:
@@ -286,7 +288,7 @@ def _add_damper(axle: ImportedAxle, shock: ChronoFile) -> None:
         }
     elif "Damping Coefficient" not in shock:
         raise DataError(f"{shock.path}: {' / '.join(shock.inside)} has neither Damping Coefficient nor Damping Curve "
-                        "Data; a map over deformation and velocity is not read; give a curve")  # fmt: skip
+            "Data; a map over deformation and velocity cannot be read; give a curve")  # fmt: skip
     elif "Degressivity Compression" in shock and "Degressivity Expansion" in shock:
         key, c = "Degressivity Compression, Degressivity Expansion", shock.number("Damping Coefficient")
         v = np.array([*(-speed for speed in reversed(CURVE_SPEEDS)), *CURVE_SPEEDS])

@@ -110,8 +110,8 @@ def chrono_tyre(file: ChronoFile) -> ChronoTyre:
         return _fiala(file)
     if template in ("TMeasyTire", "TMsimpleTire"):
         return _tmeasy(file, template)
-    raise DataError(f"{file.path}: a tyre of type {template!r}, must be TMeasyTire, TMsimpleTire or FialaTire; name "
-                    "its file with --chrono-tyre FILE.json")  # fmt: skip
+    raise DataError(f"{file.path}: found a tyre of type {template!r}, must be TMeasyTire, TMsimpleTire or FialaTire; "
+        "name the file of another tyre with --chrono-tyre FILE.json")  # fmt: skip
 
 
 def _fiala(file: ChronoFile) -> ChronoTyre:
@@ -161,8 +161,8 @@ def _tmeasy(file: ChronoFile, template: str) -> ChronoTyre:
     else:
         vehicle_type = file.text("Vehicle Type")
         if (template, vehicle_type) not in SLOPES:
-            raise DataError(f"{file.path}: a {template} of a {vehicle_type!r} without Parameters; add them or name the "
-                            "file of another tyre with --chrono-tyre FILE.json")  # fmt: skip
+            raise DataError(f"{file.path}: the {template} of a {vehicle_type!r} has no Parameters; add them, or name "
+                "the file of another tyre with --chrono-tyre FILE.json")  # fmt: skip
         largest = _largest_load(file)
         height = radius - design.number("Rim Radius [m]")
         pressure = 1.0

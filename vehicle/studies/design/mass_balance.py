@@ -80,8 +80,8 @@ def balanced(table: dict[str, Any], template: TemplateCar, stated: StatedNumbers
         minimum = LIGHTEST_BODY / (1.0 - parts.mass / mass) if parts.mass < mass else parts.mass + LIGHTEST_BODY
         raise ConfigurationError(
             f"{option('kerb_mass')} {mass:g} kg: the axles, the engine and the other parts, scaled from "
-            f"{template.name}, weigh {parts.mass:.1f} kg and leave {mass - parts.mass:.1f} kg for the body, must be at "
-            f"least {LIGHTEST_BODY:g} kg; state {math.ceil(minimum)} kg or more"
+            f"{template.name}, weigh {parts.mass:.1f} kg so {mass - parts.mass:.1f} kg remain for the body, must "
+            f"be at least {LIGHTEST_BODY:g} kg; state a kerb mass of at least {math.ceil(minimum)} kg"
         )
     radius = stated.tyre_radius or template.tyre_radius
     ground = template.wheels["front"][0].center[2] - radius
@@ -176,7 +176,7 @@ def _sources(template: TemplateCar, stated: StatedNumbers, parts: float, of_temp
     sources = {
         "body.mass": f"{masses}, less {parts:.2f} kg of the other parts",
         "body.cog": f"{position}; {height}; less the other parts",
-        "body.flexible": "rigid: no shapes of this body are known",
+        "body.flexible": "rigid, because the mode shapes of this body are unknown",
         "body.attachment_flexibility": "rigid: likewise",
         "body.inertia.about": "about the centre of gravity",
     }

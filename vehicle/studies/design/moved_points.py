@@ -48,8 +48,9 @@ def moved_points(template: TemplateCar, stated: StatedNumbers) -> tuple[dict[str
                 new[2] = ground
             if sign * point[1] > 0.0 and not sign * new[1] > 0.0:
                 raise ConfigurationError(
-                    f"{option(f'track_{word}')} {track:g} m: {path} would be {1e3 * abs(new[1]):.0f} mm beyond the "
-                    f"middle of the car; must be above {template.track(word) - 2.0 * abs(point[1]):.3f} m"
+                    f"{option(f'track_{word}')} {track:g} m: must be above "
+                    f"{template.track(word) - 2.0 * abs(point[1]):.3f} m, or {path} would be "
+                    f"{1e3 * abs(new[1]):.0f} mm beyond the middle of the car"
                 )
             _set(table, sources, path, point, new, _reason(stated, word, template.name))
     ratio = 1.0 + along / template.wheelbase

@@ -195,8 +195,8 @@ def _require_met(checks: tuple[Check, ...]) -> None:
     for check in checks:
         if abs(check.deviation) > (LOADS_MET if check.name in exact else FREQUENCIES_MET):
             raise SimulationError(
-                f"{check.name}: stated {check.stated:g} {check.unit}, the car has {check.value:g}; this combination of "
-                "numbers is not met: leave one of them out"
+                f"{check.name}: stated {check.stated:g} {check.unit}, but the new car has {check.value:g} "
+                f"{check.unit}; your numbers contradict each other: leave one of them out"
             )
 
 
@@ -261,5 +261,5 @@ def _notes(car: Car, template: TemplateCar, stated: StatedNumbers, ratio: float)
         *_unusual_notes(car, template, stated),
         f"as in {template.name}: {scaled}parts of axles and powertrain, bushings, mounts, damper friction, tyres; "
         "these values are marked 'template' in the file",
-        *(f"not taken over from {template.name}: {text}" for text in template.left_out),
+        *(f"left out from {template.name}: {text}" for text in template.left_out),
     )

@@ -50,10 +50,10 @@ LIMITS = {"wheel_hop": " (static deflection of 50 to 6 mm)"}
 """Reason of the limits of a parameter, by the name of the quantity."""
 WIDENS = {
     "ride_frequency": "Softer or stiffer tyres (--wheel-hop-front, -rear) and another axle load move the interval.",
-    "damping_ratio": "Dampers at 0.1 m/s count: state a value inside, or a --damper-curve.",
-    "wheel_hop": "Lighter wheels and brakes raise it, heavier ones lower it: change parts.*.mass of this axle in the "
-    "file of the template, or state another kerb mass, which scales them.",
-    "roll_stiffness": "The springs give the least value: a lower ride frequency or a narrower track lowers it.",
+    "damping_ratio": "It holds at a damper velocity of 0.1 m/s: state a value inside the range, or a --damper-curve.",
+    "wheel_hop": "Lighter wheels and brakes raise it, heavier wheels lower it: change parts.*.mass of this axle in the "
+    "template file, or state another kerb mass, which scales them.",
+    "roll_stiffness": "The springs alone give the lowest value: a lower ride frequency or a narrower track reduces it.",
     "pitch_frequency": "The moments of a real body limit it: state other ride frequencies, axle loads, roll or yaw "
     "inertia.",
 }
@@ -122,8 +122,8 @@ def targets_of(template: TemplateCar, stated: StatedNumbers) -> list[Target]:
             present = tuple(path for path in paths if value_at(template.table, path) not in (None, 0.0))
             if value is not None and not present:
                 raise ConfigurationError(
-                    f"{option(name)}: the {word} axle of {template.name} has no part for it; leave it out, or "
-                    "start from another car"
+                    f"{option(name)}: the {word} axle of {template.name} has no part that sets this value; leave "
+                    "it out, or start from another car"
                 )
             if present:
                 targets.append(Target(name=name, value=value or template_values[name], paths=present))
@@ -243,8 +243,9 @@ class RideProblem:
             jacobian += np.outer(residual - last - jacobian @ step, step) / (step @ step)
         worst = int(np.argmax(np.abs(residual)))
         raise SimulationError(
-            f"{option(self.targets[worst].name)} {aims[worst]:g}: not met within {MOST_STEPS} steps, deviation "
-            f"{100.0 * residual[worst]:.2f} %; state a value nearer to that of {self.template.name}, or leave it out"
+            f"{option(self.targets[worst].name)} {aims[worst]:g}: was not reached within {MOST_STEPS} steps, "
+            f"deviation {100.0 * residual[worst]:.2f} %; state a value nearer to that of {self.template.name}, "
+            "or leave it out"
         )
 
     def reachable_interval(self, index: int) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -304,9 +305,9 @@ class RideProblem:
         name = target.name.removesuffix("_front").removesuffix("_rear")
         of = field_quantity(StatedNumbers, target.name)["unit"]
         return ConfigurationError(
-            f"{option(target.name)} {target.value:g} {'' if of == '-' else of}: cannot be reached; reachable are "
-            f"{low:.4g} to {high:.4g} {'' if of == '-' else of}, with {path} from {first} to {last} {unit}"
-            f"{LIMITS.get(name, '')}. {WIDENS[name]}".replace(" :", ":").replace(" ,", ",")
+            f"{option(target.name)} {target.value:g} {'' if of == '-' else of}: cannot be reached, must be "
+            f"{low:.4g} to {high:.4g} {'' if of == '-' else of}, with {path} from {first} to {last} "
+            f"{unit}{LIMITS.get(name, '')}. {WIDENS[name]}".replace(" :", ":").replace(" ,", ",")
         )
 
     def explained_error(self, error: ConfigurationError) -> ConfigurationError:

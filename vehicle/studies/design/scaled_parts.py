@@ -67,8 +67,8 @@ def scaled_parts(
         vehicle_of(table, template.file.parent)
     except ConfigurationError as error:
         raise ConfigurationError(
-            f"--kerb-mass: parts of {template.name} scaled by {ratio:.3g} are those of no car: {error}; state a mass "
-            "nearer to that of the template, or start from another car"
+            f"--kerb-mass: parts of {template.name}, scaled by {ratio:.3g}, are outside the range of cars: "
+            f"{error}; state a mass nearer to that of the template, or start from another car"
         ) from None
     return table, sources
 

@@ -39,12 +39,12 @@ class StatedNumbers:
     that are those of the class of the car.
     """
 
-    kerb_mass: float | None = optional("kg", "mass of the car without the loads of [load]", at_most=2e4, **CAR)
+    kerb_mass: float | None = optional("kg", "mass of the car without driver and loads ([load])", at_most=2e4, **CAR)
     front_axle_load: float | None = optional(
-        "kg", "load of the front axle on the scales, without [load]", at_most=2e4, **AXLE
+        "kg", "axle load of the front axle, without driver and loads ([load])", at_most=2e4, **AXLE
     )
     rear_axle_load: float | None = optional(
-        "kg", "load of the rear axle on the scales, without [load]", at_most=2e4, **AXLE
+        "kg", "axle load of the rear axle, without driver and loads ([load])", at_most=2e4, **AXLE
     )
     cog_x: float | None = optional(
         "m",
@@ -54,9 +54,9 @@ class StatedNumbers:
         **METRES,
     )
     cog_height: float | None = optional("m", "centre of gravity above the ground", above=0.0, at_most=3.0)
-    wheelbase: float | None = optional("m", "distance of the axles", above=0.0, at_most=8.0, **METRES)
-    track_front: float | None = optional("m", "distance of the front wheels", above=0.0, at_most=4.0, **METRES)
-    track_rear: float | None = optional("m", "distance of the rear wheels", above=0.0, at_most=4.0, **METRES)
+    wheelbase: float | None = optional("m", "wheelbase", above=0.0, at_most=8.0, **METRES)
+    track_front: float | None = optional("m", "track of the front wheels", above=0.0, at_most=4.0, **METRES)
+    track_rear: float | None = optional("m", "track of the rear wheels", above=0.0, at_most=4.0, **METRES)
     tyre_radius: float | None = optional(
         "m", "loaded radius: wheel centre above the ground", above=0.0, at_most=2.0, **METRES
     )
@@ -71,21 +71,16 @@ class StatedNumbers:
     )
     inertia: str = quantity(
         "-",
-        "moments that are not stated: radii of gyration in proportion to those of the template, or means of 73 cars",
+        "estimate of moments of inertia that are not stated: from the radii of gyration of the template, or "
+        "from the means of 73 cars",
         choices=("template", "survey"),
         default="template",
     )
     ride_frequency_front: float | None = optional("Hz", "ride frequency of the front axle", **BODY)
     ride_frequency_rear: float | None = optional("Hz", "ride frequency of the rear axle", **BODY)
-    pitch_frequency: float | None = optional(
-        "Hz", "pitch of the sprung mass on its ride rates; gives the pitch inertia", **BODY
-    )
-    wheel_hop_front: float | None = optional(
-        "Hz", "hop of the front wheels on suspension and tyres; gives the tyre stiffness", **HOP
-    )
-    wheel_hop_rear: float | None = optional(
-        "Hz", "hop of the rear wheels on suspension and tyres; gives the tyre stiffness", **HOP
-    )
+    pitch_frequency: float | None = optional("Hz", "pitch frequency of the sprung mass; sets the pitch inertia", **BODY)
+    wheel_hop_front: float | None = optional("Hz", "hop frequency of the front wheels; sets the tyre stiffness", **HOP)
+    wheel_hop_rear: float | None = optional("Hz", "hop frequency of the rear wheels; sets the tyre stiffness", **HOP)
     damping_ratio_front: float | None = optional(
         "-", "damping ratio of the front axle, dampers at 0.1 m/s", above=0.0, at_most=3.0
     )
@@ -99,14 +94,14 @@ class StatedNumbers:
         "-", "damper test of the rear axle: table of velocity and force", is_file=True
     )
     roll_stiffness_front: float | None = optional(
-        "N m/deg", "roll stiffness of the front axle without the tyres; gives the stabilizer", above=0.0
+        "N m/deg", "roll stiffness of the front axle without the tyres; sets the stabilizer", above=0.0
     )
     roll_stiffness_rear: float | None = optional(
         "N m/deg",
-        "roll stiffness of the rear axle without the tyres; gives the stabilizer, or the torsion of the beam",
+        "roll stiffness of the rear axle without the tyres; sets the stabilizer, or the torsion of the beam",
         above=0.0,
     )
-    car_class: str | None = optional("-", "class of the car, for default numbers")
+    car_class: str | None = optional("-", "class of the car, which sets default values")
     tyre_size: str | None = None
     of_class: tuple[str, ...] = ()
     load: Mapping[str, dict] = field(default_factory=dict)  # type: ignore[type-arg]
@@ -114,9 +109,9 @@ class StatedNumbers:
     def __post_init__(self) -> None:
         validate(self)
         for first, second, why in (
-            ("pitch_frequency", "pitch_inertia", "either gives the other"),
-            ("damping_ratio_front", "damper_curve_front", "the curve is the damping"),
-            ("damping_ratio_rear", "damper_curve_rear", "the curve is the damping"),
+            ("pitch_frequency", "pitch_inertia", "each follows from the other"),
+            ("damping_ratio_front", "damper_curve_front", "the curve sets the damping"),
+            ("damping_ratio_rear", "damper_curve_rear", "the curve sets the damping"),
             ("cog_x", "front_axle_load", "both give the position of the centre of gravity"),
             ("cog_x", "rear_axle_load", "both give the position of the centre of gravity"),
         ):

@@ -74,7 +74,7 @@ class TemplateCar:
             return self
         if "engine" not in self.table:
             raise ConfigurationError(
-                f"--car-class: {self.name} has no table engine for the powertrain; start from sedan"
+                f"--car-class: {self.name} has no section [engine] for the powertrain; start from sedan"
             )
         table = {**self.table, "engine": copy_table(engine)}
         return dataclasses.replace(self, table=table, vehicle=vehicle_of(table, self.file.parent))
@@ -118,7 +118,9 @@ def template_car(source: Path | str) -> TemplateCar:
     table = copy_table(vehicle_table(file))
     left_out = []
     if table["body"].get("flexible", True):
-        left_out.append("its flexible body: the shapes belong to another body; the new body is rigid (docs: own body)")
+        left_out.append(
+            "its flexible body, whose mode shapes belong to another body; the new body is rigid (docs: own body)"
+        )
     for key in ("superelement", "modes_up_to", "frequency_scale", "model_mass", "modes"):
         table["body"].pop(key, None)
     put(table, {"body.flexible": False, "body.attachment_flexibility": False})
@@ -126,7 +128,7 @@ def template_car(source: Path | str) -> TemplateCar:
     points = table.get("hardpoints", {})
     table["hardpoints"] = {name: point for name, point in points.items() if name in users}
     if loads := table.pop("load", None):
-        left_out.append(f"its loads {', '.join(loads)}: state yours as [load.NAME] in --numbers")
+        left_out.append(f"its loads {', '.join(loads)}; state your loads as [load.NAME] in the --numbers file")
     vehicle = vehicle_of(table, file.parent)
     axles: dict[str, list[PlacedWheel]] = {}
     for wheel in vehicle.composition.wheels:

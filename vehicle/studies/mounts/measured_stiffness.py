@@ -73,7 +73,7 @@ def read_stiffness(path: Path) -> MeasuredStiffness:
     rows, lines = len(frequency), len(np.unique(frequency))
     if rows < LEAST_ROWS or lines < LEAST_FREQUENCIES:
         raise DataError(
-            f"{path}: {rows} rows with {lines} frequencies, must be at least {LEAST_ROWS} rows and "
+            f"{path}: has {rows} rows with {lines} frequencies, must be at least {LEAST_ROWS} rows and "
             f"{LEAST_FREQUENCIES} frequencies; measure more points"
         )
     stiffness = columns["stiffness"] * np.exp(1j * columns["loss_angle"])
@@ -92,13 +92,13 @@ def _index(header: Header, name: str) -> int:
     columns = [index for index, (head, _) in enumerate(heads) if head.strip().lower().replace(" ", "_") == name]
     if len(columns) != 1:
         raise DataError(
-            f"{header.where}: {len(columns) or 'no'} column{'s' if columns else ''} {name!r}; found {header.found}; "
-            f"needed are {NEEDED}"
+            f"{header.where}: has {len(columns) or 'no'} column{'s' if columns else ''} {name!r}, must be a "
+            f"single column; found {header.found}; needed are {NEEDED}"
         )
     unit = heads[columns[0]][1]
     if unit not in UNITS[name]:
         cell, options = header.cells[columns[0]], " or ".join(f"{name} [{allowed}]" for allowed in UNITS[name])
-        raise DataError(f"{header.where}: column {cell!r}: write {options}, with the unit of the values")
+        raise DataError(f"{header.where}: column {cell!r}: the unit is missing or unknown; write {options}")
     return columns[0]
 
 

@@ -171,7 +171,8 @@ def fit_mount(points: MeasuredStiffness | str | PathLike[str], laws: Sequence[st
     several = len(data.levels()) > 1
     if laws and "decoupler" in laws and not several:
         raise DataError(
-            "law 'decoupler': found points at one amplitude, must be at two or more; measure within and beyond the gap"
+            "law 'decoupler': found points at a single amplitude, must be at least two; measure within and "
+            "beyond the gap of the decoupler"
         )
     chosen = laws or [name for name in LAWS if several or name != "decoupler"]
     return sorted((fit_law(data, LAWS[name]) for name in chosen), key=lambda fit: fit.criterion)

@@ -45,7 +45,7 @@ def vehicle_lines(fit: MountFit, caption: str) -> str:
     source = caption.split(":")[0]
     lines = [
         f"# {TITLES[fit.law.name]}, fitted to {caption}",
-        "# z is the measured axis; x and y have the same values: replace them by their own",
+        "# z is the measured axis; x and y are set to the same values: replace them",
         "rotational_stiffness = 0.0  # [N m/rad] not measured",
     ]
     for name, unit in ABSENT[fit.law.name].items():
@@ -108,18 +108,23 @@ def summary_lines(fits: Sequence[MountFit], caption: str) -> list[str]:
             f"{f'{angle[0]:.1f} deg, {angle[1]:.1f} deg':>26}"
         )
     best = fits[0]
-    others = f", the least BIC, by {fits[1].criterion - best.criterion:.1f}" if len(fits) > 1 else ""
+    others = (
+        f", the best fit for its number of parameters (BIC lower by {fits[1].criterion - best.criterion:.1f})"
+        if len(fits) > 1
+        else ""
+    )
     lines.append(f"chosen: {TITLES[best.law.name]}{others}")
     if max(best.stiffness_error[0], best.angle_error[0]) > POOR:
         lines.append(
             f"poor fit: the RMS error is above {100.0 * POOR:.0f} % or {np.degrees(POOR):.0f} deg; check units, "
-            "amplitudes (half of peak to peak) and scatter of the points; their mount may have none of these laws"
+            "amplitudes (half of peak to peak) and scatter of the points, or the mount follows none of these "
+            "laws"
         )
     criteria = {fit.law.name: fit.criterion for fit in fits}
     if best.law.name == "hydromount" and "decoupler" in criteria:
         lines.append(
-            "the points do not show a decoupler: its five parameters reduce the residuals by less than BIC asks for, "
-            f"which is larger by {criteria['decoupler'] - best.criterion:.1f} with them"
+            "the points do not show a decoupler: its five parameters improve the fit too little (BIC larger by "
+            f"{criteria['decoupler'] - best.criterion:.1f})"
         )
     lines.append(f"{'parameter':<20}{'value':>12}   standard error")
     for (name, unit), value, error, determined in zip(

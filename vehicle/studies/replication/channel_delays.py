@@ -71,8 +71,8 @@ class ChannelDelay:
             return []
         return [
             f"{self.channel} {'lags' if self.delay > 0.0 else 'leads'} the other channels by "
-            f"{1e3 * abs(self.delay):.3g} ms (+- {number(1e3 * self.error, 1)} ms): a sensor delay? Take it out with "
-            f"--delay {self.channel}={1e3 * self.delay:.5g}ms"
+            f"{1e3 * abs(self.delay):.3g} ms (+- {number(1e3 * self.error, 1)} ms): a sensor delay? Remove it "
+            f"with --delay {self.channel}={1e3 * self.delay:.5g}ms"
         ]
 
 

@@ -140,5 +140,5 @@ def _table(replication: Replication, channels: tuple[str, ...], description: str
     """Return the table of the iterations as CSV."""
     heads = ["iteration", "gain", "kept", "error", *(f"error_{name}" for name in channels)]
     rows = [(step.number, f"{step.gain:g}", int(step.kept), step.error, *step.errors) for step in replication.steps]
-    error = "error: RMS of target minus response over RMS of target, in the band [-]"
+    error = "error: RMS of target minus response, divided by RMS of target, in the band [-]"
     return table_text([heads, *rows], [description, error], digits=9)

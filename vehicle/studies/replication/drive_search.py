@@ -104,8 +104,8 @@ def replicate_drive(
     begin, delays = split_delay(settings.delay or {})
     if begin:
         raise ConfigurationError(
-            f"--delay {begin:g}: the start of the record only moves the drive; name the channels that lag, as "
-            "--delay seat_rail_acc_z=12.3ms"
+            f"--delay {begin:g}: a delay of all channels only shifts the drive signals; name the channels that "
+            "lag, for example --delay seat_rail_acc_z=12.3ms"
         )
     options = replace(options, delays={**options.delays, **delays})
     names = dict(channels) if isinstance(channels, Mapping) else named_channels(path, channels, options)
@@ -114,7 +114,10 @@ def replicate_drive(
     plant = DrivenCar(car, driven_wheels(settings.wheels, wanted, car.vehicle.shaker_wheel), wanted, settings.engine)
     replication = replicate(plant, wanted.values, wanted.lines, settings)
     if not any(step.kept for step in replication.steps):
-        raise SimulationError(f"{path}: no drive has a smaller error than plates at rest; {replication.outcome}")
+        raise SimulationError(
+            f"{path}: no drive signal was better than plates at rest ({replication.outcome}); check units, signs "
+            "and delays of the channels"
+        )
     return FoundDrive(replication=replication, plant=plant)
 
 
@@ -140,7 +143,7 @@ def driven_wheels(asked: Sequence[str] | None, target: Target, shaker_wheel: str
     driven = in_order(set(asked) if asked else named or {shaker_wheel})
     if len(driven) > len(target.channels):
         raise ConfigurationError(
-            f"{len(driven)} plates ({', '.join(driven)}) and {len(target.channels)} channel: use at least as many "
-            "channels as plates"
+            f"found {len(target.channels)} channel for {len(driven)} plates ({', '.join(driven)}); use at least "
+            "as many channels as plates"
         )
     return driven

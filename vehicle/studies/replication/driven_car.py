@@ -42,8 +42,8 @@ class DrivenCar(Plant):
         shaking = [force.path for force in car.vehicle.composition.forces if force.harmonics or force.recorded]
         if shaking:
             raise ConfigurationError(
-                f"{shaking[0]}: shakes the car, and the plates would be made to repeat its motion; leave it out, or "
-                "all forces by --set apply_forces=false"
+                f"{shaking[0]}: this force shakes the car, and the plates would repeat its effect; remove it, or "
+                "leave all forces out with --set apply_forces=false"
             )
         car.vehicle.require_channels(target.channels, car.vehicle.acceleration_channels)
         self.damping = np.array([equivalent_damping(damper.law, np.zeros(1), np.zeros(1)) for damper in self.dampers])
@@ -91,8 +91,9 @@ class DrivenCar(Plant):
                 at = int(np.argmax(np.abs(values)))
                 if abs(values[at]) > limit:
                     return drive, (
-                        f"plate {wheel} would have to be {motion} {abs(values[at]):.4g} {unit} at "
-                        f"t = {at * step:.4g} s, a shaker is limited to {limit:g} {unit}; check the unit of the target "
-                        f"(--unit), or use a narrower --band than {self.target.band[0]:g}:{self.target.band[1]:g}"
+                        f"plate {wheel} would have to be {motion} {abs(values[at]):.4g} {unit} at t = "
+                        f"{at * step:.4g} s, must be at most {limit:g} {unit}, the limit of a shaker; check the "
+                        "unit of the target (--unit), or use a narrower --band than "
+                        f"{self.target.band[0]:g}:{self.target.band[1]:g}"
                     )
         return np.array(list(columns.values())), ""

@@ -84,8 +84,8 @@ def read_target(path: Path, names: Mapping[str, str], choice: Choice, band: tupl
     for role, quantity in chosen.quantities.items():
         if quantity != "acceleration":
             raise DataError(
-                f"{path}: {role}: found a {quantity}; replication needs accelerations; choose another channel, or "
-                f"set --unit {role}=m/s2 or {role}=g if the file is wrong"
+                f"{path}: {role}: found a {quantity}, must be an acceleration; choose another channel, or set "
+                f"--unit {role}=m/s2 or {role}=g if the file is wrong"
             )
     values, notices = dict(chosen.values), list(chosen.notices)
     if choice.highpass is not None:
@@ -93,14 +93,14 @@ def read_target(path: Path, names: Mapping[str, str], choice: Choice, band: tupl
         notices = list(messages)
     count = chosen.time.size
     if count < MINIMUM_SAMPLES:
-        raise DataError(f"{path}: {count} samples, must be at least {MINIMUM_SAMPLES}; use a record of a vibration")
+        raise DataError(f"{path}: contains {count} samples, must be at least {MINIMUM_SAMPLES}; use a longer record")
     step = float(chosen.time[-1] - chosen.time[0]) / (count - 1)
     _check_band(path, band, step, count, chosen.highest)
     accelerations, rate_notices = _resampled(np.array([values[name] for name in names]), step, band, rate)
     lines = Lines(accelerations.shape[1], 1.0 / rate, band)
     notices += [
-        f"{first} and {second} have the same samples, as in pure heave; otherwise choose another: "
-        f"--channel {second}=NAME"
+        f"{first} and {second} have the same samples, which is right only in pure heave; otherwise choose "
+        f"another channel with --channel {second}=NAME"
         for first, second in copies(chosen.values)
     ]
     notices += [*rate_notices, *_outside(names, np.array([values[name] for name in names]), accelerations, lines, band)]

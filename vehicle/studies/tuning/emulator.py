@@ -66,8 +66,7 @@ def fitted_emulator(points: Vector, outputs: Vector) -> Emulator:
     degrees = [degree for degree in range(1, HIGHEST_DEGREE + 1) if cars >= CARS_PER_TERM * comb(size + degree, degree)]
     if not degrees:
         raise ConfigurationError(
-            f"{cars} cars for {size} parameters: must be at least "
-            f"{ceil(CARS_PER_TERM * (size + 1))}; set more --samples"
+            f"--samples {cars}: must be at least {ceil(CARS_PER_TERM * (size + 1))} for {size} parameters"
         )
     powers = np.array(_powers(size, degrees[-1]))
     terms = legendre_terms(points, powers)

@@ -35,18 +35,19 @@ class ReadingSettings(Settings):
     """Settings of a measurement file."""
 
     signal: Signal | Road | Path | str | None = setting(
-        "plate displacement of the measurement: a signal, a file, or the name of a shipped file; for time histories "
-        "also the road that was driven; by default the plate in the measurement file"
+        "plate displacement of the measurement: a signal, a file, or the name of a shipped file; for time "
+        "histories also the road; default: the plate in the measurement file"
     )
-    channels: Mapping[str, str] | None = setting("channel of the model to channel of the file; by default equal names")
+    channels: Mapping[str, str] | None = setting(
+        "channel of the model and its channel in the file; default: equal names"
+    )
     _: KW_ONLY
     choice: Choice | None = setting("units, rate and excerpt of the file")
     inverted: Collection[str] = setting("channels measured with the opposite sign", ())
-    fitted: Sequence[str] = setting("channels to be fitted; by default all except plates", ())
+    fitted: Sequence[str] = setting("channels to fit; default: all except plates", ())
     delay: Delay = setting(
-        "start of the record after the start of the signal [s], for time histories; or known delays of groups, "
-        "channels or patterns, as {'record': 0.2, 'accelerations': 0.0123}; those of the other groups are unknowns of "
-        "the fit",
+        "for time histories: start of the record after the start of the signal [s], or known delays of groups, "
+        "channels or patterns, for example {'record': 0.2, 'accelerations': 0.0123}; other delays are fitted",
         0.0,
     )
 
@@ -56,17 +57,17 @@ class BandSettings(Settings):
     """Settings of FRFs in a band."""
 
     band: tuple[float, float] = setting(
-        "fitted frequencies [Hz]; %(default)s by default",
+        "range of the fitted frequencies [Hz]; default: %(default)s",
         BAND,
         type=pair("--band", "LOW:HIGH in Hz, as 3:45"),
         metavar="A:B",
     )
     spacing: float = setting(
-        "minimum distance of the fitted frequencies [Hz]; %(default)g by default", SPACING, type=float, metavar="HZ"
+        "minimum distance of the fitted frequencies [Hz]; default: %(default)g", SPACING, type=float, metavar="HZ"
     )
     window: float | None = setting(
-        "length of the Hann windows of measured FRFs [s]; those of the model are estimated in the same way; by default "
-        "the whole record is evaluated",
+        "length of the Hann windows of measured FRFs [s]; FRFs of the model are estimated with the same "
+        "windows; default: the whole record",
         type=float,
         metavar="S",
     )
@@ -77,17 +78,18 @@ class ResponseSettings(ReadingSettings, BandSettings):
     """Settings of measured FRFs of one excitation level."""
 
     averages: float = setting(
-        "number of independent averages of FRFs from a file without random errors; with 1, the default, their noise is "
-        "overestimated",
+        "number of independent averages of measured FRFs, if the file has no random errors; default: 1, which "
+        "overestimates the noise",
         1.0,
         type=float,
         metavar="N",
     )
     stuck: bool = setting(
-        "the dampers stick at this level: the FRFs of the linear car follow from its matrices, and no signal is needed",
+        "the dampers stick at this level, so the FRFs follow from the linear car and no signal is needed",
         False,
         nargs=0,
-        help="the dampers stick at the level of the preceding --frf: linear car, no plate signal needed",
+        help="for the preceding --frf: the dampers stick at its level, so the linear car is used and no plate "
+        "signal is needed",
     )
 
 
@@ -95,14 +97,14 @@ class ResponseSettings(ReadingSettings, BandSettings):
 class HistorySettings(ReadingSettings):
     """Settings of measured time histories."""
 
-    drift: float = setting("relative lag of the clock of the record [-]", 0.0)
+    drift: float = setting("how much the clock of the record is slow [-]", 0.0)
     stretch: tuple[float, float] | None = setting(
-        "fitted part of the signal [s]; the whole record by default, on a road from 2 s on",
+        "part of the signal to fit [s]; default: the whole record, on a road from 2 s on",
         type=pair("--stretch", "FROM:TO in s, as 4.9:6.5"),
         metavar="FROM:TO",
     )
     lowpass: float = setting(
-        "corner of the low-pass filter on measurement and model [Hz]; %(default)g by default",
+        "corner frequency of the low-pass filter on measurement and model [Hz]; default: %(default)g",
         100.0,
         type=float,
         metavar="HZ",
@@ -118,14 +120,14 @@ class LevelSettings(HistorySettings, BandSettings):
         0,
         type=int,
         metavar="N",
-        help="compare the preceding --record by FRFs in N classes of the input level in place of its time histories",
+        help="compare the preceding --record by FRFs in N classes of the input level, instead of its time histories",
     )
     reference: str | None = setting(
-        "input of the FRFs: a plate, or a measured channel, as knuckle_fl_acc_z; the plate of the shaker wheel by "
-        "default",
+        "input of the FRFs: a plate, or a measured channel, for example knuckle_fl_acc_z; default: the plate of "
+        "the shaker wheel",
         metavar="CHANNEL",
-        help="input of the FRFs of --levels: a plate, or a measured channel, as knuckle_fl_acc_z; the plate of the "
-        "shaker wheel by default",
+        help="input of the FRFs of --levels: a plate, or a measured channel, for example knuckle_fl_acc_z; "
+        "default: the plate of the shaker wheel",
     )
 
 
@@ -133,18 +135,23 @@ class LevelSettings(HistorySettings, BandSettings):
 class PosteriorSettings(Settings):
     """Settings of a posterior distribution."""
 
-    samples: int = setting("cars of the emulator; %(default)s by default", CARS, type=int, metavar="K")
+    samples: int = setting(
+        "number of simulated cars from which the fast replacement model is built; default: %(default)s",
+        CARS,
+        type=int,
+        metavar="K",
+    )
     discrepancy: float = setting(
-        "standard deviation of the error of the model in each third octave [-]; %(default)g by default",
+        "expected error of the model itself, standard deviation in each third octave [-]; default: %(default)g",
         DISCREPANCY,
         factor=0.01,
         type=float,
         metavar="PERCENT",
-        help="standard deviation of the error of the model in each third octave [%%]; %(default)g by default",
+        help="expected error of the model itself, standard deviation in each third octave [%%]; default: %(default)g",
     )
     rival: Sequence[str] = setting(
-        "another law with its evidence against the fitted one: settings, as damper.viscous_law=degressive, and further "
-        "parameters with bounds, as damper.degressive_viscous=2e3:1e4",
+        "compare the fitted law with another: its settings, for example damper.viscous_law=degressive, and its "
+        "parameters with bounds, for example damper.degressive_viscous=2e3:1e4",
         (),
         nargs="+",
         metavar="PATH=VALUE",

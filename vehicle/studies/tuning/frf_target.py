@@ -67,7 +67,9 @@ class FrfTarget:
             raise ConfigurationError(f"{self.name}: found {self.averages:g} averages, must be above 0")
         unknown = next((str(name) for name in self.data.names if not name.motion), None)
         if unknown is not None:
-            raise ConfigurationError(f"{self.name}: the FRF of {unknown} names no plate; name it as {unknown}/plate_fl")
+            raise ConfigurationError(
+                f"{self.name}: the FRF of {unknown} does not state its plate; name it, for example {unknown}/plate_fl"
+            )
         if self.signal is not None:
             object.__setattr__(self, "motions", motions_of(self.signal))
             to_driven_plates(self.data, self.motions, self.name)
@@ -139,7 +141,7 @@ class FrfTarget:
             ConfigurationError: stuck dampers have no signal.
         """
         if self.signal is None:
-            raise ConfigurationError(f"{self.name}: FRFs of stuck dampers come from the matrices, not from a run")
+            raise ConfigurationError(f"{self.name}: FRFs with stuck dampers are computed without a run")
         return car.run(self.signal, engine=engine, channels=self.recorded)
 
     def estimated(self, run: Run) -> Complex:
@@ -245,8 +247,8 @@ def to_driven_plates(data: FrfData, motions: Sequence[Mapping[str, float]], wher
         if pair is None:
             raise DataError(
                 f"{where}: {name}: is an FRF to {name.input}, but the signal drives "
-                f"{', '.join(candidate.input for candidate in candidates)}; use the signal of that measurement, or fit "
-                "other FRFs by --channels"
+                f"{', '.join(candidate.input for candidate in candidates)}; use the signal of this measurement, "
+                "or choose other FRFs with --channels"
             )
         names.append(name if name.motion else candidates[pair[0]])
     return data.renamed(names)

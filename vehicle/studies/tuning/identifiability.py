@@ -44,8 +44,9 @@ class Unidentified:
         """Return a message that names the parameter, its partners and the standard error."""
         other = f" apart from {', '.join(self.partners)}" if self.partners else ""
         return (
-            f"{self.path}: the data do not identify this parameter{other} (standard error of the direction "
-            f"{self.spread:.3g} half widths of the bounds, maximum {number(WIDEST, 2)}); held at {self.held_at:g}"
+            f"{self.path}: the data do not determine this parameter{other}: its standard error is "
+            f"{self.spread:.3g} times half the width of the bounds, must be at most {number(WIDEST, 2)}; it is "
+            f"kept at {self.held_at:g}"
         )
 
 

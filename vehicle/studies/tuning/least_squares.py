@@ -102,7 +102,7 @@ def fit(
         problem.hold([parameter.path for parameter in undetermined], point)
         if not problem.free:
             raise ConfigurationError(
-                "the data identify no parameter: " + "; ".join(parameter.message() for parameter in held)
+                "the data determine no parameter: " + "; ".join(parameter.message() for parameter in held)
             )
         point, answer = problem.solve(point, FINE)
         rounds += 1
@@ -133,7 +133,7 @@ class _Problem:
         progress: Callable[[int, float], None] | None,
     ) -> None:
         if not targets:
-            raise ConfigurationError("targets: no measurement to fit to; specify at least one")
+            raise ConfigurationError("targets: the measurement is missing; give at least one")
         self.unknowns, self.targets, self.progress = unknowns, targets, progress
         self.build = build
         self.step = COARSE_STEP
@@ -185,10 +185,11 @@ class _Problem:
         joined = self.joined(self.values(point))
         if not np.isfinite(joined).all():
             text = ", ".join(f"{path}={value:.5g}" for path, value in self.values(point).items())
-            raise SimulationError(f"residuals are not finite at {text}; narrow the bounds")
+            raise SimulationError(f"the model gives no finite result at {text}; narrow the bounds")
         if joined.size < len(self.unknowns):
             raise ConfigurationError(
-                f"{joined.size} values for {len(self.unknowns)} parameters; use more data or fewer parameters"
+                f"found {joined.size} measured values for {len(self.unknowns)} parameters; use more data or "
+                "fewer parameters"
             )
         self.last = (point.tobytes(), joined)
         return joined

@@ -270,7 +270,7 @@ def level_target(
         ),
     )
     if not np.isfinite(target.deviation).any():
-        raise DataError(f"{histories.name}: no response is coherent with {reference}; set another --reference")
+        raise DataError(f"{histories.name}: no channel is coherent with the input {reference}; set another --reference")
     return target
 
 

@@ -47,14 +47,16 @@ def what_data_leave_open(result: TuningResult) -> tuple[str, ...]:
         if abs(rho) < CORRELATED:
             continue
         if {first, second} & delays:
-            sentences.append(f"{first} and {second}: correlation {rho:+.2f}; an error of one moves the other")
+            sentences.append(
+                f"{first} and {second}: correlation {rho:+.2f}: an error in the first value shifts the second"
+            )
             continue
         a, b = relative[first], relative[second]
         both = np.sqrt(max(a**2 + b**2 - 2.0 * abs(rho) * a * b, 0.0))
         word = "ratio" if rho > 0.0 else "product"
         sentences.append(
-            f"{first} and {second}: correlation {rho:+.2f}; the data determine their {word} to {number(100 * both, 2)} "
-            f"%, but the values alone to {number(100 * a, 2)} and {number(100 * b, 2)} % only"
+            f"{first} and {second}: correlation {rho:+.2f}: the data determine their {word} to "
+            f"{number(100 * both, 2)} %, but each value only to {number(100 * a, 2)} and {number(100 * b, 2)} %"
         )
     sentences += [
         f"{path}: standard error {number(100 * error, 2)} % of the value, above {100 * UNSURE:g} %"

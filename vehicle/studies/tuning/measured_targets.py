@@ -71,7 +71,10 @@ def measured_responses(car: Car, file: Path | str, settings: ResponseSettings) -
     path = Path(file)
     signal = settings.signal
     if isinstance(signal, Road):
-        raise ConfigurationError(f"{path}: a road belongs to time histories; FRFs need the signal of a plate")
+        raise ConfigurationError(
+            f"{path}: contains FRFs, which need the signal of a plate, but a road is given; give --signal FILE, "
+            "or time histories"
+        )
     asked, plates = plate_choices(_asked(settings), path, signal)
     measured = _read(car, path, asked, settings.inverted, settings.window)
     frf = measured.frf
@@ -187,8 +190,9 @@ def _histories(
     inside = np.flatnonzero((grid >= times[0] - 1e-9) & (grid <= times[-1] + 1e-9))
     if inside.size < 3:
         raise DataError(
-            f"{path}: measured from {times[0]:.6g} to {times[-1]:.6g} s of the signal {signal.source}, which ends at "
-            f"{signal.duration:.6g} s: no overlap; set --delay S, which is added to the measured times"
+            f"{path}: measured from {times[0]:.6g} to {times[-1]:.6g} s of the signal {signal.source}, which "
+            f"ends at {signal.duration:.6g} s, so they do not overlap; set --delay S, which is added to the "
+            "measured times"
         )
     window, more = (float(grid[inside[0]]), float(grid[inside[-1]])), list[str]()
     if stretch is not None:
@@ -199,7 +203,7 @@ def _histories(
     length, shortest = max(window[1] - window[0], 0.0), LEAST_VALUES / (KEPT * lowpass)
     if length < shortest:
         raise DataError(
-            f"{path}: {length:.3g} s of the record count, must be at least {shortest:.3g} s "
+            f"{path}: {length:.3g} s of the record are evaluated, must be at least {shortest:.3g} s "
             f"({LEAST_VALUES} independent values below {lowpass:g} Hz); use a longer record or --stretch FROM:TO"
         )
     signal = signal_until(signal, window[1] + AFTER / lowpass)
@@ -221,7 +225,9 @@ def _compared_channels(path: Path, record: Record | None, fitted: Sequence[str],
     """Return a record with the channels that are compared: all but plates, or those of --channels."""
     names = [] if record is None else [channel for channel in record.channels if not channel.startswith("plate_")]
     if record is None or not names:
-        raise DataError(f"{path}: contains no time history except that of a plate; choose with --map CHANNEL=NAME")
+        raise DataError(
+            f"{path}: contains no time history except that of a plate; name channels with --map CHANNEL=NAME"
+        )
     chosen = [channel for channel in names if channel in (*fitted, keep)] if fitted else names
     if not chosen:
         raise DataError(f"{path}: contains no time history of --channels {','.join(fitted)}; found {', '.join(names)}")

@@ -189,7 +189,9 @@ def posterior_of(
         SimulationError: R-hat stays above the limit.
     """
     if not 0.0 <= discrepancy < 1.0:
-        raise ConfigurationError(f"discrepancy {discrepancy:g}: must be from 0 to below 1, as 0.1 for 10 %")
+        raise ConfigurationError(
+            f"discrepancy {discrepancy:g}: must be at least 0 and below 1, for example 0.1 for 10 %"
+        )
     emcee = _emcee()
     data = car.cells.data if data is None else data
     variance = car.cells.noise**2 + car.emulator.left_out**2 + discrepancy**2
@@ -219,8 +221,9 @@ def posterior_of(
     else:
         worst = int(np.argmax(factors))
         raise SimulationError(
-            f"posterior of {car.parameters[worst].path}: R-hat {factors[worst]:.3f} after {BLOCK * MOST_BLOCKS} steps, "
-            f"must be below {CONVERGED:g}; narrow the bounds or leave out parameters that the data do not determine"
+            f"posterior of {car.parameters[worst].path}: the sampling has not converged: R-hat "
+            f"{factors[worst]:.3f} after {BLOCK * MOST_BLOCKS} steps, must be below {CONVERGED:g}; narrow the "
+            "bounds, or leave out parameters that the data do not determine"
         )
     samples = kept.reshape(-1, size)[:: max(kept.shape[0] * kept.shape[1] // DRAWS, 1)]
     best = float(np.max(log_likelihood(samples)))
@@ -271,7 +274,10 @@ def verdict(first: tuple[str, Posterior], second: tuple[str, Posterior]) -> str:
     ratio = float(np.exp(min(abs(difference), 600.0)))
     statement = f"{better} {ratio:.3g} times as probable as {other}"
     if ratio < EVIDENCE_BOUND:
-        return f"undecided between {first[0]} and {second[0]}: {statement}; a decision needs {EVIDENCE_BOUND:g} times"
+        return (
+            f"the data do not decide between {first[0]} and {second[0]}: {statement}, must be at least "
+            f"{EVIDENCE_BOUND:g} times for a decision"
+        )
     return statement
 
 

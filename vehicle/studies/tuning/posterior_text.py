@@ -45,17 +45,18 @@ def posterior_sentences(posteriors: Sequence[NamedPosterior]) -> list[str]:
     posterior = posteriors[0][1]
     left_out = 100.0 * posterior.car.emulator.left_out
     sentences = [
-        f"emulator of {posterior.car.cars} cars: left-out error of a third-octave mean "
-        f"{number(np.median(left_out), 2)} % (median), {number(np.max(left_out), 2)} % (largest), included in "
-        f"the intervals; noise from coherence and averages, discrepancy of the model "
-        f"{100 * posterior.discrepancy:g} % in each band",
-        f"R-hat at most {max(posterior.r_hat):.3f} (limit {CONVERGED:g}), at least {min(posterior.effective):.0f} "
-        "effective samples",
+        f"replacement model from {posterior.car.cars} simulated cars: error of a third-octave mean "
+        f"{number(np.median(left_out), 2)} % (median) to {number(np.max(left_out), 2)} % (largest), included in "
+        f"the intervals; noise from coherence and averages, assumed model error {100 * posterior.discrepancy:g} "
+        "% in each band",
+        f"the sampling has converged: R-hat at most {max(posterior.r_hat):.3f} (limit {CONVERGED:g}), at least "
+        f"{min(posterior.effective):.0f} independent samples",
     ]
     if posterior.misfit > UNEXPLAINED:
         sentences.append(
-            f"the best car is {number(posterior.misfit, 2)} standard deviations (RMS) from the data, above "
-            f"{UNEXPLAINED:g}: the intervals are too narrow; add parameters or set a larger --discrepancy"
+            f"the best car still differs from the data by {number(posterior.misfit, 2)} standard deviations "
+            f"(RMS), more than {UNEXPLAINED:g}, so the intervals are too narrow; add parameters or set a larger "
+            "--discrepancy"
         )
     sentences += [f"evidence: {verdict(posteriors[0], rival)}" for rival in posteriors[1:]]
     return sentences

@@ -86,7 +86,7 @@ class RecordTarget:
                 "the sampling rate"
             )
         if not self.record.channels:
-            raise DataError(f"{self.name}: no time history; specify at least one channel")
+            raise DataError(f"{self.name}: contains no time history; give at least one channel")
         for channel, values in self.record.channels.items():
             channel_units([channel])
             if not np.any(values[self.inside]):

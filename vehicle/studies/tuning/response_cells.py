@@ -66,15 +66,18 @@ def response_cells(targets: Sequence[FrfTarget]) -> ResponseCells:
         DataError: no FRF, or FRFs without coherence and random error.
     """
     if not targets:
-        raise DataError("--posterior: no FRFs; add --frf FILE, the posterior is that of FRFs in third-octave bands")
+        raise DataError(
+            "--posterior needs measured FRFs; add --frf FILE (the uncertainty of the parameters is computed "
+            "from FRFs in third-octave bands)"
+        )
     all_weights, data, noise = [], [], []
     for target in targets:
         frequency = target.data.frequency
         has_noise = np.isfinite(target.data.random_error).any() or np.any(target.data.coherence < 1.0)
         if not has_noise:
             raise DataError(
-                f"{target.name}: FRFs without coherence and without random error; their noise is unknown, so that no "
-                "posterior can be computed: add the coherence to the file, or use time histories of accelerations "
+                f"{target.name}: the FRFs have neither coherence nor random error, so their noise and the "
+                "posterior are unknown; add the coherence to the file, or use time histories of accelerations "
                 "and plate"
             )
         band = np.round(10.0 * np.log10(frequency)).astype(int)

@@ -131,7 +131,10 @@ def response_delays(
     delay_of = channel_delays(tuple(dict.fromkeys([*every, *channels])), delays)
     plates = {delay_of.get(name, 0.0) for name in every if group_of(name) == PLATES} if contained else {0.0}
     if len(plates) > 1:
-        raise ConfigurationError(f"--delay: plates with different delays {sorted(plates)} s; set one, plates=TIME")
+        raise ConfigurationError(
+            f"--delay: the plates have different delays {sorted(plates)} s, must be a single delay; set --delay "
+            "plates=TIME"
+        )
     base = max(plates, default=0.0)
     return ResponseDelays(
         known={name: delay_of[name] - base for name in channels if name in delay_of},

@@ -41,16 +41,16 @@ def plot_responses(path: Path, target: FrfTarget | LevelTarget, start: Car, fitt
     shown = data.labels[:ACROSS]
     estimator = "local rational model" if target.window is None else f"H1, Hann windows of {target.window:g} s"
     model = (
-        "linear car from its matrices, dampers stuck"
+        "Linear car with stuck dampers"
         if target.signal is None
-        else f"reduced engine on the same signal, same estimator ({estimator})"
+        else f"Reduced engine on the same signal, same estimator ({estimator})"
     )
     caption = (
-        f"Measured: {source}. Start and fitted: {model}. {frequency.size} frequencies from {frequency[0]:.1f} to "
-        f"{frequency[-1]:.1f} Hz; {FADED}"
+        f"Measured: {source}. {model}: with the start values and with the fitted values. {frequency.size} "
+        f"frequencies from {frequency[0]:.1f} to {frequency[-1]:.1f} Hz; {FADED}"
     )
     if len(data.names) > ACROSS:
-        caption += f". First {ACROSS} of {len(data.names)} FRFs; the table has all"
+        caption += f". First {ACROSS} of {len(data.names)} FRFs; the table has all of them"
     size = (max(7.2, 4.6 * len(shown)), 7.4)
     title = f"FRFs before and after the fit: {target.name}"
     with saved_figure(path, size, title, textwrap.fill(caption, int(13.5 * size[0]))) as figure:
@@ -83,9 +83,9 @@ def plot_histories(path: Path, target: RecordTarget, start: Car, fitted: Car, so
     units = channel_units(channels)
     size = (11.0, 2.3 * len(channels) + 1.4)
     caption = (
-        f"Measured: {source}. Start and fitted: reduced engine on the same signal. All through the low-pass filter of "
-        f"the fit ({target.lowpass:g} Hz); {number(time[inside][-1] - time[inside][0], 2)} s with the highest level of "
-        f"{time[-1] - time[0]:.3g} s"
+        f"Measured: {source}. Reduced engine on the same signal: with the start values and with the fitted "
+        f"values. All curves through the low-pass filter of the fit ({target.lowpass:g} Hz); "
+        f"{number(time[inside][-1] - time[inside][0], 2)} s with the highest level of {time[-1] - time[0]:.3g} s"
     )
     title = f"Time histories before and after the fit: {target.name}"
     with saved_figure(path, size, title, textwrap.fill(caption, int(13.5 * size[0]))) as figure:
@@ -137,7 +137,10 @@ def plot_corner(path: Path, posterior: Posterior) -> None:
     parameters, samples = posterior.car.parameters, posterior.values()
     size = len(parameters)
     interval = posterior.interval()
-    caption = "Diagonal: median and 90 % interval. Below: 50 and 90 % regions of pairs. Axes: the bounds of the prior."
+    caption = (
+        "Diagonal: median and 90 % interval of each parameter. Below: 50 and 90 % regions of each pair. Axes: "
+        "the bounds of the parameters."
+    )
     width = max(1.75 * size, 5.0)
     with saved_figure(path, (width, width + 0.8), "Posterior", textwrap.fill(caption, int(13.0 * width))) as figure:
         axes: Any = figure.subplots(size, size, squeeze=False)

@@ -86,7 +86,7 @@ def _result(tuned: TunedCar, figures: Mapping[str, Callable[[Path], None]]) -> M
     word = "falls" if row.after < row.before else "rises"
     left_open = what_data_leave_open(result)
     texts = [
-        *([f"The fit is not to be used: {tuned.refusal}."] if tuned.refusal else []),
+        *([f"Do not use this fit: {tuned.refusal}."] if tuned.refusal else []),
         f"The measurement asks for {', '.join(changes)}.",
         f"The largest error against the measurement ({channel_words(row.label)}, {row.measure}) "
         f"{word} from {number(row.before)} to {number(row.after)} {row.unit}; the data "

@@ -43,11 +43,12 @@ def tuning_text(tuned: TunedCar) -> str:
     result = tuned.result
     settings = " ".join(f"--set {text}" for text in tuned.settings)
     lines = value_lines(result, tuned.start.vehicle)
-    lines += [settings or f"no --set line to copy: {tuned.refusal}"]
+    lines += [settings or f"do not use this fit: {tuned.refusal}"]
     lines += [*delay_lines(tuned), *source_lines(result, tuned.start.vehicle)]
     left_open = what_data_leave_open(result)
     lines += [f"not determined: {text}" for text in left_open] or [
-        "the data determine every parameter: no pair with a correlation of 0.9, no standard error above 10 %"
+        "the data determine every parameter: no standard error is above 10 %, no two parameters have a "
+        "correlation of 0.9 or more"
     ]
     lines += agreement_lines(tuned.agreement)
     return "\n".join([*lines, *fit_sentences(tuned)])
@@ -64,7 +65,7 @@ def delay_lines(tuned: TunedCar) -> list[str]:
         large = abs(value) > max(SIGNIFICANT * error, 500.0 * SHARE_OF_STEP * 2.0 * target.half_sample)
         lines.append(
             f"the {delay.group} of {target.name} {'lead' if value < 0.0 else 'lag'} the input by {spread}, fitted "
-            "with the parameters" + (f": a sensor delay? {delay.option(1e-3 * value)} holds it" if large else "")
+            "with the parameters" + (f": a sensor delay? To fix it, set {delay.option(1e-3 * value)}" if large else "")
         )
     return lines
 
@@ -102,14 +103,14 @@ def fit_sentences(tuned: TunedCar) -> list[str]:
     """Return sentences on the end of the fit and on its last steps with the complete model."""
     result, final = tuned.result, tuned.final
     sentences = [
-        f"{result.evaluations} cars computed with matrices and the reduced engine; weighted residuals "
-        f"{result.before:.3g} before, {result.after:.3g} after"
+        f"{result.evaluations} cars computed; weighted residuals {result.before:.3g} before, {result.after:.3g} "
+        "after the fit"
     ]
     if not result.converged:
         sentences.append(f"not converged: {result.message}; narrow the bounds, or start nearer with --set PATH=VALUE")
     if final is None:
         if any(each.signal is not None for each in tuned.measurements):
-            sentences.append("not checked with MuJoCo: --engine mujoco makes the last steps with the complete model")
+            sentences.append("not checked with the complete model; --engine mujoco makes the last steps with it")
     else:
         moved = max(final.moved.items(), key=lambda item: abs(item[1]), default=("", 0.0))
         state = "settled" if final.settled else "not settled"

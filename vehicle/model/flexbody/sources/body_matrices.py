@@ -97,8 +97,9 @@ class BodyMatrices(BodyNodes):
         for name, matrix in (("stiffness", self.stiffness), ("mass", self.mass)):
             if matrix.shape != (size, size):
                 raise DataError(
-                    f"{name}: {matrix.shape[0]} rows and {matrix.shape[1]} columns for {size} degrees of freedom. Use "
-                    "the list of degrees of freedom of these matrices, in the same order."
+                    f"{name}: has {matrix.shape[0]} rows and {matrix.shape[1]} columns, must be {size}, the "
+                    "number of degrees of freedom. Use the list of degrees of freedom of these matrices, in the "
+                    "same order."
                 )
             if not np.all(np.isfinite(matrix.data)):
                 raise DataError(
@@ -110,20 +111,22 @@ class BodyMatrices(BodyNodes):
                 raise DataError(f"{name}: all entries are zero. Export it again, with the mass or stiffness.")
             if np.abs((matrix - matrix.T).data).max(initial=0.0) > 1e-6 * largest:
                 raise DataError(
-                    f"{name}: not symmetric. Export the complete matrix or one triangle, without gyroscopic and "
-                    "follower terms."
+                    f"{name}: is not symmetric. Export the complete matrix or one triangle, without gyroscopic "
+                    "and follower terms."
                 )
         pairs = self.node * DIRECTIONS + self.direction
         values, counts = np.unique(pairs, return_counts=True)
         if counts.max(initial=1) > 1:
             node, direction = divmod(int(values[counts.argmax()]), DIRECTIONS)
-            raise DataError(f"degree of freedom {direction + 1} of node {self.nodes[node]} occurs twice.")
+            raise DataError(
+                f"degree of freedom {direction + 1} of node {self.nodes[node]} occurs twice. Remove one of them."
+            )
         loose = np.flatnonzero(np.asarray(abs(self.stiffness).sum(axis=1)).ravel() == 0.0)
         if loose.size:
             where = self.nodes[self.node[loose[0]]]
             raise DataError(
-                f"stiffness: degree of freedom {self.direction[loose[0]] + 1} of node {where} has no stiffness "
-                f"({loose.size - 1} others likewise). Omit them, or connect the node."
+                f"stiffness: degree of freedom {self.direction[loose[0]] + 1} of node {where} has no stiffness, "
+                f"and {loose.size - 1} others neither. Leave them out, or connect the node."
             )
 
     def scaled(self, length: float, mass: float) -> BodyMatrices:
@@ -190,8 +193,8 @@ class BodyMatrices(BodyNodes):
         lowest, highest = np.linalg.eigvalsh(inertia)[[0, -1]]
         if lowest <= 1e-9 * highest:
             raise DataError(
-                f"mass: principal moments of inertia {lowest:.3g} to {highest:.3g} kg m2; all mass is on one line. "
-                "Add rotational inertia to point masses on a line, or mass off the line."
+                f"mass: all mass is on one line (principal moments of inertia {lowest:.3g} to {highest:.3g} kg "
+                "m2). Add rotational inertia to the point masses, or mass beside the line."
             )
         return MassProperties(mass=mass, cog=cog, inertia=inertia)
 
@@ -213,8 +216,9 @@ class BodyMatrices(BodyNodes):
         """
         if rigid_frequency > _RIGID_MOTION * first_elastic:
             raise DataError(
-                f"stiffness: rigid motions have a frequency of {rigid_frequency:.3g} Hz, the first elastic mode "
-                f"{first_elastic:.4g} Hz: the body is supported, nodes and matrices differ in axes or units, or "
-                "elements resist rotations (CalculiX expands shells and beams to solids with such constraints). Export "
-                "the matrices of the free body; with CalculiX, use solid elements."
+                f"stiffness: the body is not free: its rigid motions have {rigid_frequency:.3g} Hz instead of 0, "
+                f"its first elastic mode {first_elastic:.4g} Hz. Either it is supported, or nodes and matrices "
+                "have different axes or units, or elements resist rotations (as constraints do by which "
+                "CalculiX expands shells and beams to solids). Export the matrices of the free body; with "
+                "CalculiX, use solid elements."
             )

@@ -80,8 +80,8 @@ def require_size(positions: FloatArray, points: Mapping[str, Point], units: Unit
         return
     fits = [name for name, size in LENGTHS.items() if _is_size(extent * size / LENGTHS[units.length], car_extent)]
     raise DataError(
-        f"nodes: the body is {extent:.4g} m long with lengths in {units.length}, the points of the car span "
-        f"{car_extent:.4g} m: another unit of length. "
+        f"nodes: with lengths in {units.length} the body is {extent:.4g} m long, but the points of the car span "
+        f"{car_extent:.4g} m, so the unit of length is wrong. "
         + (f"Set --length-unit {fits[0]}." if fits else "Check the model.")
     )
 
@@ -107,7 +107,8 @@ def require_mass(mass: float, vehicle_mass: float, units: Units) -> None:
     remedy = f'Set --mass-unit "{best}"' if best else "Check the mass matrix, or set body.mass of the vehicle"
     raise DataError(
         f"mass: found {mass:.4g} kg with {units.words}; the body in the vehicle file has {vehicle_mass:.4g} kg, "
-        f"about {1000.0 ** powers_of_thousand(vehicle_mass, mass):g} times as much: another unit of mass. {remedy}."
+        f"about {1000.0 ** powers_of_thousand(vehicle_mass, mass):g} times as much, so the unit of mass is "
+        f"wrong. {remedy}."
     )
 
 
@@ -126,9 +127,9 @@ def require_first_mode(frequency: float, units: Units) -> None:
     force = f"{units.mass} {units.length}/s2" if units.stated else ("lbf" if units.length == "in" else "N")
     raise DataError(
         f"stiffness and mass: the first elastic mode is at {frequency:.4g} Hz, must be {LOWEST_FIRST_MODE:g} to "
-        f"{HIGHEST_FIRST_MODE:g} Hz. With {units.words}, the stiffness must be in ({force})/{units.length} and time in "
-        "s: K in N/mm needs M in t (a factor of 1000 in units changes frequencies by 31.6). Export K and M in a "
-        "consistent system of units."
+        f"{HIGHEST_FIRST_MODE:g} Hz. With {units.words}, the stiffness must be in ({force})/{units.length} and "
+        "time in s: K in N/mm needs M in t (a wrong unit by a factor of 1000 changes frequencies by a factor of "
+        "31.6). Export K and M in a consistent system of units."
     )
 
 
@@ -158,8 +159,8 @@ def require_level(vectors: FloatArray, modal_mass: FloatArray, mass: float, unit
     best = _unit(1.0 / level**2, units)
     remedy = f'Set --mass-unit "{best}"' if best else "Check the modal masses"
     raise DataError(
-        f"shapes: their RMS is {level:.3g} times that of a rigid motion of {mass:.4g} kg with {units.words}, must be "
-        f"about 1: another unit of mass. {remedy}."
+        f"shapes: their RMS is {level:.3g} times that of a rigid motion of {mass:.4g} kg with {units.words}, "
+        f"must be about 1, so the unit of mass is wrong. {remedy}."
     )
 
 

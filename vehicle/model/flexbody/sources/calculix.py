@@ -32,8 +32,8 @@ def read_calculix(path: Path) -> BodyMatrices:
     for suffix, file in files.items():
         if not file.is_file():
             raise DataError(
-                f"{file}: no such file. CalculiX writes .sti, .mas and .dof with *FREQUENCY,SOLVER=MATRIXSTORAGE; the "
-                f"input deck .inp contains the node positions ({suffix} is missing)."
+                f"{file}: {suffix} is missing. CalculiX writes .sti, .mas and .dof with "
+                "*FREQUENCY,SOLVER=MATRIXSTORAGE; the node positions are in the input deck .inp."
             )
     numbers = rows_of_numbers(files["dof"], 1, separator=".", columns=2)
     identity, direction = nodes_and_directions(files["dof"], numbers)
@@ -70,9 +70,9 @@ def assembled(
         missing = []
     if missing:
         raise DataError(
-            f"{path}: node {missing[0]} of the matrices has no position in the list of nodes ({len(missing)} such "
-            "nodes). Specify the list of all nodes; CalculiX expands shells and beams to solids with additional nodes "
-            "and constraints, so only matrices of solid elements describe a free body."
+            f"{path}: {len(missing)} nodes of the matrices have no position in the list of nodes, the first is "
+            f"{missing[0]}. Give the list of all nodes; CalculiX expands shells and beams to solids with "
+            "additional nodes and constraints, so only matrices of solid elements describe a free body."
         )
     index = {int(number): i for i, number in enumerate(numbers)}
     edges = sorted({(index[a], index[b]) for a, b in deck.edges if a in index and b in index})

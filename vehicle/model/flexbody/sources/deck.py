@@ -81,5 +81,5 @@ def read_deck(path: Path) -> Deck:
         except (ValueError, IndexError) as error:
             raise DataError(f"{path}, line {number}: {text[:60]!r} is not a line of {block} ({error}).") from error
     if not positions:
-        raise DataError(f"{path}: no nodes. Specify the input deck with *NODE, or a CSV node,x,y,z.")
+        raise DataError(f"{path}: contains no nodes. Give the input deck with *NODE, or a CSV node,x,y,z.")
     return Deck(positions=positions, edges=frozenset(edges), incompatible=incompatible)

@@ -69,9 +69,12 @@ def read_frd(path: Path, length: float, mass: float = 1.0) -> GivenModes:
     except (ValueError, IndexError) as error:
         raise DataError(f"{path}: {line[:60]!r} is not a line of a result file ({error}).") from error
     if not shapes:
-        raise DataError(f"{path}: no modes; write *NODE FILE with U in a *FREQUENCY step.")
+        raise DataError(f"{path}: contains no modes; write *NODE FILE with U in a *FREQUENCY step.")
     if not lines or lines[-1].strip() != "9999" or any(len(shape) != len(shapes[0]) for shape in shapes):
-        raise DataError(f"{path}: truncated; the job did not end, or the file was copied only in part.")
+        raise DataError(
+            f"{path}: is truncated; the job did not end, or the file was copied only in part. Run the job again, "
+            "or copy the file again."
+        )
     numbers = sorted(shapes[0])
     unplaced = [number for number in numbers if number not in positions]
     if unplaced:

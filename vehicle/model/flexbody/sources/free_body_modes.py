@@ -77,15 +77,15 @@ def free_modes(body: BodyMatrices, up_to: float) -> FreeModes:
     if not elastic.size or elastic[0] > limit:
         first = float(np.sqrt(elastic[0])) / (2.0 * np.pi) if elastic.size else np.inf
         raise DataError(
-            f"no elastic mode up to {up_to:g} Hz; the first is at {first:.4g} Hz. Check the units of the matrices, or "
-            "raise the frequency limit of the modes."
+            f"no elastic mode up to {up_to:g} Hz; the first is at {first:.4g} Hz. Check the units of the "
+            "matrices, or raise --up-to."
         )
     rigid_frequency = body.rigid_frequency(rigid)
     body.require_free(rigid_frequency, float(np.sqrt(elastic[0])) / (2.0 * np.pi))
     kept = elastic <= limit
     missed = modes_below(body, limit) - 6 - int(kept.sum())
     if missed > 0:
-        raise DataError(f"{missed} modes up to {up_to:g} Hz were missed; change the frequency limit of the modes.")
+        raise DataError(f"{missed} modes up to {up_to:g} Hz were not found; change --up-to slightly.")
     shapes: FloatArray = flexible[:, kept]
     shapes = shapes - motions @ (motions.T @ (body.mass @ shapes))  # removes the effect of rounded entries of K and M
     shapes = shapes / np.sqrt(np.einsum("ij,ij->j", shapes, body.mass @ shapes))
@@ -189,8 +189,8 @@ def _factorised(matrix: Any) -> Any:
         )
     except RuntimeError as error:
         raise DataError(
-            f"stiffness and mass: K + s M is singular ({error}): some motion has neither stiffness nor mass, as the "
-            "rotation of a point mass without rotational inertia on a node of solid elements. Omit the degree of "
+            f"stiffness and mass: a motion has neither stiffness nor mass (K + s M is singular: {error}), for "
+            "example the rotation of a point mass on a node of solid elements. Leave out this degree of "
             "freedom, or add inertia."
         ) from error
 

@@ -73,7 +73,7 @@ def interfaces(
         gap = np.linalg.norm(body.positions[moving] - np.array(position), axis=1)
         if name in chosen:
             if chosen[name] not in body.nodes:
-                missing_nodes.append(f"no node {chosen[name]!r} for {name}")
+                missing_nodes.append(f"the body has no node {chosen[name]!r}, which is chosen for {name}")
                 continue
             results.append(_of_node(body, name, position, body.nodes.index(chosen[name])))
             continue
@@ -94,8 +94,8 @@ def interfaces(
         faults.append(f"map: {'; '.join(missing_nodes)}; the body has {len(body.nodes)} nodes")
     if far:
         faults.append(
-            f"{len(far)} points of the car have no node within {1e3 * max(tolerance, spread):g} mm; nearest nodes: "
-            f"{'; '.join(far)}"
+            f"{len(far)} points of the car have no node of the body within {1e3 * max(tolerance, spread):g} mm; "
+            f"nearest nodes: {'; '.join(far)}"
         )
     if weak:
         faults.append(

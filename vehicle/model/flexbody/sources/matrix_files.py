@@ -63,8 +63,8 @@ def read_matrices(stiffness: Path, mass: Path | None, dofs: Path | None, nodes: 
     else:
         if dofs is None:
             raise ConfigurationError(
-                f"{stiffness.name}: needs --dofs, a table node,direction (1 to 3 displacements, 4 to 6 rotations) with "
-                "a line for each row of the matrices"
+                f"{stiffness.name}: the degrees of freedom are missing; give --dofs FILE, a table node,direction "
+                "(1 to 3 displacements, 4 to 6 rotations) with a line for each row of the matrices"
             )
         identity, direction = read_dofs(dofs)
         matrices = [_matrix(file, len(identity)) for file in (stiffness, mass)]
@@ -159,19 +159,22 @@ def _of_matlab(file: Path, variable: str) -> Any:
     try:
         content = {key: value for key, value in scipy.io.loadmat(file).items() if not key.startswith("__")}
     except (OSError, ValueError, NotImplementedError, TypeError) as error:
-        raise DataError(f"{file}: not a MAT file of version 5 ({error}); save it with -v7.") from error
+        raise DataError(f"{file}: is not a MAT file of version 5 ({error}); save it with -v7.") from error
     square = {
         key: value for key, value in content.items() if getattr(value, "ndim", 0) == 2 and len(set(value.shape)) == 1
     }
     if variable and variable not in content:
-        raise DataError(f"{file}: no variable {variable!r}; the file has {', '.join(content)}.")
+        raise DataError(f"{file}: has no variable {variable!r}; choose from {', '.join(content)}.")
     if not variable and len(square) != 1:
-        raise DataError(f"{file}: {len(square)} square matrices ({', '.join(square)}); choose one as {file.name}:NAME.")
+        raise DataError(
+            f"{file}: contains {len(square)} square matrices ({', '.join(square)}); choose one of them with "
+            f"{file.name}:NAME."
+        )
     return _real(file, content[variable] if variable else next(iter(square.values())))
 
 
 def _real(file: Path, matrix: Any) -> Any:
     """Convert a matrix to a complete symmetric sparse matrix of real numbers."""
     if getattr(matrix, "ndim", 0) != 2 or matrix.dtype.kind not in "iuf":
-        raise DataError(f"{file}: {getattr(matrix, 'dtype', type(matrix))}, must be a matrix of real numbers.")
+        raise DataError(f"{file}: found {getattr(matrix, 'dtype', type(matrix))}, must be a matrix of real numbers.")
     return whole(scipy.sparse.csc_matrix(matrix, dtype=float))

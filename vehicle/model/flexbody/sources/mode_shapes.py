@@ -56,7 +56,8 @@ def modes_of_measurement(measurement: Measurement) -> GivenModes:
     """
     if not measurement.shapes:
         raise DataError(
-            f"{measurement.path}: no mode shapes (datasets 55, 2414); it has {len(measurement.channels)} channels."
+            f"{measurement.path}: contains no mode shapes (datasets 55, 2414), only "
+            f"{len(measurement.channels)} channels; export mode shapes."
         )
     points = [
         name for name in measurement.shapes[0].points if all(name in shape.points for shape in measurement.shapes)
@@ -64,8 +65,8 @@ def modes_of_measurement(measurement: Measurement) -> GivenModes:
     unplaced = [name for name in points if name not in measurement.geometry.points]
     if unplaced or len(points) < 3:
         raise DataError(
-            f"{measurement.path}: {len(points)} nodes are in all shapes, {len(unplaced)} of them without a position; "
-            "must be at least 3, all with a position. Export the geometry (datasets 15, 2411) with the modes."
+            f"{measurement.path}: {len(points)} nodes appear in all mode shapes, must be at least 3, and "
+            f"{len(unplaced)} of them have no position. Export the geometry (datasets 15, 2411) with the modes."
         )
     rows = [[shape.points.index(name) for name in points] for shape in measurement.shapes]
     table = np.array([shape.shape[row] for shape, row in zip(measurement.shapes, rows, strict=True)])  # (modes, n, 6)
@@ -121,19 +122,22 @@ def normalised(
     """
     frequencies, vectors, modal_mass = modes.frequencies, modes.vectors, modes.modal_mass
     for k in np.flatnonzero(~(np.isfinite(frequencies) & np.isfinite(vectors).all(axis=0))):
-        raise DataError(f"mode {k + 1}, at {frequencies[k]:g} Hz: its frequency or shape is not finite. Omit it.")
+        raise DataError(
+            f"mode {k + 1}, at {frequencies[k]:g} Hz: its frequency or shape is not finite. Leave the mode out."
+        )
     for k in np.flatnonzero(~vectors.any(axis=0)):
-        raise DataError(f"mode {k + 1}, at {frequencies[k]:g} Hz: its shape is zero everywhere. Omit the mode.")
+        raise DataError(f"mode {k + 1}, at {frequencies[k]:g} Hz: its shape is zero everywhere. Leave the mode out.")
     order = np.argsort(frequencies, kind="stable")
     elastic = [int(i) for i in order if _LOWEST_ELASTIC < frequencies[i] <= up_to]
     remarks = []
     if low := int(np.sum(frequencies <= _LOWEST_ELASTIC)):
-        remarks.append(f"{low} modes up to {_LOWEST_ELASTIC:g} Hz omitted as rigid-body modes")
+        remarks.append(f"{low} modes up to {_LOWEST_ELASTIC:g} Hz are left out as rigid-body modes")
     if high := int(np.sum(frequencies > up_to)):
-        remarks.append(f"{high} modes above {up_to:g} Hz omitted")
+        remarks.append(f"{high} modes above {up_to:g} Hz are left out (--up-to)")
     if not elastic:
         raise DataError(
-            f"no mode between {_LOWEST_ELASTIC:g} and {up_to:g} Hz; a body model needs elastic modes of the free body."
+            f"found no mode between {_LOWEST_ELASTIC:g} and {up_to:g} Hz; a body model needs elastic modes "
+            "of the free body. Raise --up-to, or export more modes."
         )
     columns, largest = [], 0.0
     for i in elastic:
@@ -143,29 +147,35 @@ def normalised(
             part = float(np.linalg.norm(rotated.imag) / np.linalg.norm(rotated.real))
             if part > LARGEST_IMAGINARY:
                 raise DataError(
-                    f"mode at {frequencies[i]:g} Hz: complex, its imaginary part is {part:.0%} of the real part, must "
-                    f"be at most {LARGEST_IMAGINARY:.0%}. Fit real normal modes in the modal analysis."
+                    f"mode at {frequencies[i]:g} Hz: the shape is complex: its imaginary part is {part:.0%} of "
+                    f"the real part, must be at most {LARGEST_IMAGINARY:.0%}. Fit real modes in the modal "
+                    "analysis."
                 )
             largest, shape = max(largest, part), rotated
         mass = modal_mass[i] if np.isfinite(modal_mass[i]) and modal_mass[i] > 0.0 else stated_mass
         if mass is None:
             raise DataError(
-                f"mode at {frequencies[i]:g} Hz: no modal mass, so the shape has no scale. Export scaled shapes with "
-                "their modal mass (a driving-point FRF scales a modal test), or set --modal-mass."
+                f"mode at {frequencies[i]:g} Hz: the modal mass is missing, so the shape has no scale. Export "
+                "shapes with their modal mass (a modal test needs a driving-point FRF for it), or set "
+                "--modal-mass KG."
             )
         columns.append(np.real(shape) / np.sqrt(mass))
     masses = modal_mass[elastic]
     if np.isfinite(masses).any():
         lowest, highest = np.nanmin(masses), np.nanmax(masses)
-        remarks.append(f"shapes divided by the root of their modal masses, {lowest:.4g} to {highest:.4g} kg")
+        remarks.append(
+            f"mode shapes are divided by the square root of their modal masses, {lowest:.4g} to {highest:.4g} kg"
+        )
     if stated_mass is not None and not np.isfinite(masses).all():
-        remarks.append(f"modal mass {stated_mass:g} kg stated by the user")
+        remarks.append(f"modal mass {stated_mass:g} kg, as requested")
     if largest > 0.0:
-        remarks.append(f"complex shapes made real; their imaginary part is at most {largest:.2%} of the real part")
+        remarks.append(
+            f"complex mode shapes are made real; their imaginary part is at most {largest:.2%} of the real part"
+        )
     if residual:
-        remarks.append(f"residual flexibility of {len(residual)} points as measured")
+        remarks.append(f"measured residual flexibility at {len(residual)} points")
     else:
-        remarks.append("no residual flexibility, for lack of K and M: forces at a node excite these modes only")
+        remarks.append("no residual flexibility, which needs K and M: a force at a node excites only these modes")
     return BodyModes(
         body=modes.body,
         residual=residual,

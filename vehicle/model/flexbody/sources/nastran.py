@@ -88,9 +88,9 @@ def read_bulk_data(path: Path) -> BulkData:
                 _dmig(matrices, fields)
             elif name == "GRID":
                 if fields[1] not in ("", "0"):
-                    raise ValueError(f"position in coordinate system {fields[1]}; use the basic system for GRID")
+                    raise ValueError(f"the position is in coordinate system {fields[1]}; use the basic system for GRID")
                 if fields[5] not in ("", "0"):
-                    raise ValueError(f"displacements in coordinate system {fields[5]}; use the basic system")
+                    raise ValueError(f"displacements are in coordinate system {fields[5]}; use the basic system")
                 x, y, z = (_real(field) if field else 0.0 for field in fields[2:5])
                 positions[int(fields[0])] = (x, y, z)
         except (ValueError, IndexError) as error:
@@ -122,8 +122,8 @@ def dmig_pair(path: Path, data: BulkData, names: tuple[str, str]) -> tuple[Any, 
         candidates = [name.upper()] if name else [key for key in data.matrices if key.startswith(letter)]
         if len(candidates) != 1 or candidates[0] not in data.matrices:
             raise DataError(
-                f"{path}: found DMIG matrices {', '.join(data.matrices) or 'none'}, must be two, with "
-                f"names that begin with K and M. Otherwise specify {path.name}:NAME and --mass {path.name}:NAME."
+                f"{path}: found DMIG matrices {', '.join(data.matrices) or 'none'}, must be two, with names that "
+                f"begin with K and M. For other names give {path.name}:NAME and --mass {path.name}:NAME."
             )
         chosen.append(data.matrices[candidates[0]])
     rows = sorted({matrices for matrix in chosen for key in matrix for matrices in (key[:2], key[2:])})
@@ -141,13 +141,15 @@ def _dmig(matrices: dict[str, dict[tuple[int, int, int, int], float]], fields: l
     name = fields[0].upper()
     if fields[1] == "0":  # the head of a matrix: form, type
         if int(fields[2]) not in (_SQUARE, _SYMMETRIC):
-            raise ValueError(f"form {fields[2]}, must be 6 (symmetric) or 1 (square)")
+            raise ValueError(f"the matrix form is {fields[2]}, must be 6 (symmetric) or 1 (square)")
         if int(fields[3]) not in (1, 2):
-            raise ValueError(f"type {fields[3]}, must be 1 or 2 (real)")
+            raise ValueError(f"the number type is {fields[3]}, must be 1 or 2 (real)")
         matrices.setdefault(name, {})
         return
     if name not in matrices:
-        raise ValueError("a column before the header of the matrix, DMIG NAME 0 ...")
+        raise ValueError(
+            "a matrix column comes before the header line of its matrix (DMIG NAME 0 ...); put the header first"
+        )
     column = int(fields[1]), int(fields[2] or 0)
     for i in range(4, len(fields), 4):
         if not any(fields[i : i + 4]):
@@ -156,11 +158,14 @@ def _dmig(matrices: dict[str, dict[tuple[int, int, int, int], float]], fields: l
         for node, component in (row, column):
             if not 1 <= component <= 6:
                 raise ValueError(
-                    f"component {component} of {node}, must be 1 to 6. Scalar points are coordinates of a reduction: "
-                    "punch the matrices of all nodes, or of a static reduction without modes"
+                    f"found component {component} of {node}, must be 1 to 6. Component 0 is a scalar point, a "
+                    "coordinate of a reduction: punch the matrices of all nodes, or of a static reduction "
+                    "without modes"
                 )
         if (*column, *row) in matrices[name]:
-            raise ValueError(f"row {row[0]}, {row[1]} of column {column[0]}, {column[1]} occurs twice")
+            raise ValueError(
+                f"row {row[0]}, {row[1]} of column {column[0]}, {column[1]} occurs twice; remove one of them"
+            )
         matrices[name][(*column, *row)] = _real(fields[i + 2])
 
 

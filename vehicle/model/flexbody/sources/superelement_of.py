@@ -92,18 +92,21 @@ def modes_of_matrices(
         frequencies = np.concatenate([frequencies, added.frequencies])
         vectors, residual = np.hstack([vectors, added.vectors]), added.residual
         names += [f"attachment mode {number}" for number in range(1, len(added.frequencies) + 1)]
-        summary = f"{count} modes to {up_to:g} Hz, {len(added.frequencies)} attachment modes to {limit:g} Hz (Rubin)"
+        summary = (
+            f"{count} modes up to {up_to:g} Hz and {len(added.frequencies)} attachment modes up to {limit:g} Hz (Rubin)"
+        )
     elif method == "craig-bampton":
         added, held, held_to, above = _near_enough(body, free, displacements, limit)
         frequencies, vectors, residual = added.frequencies, added.vectors, added.residual
         names = [f"mode {number}" for number in range(1, len(frequencies) + 1)]
         summary = (
-            f"Craig-Bampton with {held} modes to {held_to:g} Hz of the body fixed at {len(attachments)} points, "
-            f"reduced modes to {limit:g} Hz, modes to {up_to:g} Hz up to {above:.2%} above the {count} free-free modes"
+            f"Craig-Bampton: {held} modes up to {held_to:g} Hz of the body fixed at {len(attachments)} points, "
+            f"kept up to {limit:g} Hz; up to {up_to:g} Hz they are at most {above:.2%} above the {count} "
+            "free-free modes"
         )
         notices = (
-            f"Craig-Bampton: the modes to {up_to:g} Hz are up to {above:.2%} higher than the {count} free-free modes, "
-            f"with fixed-interface modes to {held_to:g} Hz",
+            f"Craig-Bampton: with modes of the fixed body up to {held_to:g} Hz, the modes up to {up_to:g} Hz are "
+            f"up to {above:.2%} higher than the {count} free-free modes",
         )
     else:
         residual = residual_flexibility(body, free, displacements)
@@ -117,9 +120,9 @@ def modes_of_matrices(
         notices=notices,
         names=tuple(names),
         remarks=(
-            f"{len(body.node)} degrees of freedom, {summary}, modes above as residual flexibility",
-            f"rigid motions have up to {number(free.rigid_frequency, 2)} Hz from the stiffness; modes orthogonal to "
-            f"them and to each other within {free.orthogonality:.1e}",
+            f"{len(body.node)} degrees of freedom, {summary}; higher modes act statically (residual flexibility)",
+            f"check: rigid motions have at most {number(free.rigid_frequency, 2)} Hz (0 is exact); modes are "
+            f"orthogonal to them and to each other within {free.orthogonality:.1e}",
         ),
         # With all attachment modes in the model the residual is zero: omit it, the attachment is rigid.
         residual={
@@ -169,7 +172,7 @@ def superelement_of(
     damping_remark = (
         []
         if has_damping.all()
-        else [f"damping ratio {damping:g} set for {'all' if not has_damping.any() else (~has_damping).sum()} modes"]
+        else [f"damping ratio {damping:g} is set for {'all' if not has_damping.any() else (~has_damping).sum()} modes"]
     )
     return Superelement(
         name=name,

@@ -58,8 +58,8 @@ def rows_of_numbers(
             numbers = np.loadtxt(io.StringIO(text), ndmin=2, comments=("#", "%", "**"))
     except ValueError as error:
         raise DataError(
-            f"{path}: not rows of numbers, or truncated: {error}. The file may contain only numbers, below at most "
-            "one line of names."
+            f"{path}: cannot be read as rows of numbers, or is truncated: {error}. The file must contain only "
+            "numbers, with at most a line of names above."
         ) from error
     if not np.all(np.isfinite(numbers)):
         raise DataError(
@@ -67,7 +67,7 @@ def rows_of_numbers(
         )
     if len(numbers) < minimum or (columns is not None and numbers.shape[1] != columns):
         raise DataError(
-            f"{path}: {numbers.shape[0]} rows of {numbers.shape[1]} numbers, must be {columns} in each row."
+            f"{path}: found {numbers.shape[1]} numbers in each of {numbers.shape[0]} rows, must be {columns}."
         )
     return np.asarray(numbers)
 
@@ -86,8 +86,9 @@ def coordinate_matrix(path: Path, size: int) -> Any:
     row, column = (whole_numbers(path, table[:, i]) - 1 for i in (0, 1))
     if min(row.min(), column.min()) < 0 or max(row.max(), column.max()) >= size:
         raise DataError(
-            f"{path}: rows {row.min() + 1} to {row.max() + 1} and columns {column.min() + 1} to {column.max() + 1}; "
-            f"must be 1 to {size}, the number of degrees of freedom. The files are inconsistent."
+            f"{path}: found rows {row.min() + 1} to {row.max() + 1} and columns {column.min() + 1} to "
+            f"{column.max() + 1}; must be 1 to {size}, the number of degrees of freedom. Use matrix and list of "
+            "degrees of freedom of the same job."
         )
     matrix = scipy.sparse.coo_matrix((table[:, 2], (row, column)), shape=(size, size)).tocsc()
     return whole(matrix)
@@ -115,7 +116,7 @@ def nodes_and_directions(path: Path, rows: FloatArray | IntArray) -> tuple[IntAr
     """
     node, direction = whole_numbers(path, rows).T
     if direction.min() < 1 or direction.max() > 6:
-        raise DataError(f"{path}: directions {direction.min()} to {direction.max()}, must be 1 to 6.")
+        raise DataError(f"{path}: found directions {direction.min()} to {direction.max()}, must be 1 to 6.")
     return node, direction - 1
 
 
