@@ -64,6 +64,7 @@ def parser() -> Parser:
         help="rotation that the orders refer to: crank, or a wheel, for example wheel_fr; default: that of the "
         "first force",
     )
+    parser.add_argument("--road", default="level", metavar="C", help="road class of ISO 8608; default: %(default)s")
     parser.add_argument(
         "--duration", type=float, default=10.0, metavar="S", help="length of each run [s]; default: %(default)s"
     )

@@ -72,10 +72,10 @@ def test_emulator_is_exact_for_its_polynomials_and_states_the_error_of_others():
         source="second derivation: fit repeated without each car",
     )  # fmt: skip
     with pytest.raises(
-        ConfigurationError, match="--samples 7: must be at least 8 for 2 parameters; set more --samples"
+        ConfigurationError, match="--samples 7: must be at least 8 for 2 parameters"
     ):
         fitted_emulator(points[:7], other[:7, None])
-    with pytest.raises(ConfigurationError, match="4 cars for 1 parameters: must be at least 5;"):
+    with pytest.raises(ConfigurationError, match="--samples 4: must be at least 5 for 1 parameters"):
         fitted_emulator(points[:4, :1], other[:4, None])
     assert fitted_emulator(points[:5, :1], other[:5, None]).powers.tolist() == [[0], [1]]  # 2.5 cars a term
 
