@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 from types import SimpleNamespace
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -88,7 +89,7 @@ def test_the_nearest_mode_is_taken(modes):
     own = [mode.frequency for mode in modes]
     assert nearest(modes, own[3] + 0.4 * (own[4] - own[3])) is modes[3]
     assert nearest(modes, 500.0) is modes[-1]
-    growing = SimpleNamespace(frequency=28.0, grows=True)
+    growing: Any = SimpleNamespace(frequency=28.0, grows=True)
     assert nearest([*modes, growing], 28.0) is not growing
     with pytest.raises(ConfigurationError, match="has no mode up to 60 Hz"):
         nearest([growing], 28.0)

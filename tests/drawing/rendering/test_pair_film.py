@@ -28,7 +28,7 @@ def beside(run, car, *, level=2e-3, **channels):
     recording = fabricated(car, 0.3, level)
     kept = {name: values for name, values in run.recording.channels.items() if name.startswith("plate_")}
     stick = {"damper_fr_velocity": 0.0 * recording.time}
-    recording = dataclasses.replace(recording, channels=recording.channels | kept | stick | channels)
+    recording = dataclasses.replace(recording, channels={**recording.channels, **kept, **stick, **channels})
     return FakeRun(car=FakeCar(model=car), recording=recording)
 
 

@@ -263,7 +263,7 @@ def test_figures_of_runs_that_are_compared_have_equal_scales(long_run, tmp_path,
 
 
 def test_the_colour_of_a_bar_says_smoother_or_rougher_and_its_text_which_value():
-    axis = Figure().subplots()
+    axis: Any = Figure().subplots()
     changes = np.array([[24.5, -14.8], [-11.4, np.nan]])
     draw_tornado(axis, ["body.mass", "tyre"], changes, np.array([4.1, np.nan]), ("-20 %", "+20 %"))
     bars = {bar.get_width(): matplotlib.colors.to_hex(bar.get_facecolor()) for bar in axis.patches}

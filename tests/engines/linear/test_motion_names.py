@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tests.validation import validated
-from vehicle.drawing.rendering.mode_film import ModeMotion
+from vehicle.drawing.rendering.mode_motion import ModeMotion
 from vehicle.engines.linear.motion_names import NAMED, description, motion_shares
 from vehicle.engines.linear.part_motions import group_of, rigid_rows
 from vehicle.runs.car import Car

@@ -11,7 +11,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from vehicle import Car, read_signal, road
-from vehicle.drawing.rendering.mode_film import FARTHEST, ModeMotion
+from vehicle.drawing.rendering.mode_motion import FARTHEST, ModeMotion
 from vehicle.drawing.rendering.motion import coil_seats
 from vehicle.drawing.rendering.wireframe import car_wireframe, unit_factor
 from vehicle.errors import ConfigurationError

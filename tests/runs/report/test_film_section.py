@@ -85,8 +85,8 @@ def test_two_saved_runs_make_a_film(reported, tmp_path):
     path = tmp_path / "both.mp4"
     said = film_of_two([reported.folder] * 2, path, {"start": 0.5, "duration": 0.1, "slow": 1.0}, size=(320, 180))
     assert said.startswith("0.50 to 0.57 s, both runs simulated again by the engine mujoco; its curves differ by ")
-    share = float(re.search(r"differ by ([\d.]+) %", said)[1])
-    assert share < 5.0, "the saved run is of the reduced engine, for small rotations"
+    share = re.search(r"differ by ([\d.]+) %", said)
+    assert share is not None and float(share[1]) < 5.0, "the saved run is of the reduced engine, for small rotations"
     command = [find_ffmpeg(), "-loglevel", "error", "-i", str(path), "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
     raw = subprocess.run(command, capture_output=True, check=True, timeout=HANG).stdout
     frames = np.frombuffer(raw, dtype=np.uint8).reshape(-1, 180, 320, 3).astype(int)

@@ -22,8 +22,13 @@ from vehicle.threads import one_thread_each
 class Drawable(Protocol):
     """Excerpt for drawing frame by frame, in other processes too."""
 
-    layout: Layout
-    cut: Cut
+    @property
+    def layout(self) -> Layout:
+        """Return the layout of the frame."""
+
+    @property
+    def cut(self) -> Cut:
+        """Return the excerpt."""
 
     def frames(self, backend: str, first: int = 0, every: int = 1) -> Iterator[Picture]:
         """Draw frames; see `Shot.frames`."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.drawing.rendering.mode_film import FARTHEST
+from vehicle.drawing.rendering.mode_motion import FARTHEST
 from vehicle.drawing.rendering.wireframe import CarWireframe, unit_factor
 from vehicle.engines.linear.load_rows import displacement_rows
 from vehicle.engines.reduced.reduced_run import simulate_reduced

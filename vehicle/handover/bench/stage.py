@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from vehicle.drawing.rendering.excerpt import FPS
-from vehicle.drawing.rendering.mode_film import EXAGGERATION, PERIOD
+from vehicle.drawing.rendering.mode_motion import EXAGGERATION, PERIOD
 from vehicle.drawing.rendering.rounding import round_factor
-from vehicle.drawing.rendering.shot import LARGEST_FACTOR, VISIBLE_TRAVEL
+from vehicle.drawing.rendering.scene import LARGEST_FACTOR, VISIBLE_TRAVEL
 from vehicle.handover.bench.car_scene import CarScene
 from vehicle.handover.bench.drive import BenchDrive
 from vehicle.handover.bench.motion import SECONDS, CarMotion
