@@ -174,6 +174,7 @@ def test_no_message_shows_the_name_of_a_function(name):
     ("name", "typed", "message"),
     [
         ("shaker", "low.csv", "low.csv: a measurement is given by --input low.csv; see "),
+        ("modes", "sedan", "sedan: a car is given by --vehicle sedan; see "),
         ("shaker", "--input low.csv --out x", "--out: no such option; did you mean --output?; see "),
         ("shaker", "--input low.csv --gravity 9", "--gravity: no such option; see "),
         ("shaker", "--road B --duration 60s", "--duration '60s': must be a number without a unit; see "),

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.shipped import CARS
 
 Condition = Callable[[argparse.Namespace], bool]
 
@@ -166,6 +167,8 @@ class Parser(argparse.ArgumentParser):
                 name, options, n=1, cutoff=0.75
             )
             return f"{word}: no such option" + (f"; did you mean {' or '.join(near)}?" if near else "")
+        if "--vehicle" in options and (word in CARS or word.endswith(".toml")):
+            return f"{typed}: a car is given by --vehicle {word}"
         if "--input" in options and (re.fullmatch(r"\.\w{2,3}", Path(word).suffix) or Path(word).is_file()):
             return f"{typed}: a measurement is given by --input {word}"
         return f"{typed}: belongs to no option; names without an option come first"
