@@ -24,8 +24,7 @@ from vehicle.runs.report.comfort_class import reactions
 from vehicle.runs.report.differences import changed_parameters, difference, parameter_words, shipped_origin
 from vehicle.runs.report.finished_run import read_run
 from vehicle.runs.report.main_band import main_band, weighted_bands
-from vehicle.runs.report.modes_section import modes_of
-from vehicle.runs.report.moving_modes import FULL
+from vehicle.runs.report.modes_section import FULL, modes_of
 
 EMPTY = {"meta", "link", "input", "img", "br"}
 
@@ -108,7 +107,7 @@ def empty_figure(path, *arguments, **options):
 def test_runs_stand_beside_each_other(reported, tmp_path, monkeypatch):
     """The figures of each run are those of a single one, and are left out here."""
     monkeypatch.setattr("vehicle.runs.report.sections.plot_time", empty_figure)
-    monkeypatch.setattr("vehicle.runs.report.response_section.plot_frfs", empty_figure)
+    monkeypatch.setattr("vehicle.runs.report.sections.plot_frfs", empty_figure)
     page = tmp_path / "two.html"
     assert main([str(reported.folder), str(reported.folder), "--output", str(page), "--quiet"]) == 0
     found = Outline()
