@@ -10,7 +10,7 @@ from vehicle.drawing.rendering.wireframe import car_wireframe
 from vehicle.handover.page.page_input import LONGEST, RunRoad
 from vehicle.handover.page.trial_data import trial_data
 from vehicle.handover.page.trial_section import trial_of
-from vehicle.runs.report.moving_modes import as_json, mode_set
+from vehicle.runs.report.modes_section import as_json, mode_set
 from vehicle.runs.report.page import document
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal_file import read_signal

@@ -68,7 +68,7 @@ if TYPE_CHECKING:
     from vehicle.runs.comparison.comparison import Comparison as Comparison
     from vehicle.runs.comparison.mode_comparison import compare_modes as compare_modes
     from vehicle.runs.output.comparison_files import save_comparison as save_comparison
-    from vehicle.runs.output.saved_car import save_car as save_car
+    from vehicle.runs.output.own_files import save_car as save_car
     from vehicle.runs.output.saved_run import load_run as load_run
     from vehicle.runs.output.saved_run import save_run as save_run
     from vehicle.signals.excitation.input_files import shipped_inputs as shipped_inputs
@@ -144,7 +144,7 @@ _MODULES = {
     "register_law": "vehicle.model.laws.law_by_address",
     "replicate_drive": "vehicle.studies.replication.drive_search",
     "road": "vehicle.runs.car.road",
-    "save_car": "vehicle.runs.output.saved_car",
+    "save_car": "vehicle.runs.output.own_files",
     "save_comparison": "vehicle.runs.output.comparison_files",
     "save_drive": "vehicle.studies.replication.drive_files",
     "save_run": "vehicle.runs.output.saved_run",

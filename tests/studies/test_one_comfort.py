@@ -11,8 +11,8 @@ from scenarios.signals.random_road import random_road
 from vehicle.digits import number
 from vehicle.runs.car import Car
 from vehicle.runs.output.saved_run import save_run
-from vehicle.runs.report.comfort_section import comfort as report_section
 from vehicle.runs.report.finished_run import read_run
+from vehicle.runs.report.sections import comfort as report_section
 from vehicle.signals.analysis.ride_comfort import comfort_columns, comfort_units
 from vehicle.studies.optimisation.ride import QUANTITIES, ride_measure
 from vehicle.studies.sweeps.measure import ComfortMeasure

@@ -24,8 +24,7 @@ from vehicle.runs.report.comfort_class import reactions
 from vehicle.runs.report.differences import changed_parameters, difference, parameter_words, shipped_origin
 from vehicle.runs.report.finished_run import read_run
 from vehicle.runs.report.main_band import main_band, weighted_bands
-from vehicle.runs.report.modes_section import modes_of
-from vehicle.runs.report.moving_modes import FULL
+from vehicle.runs.report.modes_section import FULL, modes_of
 
 EMPTY = {"meta", "link", "input", "img", "br"}
 
@@ -117,7 +116,7 @@ def test_runs_stand_beside_each_other(reported, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr("vehicle.runs.report.pair_film.film_of_two", film)
     monkeypatch.setattr("vehicle.drawing.rendering.backend.require_film", lambda: "osmesa")
     monkeypatch.setattr("vehicle.runs.report.sections.plot_time", empty_figure)
-    monkeypatch.setattr("vehicle.runs.report.response_section.plot_frfs", empty_figure)
+    monkeypatch.setattr("vehicle.runs.report.sections.plot_frfs", empty_figure)
     page = tmp_path / "two.html"
     assert main([*[str(reported.folder)] * 2, "--output", str(page), "--video", "--slow-motion", "4"]) == 0
     assert "film        film.mp4: as they are" in capsys.readouterr().out

@@ -20,8 +20,7 @@ from vehicle.model.assembly.visuals import visible_shapes
 from vehicle.model.parameters.composition import Composition, PlacedSpring, PlacedWheel
 from vehicle.model.shapes.shape import Shape
 from vehicle.runs.car import Car
-
-Vector = npt.NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 
 class CarScene:

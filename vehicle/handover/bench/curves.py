@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from scipy.special import stdtrit
 
 from vehicle.handover.bench.numbers import BenchNumbers
 from vehicle.signals.analysis.phase_averages import PHASES
-
-Vector = npt.NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 CLASSES = 120
 """Classes of the damper velocity in the plot of its force."""

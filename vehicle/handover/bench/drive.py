@@ -105,11 +105,7 @@ def bench_drive(car: Car, source: Signal | Road, *, begin: float = 0.0, seconds:
 # A moved wheel is followed by a run, a picture and files, each with this input.
 @lru_cache(maxsize=4)
 def _road_drive(source: Road, drive: Drive, interval: float) -> BenchDrive:
-    """Return the input of the bench for a drive over a road.
-
-    Args:
-        interval: sampling interval of the inputs of the FRFs [s].
-    """
+    """Return the input of the bench for a drive over a road."""
     assert not isinstance(source.speed, str)
     speed, skip = source.speed / 3.6, drive.skip
     record = replace(drive.signal(), source=drive.name)

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.drawing.rendering.mode_motion import FARTHEST
 from vehicle.drawing.rendering.wireframe import CarWireframe, unit_factor
@@ -14,10 +13,8 @@ from vehicle.engines.linear.load_rows import displacement_rows
 from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.handover.bench.drive import BenchDrive
 from vehicle.runs.car import Car
+from vehicle.signals.analysis.samples import Complex, Vector
 from vehicle.threads import one_blas_thread
-
-Vector = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
 
 SECONDS = 4.0
 """Length of the motion of a run [s]."""

@@ -8,7 +8,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.handover.bench.drive import BenchDrive
@@ -18,11 +17,10 @@ from vehicle.runs.car.simulated_run import simulated_run
 from vehicle.runs.output.run_obstacle import obstacle_values
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.analysis.ride_comfort import RunComfort
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.vibration_spectra import ChannelSpectrum
 from vehicle.signals.records.run_summary import ObstacleSummary
 from vehicle.threads import one_blas_thread
-
-Vector = npt.NDArray[np.float64]
 
 RAIL = tuple(f"seat_rail_acc_{axis}" for axis in AXES)
 """Channels of the seat rail."""

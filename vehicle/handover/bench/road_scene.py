@@ -17,9 +17,8 @@ import numpy.typing as npt
 
 from vehicle.drawing.rendering.road_strip import COLOURS, HALF_WIDTH, REACH
 from vehicle.model.parameters.composition import PlacedWheel
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.excitation.signal import Signal
-
-Vector = npt.NDArray[np.float64]
 
 STRIPE = 0.5
 """Length of a stripe [m]."""

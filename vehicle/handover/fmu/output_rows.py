@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -25,9 +25,13 @@ if TYPE_CHECKING:
 
 Vector = npt.NDArray[np.float64]
 
+
 LINEAR, VELOCITY, FORCE, COEFFICIENT = range(4)
 """Kinds of outputs, as in runtime/car.h."""
 
+
+TERMS = ("fixed", "force", "slope", "law", "applied")
+"""Fields of `OutputRows` beside its outputs."""
 
 LOAD_MEANING = {
     "m": "travel of the wheel centre against the body, upwards",
@@ -64,16 +68,8 @@ class OutputRows:
     def part(self, indices: Sequence[int]) -> OutputRows:
         """Return the rows with these indices, in their order."""
         at = list(indices)
-        poles, height, velocity = self.outputs.poles[at], self.outputs.height[at], self.outputs.velocity[at]
-        outputs = Outputs(poles=poles, height=height, velocity=velocity)
-        return OutputRows(
-            outputs=outputs,
-            fixed=self.fixed[at],
-            force=self.force[at],
-            slope=self.slope[at],
-            law=self.law[at],
-            applied=self.applied[at],
-        )
+        outputs = Outputs(**{name: getattr(self.outputs, name)[at] for name in ("poles", "height", "velocity")})
+        return OutputRows(outputs=outputs, **{name: getattr(self, name)[at] for name in TERMS})
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -227,19 +223,13 @@ def _each(rows: OutputRows) -> list[OutputRows]:
 
 def joined_rows(parts: Sequence[OutputRows]) -> OutputRows:
     """Join several output rows."""
-    outputs = [part.outputs for part in parts]
-    return OutputRows(
-        outputs=Outputs(
-            poles=np.concatenate([part.poles for part in outputs]),
-            height=np.concatenate([part.height for part in outputs]),
-            velocity=np.concatenate([part.velocity for part in outputs]),
-        ),
-        fixed=np.concatenate([part.fixed for part in parts]),
-        force=np.concatenate([part.force for part in parts]),
-        slope=np.concatenate([part.slope for part in parts]),
-        law=np.concatenate([part.law for part in parts]),
-        applied=np.concatenate([part.applied for part in parts]),
-    )
+
+    def joined(items: Sequence[Any], name: str) -> npt.NDArray[Any]:
+        return np.concatenate([getattr(item, name) for item in items])
+
+    each = [part.outputs for part in parts]
+    outputs = Outputs(**{name: joined(each, name) for name in ("poles", "height", "velocity")})
+    return OutputRows(outputs=outputs, **{name: joined(parts, name) for name in TERMS})
 
 
 def motion_rows(car: Car, rows: Vector) -> OutputRows:

@@ -72,63 +72,31 @@ class Variable:
 def variables(numbers: CarNumbers, dampers: Sequence[Damper]) -> list[Variable]:
     """Return the variables of the FMU of a car: time, inputs, parameters, outputs."""
     entries = [Variable(name="time", reference=0, causality="independent", unit="s")]
-    for k, wheel in enumerate(numbers.plates):
-        for part, (quantity, unit) in enumerate((("displacement", "m"), ("velocity", "m/s"))):
-            entries.append(
-                Variable(
-                    name=f"plate_{wheel}_{quantity}",
-                    reference=FIRST_PLATE + 2 * k + part,
-                    causality="input",
-                    unit=unit,
-                    start=0.0,
-                    meaning=_MEANING[quantity],
-                )
-            )
-    for k, wheel in enumerate(numbers.plates if numbers.rolling else ()):
+
+    def add(reference: int, name: str, quantity: str, unit: str, start: float = 0.0, causality: str = "input") -> None:
+        meaning = _MEANING[quantity]
         entries.append(
-            Variable(
-                name=f"plate_{wheel}_slope_excess",
-                reference=FIRST_SLOPE + k,
-                causality="input",
-                unit="m/s",
-                start=0.0,
-                meaning=_MEANING["slope_excess"],
-            )
+            Variable(name=name, reference=reference, causality=causality, unit=unit, start=start, meaning=meaning)
         )
-    entries += [
-        Variable(
-            name=name, reference=FIRST_FORCE + k, causality="input", unit=unit, start=0.0, meaning=_MEANING["applied"]
-        )
-        for k, (name, unit) in enumerate(numbers.forces)
-    ]
+
+    for k, wheel in enumerate(numbers.plates):
+        add(FIRST_PLATE + 2 * k, f"plate_{wheel}_displacement", "displacement", "m")
+        add(FIRST_PLATE + 2 * k + 1, f"plate_{wheel}_velocity", "velocity", "m/s")
+    for k, wheel in enumerate(numbers.plates if numbers.rolling else ()):
+        add(FIRST_SLOPE + k, f"plate_{wheel}_slope_excess", "slope_excess", "m/s")
+    for k, (name, unit) in enumerate(numbers.forces):
+        add(FIRST_FORCE + k, name, "applied", unit)
     for i, name in enumerate(numbers.dampers):
         for part, (quantity, unit) in enumerate(COMMANDS.items()):
-            entries.append(
-                Variable(
-                    name=f"{name}_{quantity}_command",
-                    reference=FIRST_COMMAND + 2 * i + part,
-                    causality="input",
-                    unit=unit,
-                    start=0.0,
-                    meaning=_MEANING[quantity],
-                )
-            )
+            add(FIRST_COMMAND + 2 * i + part, f"{name}_{quantity}_command", quantity, unit)
     for i, (name, law) in enumerate(zip(numbers.dampers, dampers, strict=True)):
         for k, (quantity, unit) in enumerate(PARAMETERS.items()):
             if (quantity in STRIBECK_ONLY and law.friction_law != "stribeck") or (
                 quantity == "control" and not law.controlled
             ):
                 continue
-            entries.append(
-                Variable(
-                    name=f"{name}_{quantity}",
-                    reference=FIRST_PARAMETER + len(PARAMETERS) * i + k,
-                    causality="parameter",
-                    unit=unit,
-                    start=float(np.asarray(numbers.parameters)[i, k]),
-                    meaning=_MEANING[quantity],
-                )
-            )
+            start = float(np.asarray(numbers.parameters)[i, k])
+            add(FIRST_PARAMETER + len(PARAMETERS) * i + k, f"{name}_{quantity}", quantity, unit, start, "parameter")
     entries += [
         Variable(
             name=output.name,

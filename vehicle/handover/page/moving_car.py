@@ -15,7 +15,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
 from vehicle.drawing.rendering.wireframe import car_wireframe
@@ -24,9 +23,8 @@ from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.engines.reduced.validity import rotating_bodies
 from vehicle.handover.page.packed_numbers import text
 from vehicle.runs.car import Car
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.excitation.signal import Signal
-
-Vector = npt.NDArray[np.float64]
 
 HOLD = 2.0 * np.pi * 0.1
 """Angular frequency w [rad/s], far below that of the heave mode."""

@@ -17,8 +17,7 @@ import numpy.typing as npt
 
 from vehicle.engines.reduced.table_layout import BLOCK
 from vehicle.handover.fmu.car_numbers import CarNumbers
-
-Vector = npt.NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 WORD, PARTS = 8, 4
 """Size of a word [byte]; words of a row of a table."""

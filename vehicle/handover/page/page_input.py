@@ -17,14 +17,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 
 from vehicle.handover.page.packed_numbers import integers, track
 from vehicle.runs.car import Car
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.excitation.signal import Signal
-
-Vector = npt.NDArray[np.float64]
 
 LONGEST = 30.0
 """Maximum length of the record in the page [s]."""
@@ -113,11 +111,7 @@ def page_input(car: Car, signal: Signal, road: RunRoad | None = None) -> PageInp
 
 
 def _common_road(car: Car, signal: Signal, road: RunRoad) -> PageInput | None:
-    """Return the input with a track for each side; None if the heights are not those of one road.
-
-    Args:
-        signal: displacement of the moving plates, not longer than in the page.
-    """
+    """Return the input with a track for each side; None if the heights are not those of one road."""
     sides = {wheel.name: wheel.side > 0.0 for wheel in car.vehicle.composition.wheels}
     first = {side: wheel for wheel, side in sides.items() if road.behind.get(wheel) == 0.0}
     if set(sides) != set(signal.displacement) or set(first) != set(sides.values()):

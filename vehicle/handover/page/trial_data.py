@@ -125,11 +125,7 @@ def trial_data(car: Car, signal: Signal, *, wheel: str, skip: float = 0.0, road:
 
 
 def _page_numbers(car: Car, drive: PageInput, rotations: Sequence[int]) -> CarNumbers:
-    """Return the numbers of a car with the outputs of the page.
-
-    Args:
-        rotations: rotations that are watched, as indices of `rotation_outputs`.
-    """
+    """Return the numbers of a car with the outputs of the page."""
     names = [damper.name for damper in car.vehicle.composition.dampers]
     channels = [f"{POINT}_acc_{axis}" for axis in AXES]
     outputs, rows = car_outputs(car, [*channels, *(f"{name}_{end}" for name in names for end in ("velocity", "force"))])

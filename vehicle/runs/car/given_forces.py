@@ -12,9 +12,9 @@ import numpy.typing as npt
 from vehicle.engines.simulation.applied_forces import force_lines
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.parameters.placed_force import force_named
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.excitation.force_record import RecordedForce, recorded_force
 
-Vector = npt.NDArray[np.float64]
 GivenForce = npt.ArrayLike | Callable[[Vector], npt.ArrayLike]
 """Values of a force at the times of a signal, or a function of times [s]."""
 

@@ -24,12 +24,12 @@ from vehicle.model.parameters.applied_force import CRANK
 from vehicle.model.parameters.channel_words import channels_named
 from vehicle.runs.car.road import Road
 from vehicle.signals.analysis.order_lines import order_lines
+from vehicle.signals.analysis.samples import Vector
 
 if TYPE_CHECKING:
     from vehicle.runs.car.car import Car
     from vehicle.runs.car.run import Run
 
-Vector = npt.NDArray[np.float64]
 
 MOST = 400
 """Maximum number of points."""

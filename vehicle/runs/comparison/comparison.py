@@ -96,9 +96,8 @@ class Comparison:
         if wanted not in pictures:
             raise ConfigurationError(f"no picture {wanted!r}; choose from {', '.join(pictures)}")
         picture = pictures[wanted]
-        look: dict[str, Any] = {"height_ratios": (2.4, 1.0, 0.9), "sharex": True} if picture.rows == 3 else {}
         title = f"{self.measured} and {self.run}"
-        axes = open_axes(ax, picture.size, picture.rows, picture.columns, title=title, **look)
+        axes = open_axes(ax, picture.size, picture.rows, picture.columns, title=title, **picture.options)
         picture.draw(axes)
         return plain(axes)
 

@@ -7,15 +7,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.frf_agreement import BandError, band_errors, csac, csf, frac, scaled_frac
 from vehicle.signals.analysis.response_name import row_of
+from vehicle.signals.analysis.samples import Complex, Vector
 from vehicle.signals.formats.frf_file import FrfData
-
-Vector = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
 
 BANDS = (1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 50.0)
 """Edges of the bands of the table [Hz]: octaves."""

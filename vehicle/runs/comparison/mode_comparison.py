@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
 from vehicle.engines.linear.car_modes import Mode
@@ -16,12 +15,10 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import AXES
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.modal_assurance import mac
+from vehicle.signals.analysis.samples import Complex, Vector
 from vehicle.signals.formats.channel import Measurement
 from vehicle.signals.formats.geometry import Geometry, ModeShape
 from vehicle.signals.formats.reader import read_record
-
-Complex = npt.NDArray[np.complex128]
-Matrix = npt.NDArray[np.float64]
 
 NEAR = 0.01
 """Maximum distance of a node of the file from its output point of the car [m]."""
@@ -55,10 +52,10 @@ class ModeComparison:
     points: Mapping[str, str]  # output point of the car to node of the file
     measured: Sequence[ModeShape]  # measured, simulated: the modes
     simulated: Sequence[Mode]
-    mac: Matrix  # (measured, simulated)
+    mac: Vector  # (measured, simulated)
     # measured_auto, simulated_auto: AutoMAC; values near 1 off the diagonal: indistinguishable modes
-    measured_auto: Matrix
-    simulated_auto: Matrix
+    measured_auto: Vector
+    simulated_auto: Vector
     pairs: tuple[Pair, ...]  # by measured frequency
 
     def summary(self, file: str) -> dict[str, Any]:

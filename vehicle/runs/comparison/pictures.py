@@ -11,7 +11,6 @@ import numpy.typing as npt
 
 from vehicle.drawing.rendering.figure import (
     COLOURS,
-    FADED,
     FRF_BAND,
     FRF_TICKS,
     fading,
@@ -31,20 +30,6 @@ LOOKS = {
 }
 DETAIL = 1.0
 """Length of the magnified excerpt [s]."""
-
-
-def plot_responses(path: Path, point: str, responses: Sequence[FrfComparison], caption: str) -> None:
-    """Write magnitude, phase and both coherences of the responses of one output point, a column for each."""
-    size = (max(7.6, 5.2 * len(responses) + 1.0), 8.2)
-    coherences = [
-        values for response in responses for values in (response.measured_coherence, response.simulated_coherence)
-    ]
-    caption += f"; {FADED}" if any(np.isfinite(values).any() for values in coherences) else ""
-    with saved_figure(path, size, f"{point}: measured and simulated", caption) as figure:
-        axes = figure.subplots(
-            3, len(responses), sharex=True, sharey="row", height_ratios=(2.4, 1.0, 0.9), squeeze=False
-        )
-        draw_responses(axes, responses)
 
 
 def draw_responses(axes: npt.NDArray[Any], responses: Sequence[FrfComparison]) -> None:
@@ -68,14 +53,6 @@ def draw_responses(axes: npt.NDArray[Any], responses: Sequence[FrfComparison]) -
     low, high = max(float(lines.min()), 0.9 * FRF_BAND[0]), float(lines.max())
     if low > 2.0 * FRF_BAND[0] or high < 0.5 * FRF_BAND[1]:
         axes[0, 0].set_xlim(low, high)
-
-
-def plot_histories(path: Path, point: str, histories: Sequence[RecordComparison], caption: str) -> None:
-    """Write the time histories of an output point, a row for each: whole record, and excerpt with the highest level."""
-    size = (13.0, 2.6 * len(histories) + 1.4)
-    with saved_figure(path, size, f"{point}: measured and simulated", caption) as figure:
-        axes = figure.subplots(len(histories), 2, sharey="row", width_ratios=(1.6, 1.4), squeeze=False)
-        draw_histories(axes, histories)
 
 
 def draw_histories(axes: npt.NDArray[Any], histories: Sequence[RecordComparison]) -> None:
@@ -102,12 +79,6 @@ def _highest_level(record: RecordComparison) -> slice:
     total = np.concatenate([[0.0], np.cumsum(record.measured**2)])
     first = int(np.argmax(total[count:] - total[:-count]))
     return slice(first, first + count)
-
-
-def plot_signatures(path: Path, signatures: Signatures, caption: str) -> None:
-    """Write CSAC and CSF over frequency."""
-    with saved_figure(path, (9.0, 4.6), "Agreement of all responses together", caption) as figure:
-        draw_signatures(figure.subplots(squeeze=False), signatures)
 
 
 def draw_signatures(axes: npt.NDArray[Any], signatures: Signatures) -> None:

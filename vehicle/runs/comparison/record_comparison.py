@@ -7,17 +7,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.digits import number
 from vehicle.errors import DataError
 from vehicle.signals.analysis.record_rating import RecordRating, rate_record
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.time_shift import TimeShift
 from vehicle.signals.formats.table import Record
 from vehicle.signals.records.counterpart import Counterpart, counterparts
 from vehicle.signals.records.resampled import at_times
-
-Vector = npt.NDArray[np.float64]
 
 LARGEST_OFFSET = 0.3
 """Difference of the means over the standard deviation of the measurement: the RMS ratio is then off by 4 %."""

@@ -7,7 +7,7 @@ from pathlib import Path
 from vehicle.runs.car import Run
 from vehicle.runs.comparison.compared_run import comparison_of
 from vehicle.runs.comparison.comparison import Comparison
-from vehicle.runs.comparison.named_pictures import drawings_of
+from vehicle.runs.comparison.named_pictures import pictures_of
 from vehicle.runs.comparison.simulated import of_run
 from vehicle.runs.output.folder import output_folder, write_json, write_text, write_whole
 from vehicle.signals.records.measured import Measured
@@ -55,8 +55,8 @@ def write_comparison(folder: Path, comparison: Comparison, *, figures: bool = Tr
     write_text(folder / "compare.csv", comparison.csv())
     write_json(folder / "compare.json", comparison.summary())
     files = {"compare": "compare.json", "compare_table": "compare.csv"}
-    for name, draw in drawings_of(comparison).items() if figures else ():
-        write_whole(folder / f"{name}.png", draw)
+    for name, picture in pictures_of(comparison).items() if figures else ():
+        write_whole(folder / f"{name}.png", picture.write)
         files[name] = f"{name}.png"
     return files
 

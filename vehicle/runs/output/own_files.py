@@ -1,4 +1,4 @@
-"""Copies of the templates and the body model of a user, so that a run can be repeated from its folder."""
+"""A car as a vehicle file, with copies of the templates and the body model of a user beside it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from vehicle.model.parameters.instance import instances
 from vehicle.model.parameters.template import own_templates
 from vehicle.model.parameters.toml_file import write_text as vehicle_text
 from vehicle.runs.car import Car
-from vehicle.runs.output.folder import write_whole
+from vehicle.runs.output.folder import check_file, write_text, write_whole
 
 
 def parameters_text(car: Car, header: str) -> str:
@@ -42,3 +42,32 @@ def write_own_files(folder: Path, car: Car) -> dict[str, str]:
             continue  # the car is saved in the folder of its file
         write_whole(folder / name, lambda path, text=text: path.write_bytes(text))  # type: ignore[misc]
     return {("template_" if "/" in name else "body_") + file.stem: name for name, file in files.items()}
+
+
+def save_car(car: Car, file: Path | str, *, force: bool = False) -> Path:
+    """Write a car as a vehicle file, from which `Car.load` makes the same car.
+
+    Every parameter is written with its current value, also the numbers of force laws that were read from other files.
+    Templates and a body model of the user are copied to the same folder.
+
+    Args:
+        car: the car.
+        file: name of the file, with the ending .toml.
+        force: replace a file that was written there before.
+
+    Returns:
+        The file.
+
+    Raises:
+        ConfigurationError: the file exists without `force`, or a template or body model would replace another file.
+        OutputError: a file cannot be written.
+    """
+    path = Path(file)
+    check_file(path, ending=".toml", force=force)
+    changes = "".join(f"\n  {text}" for text in car.overrides)
+    origin = car.origin["file"] or "the default car"
+    header = f"{car.vehicle.name}, from {origin}" + (f" with{changes}" if changes else "")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_own_files(path.parent, car)
+    write_text(path, parameters_text(car, header))
+    return path

@@ -22,9 +22,9 @@ from vehicle.runs.car import FRF_BAND, SATURATED_VELOCITY, Run
 from vehicle.runs.output.folder import write_json, write_text, write_whole
 from vehicle.runs.output.own_files import parameters_text, write_own_files
 from vehicle.runs.output.run_comfort import comfort_notices, comfort_values, rim_values, seat_values
-from vehicle.runs.output.run_densities import write_densities
 from vehicle.runs.output.run_forces import force_values
 from vehicle.runs.output.run_obstacle import obstacle_values
+from vehicle.runs.output.spectra_files import write_densities
 from vehicle.signals.analysis.dependence import DependentInputsError, common_motions, what_moves
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.analysis.local_rational import shortest_record

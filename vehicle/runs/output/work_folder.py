@@ -312,11 +312,7 @@ def _retire(replaced: Path, goal: Path) -> None:
 
 
 def _abandon(goal: Path) -> bool:
-    """Undo after a failure, as far as possible; what is left is found by the next command.
-
-    Returns:
-        True if the failure came so late that the new results are in place.
-    """
+    """Undo after a failure, as far as possible; True if it came so late that the new results are in place."""
     work, old = work_of(goal), old_of(goal)
     with suppress(OSError):
         if (goal / COMPLETE).exists() or _journal(work, COMPLETE)[0] == FILES:

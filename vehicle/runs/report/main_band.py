@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.names import AXES
 from vehicle.runs.report.finished_run import FinishedRun
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.vibration_spectra import ChannelSpectrum, vibration_spectra
 from vehicle.signals.records.record_spectra import evaluated_from
-
-Vector = npt.NDArray[np.float64]
 
 POINT = "seat_rail"
 

@@ -19,15 +19,11 @@ from vehicle.runs.report import sections
 from vehicle.runs.report.answer import answer, comfort_bands, explained
 from vehicle.runs.report.base_run import base_run
 from vehicle.runs.report.car_section import car_section
-from vehicle.runs.report.comfort_section import comfort
 from vehicle.runs.report.comparison_section import MANY, curves_over_each_other, numbers_beside
 from vehicle.runs.report.film_section import film, film_part
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import templates
-from vehicle.runs.report.measured_section import measured
-from vehicle.runs.report.modes_section import Modes, car_modes_of, modes_of, moving_modes
-from vehicle.runs.report.moving_modes import as_json
-from vehicle.runs.report.response_section import responses
+from vehicle.runs.report.modes_section import Modes, as_json, car_modes_of, modes_of, moving_modes
 from vehicle.runs.report.spectra_section import spectra
 from vehicle.runs.report.verdict_section import verdict_section
 from vehicle.runs.targets.figure import Figure
@@ -130,7 +126,7 @@ def _of_one(run: FinishedRun, modes: Modes, trial_part: Markup) -> list[Part]:
     parts = [
         ("Result", "result", (single if changed is None else changed) + explained()),
         ("This run", "alone", None if changed is None else single),
-        ("Frequency responses", "responses", responses(run, modes) if run.responses else None),
+        ("Frequency responses", "responses", sections.responses(run, modes) if run.responses else None),
         ("Film", "film", film(run)),
         ("Car, signal, engine", "run", sections.what_was_run(run)),
         ("Try it", "trial", trial_part),
@@ -138,8 +134,8 @@ def _of_one(run: FinishedRun, modes: Modes, trial_part: Markup) -> list[Part]:
         ("Notices", "notices", sections.notices(run)),
         ("Dampers", "dampers", sections.dampers(run)),
         ("Time histories", "time", sections.time_figure(run)),
-        ("Comfort", "comfort", comfort(run, bands)),
-        ("Measured", "measured", measured(run)),
+        ("Comfort", "comfort", sections.comfort(run, bands)),
+        ("Measured", "measured", sections.measured(run)),
         ("Modes", "modes", moving_modes([run], [modes])),
         ("Spectra", "spectra", spectra([run])),
         ("The car", "car", car_section(run.car)),
@@ -190,10 +186,10 @@ def _of_several(
             ("Notices", sections.notices(run)),
             ("Car, signal, engine", sections.what_was_run(run)),
             ("The car", car_section(run.car) if new and index else None),
-            ("Frequency responses", responses(run, car_modes) if run.responses and drawn else None),
+            ("Frequency responses", sections.responses(run, car_modes) if run.responses and drawn else None),
             ("Dampers", sections.dampers(run)),
-            ("Comfort", comfort(run)),
-            ("Measured", measured(run)),
+            ("Comfort", sections.comfort(run)),
+            ("Measured", sections.measured(run)),
             ("All values", sections.tables(run)),
             ("How to repeat the run", sections.repeating(run)),
         )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import shlex
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -10,19 +11,21 @@ import numpy as np
 from markupsafe import Markup
 
 from vehicle.digits import number
+from vehicle.drawing.rendering.figure import PAGE_WIDTH
+from vehicle.drawing.rendering.frf_plot import plot_frfs
 from vehicle.drawing.rendering.plots import plot_time
 from vehicle.engines.linear.car_modes import Mode
 from vehicle.model.parameters.shipped import VEHICLES
-from vehicle.names import side_of
-from vehicle.runs.report.comfort_class import reactions
+from vehicle.names import point_words, side_of
+from vehicle.runs.report.comfort_class import REACTIONS, reactions
 from vehicle.runs.report.differences import changed_parameters, shipped_origin
-from vehicle.runs.report.findings import findings
+from vehicle.runs.report.findings import findings, main_points, nearest_mode
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.general_notices import without_general
 from vehicle.runs.report.markup import templates
 from vehicle.runs.report.order_words import force_rows
 from vehicle.runs.report.svg_figure import drawing
-from vehicle.signals.records.run_summary import slip_shares
+from vehicle.signals.records.run_summary import slip_shares, unweighted_rms
 
 fill = templates(__file__)
 
@@ -33,6 +36,27 @@ ROAD_WORDS = {
     "seed": "seed",
     "words": "road",
 }
+
+FRF_SIZE = (PAGE_WIDTH, 5.2)
+"""Width and height of the figure of FRFs [inch]."""
+
+STRONGEST = 6
+"""Maximum number of resonances of an output point in a table."""
+
+UNITS = {
+    "low_hz": "from [Hz]",
+    "high_hz": "to [Hz]",
+    "magnitude_db": "magnitude, mean [dB]",
+    "magnitude_rms_db": "magnitude, RMS [dB]",
+    "phase_deg": "phase, RMS [deg]",
+    "iso18571": "ISO 18571",
+    "lag_s": "lag [s]",
+    "drift_ppm": "drift [ppm]",
+    "window_s": "window of ISO 18571 [s]",
+}
+"""Heads of columns with units."""
+
+NO_FIGURE = Markup()
 
 
 def tiles(run: FinishedRun) -> Markup:
@@ -162,6 +186,99 @@ def dampers(run: FinishedRun) -> Markup | None:
 
 def _when(value: float | None) -> str:
     return "never" if value is None else f"{value:.3f} s"
+
+
+def responses(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> Markup:
+    """Return FRFs and tables of resonances of a run with FRFs."""
+    figure = drawing(
+        lambda path: plot_frfs(path, run, run.responses, run.caption, FRF_SIZE), f"Frequency responses of {run.name}"
+    )
+    return fill("responses", figure=figure, tables=_resonances(run, modes))
+
+
+def _resonances(
+    run: FinishedRun, modes: Mapping[str, Sequence[Mode]]
+) -> list[tuple[str, list[tuple[str, str, str, str]]]]:
+    """Return captions and rows of the highest resonances of the main output points with the nearest modes."""
+    tables = []
+    main = [
+        (f" to motion of the {plate}" if plate else "", point, resonances.get(channel, ()))
+        for wheel, plate, resonances in run.peaks
+        for channel, point in main_points(run, wheel).items()
+    ]
+    for plate, point, all_peaks in main:
+        peaks = sorted(all_peaks, key=lambda peak: -peak["magnitude"])[:STRONGEST]
+        rows = []
+        for peak in sorted(peaks, key=lambda peak: peak["frequency_hz"]):
+            state, mode = nearest_mode(run, peak["frequency_hz"], modes)
+            near = "" if mode is None else f"{mode.frequency:.2f} Hz, {mode.description}"
+            rows.append((near, f"{peak['frequency_hz']:.2f}", number(peak["magnitude"]), number(peak["coherence"])))
+        if rows:
+            count = f"the {len(rows)} highest" if len(rows) > 1 else "one found"
+            caption = f"Vertical resonances at the {point}{plate}: {count}; modes with {state}"
+            tables.append((caption, rows))
+    return tables
+
+
+def comfort(run: FinishedRun, bands: Markup = NO_FIGURE) -> Markup:
+    """Return tables of weighted and unweighted accelerations, and of reactions with the values of this run.
+
+    Args:
+        bands: figure of the frequencies, left of the reactions; may be empty.
+    """
+    points, totals = [], {}
+    for point, value in run.comfort.items():
+        iso, (raw, (low, high)) = value["iso2631"], unweighted_rms(value)
+        totals[point_words(point)] = iso["vector_sum"]["weighted_rms"]
+        rows = [
+            (
+                axis,
+                iso[axis]["weighting"],
+                *(number(iso[axis][key]) for key in ("weighted_rms", "mtvv", "crest_factor", "vdv", "msdv")),
+                number(raw[axis]),
+            )
+            for axis in "xyz"
+        ]
+        whole = iso["vector_sum"]
+        rows.append(
+            ("all", "", number(whole["weighted_rms"]), "", "", number(whole["vdv"]), "", number(raw["overall"]))
+        )
+        span = f", {run.span} of the run" if run.span else ""
+        caption = f"{point_words(point).capitalize()}, {iso['standard']}{span}"
+        points.append((caption, low, high, rows, iso["reasons"]))
+    matches = [
+        (_range(low, high), word, [point for point, total in totals.items() if word in reactions(total)])
+        for word, low, high in REACTIONS
+    ]
+    return fill("comfort", bands=bands, points=points, reactions=matches, seat=run.summary.get("seat_value"))
+
+
+def _range(low: float, high: float) -> str:
+    if low == 0.0:
+        return f"below {high:g} m/s²"
+    return f"above {low:g} m/s²" if high == float("inf") else f"{low:g} to {high:g} m/s²"
+
+
+def measured(run: FinishedRun) -> Markup | None:
+    """Return the table of differences, largest first, and the pictures; None without a measurement."""
+    comparison = run.summary.get("measured")
+    if not comparison:
+        return None
+    heads = list(dict.fromkeys(key for row in comparison["table"] for key in row))
+    rows = [[_cell(row.get(key)) for key in heads] for row in comparison["table"]]
+    titles = [UNITS.get(head, head.replace("_", " ")) for head in heads]
+    pictures = [
+        (base64.b64encode(path.read_bytes()).decode("ascii"), purpose.replace("_", " "))
+        for purpose, name in run.summary["files"].items()
+        if purpose.startswith("compare_") and (path := run.folder / name).suffix == ".png" and path.is_file()
+    ]
+    return fill("measured", file=comparison["file"], heads=titles, rows=rows, pictures=pictures)
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, list | tuple):
+        return " to ".join(_cell(item) for item in value)
+    return number(value) if isinstance(value, float) or value is None else str(value)
 
 
 def tables(run: FinishedRun) -> Markup:

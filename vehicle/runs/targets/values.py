@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
 from vehicle.errors import ConfigurationError
@@ -21,11 +20,10 @@ from vehicle.runs.output.run_obstacle import settling_time
 from vehicle.runs.targets.figure import QUANTITIES, SEAT, Figure
 from vehicle.signals.analysis.comfort_error import overall_error
 from vehicle.signals.analysis.exposure import vibration_dose_value
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.slip import slip_shares
 from vehicle.signals.analysis.spectra import band_periodogram
 from vehicle.signals.analysis.weighting import weighted_record
-
-Vector = npt.NDArray[np.float64]
 
 BLOCKS = 8
 """Blocks of a record for the standard error of a share or a ratio: 7 degrees of freedom."""

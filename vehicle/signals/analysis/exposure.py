@@ -9,18 +9,14 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from vehicle.errors import ConfigurationError, DataError
-from vehicle.signals.analysis.samples import Vector, checked_signals, checked_time_step
+from vehicle.errors import ConfigurationError
+from vehicle.signals.analysis.samples import Vector, checked_single, checked_time_step
 
 RunningAverage = Literal["linear", "exponential"]
 
 
 def _one(weighted: ArrayLike) -> Vector:
-    """Return a single weighted record as floats, shape (n,)."""
-    array = checked_signals("weighted acceleration", weighted)
-    if array.shape[0] != 1:
-        raise DataError(f"weighted acceleration: found {array.shape[0]} signals, must be one axis, shape (n,)")
-    return np.asarray(array[0])
+    return checked_single("weighted acceleration", "axis", weighted)
 
 
 def weighted_rms(weighted: ArrayLike) -> float:

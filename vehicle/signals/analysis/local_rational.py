@@ -223,12 +223,7 @@ def _without_mean(record: Vector, lines: RecordLines) -> Complex:
 
 
 def _batches(wide: NDArray[np.bool_], outputs: int) -> Iterator[slice]:
-    """Cut frequency windows, narrowest first, into batches with one grid of poles.
-
-    Args:
-        wide: False for the windows with the minimum number of lines, shape (m,).
-        outputs: responses fitted in each window; a batch has about `FITS_AT_ONCE` fits.
-    """
+    """Cut frequency windows, narrowest first, into batches with one grid of poles."""
     size = min(max(FITS_AT_ONCE // max(outputs, 1), 1), WINDOWS_AT_ONCE)
     for first, last in itertools.pairwise((0, int(np.count_nonzero(~wide)), wide.size)):
         for begin in range(first, last, size):
@@ -236,13 +231,7 @@ def _batches(wide: NDArray[np.bool_], outputs: int) -> Iterator[slice]:
 
 
 def _scaled(spectra: Complex, axis: int, lines: NDArray[np.int_]) -> tuple[Complex, Vector]:
-    """Scale frequency windows to unit mean power over their lines, and return their levels too; zeros stay.
-
-    Args:
-        spectra: windows, zero outside.
-        axis: axis of the lines.
-        lines: number of lines of the windows, along the other axes.
-    """
+    """Scale frequency windows to unit mean power over their lines, and return their levels too; zeros stay."""
     power = np.sum(spectra.real**2 + spectra.imag**2, axis=axis)
     level = np.sqrt(power / lines)
     return spectra * np.expand_dims(1.0 / np.where(level > 0.0, level, 1.0), axis), level

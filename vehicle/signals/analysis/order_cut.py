@@ -16,8 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.errors import DataError
-
-Vector = npt.NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 TURNS = 8
 """Turns in a segment: half orders lie four lines apart, at zeros of the window."""

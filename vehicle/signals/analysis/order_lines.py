@@ -16,8 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.errors import DataError
-
-Vector = npt.NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 TURNS = 16
 """Turns in a segment: its main lobe is four lines wide, a quarter of the distance of two orders."""

@@ -13,9 +13,6 @@ Source: Lewis, Vibration during acceleration through a critical speed, Trans. AS
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
-
-Vector = npt.NDArray[np.float64]
 
 REACH = 30.0
 """Time s after which the motion has decayed to exp(-30)."""

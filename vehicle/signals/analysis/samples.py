@@ -52,6 +52,14 @@ def checked_signals(label: str, signals: ArrayLike) -> Vector:
     return array
 
 
+def checked_single(label: str, item: str, signal: ArrayLike) -> Vector:
+    """Return a single signal as floats, shape (n,); see `checked_signals`. The message calls it an `item`."""
+    array = checked_signals(label, signal)
+    if len(array) != 1:
+        raise DataError(f"{label}: found {len(array)} signals, must be one {item}, shape (n,)")
+    return np.asarray(array[0])
+
+
 def checked_rows(label: str, signals: ArrayLike | Sequence[Vector]) -> Sequence[Vector]:
     """Return the rows of `checked_signals`; a sequence of signals (n,) is not copied to a single array."""
     if isinstance(signals, list | tuple) and all(isinstance(row, np.ndarray) and row.ndim == 1 for row in signals):

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.signals.analysis.samples import Vector, checked_signals, checked_time_step
+from vehicle.signals.analysis.samples import Vector, checked_single, checked_time_step
 
 MINIMUM_AVERAGES = 8.0
 """Minimum effective averages: with 8, the coherence of unrelated signals is 1/8, and the random error of an FRF at a
@@ -139,17 +139,15 @@ def window_extremes(time_step: float, signal: ArrayLike, window_s: float = 0.5) 
         DataError: more than one signal, a value that is not finite, or a record shorter than a window.
     """
     step = checked_time_step(time_step)
-    values = checked_signals("signal", signal)
-    if values.shape[0] != 1:
-        raise DataError(f"signal: found {values.shape[0]} signals, must be one signal, shape (n,)")
+    values = checked_single("signal", "signal", signal)
     length = float(window_s)
     if not (np.isfinite(length) and length >= step):
         raise ConfigurationError(f"window: found {window_s!r} s, must be at least one time step, {step:g} s")
     samples = round(length / step)
-    count = values.shape[1] // samples
+    count = values.size // samples
     if count == 0:
         raise DataError(
-            f"signal: found {step * values.shape[1]:g} s, shorter than a window of {length:g} s; "
+            f"signal: found {step * values.size:g} s, shorter than a window of {length:g} s; "
             "use a longer record or a shorter window"
         )
-    return np.asarray(np.abs(values[0, : count * samples]).reshape(count, samples).max(axis=1))
+    return np.asarray(np.abs(values[: count * samples]).reshape(count, samples).max(axis=1))

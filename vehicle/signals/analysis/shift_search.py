@@ -130,14 +130,7 @@ def _peaks(
 
 
 def _consensus(peaks: Vector, count: int, tolerance: float, steepest: float) -> tuple[float, float] | None:
-    """Return the line with the largest sum of squared peaks near it, at most one peak per window.
-
-    Args:
-        peaks: rows of position [samples], lag [samples], peak and index of the window, (k, 4).
-        count: length of the record [samples].
-        tolerance: maximum distance of a peak from the line [samples].
-        steepest: maximum slope [-].
-    """
+    """Return the line with the largest sum of squared peaks near it, at most one per window; peaks: see `_peaks`."""
     position, lag, peak, window = peaks.T
     middle = 0.5 * (count - 1)
     first, second = np.triu_indices(lag.size, 1)

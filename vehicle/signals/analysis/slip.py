@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.signals.analysis.samples import Vector, checked_same_length, checked_signals
+from vehicle.signals.analysis.samples import Vector, checked_same_length, checked_signals, checked_single
 from vehicle.signals.analysis.tops import prominent_tops
 
 SHORTEST_SLIP = 0.020
@@ -38,11 +38,7 @@ def _slipping(velocity: ArrayLike, slip_velocity: ArrayLike) -> NDArray[np.bool_
 
 
 def _one(velocity: ArrayLike) -> Vector:
-    """Return the velocity of a single damper, shape (1, n)."""
-    signal = checked_signals("damper velocity", velocity)
-    if signal.shape[0] != 1:
-        raise DataError(f"damper velocity: found {signal.shape[0]} signals, must be one damper, shape (n,)")
-    return signal
+    return checked_single("damper velocity", "damper", velocity)
 
 
 def _instants(time: ArrayLike, samples: int) -> Vector:

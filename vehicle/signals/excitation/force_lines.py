@@ -18,12 +18,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.excitation.force_record import ForceRecord
-from vehicle.signals.excitation.iso_road import RISE_S, half_cosine_at
-
-Vector = NDArray[np.float64]
+from vehicle.signals.excitation.iso_road import RISE_S
+from vehicle.signals.excitation.rest import half_cosine_at
 
 NODES, WEIGHTS = (0.5 * (1.0 + np.polynomial.legendre.leggauss(4)[0]), 0.5 * np.polynomial.legendre.leggauss(4)[1])
 """Points and weights of Gauss and Legendre on a step of length 1; the error of the mean of exp(i x t) over it is

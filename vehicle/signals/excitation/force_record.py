@@ -8,17 +8,16 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from vehicle.errors import DataError
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.spline import CubicSpline
-from vehicle.signals.excitation.iso_road import RISE_S, half_cosine_at
+from vehicle.signals.excitation.iso_road import RISE_S
+from vehicle.signals.excitation.rest import half_cosine_at
 from vehicle.signals.formats.channel import Measurement
 from vehicle.signals.formats.reader import read_record
 from vehicle.signals.formats.units import find_unit
 from vehicle.signals.records.choice import Choice, choose, pick
-
-Vector = NDArray[np.float64]
 
 UNITS = {"N": "N, kN or lbf", "N m": "N m or kN m"}
 """Units of a file for a force and for a moment or torque."""

@@ -25,6 +25,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.machine import physical_memory
 from vehicle.signals.analysis.road_level import REFERENCE
 from vehicle.signals.excitation.band import positive, samples_of
+from vehicle.signals.excitation.rest import half_cosine_at, half_cosine_rate_at
 from vehicle.signals.excitation.signal import Signal, uniform_time
 from vehicle.signals.excitation.tyre_envelope import SAMPLES, TyreEnvelope
 from vehicle.signals.formats.channel import uniform_axis
@@ -254,14 +255,3 @@ def drive(
         slope_velocity=slopes,
         profile=profile,
     )
-
-
-def half_cosine_at(time: NDArray[np.float64], length: float) -> NDArray[np.float64]:
-    """Return the weights (1 - cos(pi t / length)) / 2 from 0 to `length` [s], 0 before and 1 after [-]."""
-    return np.asarray(0.5 * (1.0 - np.cos(np.pi * np.clip(time / length, 0.0, 1.0))))
-
-
-def half_cosine_rate_at(time: NDArray[np.float64], length: float) -> NDArray[np.float64]:
-    """Return the derivative of `half_cosine_at` [1/s]."""
-    inside = (time > 0.0) & (time < length)
-    return np.asarray(np.where(inside, 0.5 * np.pi / length * np.sin(np.pi * time / length), 0.0))

@@ -12,13 +12,11 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from vehicle.errors import ConfigurationError
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.excitation.measured_road import MeasuredRoad
 from vehicle.signals.excitation.tyre_envelope import TyreEnvelope
-
-Vector = NDArray[np.float64]
 
 EDGE = 1e-6
 """Length of a vertical edge [m]: heights over the distance need one value at each point."""

@@ -162,11 +162,7 @@ def band_limited_acceleration(z: Vector, timestep: float) -> Vector:
 
 
 def _low_pass(z: Vector, cutoff: float) -> Vector:
-    """Return a record without its share above a cut-off frequency, without phase.
-
-    Args:
-        cutoff: frequency at which a quarter of the power stays, over the Nyquist frequency.
-    """
+    """Return a record without its share above a cut-off frequency, without phase."""
     # The record goes on as its point reflection in both ends, for longer than the filter rings.
     beyond = min(int(RINGING / cutoff), z.size - 1)
     left, right = 2.0 * z[0] - z[beyond:0:-1], 2.0 * z[-1] - z[-2 : -beyond - 2 : -1]

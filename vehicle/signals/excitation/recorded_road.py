@@ -16,7 +16,6 @@ interpolation of the inverse of s between samples h apart, with an error below h
 
 from __future__ import annotations
 
-import hashlib
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -26,14 +25,16 @@ import numpy as np
 import scipy
 
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.signals.excitation.iso_road import RISE_S, Side, half_cosine_at
+from vehicle.signals.excitation.iso_road import RISE_S, Side
 from vehicle.signals.excitation.measured_road import TRACKS
 from vehicle.signals.excitation.plausibility import acceleration_events
+from vehicle.signals.excitation.rest import half_cosine_at
 from vehicle.signals.excitation.road_drive import AFTER_RISE_S, SKIP_S
 from vehicle.signals.excitation.signal import Signal, uniform_time
 from vehicle.signals.excitation.time_grid import FINE_RATE, SMOOTH_RATE
 from vehicle.signals.formats.channel import Measurement
 from vehicle.signals.formats.clock import UNIFORM_TOLERANCE
+from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.reader import read_record
 from vehicle.signals.formats.table import USABLE, Vector
 from vehicle.signals.records.channel_words import of_receiver
@@ -222,9 +223,6 @@ class RecordedDrive:
                 if match is not None and not (role == "height" and (roles or receiver)):
                     roles[role] = match
         if not roles or ("height" in roles and len(roles) > 1):
-            listed = ", ".join(
-                f"{n} {channel.name!r} [{channel.unit}]" for n, channel in enumerate(measurement.channels[:20], 1)
-            )
             above_sea = (
                 "; the height next to latitude and longitude is that of the GPS receiver, not of the road"
                 if receiver
@@ -232,7 +230,7 @@ class RecordedDrive:
             )
             raise DataError(
                 f"{self.road}: which channels are the heights? set --channel left=NAME --channel right=NAME, or "
-                f"--channel height=NAME for both tracks; the file has {listed}{above_sea}"
+                f"--channel height=NAME for both tracks; the file has {measurement.listed()}{above_sea}"
             )
         return roles
 
@@ -262,7 +260,7 @@ class RecordedDrive:
     def identity(self) -> dict[str, object]:
         """Return all data that determine the signal: parameters, and the digest of the record."""
         return {
-            "road": hashlib.sha256(self.road.read_bytes()).hexdigest(),
+            "road": digest(self.road),
             "channel": self.channel,
             "wheels": self.wheels,
             "choice": repr(self.choice),

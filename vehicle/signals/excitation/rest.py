@@ -19,23 +19,19 @@ VELOCITY_SHARE = 0.1
 
 
 def half_cosine(*, samples: int, timestep: float, length: float) -> Vector:
-    """Return weights that rise from 0 to 1 over `length` seconds with zero slope at both ends, then 1.
+    """Return `half_cosine_at` for samples at a time step [s] from 0 on, (n,); ones for a length of 0."""
+    return half_cosine_at(np.arange(samples) * timestep, length) if length > 0.0 else np.ones(samples)
 
-    w(t) = (1 - cos(pi t / length)) / 2
 
-    Args:
-        samples: number of weights n.
-        timestep: sampling interval [s].
-        length: duration of the rise [s]; 0 gives ones.
+def half_cosine_at(time: Vector, length: float) -> Vector:
+    """Return the weights (1 - cos(pi t / length)) / 2 from 0 to `length` [s], 0 before and 1 after [-]."""
+    return np.asarray(0.5 * (1.0 - np.cos(np.pi * np.clip(time / length, 0.0, 1.0))))
 
-    Returns:
-        Weights [-], shape (n,). The first is exactly 0 (for a length above 0).
-    """
-    if length <= 0.0:
-        return np.ones(samples)
-    phase = np.minimum(np.arange(samples) * timestep / length, 1.0)
-    weights: Vector = 0.5 * (1.0 - np.cos(np.pi * phase))
-    return weights
+
+def half_cosine_rate_at(time: Vector, length: float) -> Vector:
+    """Return the derivative of `half_cosine_at` [1/s]."""
+    inside = (time > 0.0) & (time < length)
+    return np.asarray(np.where(inside, 0.5 * np.pi / length * np.sin(np.pi * time / length), 0.0))
 
 
 def taper(*, samples: int, timestep: float, length: float) -> Vector:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
@@ -23,6 +22,7 @@ from vehicle.signals.excitation.plausibility import acceleration_events
 from vehicle.signals.excitation.road_settings import SETTINGS
 from vehicle.signals.excitation.signal import Signal, uniform_time
 from vehicle.signals.excitation.tyre_envelope import CAMS, TyreEnvelope
+from vehicle.signals.formats.file_digest import digest
 
 FASTEST = 400.0
 """Maximum speed [km/h]."""
@@ -274,7 +274,7 @@ class RoadDrive:
         if self.envelope is not None:
             identity["envelope"] = asdict(self.envelope)
         if isinstance(self.road, Path):
-            identity["road"] = hashlib.sha256(self.road.read_bytes()).hexdigest()
+            identity["road"] = digest(self.road)
         return identity
 
     def summary(self, signal: Signal) -> dict[str, object]:

@@ -27,9 +27,8 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.excitation.band import positive
-
-Vector = NDArray[np.float64]
 
 SAMPLES = 0.005
 """Maximum distance of the points between which a random road is taken as straight [m]; RMS error of the effective

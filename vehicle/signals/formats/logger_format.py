@@ -17,9 +17,9 @@ from vehicle.signals.formats.frf_file import FREQUENCY, RANDOM_ERROR, SUFFIXES, 
 from vehicle.signals.formats.heads import FREQUENCY_NAME, TIME_NAME, Heads, cells_of, read_heads
 from vehicle.signals.formats.remark_cells import with_remarks
 from vehicle.signals.formats.spectrum_columns import joined
-from vehicle.signals.formats.table import Header, Vector, Wanted
+from vehicle.signals.formats.table import Header, Vector
 from vehicle.signals.formats.text import Text, read_text
-from vehicle.signals.formats.text_format import careful, decimal_points, fast, fast_with_gaps
+from vehicle.signals.formats.text_format import decimal_points, logged
 from vehicle.signals.formats.text_table import AGREEING, Kind, TextTable, find_table, settled_kinds
 from vehicle.signals.formats.units import find_unit
 
@@ -77,15 +77,9 @@ def read_lines(path: Path, text: Text, format_name: str) -> Measurement:
     if not delimiter:
         rows = [" ".join(row.split()) for row in rows]
     header = Header(path=path, line=start + 1, cells=heads.names, delimiter=delimiter or " ")
-    if delimiter != "," and any("," in row for row in rows):
-        rows = decimal_points(numbers, rows, header)
-        notices.append("decimal comma read as decimal point")
-    key = _key(heads, kinds)
-    values = fast(rows, header)
-    if values is None:
-        values = fast_with_gaps(rows, header, key)
-    if values is None:
-        values = careful(numbers, rows, header, key, Wanted(needed="", key=lambda _: key, missing="mark"))
+    rows, points = decimal_points(numbers, rows, header)
+    notices += points
+    values = logged(numbers, rows, header, _key(heads, kinds))
     axis = _axis(path, heads, kinds, values, texts, numbers)
     notices += axis.notices
     text_columns = [name for name, column_type, n in zip(heads.names, kinds, range(len(kinds)), strict=True)

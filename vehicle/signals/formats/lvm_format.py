@@ -21,9 +21,9 @@ from vehicle.errors import DataError
 from vehicle.signals.formats.channel import OVER_ANGLE, OVER_DISTANCE, Channel, Measurement, uniform_axis
 from vehicle.signals.formats.clock_text import clock_seconds
 from vehicle.signals.formats.heads import split_head
-from vehicle.signals.formats.table import Header, Vector, Wanted
+from vehicle.signals.formats.table import Header, Vector
 from vehicle.signals.formats.text import read_text
-from vehicle.signals.formats.text_format import careful, fast, fast_with_gaps
+from vehicle.signals.formats.text_format import logged
 
 END = "***End_of_Header***"
 SPECIAL = ("***Start_Special***", "***End_Special***")
@@ -230,11 +230,7 @@ def _numbers(path: Path, segment: _Segment, names: list[str], separator: str, si
     if commas:
         rows = [row.replace(",", ".") for row in rows]
     header = Header(path=path, line=segment.line, cells=tuple(names), delimiter="\t")
-    numbers = [line for line, _ in segment.rows]
-    values = fast(rows, header)
-    values = fast_with_gaps(rows, header, -1) if values is None else values
-    wanted = Wanted(needed="", key=lambda _: -1, missing="mark")
-    return careful(numbers, rows, header, -1, wanted) if values is None else values
+    return logged([line for line, _ in segment.rows], rows, header)
 
 
 def _times(

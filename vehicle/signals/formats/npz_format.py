@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 import zipfile
 from pathlib import Path
@@ -10,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.errors import DataError
+from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.optional_library import reading
 from vehicle.signals.formats.table import Header, Record, Table, Wanted, name_and_unit
 from vehicle.signals.formats.unpacked_size import require_unpacked
@@ -53,16 +53,12 @@ def read(path: Path, wanted: Wanted) -> Table:
         values=table,
         lines=np.arange(1, count + 1),
         notices=(),
-        sha256=hashlib.sha256(path.read_bytes()).hexdigest(),
+        sha256=digest(path),
     )
 
 
 def _wanted_arrays(path: Path) -> list[str]:
-    """Return the names of the arrays of one dimension, from their headers; other arrays are not channels.
-
-    Raises:
-        DataError: the arrays exceed the memory limit or the maximum compression ratio.
-    """
+    """Return the names of the arrays of one dimension, from their headers; other arrays are not channels."""
     names, size, packed = [], 0, 0
     with zipfile.ZipFile(path) as archive:
         for entry in archive.infolist():

@@ -97,13 +97,7 @@ def read(path: Path) -> Measurement:
 
 
 def _filling(table: np.ndarray, total: int, frame: int) -> int:
-    """Count the samples at the end of the last frame that are constant, or zero, in all channels.
-
-    Args:
-        table: stored values, (groups, channels, samples of a group).
-        total: number of samples of all frames.
-        frame: number of samples of a frame.
-    """
+    """Count the last samples that are constant, or zero, in all channels of a table (groups, channels, samples)."""
     last = np.moveaxis(table, 1, 0).reshape(table.shape[1], -1)[:, total - frame : total]
     repeated = (np.diff(last, axis=1) == 0).all(axis=0)
     run = int(np.argmin(repeated[::-1])) if not repeated.all() else repeated.size

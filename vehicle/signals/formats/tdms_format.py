@@ -47,11 +47,7 @@ def _start(properties: Mapping[str, Any]) -> np.datetime64 | None:
 
 
 def _axis(properties: Mapping[str, Any], count: int, later: float) -> dict[str, Any]:
-    """Return axis, kind, function and remark of a waveform: x_i = start + wf_start_offset + i * wf_increment.
-
-    Args:
-        later: start time after the earliest start time of the file [s].
-    """
+    """Return axis, kind, function and remark of a waveform: x_i = later + wf_start_offset + i * wf_increment."""
     step = properties.get("wf_increment")
     if not isinstance(step, float) or not step > 0.0:
         return {"axis": None, "remark": ""}

@@ -55,9 +55,8 @@ def read(path: Path, wanted: Wanted) -> Table:
         if not numbers:
             raise DataError(f"{path}:{head}: the file ends after the header; must have one row per sample below it")
         rows = [lines[n - 1] for n in numbers]
-        if delimiter != "," and any("," in row for row in rows):
-            rows = decimal_points(numbers, rows, header)
-            notices.append("decimal comma read as decimal point")
+        rows, remarks = decimal_points(numbers, rows, header)
+        notices += remarks
         values = fast(rows, header)
         parsed = careful(numbers, rows, header, key, wanted) if values is None else values, np.array(numbers)
     return Table(header=header, key=key, values=parsed[0], lines=parsed[1], notices=tuple(notices), sha256=text.sha256)
@@ -174,6 +173,14 @@ def fast_with_gaps(rows: list[str], header: Header, key: int) -> Vector | None:
     return values
 
 
+def logged(numbers: list[int], rows: list[str], header: Header, key: int = -1) -> Vector:
+    """Parse the numbers of a logger as fast as their cells allow, (rows, columns), NaN for missing values."""
+    values = fast(rows, header)
+    values = fast_with_gaps(rows, header, key) if values is None else values
+    wanted = Wanted(needed="", key=lambda _: key, missing="mark")
+    return careful(numbers, rows, header, key, wanted) if values is None else values
+
+
 def careful(numbers: list[int], rows: list[str], header: Header, key: int, wanted: Wanted) -> Vector:
     """Parse numbers cell by cell, (rows, columns), NaN for missing values if `Wanted.missing` allows.
 
@@ -250,8 +257,8 @@ def _different_length(where: str) -> DataError:
     )
 
 
-def decimal_points(numbers: list[int], rows: list[str], header: Header) -> list[str]:
-    """Replace decimal commas by decimal points; reject ambiguous commas.
+def decimal_points(numbers: list[int], rows: list[str], header: Header) -> tuple[list[str], list[str]]:
+    """Replace decimal commas by decimal points, with a notice; reject ambiguous commas.
 
     Args:
         numbers, rows, header: see `careful`.
@@ -259,6 +266,8 @@ def decimal_points(numbers: list[int], rows: list[str], header: Header) -> list[
     Raises:
         DataError: a comma that may separate thousands.
     """
+    if header.delimiter == "," or not any("," in row for row in rows):
+        return rows, []
     pointed = next((n for n, row in zip(numbers, rows, strict=True) if "." in row), None)
     for line, row in zip(numbers, rows, strict=True):
         for column, cell in enumerate(_split(row, header.delimiter)):
@@ -269,7 +278,7 @@ def decimal_points(numbers: list[int], rows: list[str], header: Header) -> list[
                     "comma may be a decimal comma or separate thousands; write all numbers with a decimal point "
                     "and without separators"
                 )
-    return [row.replace(",", ".") for row in rows]
+    return [row.replace(",", ".") for row in rows], ["decimal comma read as decimal point"]
 
 
 def table_text(rows: Iterable[Sequence[Any]], comments: Sequence[str] = (), digits: int = 6) -> str:

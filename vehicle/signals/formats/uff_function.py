@@ -118,9 +118,6 @@ def _points(line: bytes) -> list[str]:
     """Return the cells of function, response point and reference: fixed columns, or words if a name exceeds its ten.
 
     The format gives a name ten letters and a node ten digits; a longer name moves all following columns.
-
-    Raises:
-        ValueError: a longer name without nodes and directions after it.
     """
     fixed, text = cells(line, (5, 10, 5, 10, 11, 10, 4, 11, 10, 4)), raw_text(line)
     whole = all(re.fullmatch(r"(-?\d+)?", fixed[n]) for n in (5, 6, 8, 9))

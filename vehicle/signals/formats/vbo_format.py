@@ -15,9 +15,9 @@ import numpy as np
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel, Measurement
 from vehicle.signals.formats.clock_text import DAY, clock_of_day
-from vehicle.signals.formats.table import Header, Vector, Wanted
+from vehicle.signals.formats.table import Header, Vector
 from vehicle.signals.formats.text import read_text
-from vehicle.signals.formats.text_format import careful, decimal_points, fast
+from vehicle.signals.formats.text_format import decimal_points, logged
 from vehicle.signals.formats.units import find_unit
 
 FIXED_UNITS = {"heading": "deg", "height": "m"}
@@ -62,13 +62,9 @@ def read(path: Path) -> Measurement:
         )
     header = Header(path=path, line=rows[0][0] - 1, cells=tuple(columns), delimiter=" ")
     numbers, data_rows = [number for number, _ in rows], [" ".join(line.split()) for _, line in rows]
-    notices = list(text.notices)
-    if any("," in row for row in data_rows):
-        data_rows = decimal_points(numbers, data_rows, header)
-        notices.append("decimal comma read as decimal point")
-    values = fast(data_rows, header)
-    if values is None:
-        values = careful(numbers, data_rows, header, -1, Wanted(needed="", key=lambda _: -1, missing="mark"))
+    data_rows, points = decimal_points(numbers, data_rows, header)
+    notices = [*text.notices, *points]
+    values = logged(numbers, data_rows, header)
     axis, date = None, next((match["date"] for _, line in sections[""] if (match := _CREATED.search(line))), "")
     start = date
     if "time" in columns:

@@ -47,12 +47,7 @@ def _notices(xyz: Mapping[str, Vector], rate: float) -> tuple[str, ...]:
 
 
 def _chosen(path: Path, choice: Choice, names: list[str]) -> Record:
-    """Read the chosen channels of a measurement file as accelerations [m/s2].
-
-    Args:
-        choice: channels for the roles x, y, z; without roles, the channels named `names` are used.
-        names: channel names of the result for the axes x, y, z.
-    """
+    """Read the chosen channels of a measurement file as accelerations [m/s2]."""
     measurement = read_record(path, choice.databases)
     roles = {role: wanted for role, wanted in choice.channels.items() if role != "time"}
     names_in_file = {channel.name for channel in measurement.channels}

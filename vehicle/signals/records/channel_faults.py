@@ -141,12 +141,7 @@ def switches(values: Vector) -> bool:
 
 
 def _at_next_values(below: Vector, margin: float) -> int:
-    """Return the number of samples at the next three values of a side.
-
-    Args:
-        below: distances of the samples from the extreme value, (n,).
-        margin: maximum difference of equal values.
-    """
+    """Return the number of samples at the next three values of a side."""
     count = 0
     for _ in range(NEXT_VALUES):
         beyond = below[below > margin]

@@ -194,11 +194,7 @@ def _is_data(channel: object) -> bool:
 
 
 def _same_names(file: Measurement, model_channels: Sequence[str], order: Sequence[bool]) -> dict[str, str]:
-    """Map model channel names, and names as "knuckle_fr_acc_z/plate_fr", to the channels of these names.
-
-    Args:
-        order: True for frequency responses, False for time histories; the first with a name has priority.
-    """
+    """Map model channel names, and names as "knuckle_fr_acc_z/plate_fr", to the channels of these names."""
     numbers: dict[str, str] = {}
     for wants_response in order:
         outputs = {parsed_name(role).output for role in numbers}

@@ -86,12 +86,7 @@ def resampled(
 
 
 def _without_images(values: Vector, ratio: float) -> Vector:
-    """Remove frequencies above half of a lower rate from samples, shape (m,).
-
-    Args:
-        values: uniform samples, shape (m,).
-        ratio: rate of the samples over the lower rate; a ratio of 1 within `UNIFORM_TOLERANCE` has no effect.
-    """
+    """Remove frequencies above half of a lower rate from samples, shape (m,)."""
     if ratio <= 1.0 + UNIFORM_TOLERANCE:
         return values
     taps = _taps(ratio)
