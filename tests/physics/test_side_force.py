@@ -10,7 +10,7 @@ from scenarios.signals.random_road import random_road
 from tests.engines.simulation.row_model import Stepper, add_bushing, add_damper, add_free_body, element_law, empty_spec
 from tests.validation import validated
 from vehicle.engines.reduced.batch_simulation import simulate_batch
-from vehicle.engines.simulation.load_channels import equality_rows
+from vehicle.engines.simulation.row_layout import equality_rows
 from vehicle.engines.simulation.rows import Rows
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.damper import RECORD
@@ -89,7 +89,7 @@ def test_the_side_force_of_the_car_is_that_of_its_statics():
             ends = [model.site_bodyid[model.site(f"{name}/{end}").id] for end in ("moving", "carrier")]
             inside = [end in below for end in ends]
             if sum(inside) == 1 and rod not in ends:
-                force = directions.get(name, np.eye(3)).T @ car.model.static.preload[row : row + 3]
+                force = directions.get(name, np.eye(3)).T @ car.model.static.preload[row.start : row.stop]
                 others += force if inside[0] else -force
     for name, row in zip(rows.laws.springs, rows.layout.springs.rows, strict=True):
         if name == "main_spring_fr":

@@ -46,11 +46,7 @@ def travel_curve(
         SimulationError: the axle has no equilibrium at a travel; see `AxleStatics.solve`.
     """
     loads = _loads(opposite, load)
-    # Start at the design position, so that every solution begins at a neighbouring one.
-    poses = {}
-    for part in ([z for z in travels[::-1] if z < 0.0], [z for z in travels if z >= 0.0]):
-        for z in part:
-            poses[z] = axle.solve(_travels(z, opposite), loads)[0]
+    poses = {z: axle.solve(_travels(z, opposite), loads)[0] for z in _outwards(travels)}
     return [poses[z] for z in travels]
 
 
@@ -105,11 +101,10 @@ def geometry_curve(
     """
     loads = _loads(opposite, load)
     geometry = {}
-    for part in ([z for z in travels[::-1] if z < 0.0], [z for z in travels if z >= 0.0]):
-        for z in part:
-            both = _travels(z, opposite)
-            rolling, bouncing = (wheel_motions(axle, both, opposite=way, loads=loads) for way in (True, False))
-            geometry[z] = wheel_geometry(rolling, bouncing, towards)
+    for z in _outwards(travels):
+        both = _travels(z, opposite)
+        rolling, bouncing = (wheel_motions(axle, both, opposite=way, loads=loads) for way in (True, False))
+        geometry[z] = wheel_geometry(rolling, bouncing, towards)
     return [geometry[z] for z in travels]
 
 
@@ -188,6 +183,11 @@ def position_rate(
         ends.append(axle.position())
     names = [entry.name for entry in fields(AxlePosition)]
     return AxlePosition(**{key: (getattr(ends[1], key) - getattr(ends[0], key)) / (2.0 * STEP) for key in names})
+
+
+def _outwards(travels: Sequence[float]) -> list[float]:
+    """Return ascending travels from the design position down, then up: each solution begins at a neighbouring one."""
+    return [*(z for z in travels[::-1] if z < 0.0), *(z for z in travels if z >= 0.0)]
 
 
 def _travels(travel: float, opposite: bool) -> list[float]:

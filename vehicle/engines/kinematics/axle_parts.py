@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.simulation.law_arrays import model_numbers
+from vehicle.engines.simulation.row_layout import equality_rows
 from vehicle.errors import ConfigurationError
 from vehicle.model.assembly.element_numbers import FLUID, TURNING
 from vehicle.model.laws.curve import Curve
@@ -141,17 +142,14 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
     Raises:
         ConfigurationError: the wheels have no connection.
     """
-    kinds = [mujoco.mjtEq(equality_type) for equality_type in model.eq_type]
-    connect, tendon = mujoco.mjtEq.mjEQ_CONNECT, mujoco.mjtEq.mjEQ_TENDON
-    rows = np.cumsum([0, *(3 if equality_type == connect else 1 for equality_type in kinds)])
-    names, fields = [str(model.equality(index).name) for index in range(model.neq)], model_numbers(model)
+    rows, fields = equality_rows(model), model_numbers(model)
     # The law of an ideal connection is empty.
-    laws = {name: fields.get(f"law/{name}", np.zeros(0)) for name in names}
+    laws = {name: fields.get(f"law/{name}", np.zeros(0)) for name in rows}
     ends = {
         name: (int(model.eq_obj1id[index]), int(model.eq_obj2id[index]))
-        for index, name in enumerate(names)
+        for index, (name, own) in enumerate(rows.items())
         # A fluid carries no static force.
-        if kinds[index] == connect and not name.startswith(FLUID)
+        if len(own) == 3 and not name.startswith(FLUID)
     }
     rotational = [name for name in ends if laws[name].size and laws[name][TURNING] > 0.0]
     torques = dict(zip(rotational, preload[preload.size - 3 * len(rotational) :].reshape(-1, 3), strict=True))
@@ -166,11 +164,11 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
     standing, springs, treads = np.zeros((len(numbers), 6)), [], set()
     # Sites, directions, stiffness, preload, torque, rotational stiffness and nonlinear laws by axis.
     soft, hard = list[tuple[Any, ...]](), list[tuple[Any, ...]]()
-    for index, name in enumerate(names):
+    for index, (name, own) in enumerate(rows.items()):
         law = laws[name]
         if name in ends:
             moving, carrier = (int(model.site_bodyid[site]) for site in ends[name])
-            force, torque = preload[rows[index] : rows[index] + 3], torques.get(name, np.zeros(3))
+            force, torque = preload[own.start : own.stop], torques.get(name, np.zeros(3))
             if not bodies & {moving, carrier}:
                 continue
             if model.body_mocapid[carrier] >= 0:
@@ -185,10 +183,10 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
             way = fields.get(f"directions/{name}", np.eye(3)).reshape(3, 3).T
             curves = {axis: _bent(fields, f"{name}/{letter}", force[axis]) for axis, letter in enumerate(AXES)}
             soft.append((ends[name], way, law[:3], force, torque, law[TURNING], curves))
-        elif kinds[index] == tendon and law.size:
+        elif model.eq_type[index] == mujoco.mjtEq.mjEQ_TENDON and law.size:
             lower, upper = (model.site(f"{name}/{end}").id for end in ("lower", "upper"))
             if bodies & {int(model.site_bodyid[lower]), int(model.site_bodyid[upper])}:
-                pull = float(preload[rows[index]])
+                pull = float(preload[own.start])
                 springs.append(
                     Spring(
                         lower=lower,

@@ -18,6 +18,7 @@ import numpy.typing as npt
 
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.element_records import Index, Indices, Layout
+from vehicle.engines.simulation.row_layout import equality_rows
 from vehicle.engines.simulation.rows import Rows, joint_dampers, joint_springs
 from vehicle.names import AXES
 
@@ -47,16 +48,15 @@ class LoadPlaces:
     def __init__(self, car: CarModel, rows: Rows, names: Sequence[str] | None = None) -> None:
         model, composition = rows.model, car.vehicle.composition
         self.names = car.vehicle.load_channels if names is None else tuple(names)
-        first = equality_rows(model)
+        equalities = equality_rows(model)
         self.connections: list[tuple[str, Index, int]] = []
-        for name, row in first.items():
-            index = model.equality(name).id
-            if model.eq_type[index] == mujoco.mjtEq.mjEQ_CONNECT:
-                carrier = int(model.site_bodyid[model.eq_obj2id[index]])
-                self.connections.append((name.rpartition("/")[2], row + np.arange(3), carrier))
+        for name, own in equalities.items():
+            if len(own) == 3:
+                carrier = int(model.site_bodyid[model.eq_obj2id[model.equality(name).id]])
+                self.connections.append((name.rpartition("/")[2], np.array(own), carrier))
         own_rows = rows.layout.bushings.rows
         self.oblique = {int(own_rows[index, 0]): way for index, way in rows.directions.items()}
-        self.springs = [(spring.name, first[spring.name]) for spring in composition.springs]
+        self.springs = [(spring.name, equalities[spring.name].start) for spring in composition.springs]
         self.joints = []
         for spring in composition.joint_springs:
             generated = car.model.joint(spring.joint)  # the model of a run may have fewer modal coordinates
@@ -133,12 +133,3 @@ def slope_forces(explicit: Vector, slope_velocity: Vector, layout: Layout) -> Ve
     rolling = layout.rolling
     load = explicit[:, layout.bushings.rows[rolling.tyres, 2]]
     return np.asarray(np.maximum(load, 0.0) * slope_velocity[:, rolling.plates] / rolling.speeds)
-
-
-def equality_rows(model: mujoco.MjModel) -> dict[str, int]:
-    """Return the first constraint row of each equality of a model, by name."""
-    rows, row = {}, 0
-    for index in range(model.neq):
-        rows[str(model.equality(index).name)] = row
-        row += 3 if model.eq_type[index] == mujoco.mjtEq.mjEQ_CONNECT else 1
-    return rows

@@ -51,26 +51,33 @@ def numeric(model: mujoco.MjModel, name: str) -> Vector | None:
     return np.array(model.numeric_data[start : start + model.numeric_size[index]])
 
 
+def equality_rows(model: mujoco.MjModel) -> dict[str, range]:
+    """Return the constraint rows of each equality of a model, by name."""
+    rows, row = {}, 0
+    for index in range(model.neq):
+        count = 3 if model.eq_type[index] == mujoco.mjtEq.mjEQ_CONNECT else 1
+        rows[str(model.equality(index).name)] = range(row, row + count)
+        row += count
+    return rows
+
+
 def read_layout(model: mujoco.MjModel) -> Layout:
     """Read the elements of a compiled car from its custom fields, in the order of the constraint rows.
 
     Args:
         model: model from `vehicle.model.assembly`, or from its MJCF file.
     """
-    kinds, law, numbers = mujoco.mjtEq, law_names(model), model_numbers(model)
+    law, numbers, rows_by_name = law_names(model), model_numbers(model), equality_rows(model)
     names, springs, laws = law.bushings, law.springs, laws_of(law, numbers)
-    types = [kinds(equality_type) for equality_type in model.eq_type]
-    row_counts = [3 if equality_type == kinds.mjEQ_CONNECT else 1 for equality_type in types]
-    first_rows = np.cumsum([0, *row_counts])
     equalities = {str(model.equality(index).name): index for index in range(model.neq)}
     joints = _modal_joints(model)
     modes = len(joints)
     modal = range(int(model.jnt_dofadr[joints[0]]), int(model.jnt_dofadr[joints[0]]) + modes) if joints else range(0)
     ends: dict[str, tuple[int, int]] = {}  # sites of a connection or a spring
     for name, index in equalities.items():
-        if types[index] == kinds.mjEQ_CONNECT:
+        if model.eq_type[index] == mujoco.mjtEq.mjEQ_CONNECT:
             ends[name] = int(model.eq_obj1id[index]), int(model.eq_obj2id[index])
-        elif types[index] == kinds.mjEQ_TENDON:
+        elif model.eq_type[index] == mujoco.mjtEq.mjEQ_TENDON:
             ends[name] = model.site(f"{name}/lower").id, model.site(f"{name}/upper").id
     rolling = [name for name in names if f"rolling/{name}" in numbers]
     hubs = {name: str(model.body(model.site_bodyid[ends[name][1]]).name).removeprefix("plate_") for name in rolling}
@@ -90,18 +97,18 @@ def read_layout(model: mujoco.MjModel) -> Layout:
         # First row, number of rows, first column and end of the nonzero columns of a connection.
         moving = [column for site in sites for column in _above(model, model.site_bodyid[site])]
         columns = np.unique([*moving, *modal_at(name), *further.get(name, ())])
-        row, end = first_rows[equalities[name]], first_rows[equalities[name] + 1]
-        runs = np.split(columns, np.flatnonzero(np.diff(columns) > 1) + 1)
-        nonzero += [(row, end - row, run[0], run[-1] + 1) for run in runs if len(run)]
+        runs, rows = np.split(columns, np.flatnonzero(np.diff(columns) > 1) + 1), rows_by_name[name]
+        nonzero += [(rows.start, len(rows), run[0], run[-1] + 1) for run in runs if len(run)]
 
     def rows_of(chosen: Sequence[str]) -> Index:
-        return whole_numbers([first_rows[equalities[name]] for name in chosen])
+        return whole_numbers([rows_by_name[name].start for name in chosen])
 
     balls = [name for name in ends if name not in springs]
     carriers = whole_numbers([model.site_bodyid[ends[name][1]] for name in names])
     rotational = [name for name, law_numbers in zip(names, laws, strict=True) if law_numbers[TURNING] > 0.0]
     plates = {index: model.body_mocapid[carrier] for index, carrier in enumerate(carriers)}
-    of, none, first_friction = law_fields(law, numbers, float(model.opt.timestep)), np.zeros(0), int(first_rows[-1])
+    of, none = law_fields(law, numbers, float(model.opt.timestep)), np.zeros(0)
+    first_friction = sum(map(len, rows_by_name.values()))
     dampers = damper_rows(model, rows_of, first_friction, of["dampers"])
     controlled = [name for name in law.dampers if f"control/{name}" in numbers]
     rolling_tyres = [(names.index(name), ends[name], spins[name][0]) for name in rolling]

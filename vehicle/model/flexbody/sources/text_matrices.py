@@ -94,7 +94,7 @@ def coordinate_matrix(path: Path, size: int) -> Any:
     return whole(matrix)
 
 
-def whole_numbers(path: Path, values: FloatArray) -> IntArray:
+def whole_numbers(path: Path, values: npt.NDArray[Any]) -> IntArray:
     """Convert numbers of nodes, directions or rows to integers.
 
     Raises:
@@ -108,7 +108,7 @@ def whole_numbers(path: Path, values: FloatArray) -> IntArray:
     return integers
 
 
-def nodes_and_directions(path: Path, rows: FloatArray | IntArray) -> tuple[IntArray, IntArray]:
+def nodes_and_directions(path: Path, rows: npt.NDArray[Any]) -> tuple[IntArray, IntArray]:
     """Return the node numbers, and the directions as 0 to 5, of rows "node, direction 1 to 6".
 
     Raises:
