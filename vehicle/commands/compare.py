@@ -13,6 +13,7 @@ from vehicle.commands.destination import output_folder_of
 from vehicle.commands.input_options import record_options
 from vehicle.commands.options import (
     command_parser,
+    damper_option,
     figures_option,
     message_options,
     output_options,
@@ -66,12 +67,7 @@ def parser() -> Parser:
         help="edges of the bands of the table [Hz]; %(default)s",
     )
     shapes = parser.scoped_group(SHAPES, needs="measured mode shapes; the file holds none", active=None)
-    shapes.add_argument(
-        "--damper",
-        choices=("stuck", "sliding"),
-        default="stuck",
-        help="state of the dampers, for modes; stuck by default",
-    )
+    damper_option(shapes)
     channels = parser.scoped_group(CHANNELS, needs="measured channels; the file holds mode shapes", active=None)
     record_options(channels, "", channel=False)
     delay_option(channels)

@@ -14,6 +14,7 @@ from vehicle.commands.destination import output_file_of
 from vehicle.commands.options import (
     FORCE_HELP,
     command_parser,
+    damper_option,
     film_name,
     finite_numbers,
     message_options,
@@ -30,9 +31,7 @@ def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser("modes", "Modes up to 60 Hz of the assembled car, from its matrices.")
     vehicle_options(parser)
-    parser.add_argument(
-        "--damper", choices=("stuck", "sliding"), default="stuck", help="state of the dampers; stuck by default"
-    )
+    damper_option(parser)
     parser.add_argument(
         "--speed", type=float, metavar="KM/H", help="modes of the car that drives at this speed, with tyres that roll"
     )

@@ -152,6 +152,12 @@ def film_name(value: str, default: str) -> Path:
     return name
 
 
+def damper_option(parser: argparse._ActionsContainer) -> None:
+    """Add --damper, the state of the dampers for modes and FRFs of the linear car."""
+    states = ("stuck", "sliding")
+    parser.add_argument("--damper", choices=states, default="stuck", help="state of the dampers; stuck by default")
+
+
 def resume_options(parser: Parser) -> None:
     """Add --resume and --retry-failed, which continue a table of runs."""
     parser.add_argument("--resume", action="store_true", help="continue in that folder; finished rows are kept")

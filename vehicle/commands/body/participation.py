@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.command_line import print_result
 from vehicle.commands.destination import output_folder_of
-from vehicle.commands.options import extra_output_options, message_options, vehicle_options
+from vehicle.commands.options import damper_option, extra_output_options, message_options, vehicle_options
 from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS
 
@@ -48,9 +48,7 @@ def add(tasks: Any) -> None:
     asked.add_argument(
         "--wheel", metavar="NAME", help="wheel whose plate moves, as fr or front_right; that on the shaker by default"
     )
-    asked.add_argument(
-        "--damper", choices=("stuck", "sliding"), default="stuck", help="state of the dampers; stuck by default"
-    )
+    damper_option(asked)
     asked.add_argument(
         "--mode", type=int, metavar="N", help="mode whose driving attachments are shown; the loudest by default"
     )
