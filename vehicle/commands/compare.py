@@ -13,6 +13,7 @@ from vehicle.commands.destination import output_folder_of
 from vehicle.commands.input_options import record_options
 from vehicle.commands.options import (
     command_parser,
+    damper_option,
     figures_option,
     message_options,
     output_options,
@@ -67,12 +68,7 @@ def parser() -> Parser:
         help="edges of the frequency bands of the table [Hz]; default: %(default)s",
     )
     shapes = parser.scoped_group(SHAPES, needs="measured mode shapes, and the file contains none", active=None)
-    shapes.add_argument(
-        "--damper",
-        choices=("stuck", "sliding"),
-        default="stuck",
-        help="dampers stuck by their friction, or sliding, for the modes; default: stuck",
-    )
+    damper_option(shapes)
     channels = parser.scoped_group(CHANNELS, needs="measured channels, and the file contains mode shapes", active=None)
     record_options(channels, "", channel=False)
     delay_option(channels)

@@ -14,6 +14,7 @@ from vehicle.commands.destination import output_file_of
 from vehicle.commands.options import (
     FORCE_HELP,
     command_parser,
+    damper_option,
     film_name,
     finite_numbers,
     message_options,
@@ -30,12 +31,7 @@ def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser("modes", "Compute the modes of the complete car up to 60 Hz.")
     vehicle_options(parser)
-    parser.add_argument(
-        "--damper",
-        choices=("stuck", "sliding"),
-        default="stuck",
-        help="dampers stuck by their friction, or sliding; default: stuck",
-    )
+    damper_option(parser)
     parser.add_argument(
         "--speed", type=float, metavar="KM/H", help="speed of the car [km/h]: the tyres roll; default: the car stands"
     )

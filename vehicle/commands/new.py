@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -161,10 +162,11 @@ def _report(result: NewCar, file: Path, figures: Sequence[MotionFigure]) -> str:
 
 def _checks(result: NewCar, file: Path, figures: Sequence[MotionFigure]) -> dict[str, Any]:
     """Return checks and headline figures for JSON."""
-    rows = {
-        check.name: {"unit": check.unit, "stated": check.stated, "value": check.value, "deviation": check.deviation}
-        for check in result.checks
-    }
+    rows = {}
+    for check in result.checks:
+        numbers = {"stated": check.stated, "value": check.value, "deviation": check.deviation}
+        finite = {name: None if value is None or math.isnan(value) else value for name, value in numbers.items()}
+        rows[check.name] = {"unit": check.unit, **finite}
     return {
         "file": str(file),
         "checks": rows,

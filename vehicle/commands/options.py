@@ -152,6 +152,13 @@ def film_name(value: str, default: str) -> Path:
     return name
 
 
+def damper_option(parser: argparse._ActionsContainer) -> None:
+    """Add --damper, the state of the dampers for modes and FRFs of the linear car."""
+    states = ("stuck", "sliding")
+    words = "dampers stuck by their friction, or sliding; default: stuck"
+    parser.add_argument("--damper", choices=states, default="stuck", help=words)
+
+
 def resume_options(parser: Parser) -> None:
     """Add --resume and --retry-failed, which continue a table of runs."""
     parser.add_argument(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.command_line import print_result
 from vehicle.commands.destination import output_folder_of
-from vehicle.commands.options import extra_output_options, message_options, vehicle_options
+from vehicle.commands.options import damper_option, extra_output_options, message_options, vehicle_options
 from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS
 
@@ -55,12 +55,7 @@ def add(tasks: Any) -> None:
         metavar="NAME",
         help="wheel whose plate moves, for example fr or front_right; default: the wheel on the shaker",
     )
-    asked.add_argument(
-        "--damper",
-        choices=("stuck", "sliding"),
-        default="stuck",
-        help="dampers stuck by their friction, or sliding; default: stuck",
-    )
+    damper_option(asked)
     asked.add_argument(
         "--mode",
         type=int,
