@@ -9,6 +9,8 @@ import pytest
 
 from vehicle import Car, Road
 from vehicle.commands.sweep import every_combination, main
+from vehicle.signals.excitation.input_files import find_input
+from vehicle.studies.sweeps.case import SignalFile
 from vehicle.studies.sweeps.plan import plan_sweep
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
 from vehicle.studies.sweeps.sweep_table import read_variations
@@ -163,6 +165,17 @@ def test_the_engine_and_its_reason_are_told_before_the_runs():
     )
     assert chosen.engine == "mujoco" and reduced.engine == "reduced"
     assert reduced.values["unweighted"] == pytest.approx(chosen.values["unweighted"], rel=0.004)
+
+
+def test_one_event_is_known():
+    sedan = Car.load("sedan").vehicle
+    for source, random in (
+        (SignalFile(path=find_input("low.csv"), wheel="fl"), True),
+        (SignalFile(path=find_input("bump_7p5mm.csv"), wheel="fl"), False),
+        (Road("C", 80.0, duration=3.0).under(sedan), True),
+        (Road("cleat:20x50", 30.0).under(sedan), False),
+    ):
+        assert source.signal().random == random, source.name
 
 
 def test_a_car_that_fails_has_no_note_on_the_engine():

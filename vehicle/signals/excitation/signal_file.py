@@ -22,7 +22,7 @@ from vehicle.signals.excitation.plausibility import (
     pauses,
 )
 from vehicle.signals.excitation.rest import start_from_rest
-from vehicle.signals.excitation.signal import MINIMUM_SAMPLES, Signal, uniform_time
+from vehicle.signals.excitation.signal import MINIMUM_SAMPLES, Signal, is_event, uniform_time
 from vehicle.signals.excitation.time_grid import FINE_RATE, LOWEST_RATE, SMOOTH_RATE, check_rate, fill_missing
 from vehicle.signals.formats.clock import (
     UNIFORM_TOLERANCE,
@@ -157,6 +157,7 @@ def read_signal(
         notices=(*notices, *ramped),
         source=path.name,
         sha256=table.sha256,
+        random=not any(map(is_event, columns.values())),
         highest=USABLE * band_rate if band_rate < SMOOTH_RATE * (1.0 - UNIFORM_TOLERANCE) else None,
     )
 

@@ -106,11 +106,6 @@ def overrides_of(source: Input) -> tuple[str, ...]:
     return overrides
 
 
-def is_random(source: Input) -> bool:
-    """Return False for one event, as an obstacle, whose values have no random error; see `Signal`."""
-    return bool(getattr(source, "random", True))
-
-
 def drivings(cases: Sequence[Case]) -> Mapping[str, tuple[Driving, ...]]:
     """Return name of the input to the driving states of its cars; invalid cars are left out."""
     # Thousands of cases share a few speeds; no other override changes the speed.

@@ -221,7 +221,7 @@ def case_results(table: SweptCases, cars: Sequence[str]) -> CaseResults:
         name=name,
         weighted=table.column(name).reshape(len(inputs), -1),
         unweighted=table.column(name.replace(WEIGHTED, UNWEIGHTED)).reshape(len(inputs), -1),
-        errors=change_errors(table, np.arange(len(table.cases)).reshape(len(inputs), -1).T.tolist(), name).T,
+        errors=change_errors(table, np.arange(len(table.cases)).reshape(len(inputs), -1).T.tolist(), name)[0].T,
     )
 
 

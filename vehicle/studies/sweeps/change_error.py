@@ -16,7 +16,6 @@ from scipy.special import stdtrit
 
 from vehicle.signals.analysis.comfort_error import WAVES, difference_error
 from vehicle.signals.analysis.ride_comfort import wave_names
-from vehicle.studies.sweeps.case import Case, is_random
 from vehicle.studies.sweeps.case_result import Row
 
 Vector = npt.NDArray[np.float64]
@@ -26,19 +25,20 @@ NO_ERROR = "no +-: one event has no random error"
 """Words of tables with and without errors."""
 
 
-class StoredCases(Protocol):
+class StoredRows(Protocol):
     """Cases of a sweep with their rows, see `SweptCases`."""
-
-    @property
-    def cases(self) -> Sequence[Case]:
-        """Cases in the order of the rows."""
 
     def rows(self) -> Iterator[Row]:
         """Return the rows with numbers as texts of all digits."""
 
 
-def change_errors(table: StoredCases, cars: Sequence[Sequence[int]], name: str) -> Vector:
-    """Return the standard errors of the changes from the first car, (cars, inputs), in the unit of the value.
+def is_event(row: Row, name: str) -> bool:
+    """Return True for a run on one event, whose comfort value has no random error; see `Signal`."""
+    return row["values"].get(wave_names(name)[0]) == "nan"
+
+
+def change_errors(table: StoredRows, cars: Sequence[Sequence[int]], name: str) -> tuple[Vector, Vector]:
+    """Return the standard errors of the changes from the first car, in the unit of the value.
 
     Args:
         table: table of a sweep.
@@ -46,17 +46,19 @@ def change_errors(table: StoredCases, cars: Sequence[Sequence[int]], name: str) 
         name: comfort value, as "weighted".
 
     Returns:
-        Errors, 0 on an input that is one event; NaN for a failed run, and for a car without n rows.
+        Errors, (cars, n), 0 on an input that is one event; NaN for a failed run, and for a car without n rows. 1 for
+        each input that is one event, 0 for the others, (n,).
     """
-    names, inputs = wave_names(name), len(cars[0])
-    parts = np.array([[float(row["values"].get(each, "nan")) for each in names] for row in table.rows()])
+    names, listed = wave_names(name), [(is_event(row, name), row["values"]) for row in table.rows()]
+    parts = np.array([[float(values.get(each, "nan")) for each in names] for _, values in listed])
     waves = parts[:, 0::2] + 1j * parts[:, 1::2]
-    random = [is_random(table.cases[number].source) for number in cars[0]]
-    errors = np.full((len(cars), inputs), np.nan)
+    first = list(cars[0])
+    events = np.array([float(listed[number][0]) for number in first])
+    errors = np.full((len(cars), len(first)), np.nan)
     for car, numbers in enumerate(cars):
-        if len(numbers) == inputs:
-            errors[car] = np.where(random, difference_error(waves[list(numbers)], waves[list(cars[0])]), 0.0)
-    return errors
+        if len(numbers) == len(first):
+            errors[car] = np.where(events, 0.0, difference_error(waves[list(numbers)], waves[first]))
+    return errors, events
 
 
 def half_width(errors: Vector) -> Vector:

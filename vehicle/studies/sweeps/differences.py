@@ -23,8 +23,9 @@ from scipy.special import stdtrit
 from vehicle.signals.analysis.comfort_error import WAVES, difference_error
 from vehicle.signals.analysis.ride_comfort import ERROR, UNWEIGHTED, wave_names
 from vehicle.signals.excitation.road_drive import RoadDrive
-from vehicle.studies.sweeps.case import Case, Input, is_random
+from vehicle.studies.sweeps.case import Case, Input
 from vehicle.studies.sweeps.case_result import Row
+from vehicle.studies.sweeps.change_error import is_event
 from vehicle.studies.sweeps.sweep_ranking import RANKED_BY
 from vehicle.studies.sweeps.sweep_table import SweepTable
 
@@ -106,7 +107,7 @@ class DifferencesWriter:
             if isinstance(case.source, RoadDrive) and case.source.tagged:
                 self._road = replace(case.source, tagged=False).name
         kind = CLASS if isinstance(case.source, RoadDrive) else RECORDS
-        population = kind if is_random(case.source) else EVENT
+        population = EVENT if is_event(row, UNWEIGHTED) else kind
         self._waiting.append((case.source.name, parameters, population, numbers, self._base))
         if self._road:
             cars = self._seeds.setdefault(self._road, {})

@@ -15,7 +15,7 @@ from vehicle.model.parameters.parameter_list import value_text
 from vehicle.model.parameters.paths import unit_of_override, values_of_override
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.signals.analysis.ride_comfort import MEANING, SEAT_PREFIX, SEAT_VALUE, UNWEIGHTED, WEIGHTED
-from vehicle.studies.sweeps.case import Case, is_random, parameter_cells
+from vehicle.studies.sweeps.case import Case, parameter_cells
 from vehicle.studies.sweeps.case_result import Row
 from vehicle.studies.sweeps.change_error import MEANING_OF_ERROR, NO_ERROR, change_errors, half_width
 
@@ -175,8 +175,7 @@ def ranked_cars(table: SweptCases) -> RankedCars | None:
     if not order:
         return None
     rows_of_cars = list(cars.values())
-    errors = change_errors(table, rows_of_cars, ranked_by)
-    event = not any(is_random(table.cases[number].source) for number in rows_of_cars[0])
+    errors, events = change_errors(table, rows_of_cars, ranked_by)
     widths = 100.0 * half_width(errors) / weighted[0]
     return RankedCars(
         prefix=prefix,
@@ -187,7 +186,7 @@ def ranked_cars(table: SweptCases) -> RankedCars | None:
         seat_value=seat_values[0] if seat_values else None,
         order=order,
         half_width=widths,
-        error_words=NO_ERROR if event else MEANING_OF_ERROR if np.any(widths > 0.0) else "",
+        error_words=NO_ERROR if events.all() else MEANING_OF_ERROR if np.any(widths > 0.0) else "",
         inputs=len({case.source for case in table.cases}),
         units={path: unit_of_override(vehicle, path) for path in names},
     )
