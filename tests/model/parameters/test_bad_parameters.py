@@ -192,7 +192,7 @@ FILES = {
     "30 missing value": (
         "viscous = 2250.0",
         "# nothing",
-        "front.damper.viscous: missing; viscous_law = linear needs it [N s/m]",
+        "front.damper.viscous: missing; viscous_law = linear needs this value [N s/m]",
     ),
     "30 unknown hardpoint": (
         "engine_cog = [",
