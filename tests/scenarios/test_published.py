@@ -239,7 +239,7 @@ def test_a_fresh_copy_of_the_kept_results_may_be_replaced(studies, tmp_path):
 def test_an_occupied_folder_is_refused_before_anything_runs(studies, tmp_path, capsys):
     assert command(tmp_path) == 0
     assert command(tmp_path) == 2
-    assert "holds files already" in capsys.readouterr().err
+    assert "holds files; give another folder" in capsys.readouterr().err
     assert len(studies["levels"]) == 2  # both cars, once
 
 

@@ -46,7 +46,7 @@ def test_an_unknown_figure_is_refused_with_the_names_there_are(tmp_path, capsys)
 def test_a_folder_with_foreign_files_is_refused(tmp_path, capsys):
     (tmp_path / "mine.txt").write_text("kept", encoding="utf-8")
     assert main(["--figure", "2.20", "--output", str(tmp_path)]) == 2
-    assert "holds files already" in capsys.readouterr().err
+    assert "holds files; give another folder" in capsys.readouterr().err
     assert main(["--figure", "2.20", "--output", str(tmp_path), "--force"]) == 2
     assert "mine.txt" in capsys.readouterr().err
     assert (tmp_path / "mine.txt").read_text(encoding="utf-8") == "kept"
