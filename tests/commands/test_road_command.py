@@ -91,7 +91,7 @@ def test_the_file_holds_the_road_beside_what_the_tyre_takes(tmp_path, capsys):
             ("the road is 30 m long, but the car drives 200 m"),
         ),
         (["--profile", "q.csv", "--speed", "80"], 3, "q.csv:4: the distance must increase"),
-        (["--profile", "r.csv", "--speed", "80"], 3, "r.csv:1: found 'distance [m]', 'left [m]'; needed are"),
+        (["--profile", "r.csv", "--speed", "80"], 3, "r.csv:1: found 'distance [m]', 'left [m]', must be 'distance"),
     ],
 )
 def test_refusals(arguments, code, message, tmp_path, monkeypatch, capsys):

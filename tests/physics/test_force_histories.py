@@ -319,7 +319,10 @@ def test_a_wrong_speed_of_the_crankshaft_is_refused(tmp_path):
     for changes, message in (
         ({"crank.file": str(file)}, "2 channels are in 1/min or rpm; set crank.channel to a number or name of: 1 'n'"),
         ({"crank.file": str(file), "crank.channel": "x"}, "0 channels match 'x'; set crank.channel"),
-        ({"crank.file": str(file), "crank.channel": "m"}, "the speed 'm' is 0 to 100000, must be 0 to 10000 1/min"),
+        (
+            {"crank.file": str(file), "crank.channel": "m"},
+            "the speed 'm' is 0 to 100000 1/min, must be 0 to 10000 1/min; set",
+        ),
         ({"crank.file": str(file), "crank.rpm": 700}, "crank.rpm: give either rpm or the file"),
         (
             {"crank.rpm": 700, "crank.channel": "n"},

@@ -72,7 +72,7 @@ SETTINGS = [
     ("25 zero step", "solver.timestep=0", "solver.timestep: found 0.0 s, must be at least 1e-06"),
     ("26 strut below ball", "hardpoints.strut_top=[0.877, 0.548, 0.5]", "hardpoints.strut_top: found z = 0.5 m"),
     ("26 collinear arm", "hardpoints.arm_rear=[0.842, 0.2, 0.612]", "lie on one line"),
-    ("27 no such body", "body.superelement=nothing.toml", "body.superelement: no file 'nothing.toml'"),
+    ("27 no such body", "body.superelement=nothing.toml", "body.superelement: the file 'nothing.toml' is neither"),
     ("30 unknown name", "damper.coulomb_fricton=100", "the most similar path is front.damper.coulomb_friction"),
     ("31 a truth value", "damper.viscous=true", "damper.viscous: found True, must be a number"),
     ("31 overflow", "damper.viscous=1e400", "damper.viscous: found inf"),

@@ -82,7 +82,7 @@ def test_a_folder_without_a_list_is_no_run(shaker, short_signal, tmp_path):
     (tmp_path / "thesis").mkdir()
     (tmp_path / "thesis" / "chapter.tex").write_text("mine")
     outcome = shaker("--input", "short.csv", "--output", "thesis", "--force")
-    assert outcome.code == 2 and "holds files that are not results of a run: chapter.tex" in outcome.err
+    assert outcome.code == 2 and "contains files that are not results of a run: chapter.tex; --force" in outcome.err
     assert (tmp_path / "thesis" / "chapter.tex").read_text() == "mine"
 
 

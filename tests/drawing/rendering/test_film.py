@@ -115,7 +115,7 @@ def test_options_out_of_range_are_refused(run, options, message):
     ("size", "message"),
     [
         ((1281, 720), "film size: found 1281 x 720, both numbers must be even; give 1282 x 720"),
-        ((160, 90), "film size: found 160 x 90, at least 320 x 180 can be read"),
+        ((160, 90), "film size: found 160 x 90, must be at least 320 x 180 to be readable"),
     ],
 )
 def test_sizes_that_cannot_be_encoded_or_read_are_refused(size, message):

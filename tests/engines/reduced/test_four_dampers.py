@@ -43,7 +43,7 @@ def test_every_channel_of_class_a_agrees(car):
         )  # fmt: skip
 
 
-@pytest.mark.parametrize(("road_class", "said"), [("B", "rotated by"), ("C", "would lift off its plate")])
+@pytest.mark.parametrize(("road_class", "said"), [("B", "rotates by"), ("C", "would lift off its plate")])
 def test_rougher_roads_leave_the_validity_and_that_is_said(car, road_class, said):
     recording = car.run(road(car, road_class, 10.0), engine="reduced", channels=["seat_rail_acc_z"]).recording
     assert not recording.statistics.within_validity

@@ -137,7 +137,7 @@ def test_a_part_that_turns_too_far_gives_a_warning(tmp_path):
     lift = 0.5 * (1.0 - np.cos(2.0 * np.pi * time / 1.6))
     signal = Signal(time=time, displacement={wheel: 0.06 * lift * (wheel == "fl") for wheel in car.vehicle.wheels})
     (warning, *_) = car.run(signal, engine="reduced").recording.statistics.warnings
-    part, angle = re.match(r"(\w+) rotated by (\S+) rad", warning).groups()  # type: ignore[union-attr]
+    part, angle = re.match(r"(\w+) rotates by (\S+) rad", warning).groups()  # type: ignore[union-attr]
     fmu = written(car, tmp_path)
     for share, expected in ((0.8, False), (1.25, True)):
         height = 0.06 * share * LARGEST_ANGLE / float(angle) * lift

@@ -198,7 +198,7 @@ def test_far_nodes_are_listed_with_their_distances(box):
     with pytest.raises(DataError) as caught:
         interfaces(box, several, tolerance=1e-3, spread=1.05, named={"lost": "5"})
     said = str(caught.value)
-    assert "no node '5' for lost" in said and "1 points of the car have no node" in said
+    assert "no node '5', which is chosen for lost" in said and "1 points of the car have no node" in said
     assert "2 points cannot be carried" in said and "edge: 2 nodes on one line" in said and "other: 2 nodes" in said
 
 

@@ -201,7 +201,5 @@ def test_masses_are_found_where_a_linear_program_finds_any(frame, change, possib
         assert masses.min() > 0.0
         np.testing.assert_allclose(rows @ masses, wanted, atol=1e-9)  # round-off of sums of 800 kg at 2 m
     else:
-        with pytest.raises(
-            ConfigurationError, match=r"body\.mass \(690\), body\.cog \[2\.157, 0\.0, 1\.011\], body\.inertia"
-        ):
+        with pytest.raises(ConfigurationError, match=r"^body\.mass .*the 43 nodes cannot have positive masses"):
             body.masses(guess, freedom, points)

@@ -88,7 +88,11 @@ VEHICLES = {
     ),
     "a name with a blank": (*put('["re ar"]\ntemplate = "blocks"'), "re ar: found 're ar', must consist of letters"),
     # Points.
-    "missing": ("tie_outer = [", "tie_outr = [", "front.hardpoints.tie_outr: unknown parameter; the nearest"),
+    "missing": (
+        "tie_outer = [",
+        "tie_outr = [",
+        "front.hardpoints.tie_outr: unknown parameter; the most similar known",
+    ),
     "twice": ("seat = [", "seat = [1, 0, 1]\nseat = [", "not a TOML file: Cannot overwrite a value (at line"),
     "twice under two names": (
         "seat = [",
@@ -175,13 +179,16 @@ VEHICLES = {
     "a part of a port": (
         "[front.hardpoints]",
         'ports = { body = "engin" }\n[front.hardpoints]',
-        "front.ports.body: found 'engin'",
+        "front.ports.body: unknown part 'engin",
     ),
     "moving part": (
         *put(f"[connection.x]\n{LINK.replace('engine', 'engin')}"),
-        "connection.x.moving: found 'engin', unknown",
+        "connection.x.moving: unknown part 'engin'; the most",
     ),
-    "carrier": (*put(f"[connection.x]\n{LINK.replace('body', 'bodi')}"), "connection.x.carrier: found 'bodi', unknown"),
+    "carrier": (
+        *put(f"[connection.x]\n{LINK.replace('body', 'bodi')}"),
+        "connection.x.carrier: unknown part 'bodi'; the most",
+    ),
     "the same part": (
         *put(f"[connection.x]\n{LINK.replace('body', 'engine')}"),
         "connection.x: connects engine to itself",
@@ -252,14 +259,20 @@ CURVES = {
     "missing": (None, "does not exist; give a file in the folder of the vehicle file"),
     "empty": ("", "test.csv: the file is empty"),
     "binary": ("\0\0\0", "test.csv:1:1: contains a NUL character"),
-    "head": ("speed [m/s],force [N]\n-1,-1\n1,1\n", "test.csv:1: no column 'velocity [m/s]'; found 'speed [m/s]'"),
+    "head": (
+        "speed [m/s],force [N]\n-1,-1\n1,1\n",
+        "test.csv:1: column 'velocity [m/s]' is missing; found 'speed [m/s]",
+    ),
     "unit": (
         "velocity [mm/s],force [N]\n-1,-1\n1,1\n",
-        "test.csv:1: no column 'velocity [m/s]'; found 'velocity [mm/s]'",
+        "test.csv:1: column 'velocity [m/s]' is missing; found 'velocity [mm/s]",
     ),
-    "of a spring": ("displacement [m],force [N]\n-1,-1\n1,1\n", "no column 'velocity [m/s]'; found 'displacement [m]'"),
+    "of a spring": (
+        "displacement [m],force [N]\n-1,-1\n1,1\n",
+        "1: column 'velocity [m/s]' is missing; found 'displacement [m]",
+    ),
     "NaN": (HEAD + "-1,-1\n0,nan\n1,1\n", "test.csv:3:2: column 'force [N]' is 'nan', must be a finite number"),
-    "a word": (HEAD + "-1,-1\nfast,0\n1,1\n", "test.csv:3:1: column 'velocity [m/s]' holds 'fast'"),
+    "a word": (HEAD + "-1,-1\nfast,0\n1,1\n", "test.csv:3:1: column 'velocity [m/s]' is 'fast', must be a"),
     "unsorted": (HEAD + "1,1\n-1,-1\n", "front.damper.velocity: found -1.0 after 1.0, must be ascending"),
     "falling": (HEAD + "-1,1\n1,-1\n", "front.damper.force: found -1.0 N after 1.0 N, must not decrease"),
     "a point": (HEAD + "1,1\n", "front.damper.velocity: found 1 points, must be 2 to 40"),

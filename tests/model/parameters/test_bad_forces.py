@@ -127,5 +127,5 @@ def test_a_force_that_cannot_act_in_a_run_is_refused():
     with pytest.raises(ConfigurationError, match="no equilibrium"):
         Car.load("sedan", {"driving.speed": 30.0, "force.a.joint": "spin_fr", "force.a.mean": 10.0})
     stored = {"body.superelement": "trimmed_body.toml", "force.a.on": "body", "force.a.force": [0, 0, 1]}
-    with pytest.raises(DataError, match="no node at force/a"):
+    with pytest.raises(DataError, match="no node at the attachment"):
         _ = Car.load("focus", {**stored, "force.a.at": [2.0, 0.4, 1.0]}).model

@@ -27,7 +27,7 @@ TEMPLATES = {
     "unknown moving part": (
         'moving = "damper_top"',
         'moving = "damper_tip"',
-        "suspension_mount.moving: found 'damper_tip', unknown",
+        "connection.suspension_mount.moving: unknown name 'damper_tip",
     ),
     "unknown point": (
         'at = "tie_outer"',
@@ -53,7 +53,11 @@ TEMPLATES = {
         'rack = "bodi"',
         "port_defaults.rack: unknown name 'bodi'; the most similar",
     ),
-    "one point above": ("above = [", 'above = [["strut_top"],', "above: found ['strut_top']; must be two points"),
+    "one point above": (
+        "above = [",
+        'above = [["strut_top"],',
+        "above: found ['strut_top'], must be two points, the upper",
+    ),
     "not TOML": ("mirrored = true", "mirrored = tru", "not a TOML file: Invalid value (at line"),
     "no axis": (f", {LINE}", "", "joint.damper.along: a joint of kind slide needs either two points in along, or axis"),
     "two axes": (
@@ -71,7 +75,11 @@ TEMPLATES = {
         "axis = [0, 1]",
         "joint.damper.axis: found (0.0, 1.0), must be a list of 3 numbers",
     ),
-    "along one point": (LINE, 'along = ["strut_top"]', "joint.damper.along: found ['strut_top']; must be two"),
+    "along one point": (
+        LINE,
+        'along = ["strut_top"]',
+        "joint.damper.along: found ['strut_top'], must be two different",
+    ),
     "a damper between a point": (LINE, 'along = ["strut_top", "strut_top"]', "must be two different points"),
     "a spring between a point": (
         'upper = { part = "body", at = "strut_top" } }',
@@ -106,12 +114,12 @@ TEMPLATES = {
     "fixed and hinged": (
         '{ kind = "free", child = "a_arm" }',
         '{ kind = "free", child = "a_arm" }, { kind = "fixed", child = "suspension_mount", parent = "damper_top" }',
-        "joint of suspension_mount: it is fixed already",
+        "joint of suspension_mount: the part already has a joint",
     ),
     "free on a part": (
         'child = "a_arm" }',
         'child = "a_arm", parent = "knuckle" }',
-        "joint.2.parent: found 'knuckle'; a",
+        "joint.2.parent: found 'knuckle', but a free",
     ),
     "held by nothing": (', "main_spring_lower"]', "]", "main_spring_lower_fr has no joint; add a joint"),
     "a joint on the body": (
@@ -128,7 +136,7 @@ TEMPLATES = {
     "a part of others": (
         'child = "a_arm" }',
         'child = ["a_arm", "body"] }',
-        "joint of body: not a part of this template",
+        "joint of body: is not a part of this template, so",
     ),
     "no points": (MOUNT, MOUNT.replace('"strut_top"', ""), "parts.suspension_mount.points: empty"),
     "a point too many": (

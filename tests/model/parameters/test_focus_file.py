@@ -144,7 +144,7 @@ def test_an_override_may_name_an_axis():
         (
             "damper.coulomb_fricton=1",
             "--set damper.coulomb_fricton=1: unknown parameter damper.coulomb_fricton; "
-            "the nearest is front.damper.coulomb_friction",
+            "the most similar path is front.damper.coulomb_friction",
         ),
         ("damper", "--set damper: must be PATH=VALUE, for example damper.coulomb_friction=93.75"),
         ("=3", "--set =3: must be PATH=VALUE, for example damper.coulomb_friction=93.75"),
@@ -154,7 +154,10 @@ def test_an_override_may_name_an_axis():
         ),
         (
             "damper.viscous=many",
-            "--set damper.viscous=many: cannot read many; give a number",
+            (
+                "--set damper.viscous=many: cannot read many; give a number (3.5), a list ([1, 2, 3]) or a text in "
+                'quotes ("abc")'
+            ),
         ),
     ],
 )

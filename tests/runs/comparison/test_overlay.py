@@ -266,7 +266,7 @@ def test_a_fit_finds_the_mounts_from_the_same_file(measured, tmp_path):
             "a response to a force, but the inputs of the model are plate",
         ),
         ([*MAP[:2], "--unit", "knuckle_fr_acc_z=Pa"], 3, "must be a motion of a point divided by a motion"),
-        ([*MAP[:2], "--bands", "9,3"], 2, "must be increasing frequencies [Hz]"),
+        ([*MAP[:2], "--bands", "9,3"], 2, r"must be increasing frequencies \[Hz\]"),
         (["--map", "3"], 2, "must be CHANNEL=NAME"),
     ],
 )

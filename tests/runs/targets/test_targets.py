@@ -212,7 +212,7 @@ def test_wrong_files(tmp_path):
         read_targets(empty)
     with pytest.raises(ConfigurationError, match="must be a section"):
         read_targets(plain)
-    with pytest.raises(ConfigurationError, match="no such file"):
+    with pytest.raises(ConfigurationError, match="the file does not exist; give"):
         read_targets(tmp_path / "missing.toml")
 
 

@@ -40,8 +40,8 @@ def test_json_holds_the_measures_of_each_axis(ride, capsys):
         f"notice: {a}: MTVV and crest factor leave out the first"[:50] for a in "xyz"
     ]
     assert said[3:] == [
-        "notice: motion sickness dose (msdv): only a rough estimate; 60 s hold 6.0 periods of 0.1 Hz, and ISO "
-        "2631-1, D.1, requires 240 s"
+        "notice: motion sickness dose (msdv): only a rough estimate; the record has 60 s, 6.0 periods of 0.1 Hz, "
+        "and ISO 2631-1, D.1, requires 240 s"
     ]
     for axis, name in zip("xyz", ("Wd", "Wd", "Wk"), strict=True):
         assert found[axis]["weighting"] == name

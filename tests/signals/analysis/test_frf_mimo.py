@@ -76,7 +76,7 @@ def test_fully_correlated_inputs_are_refused_by_name(plates, copy):
     with pytest.raises(DataError) as refusal:
         frequency_responses(STEP, [plates[0], copy(plates[0]), plates[1]], plates[0], input_names=("fr", "fl", "rear"))
     message = str(refusal.value)
-    assert message.startswith("so the responses to the inputs cannot be separated")
+    assert message.startswith("excitations: ") and "so the responses to the inputs cannot be separated" in message
     assert "copies: fr and fl (coherence " in message
     assert "rear (" not in message
     assert "Use one input alone (its FRF is the response to the common motion)" in message

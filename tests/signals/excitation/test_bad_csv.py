@@ -221,7 +221,7 @@ def test_91_one_pothole_is_named_and_no_reason_to_refuse(tmp_path):
     # -2 A / s^2 at its deepest point, below 100 Hz
     assert len(said) == 1 and "at t = 12" in said[0] and "usual 50 m/s2: a pothole" in said[0]
     # in mm under [m] the whole record is beyond, and a spike of a logger is no pothole
-    assert "looks like mm" in refused_lines(tmp_path, lines(1e3 * z))
+    assert "values in mm" in refused_lines(tmp_path, lines(1e3 * z))
     assert "displaced by 3" in refused_lines(tmp_path, lines(np.where(np.arange(time.size) == 9000, 3.0, z)))
 
 

@@ -205,7 +205,7 @@ def test_resampling_keeps_the_band_and_removes_what_would_fold(tmp_path):
     assert signal.notices[-1] == (
         "resampled from uniform times at 2000 Hz to 500 Hz by a spline of degree 7 through the samples at their "
         "true times and a linear-phase anti-alias filter from 200 Hz on; amplitudes are correct within 0.1 % up "
-        "to 600 Hz, 4 % up to 800 Hz"
+        "to 600 Hz and within 4 % up to 800 Hz"
     )
 
 

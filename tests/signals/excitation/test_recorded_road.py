@@ -254,7 +254,7 @@ def test_a_damaged_surface_is_refused(tmp_path):
     path = crg(tmp_path / "road.crg", "KRBI", grid)
     whole = path.read_bytes()
     path.write_bytes(whole[:-100])
-    with pytest.raises(DataError, match="claims 480 bytes"):
+    with pytest.raises(DataError, match="its header states 480"):
         read_surface(path)
     start = whole.index(b"$$$$$$$$\n") + 9
     path.write_bytes(whole[:start] + whole[start + 1 :] + b"\0")
@@ -294,7 +294,7 @@ def test_every_damage_is_named_with_the_file(tmp_path, form):
     for share in (0.0, 0.1, 0.5, 0.9):
         refused(whole[: start + 9 + int(share * (len(whole) - start - 9))], "claims|truncated or damaged|damaged")
     # More or fewer rows, sections or a wider step than the header claims.
-    refused(whole.replace(b"REFERENCE_LINE_END_U = 119.5", b"REFERENCE_LINE_END_U = 219.5"), "claims|its header states")
+    refused(whole.replace(b"REFERENCE_LINE_END_U = 119.5", b"REFERENCE_LINE_END_U = 219.5"), "its header states")
     refused(whole.replace(b"REFERENCE_LINE_END_U = 119.5", b"REFERENCE_LINE_END_U = 102.5"), "its header states")
     refused(
         whole.replace(b"D:long section 3,m\n", b"D:long section 3,m\nD:long section 4,m\n"),

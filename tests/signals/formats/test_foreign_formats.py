@@ -100,7 +100,7 @@ def test_wav_is_shares_of_full_scale(tmp_path, kind):
         abs=20e-3 * step, unit="m", source=foreign("scipy", "wavfile"),
     )  # fmt: skip
     path.write_bytes(path.read_bytes()[:-200])
-    with pytest.raises(DataError, match=r"chunk 'data' should have \d+ bytes of data, but the file has"):
+    with pytest.raises(DataError, match=r"chunk 'data' states \d+ bytes of data, but the file has"):
         read_record(path)
 
 
@@ -152,7 +152,7 @@ def test_rpc_in_integers_and_groups(tmp_path, order):
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"FRAMES": "5000"}, "FRAMES 5000 should have 80000 bytes of data, but the file has only 96"),
+        ({"FRAMES": "5000"}, "FRAMES 5000 states 80000 bytes of data, but the file has only 96"),
         ({"SAMPLES": "21"}, "SAMPLES is 21, must be 1 to 20"),
         ({"CHANNELS": "nan"}, "CHANNELS is 'nan', must be a number"),
         ({"CHANNELS": None}, r"rig\.any: CHANNELS is missing"),
@@ -160,9 +160,9 @@ def test_rpc_in_integers_and_groups(tmp_path, order):
         ({"DELTA_T": "0"}, "DELTA_T 0 s"),
         ({"SCALE.CHAN_2": "x"}, "SCALE.CHAN_2 is 'x'"),
         ({"FORMAT": "ASCII"}, "FORMAT is 'ASCII', must be one of BINARY"),
-        ({"NUM_PARAMS": "90000"}, "NUM_PARAMS should have 11520000"),
+        ({"NUM_PARAMS": "90000"}, "NUM_PARAMS states 11520000"),
         ({"UPPER_LIMIT.CHAN_1": "0.001", "LOWER_LIMIT.CHAN_1": "0"}, r"channel 1 reaches 0\.17, but its limit in"),
-        ({"DATA_TYPE": "FLOATING_POINT"}, "FRAMES 5 should have 192 bytes"),
+        ({"DATA_TYPE": "FLOATING_POINT"}, "FRAMES 5 states 192 bytes"),
     ],
 )
 def test_damaged_rpc_is_refused(tmp_path, changes, message):

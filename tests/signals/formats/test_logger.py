@@ -79,7 +79,7 @@ def test_a_logger_file_drives_the_plate_with_four_options(tmp_path):
     for part in (
         "fr: channel 1 'Shaker FR' [mm]",
         "excerpt from 101 to 107.9",
-        "clock of 2048 Hz",
+        "assumed to be 2048 Hz",
         "straight line from",
     ):
         assert part in said, said

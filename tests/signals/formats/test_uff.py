@@ -137,7 +137,7 @@ TEXT = function(np.linspace(1.0, 2.0, 50))
 @pytest.mark.parametrize(
     ("data", "message"),
     [
-        (GOOD[:-60], r"dataset 58 at byte 0 \(function 1\) should have 200"),
+        (GOOD[:-60], r"dataset 58 at byte 0 \(function 1\) states 200"),
         (TEXT[:-60], "has no end; the file is truncated"),
         (TEXT[:300], "ends within its header|has no end"),
         (function(np.ones(N), points=2_500_000), r"dataset 58 at byte 0 \(function 1\) states 2500000 numbers"),

@@ -128,7 +128,7 @@ def test_a_folder_with_other_files_is_refused(signal, tmp_path, capsys):
     output.mkdir()
     (output / "thesis.txt").write_text("mine", encoding="utf-8")
     assert main(["--input", str(signal), "--output", str(output), "--vary", "damper.viscous=1", "--force"]) == 2
-    assert "holds files that are not results of a run: thesis.txt" in capsys.readouterr().err
+    assert "contains files that are not results of a run: thesis.txt; --force" in capsys.readouterr().err
 
 
 def test_failed_rows_are_no_success(signal, tmp_path, capsys):

@@ -123,7 +123,7 @@ def test_of_a_pair_with_one_common_effect_one_parameter_is_held():
     assert np.isnan(result.standard_errors[held.path])
     assert held.path not in result.free and result.correlation.shape == (3, 3)
     assert (
-        f"{held.path}: the data do not determine this parameter apart from {held.partners[0]} (standard"
+        f"{held.path}: the data do not determine this parameter apart from {held.partners[0]}: its standard"
         in held.message()
     )
     # The springs in series are identifiable.

@@ -205,7 +205,7 @@ def test_evidence_decides_only_above_ten():
         "the data do not decide between a and b: a 2.72 times as probable as b"
     )
     assert verdict(("a", wrong), ("b", right)) == "b 20.1 times as probable as a"
-    assert "evidence: undecided" in posterior_sentences([("a", right), ("b", closer)])[-1]
+    assert "evidence: the data do not" in posterior_sentences([("a", right), ("b", closer)])[-1]
     far = posterior_of(linear_car(0.1), data=np.array([1.0, 1.0, -1.0, -1.0, 1.0, 1.0]), discrepancy=0.0)
     assert any("standard deviations (RMS), more than" in text for text in posterior_sentences([("a", far)]))
 

@@ -184,14 +184,14 @@ def convert(hint: Any, value: Any, path: str) -> Any:
         table = isinstance(value, Mapping) and any(typing.get_origin(option) is Mapping for option in others)
         return convert(others[-1] if table else first, value, path)
     if hint is dict and not isinstance(value, Mapping):
-        raise ConfigurationError(f"{path}: found {value!r}, must be a table")
+        raise ConfigurationError(f"{path}: found {value!r}, must be a section")
     if dataclasses.is_dataclass(hint):
         if not isinstance(value, Mapping):
             raise ConfigurationError(f"{path}: found {value!r}, must be a section [{path}] with lines name = value")
         return build(typing.cast(type[Any], hint), value, path)
     if origin is not None and isinstance(origin, type) and issubclass(origin, Mapping):
         if not isinstance(value, Mapping):
-            raise ConfigurationError(f"{path}: found {value!r}, must be a table")
+            raise ConfigurationError(f"{path}: found {value!r}, must be a section")
         inner_hint = arguments[1]
         return types.MappingProxyType(
             {key: convert(inner_hint, member, _join(path, key)) for key, member in value.items()}
