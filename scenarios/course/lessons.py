@@ -69,7 +69,10 @@ def random_error() -> Exercise:
         "%",
         0.02,
         (
-            Slip(value * math.sqrt(2.0), "noise has two parts, in phase and a quarter period off; only one changes |H|: 2 n"),
+            Slip(
+                value * math.sqrt(2.0),
+                "noise has two parts, in phase and a quarter period off; only one changes |H|: 2 n",
+            ),
             Slip(100.0 * math.sqrt((1.0 - squared) / (2 * windows * squared)), "the coherence is g2 itself already"),
             Slip(value**2 / 100.0, "that is the variance; the standard error is its root"),
             Slip(value * math.sqrt(windows), "that is the error of one window; n windows make it smaller"),

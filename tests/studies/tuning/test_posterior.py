@@ -71,9 +71,7 @@ def test_emulator_is_exact_for_its_polynomials_and_states_the_error_of_others():
         SUBJECT, "left-out error of an emulator", emulator.left_out[1], np.sqrt(np.mean(np.square(left))), rel=1e-9,
         source="second derivation: fit repeated without each car",
     )  # fmt: skip
-    with pytest.raises(
-        ConfigurationError, match="--samples 7: must be at least 8 for 2 parameters"
-    ):
+    with pytest.raises(ConfigurationError, match="--samples 7: must be at least 8 for 2 parameters"):
         fitted_emulator(points[:7], other[:7, None])
     with pytest.raises(ConfigurationError, match="--samples 4: must be at least 5 for 1 parameters"):
         fitted_emulator(points[:4, :1], other[:4, None])
