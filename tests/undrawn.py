@@ -5,6 +5,8 @@ that plots draws its first figure of a process for real, so that one that cannot
 everything but the drawing runs. Tests outside `UNDRAWN` may look at their figures and draw all of them.
 """
 
+from __future__ import annotations
+
 import sys
 from collections.abc import Callable
 from functools import cache
@@ -12,19 +14,13 @@ from pathlib import Path
 from typing import Any
 
 UNDRAWN = (
-    "tests/commands/",
-    "tests/documentation/test_pages",
-    "tests/physics/test_orders",
-    "tests/signals/",
-    "tests/studies/",
+    *("tests/commands/", "tests/documentation/test_pages", "tests/documentation/test_doctests", "tests/handover/"),
+    *("tests/runs/", "tests/scenarios/", "tests/signals/", "tests/studies/", "tests/system/"),
 )
 """Folders and modules of tests that do not look at their figures."""
 
-DRAWN = ("tests/scenarios/test_legend_room", "tests/signals/formats/test_full_disk")
+DRAWN = ("tests/signals/formats/test_full_disk",)
 """Modules of these folders that need every drawing, beside those that look at a file (`_looks`)."""
-
-WRAPPERS = ("contextlib.py", "rendering/figure.py", "scenarios/charts.py")
-"""Files between a function that plots and the figure."""
 
 SVG = '<svg viewBox="0 0 1 1"></svg>'
 PNG = bytes.fromhex(
@@ -79,6 +75,6 @@ def _looks(module: str) -> bool:
 def _plotting() -> tuple[str, str]:
     """Return file and name of the function whose `with saved_figure(...)` ends."""
     frame = sys._getframe(2)
-    while frame.f_back is not None and frame.f_code.co_filename.endswith(WRAPPERS):
+    while frame.f_back is not None and frame.f_code.co_filename.endswith(("contextlib.py", "rendering/figure.py")):
         frame = frame.f_back
     return frame.f_code.co_filename, frame.f_code.co_name
