@@ -36,7 +36,7 @@ def values(poses: Sequence[WheelPose], name: str) -> npt.NDArray[np.float64]:
 def travel_figure(path: Path, axles: Sequence[Axle]) -> None:
     """Write the curves of all axles over equal and over opposite travel."""
     note = (
-        "Wheel on the right against its design position, body held, bushings as they are; solid: both wheels lifted "
+        "Right wheel, changes from its design position, body held, bushings as they are; solid: both wheels lifted "
         "alike, dashed: the left wheel goes down where the right one goes up"
     )
     with figure_file(path, (13.0, 8.6), "Axles over wheel travel", note) as figure:

@@ -72,7 +72,7 @@ def signal_options(parser: Parser, *, several: bool = False) -> argparse._Argume
     def is_class(options: argparse.Namespace) -> bool:
         return any(len(road) == 1 for road in _listed(options.road))
 
-    note = "" if several else "; with --input: replaces the times of the file"
+    note = "" if several else "; with --input it replaces the time column of the file"
 
     def on_road(options: argparse.Namespace) -> bool:
         # A file of targets names its roads; --rpm runs on a level one.
@@ -105,7 +105,7 @@ def road_options(
         action="append" if several else "store",
         type=speed_value,
         metavar="KM/H|channel:NAME",
-        help="speed of the car [km/h], or channel:NAME: the speed recorded with a road over time"
+        help="speed of the car [km/h]; for a road recorded over time also channel:NAME, the channel with the speed"
         + ("; one speed for all roads, or a speed for each road" if several else ""),
     )
     setting_options(group, RoadSettings, "duration")

@@ -179,7 +179,7 @@ def _report(
     """Return both tables as text."""
     joints = "ideal joints" if options.ideal else "compliant bushings"
     lines = [
-        f"{options.axle} axle, wheel on the right, against its design position; {joints}"
+        f"{options.axle} axle, right wheel: changes from the design position; {joints}"
         + ("; left wheel opposite" if options.opposite else ""),
         "camber: top outwards +, toe: front inwards +, lateral: outwards +, longitudinal: to the rear +",
         *_rows(HEADS, [dataclasses.asdict(pose) for pose in poses]),
@@ -228,7 +228,7 @@ def _write(
     ]
     columns = [np.array([row[name] for row in values]) for name in COLUMNS]
     comments = [
-        f"{name}, {options.axle} axle, wheel on the right, against its design position",
+        f"{name}, {options.axle} axle, right wheel: changes from the design position",
         "camber: top outwards +, toe: front inwards +, lateral: outwards +, longitudinal: to the rear +",
     ]
     parts = ["opposite travel" if options.opposite else "equal travel"]

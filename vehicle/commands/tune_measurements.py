@@ -107,7 +107,7 @@ def measurement_options(parser: Parser) -> None:
         type=speed_value,
         action=_OfMeasurement,
         metavar="KM/H|channel:NAME",
-        help="speed on the preceding --road [km/h], or channel:NAME: the speed recorded with a road over time",
+        help="speed on the preceding --road [km/h]; for a road recorded over time also channel:NAME, the channel with the speed",
     )
     words = "tyre contact on the preceding --road; default: patch, on an obstacle cams"
     setting_options(files, RoadSettings, "contact", action=_OfMeasurement, help=words)
@@ -117,7 +117,7 @@ def measurement_options(parser: Parser) -> None:
     )
     mapping_options(files)
     record_options(files, "", channel=False)
-    delay_option(files, "; the lag of a group without this option is fitted")
+    delay_option(files, "; without this option the delay of each group of channels is fitted")
     files.add_argument(
         "--channels",
         metavar="NAME,...",

@@ -45,7 +45,7 @@ ABSURD = {
     ),
     "mount of ten tonnes": (
         "parts.suspension_mount.mass=1e4",
-        "parts.suspension_mount.mass: found 10000 kg, must be 0.02 to 150 kg (from the screw of a rod to ",
+        "parts.suspension_mount.mass: found 10000 kg, must be 0.02 to 150 kg (mass of a part: a bolt of ",
     ),
     "knuckle of a microgram": (
         "parts.knuckle.mass=1e-9",
@@ -127,7 +127,7 @@ IMPOSSIBLE = {
             "body.flexible=false",
         ],
         r"body\.cog: found \[0\.8, 0\.0, 1\.011\] m, with which rear support right would carry -\d+ N and the car "
-        r"would tip off it; it must lie between the points where the car stands on the ground",
+        r"the centre of gravity must lie between the points where the car stands on the ground",
     ),
     "inertia with a turned sign": (
         ["body.inertia.izx=-1800"],

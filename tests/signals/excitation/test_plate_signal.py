@@ -48,7 +48,11 @@ def test_arrays_are_copies_that_nobody_can_change():
             {"fr": np.where(TIME == 0.5, np.nan, 0.0)},
             ("displacement of fr is nan at sample 500; must be a finite number"),
         ),
-        (TIME[:31], {"fr": np.zeros(31)}, "time has shape (31,); must be (n,) with at least 32 samples"),
+        (
+            TIME[:31],
+            {"fr": np.zeros(31)},
+            "the time is an array of size (31,), must be one vector of at least 32 samples",
+        ),
         (TIME + 1.0, {"fr": np.zeros(1001)}, "the time begins at 1.0 s; it must begin at 0 s, increase and be finite"),
         (TIME**2, {"fr": np.zeros(1001)}, "resample the signal to a uniform grid first"),
     ],

@@ -71,7 +71,7 @@ def test_arrays_that_are_no_record_are_refused(tmp_path):
     ):
         read_columns(path)
     np.savez(path, time=TIME, x=SINE[:-1])
-    with pytest.raises(DataError, match=r"own\.npz: array 'x' has 3999 samples for 4000 times"):
+    with pytest.raises(DataError, match=r"own\.npz: array 'x' has 3999 samples, must be 4000"):
         read_columns(path)
     np.savez(path, time=TIME[::-1], x=SINE)
     with pytest.raises(DataError, match=r"own\.npz: sample 2: time 5\.998 s is before the time .* of sample 1"):

@@ -217,7 +217,7 @@ def test_a_broken_executor_of_the_caller_is_an_error_and_rows_are_stored(tmp_pat
 
 
 def test_cancelled_tasks_are_an_error():
-    with pytest.raises(SimulationError, match="the executor cancelled its runs"):
+    with pytest.raises(SimulationError, match="the runs were cancelled"):
         sweep(many(2), Peak(), executor=lambda: Fails())
 
 

@@ -178,7 +178,7 @@ def test_bad_targets_are_rejected(car, high_piece):
     for histories, message in (
         ({}, "bump: no time history"),
         ({"knuckle_acc": ones}, "no channel 'knuckle_acc'"),
-        ({"engine_acc_z": ones[:9]}, "engine_acc_z has 9 samples for 4001 times"),
+        ({"engine_acc_z": ones[:9]}, "engine_acc_z has 9 samples, must be 4001"),
         (
             {"engine_acc_z": np.where(time == 1.5, np.nan, ones)},
             "engine_acc_z has 4001 samples .*, or a value that is not finite",

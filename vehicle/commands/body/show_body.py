@@ -194,7 +194,7 @@ def rotation_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
     unknown = [name for name, at in stiff.items() if nodes[at] not in model.rotations]
     present = [name for name in stiff if name not in unknown]
     lines = (
-        [f"rotation of the body at points with rotational stiffness: included at {', '.join(present)}"]
+        [f"the body model contains the rotations at these points with rotational stiffness: {', '.join(present)}"]
         if present
         else []
     )

@@ -69,9 +69,9 @@ def require_standing(vehicle: Vehicle, rows: Rows, static: StaticTrim) -> None:
     for name, load in loads.items():
         if load <= 0.0:
             raise ConfigurationError(
-                f"body.cog: found {list(vehicle.body.cog)} m, with which {name} would carry {load:.0f} N and the car "
-                "would tip off it; it must lie between the points where the car stands on the ground (check body.mass "
-                "and the masses of the parts too)"
+                f"body.cog: found {list(vehicle.body.cog)} m. The car would tip over, because {name} would carry "
+                f"{load:.0f} N; the centre of gravity must lie between the points where the car stands on the ground "
+                "(check body.mass and the masses of the parts too)"
             )
     preload, springs, bushings = static.preload, rows.layout.springs, rows.layout.bushings
     ground = ground_contacts(rows)

@@ -169,7 +169,7 @@ def _vehicle(*, complete: bool) -> Schema:
         "moving": PART,
         "carrier": PART,
         **at,
-        "ground": {"type": "boolean", "description": "the car stands on this contact"},
+        "ground": {"type": "boolean", "description": "true for a contact that carries the car at rest"},
         "axes": {"type": "array", "items": TEXT, "minItems": 2, "maxItems": 2, "description": "points, x along them"},
     }
     properties: Schema = {

@@ -224,9 +224,9 @@ def _require_stroke(law: Bushing | Hydromount) -> None:
     for axis, force, stroke in zip(AXES, law.friction_force, law.friction_stroke, strict=True):
         if force > 0.0 and stroke < SHORTEST_STROKE:
             raise ConfigurationError(
-                f"{type(law).__name__}.friction_stroke.{axis}: found {stroke!r} m with friction_force.{axis} = "
-                f"{force!r} N, must be at least {SHORTEST_STROKE:g} m; set the displacement at which the friction is "
-                "half its maximum, or that friction_force to 0"
+                f"{type(law).__name__}.friction_stroke.{axis}: found {stroke!r} m, must be at least "
+                f"{SHORTEST_STROKE:g} m, because friction_force.{axis} is {force!r} N; set the displacement at which "
+                f"the friction is half its maximum, or for no friction friction_force.{axis} = 0"
             )
 
 

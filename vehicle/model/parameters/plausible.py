@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from vehicle.model.parameters.vehicle import Vehicle
 
 ENGINE_MASS = (20.0, 1000.0, "an electric motor has 30 kg, a large diesel with its gearbox 600 kg")
-PART_MASS = (0.02, 150.0, "from the screw of a rod to the wheel of a van")
+PART_MASS = (0.02, 150.0, "mass of a part: a bolt of a link has 0.02 kg, a wheel of a van 50 kg")
 GYRATION = (1e-3, 1.0, "radius of gyration: thicker than a wire, smaller than the car is wide")
 OFFSET_M = 1.0
 """Maximum offset of a centre of gravity from the mean of the hardpoints of the part [m]."""

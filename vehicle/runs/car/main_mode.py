@@ -137,5 +137,7 @@ def nearest(modes: Sequence[Mode], frequency: float) -> Mode:
     """
     swinging = [mode for mode in modes if mode.frequency > 0.0 and not mode.grows]
     if not swinging:
-        raise ConfigurationError(f"{frequency:g} Hz: this car has no mode up to 60 Hz; leave it out")
+        raise ConfigurationError(
+            f"this car has no mode up to 60 Hz, so {frequency:g} Hz cannot select one; leave out the frequency"
+        )
     return min(swinging, key=lambda mode: abs(mode.frequency - frequency))

@@ -94,7 +94,7 @@ def _of_one(run: FinishedRun, modes: Modes) -> Markup:
         if mode is not None:
             # The linear model has the smallest slope of sliding dampers, and no friction.
             named = mode_words(mode, "at least " if damper_state(run) == "sliding" else "")
-            parts += [f"mainly by the mode of {named}", *_path_words(run, band, mode)]
+            parts += [f"caused mainly by the mode of {named}", *_path_words(run, band, mode)]
         texts.append(f"{', '.join(parts)}{_damper_words(run)}.")
     return fill("answer", texts=[" ".join(texts)], figure="")
 
@@ -268,7 +268,7 @@ def _reason(first: FinishedRun, run: FinishedRun, modes: Modes, run_modes: Modes
             if states[0] == states[1]
             else f"of {mode_words(mode)} with {states[0]} dampers, which are {states[1]} now"
         )
-        parts += [f"mainly by the mode {moved}", *_path_words(first, band, mode)]
+        parts += [f"caused mainly by the mode {moved}", *_path_words(first, band, mode)]
     slips = [slip_shares(each.summary) for each in (first, run)]
     if list(slips[0]) == list(slips[1]) and slips[0]:
         wheel = max(slips[0], key=lambda name: abs(slips[1][name] - slips[0][name]))

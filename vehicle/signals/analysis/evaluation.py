@@ -73,7 +73,7 @@ HEALTH = (1.4, 1.4, 1.0)
 
 _CLAUSE = "ISO 2631-1:1997, 8.2.2"
 _SEAT, _BACKREST, _FEET = (1.0, 1.0, 1.0), (0.8, 0.5, 0.4), (0.25, 0.25, 0.4)  # k there
-_ROTATION = f"{_CLAUSE}.1 (rx, ry, rz in rad/s2, factors in m/rad)"
+_ROTATION = f"{_CLAUSE}.1 (rotations rx, ry, rz: accelerations in rad/s2, factors in m/rad)"
 
 APPLICATIONS: MappingProxyType[str, Application] = MappingProxyType(
     {

@@ -125,7 +125,8 @@ class Signal:
         time = self.time
         if time.ndim != 1 or time.size < MINIMUM_SAMPLES:
             raise DataError(
-                f"{self.source}: time has shape {time.shape}; must be (n,) with at least {MINIMUM_SAMPLES} samples"
+                f"{self.source}: the time is an array of size {time.shape}, must be one vector of at least "
+                f"{MINIMUM_SAMPLES} samples"
             )
         if not np.isfinite(time).all() or time[0] != 0.0 or time[-1] <= 0.0:
             raise DataError(

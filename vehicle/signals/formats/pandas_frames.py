@@ -40,7 +40,7 @@ def frame_channels(path: Path, name: str, group: Any) -> tuple[list[Channel], st
         convert = f"import pandas; pandas.read_hdf({path.name!r}, {name!r}).to_csv({name.replace('/', '_') + '.csv'!r})"
         raise DataError(
             f"{path}: {name!r} is a pandas {frame_type} in table format, whose column names are not readable "
-            f'without pandas; convert it: python -c "{convert}"'
+            f'without pandas; convert the file to CSV with the command python -c "{convert}"'
         )
     index = group["axis1" if frame_type == "frame" else "index"]
     columns: dict[str, Vector] = {}

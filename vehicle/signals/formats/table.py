@@ -123,11 +123,12 @@ class Record:
 
     def __post_init__(self) -> None:
         for name, values in self.channels.items():
-            if values.shape != self.time.shape or not np.isfinite(values).all():
+            if values.shape != self.time.shape:
                 raise DataError(
-                    f"record: {name} has {values.size} samples for {self.time.size} times, or a value that is not "
-                    "finite; repair or cut the record"
+                    f"record: {name} has {values.size} samples, must be {self.time.size}, one for each time"
                 )
+            if not np.isfinite(values).all():
+                raise DataError(f"record: {name} contains NaN or infinity; repair the record, or cut this part out")
 
     @property
     def start(self) -> float:

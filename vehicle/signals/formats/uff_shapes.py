@@ -81,7 +81,9 @@ def _shape(path: Path, where: str, head: _Head, nodes: Nodes, units: Units) -> M
     if analysis not in (*NORMAL, *COMPLEX) or characteristic not in VECTORS or data_type not in (2, 4, 5, 6):
         return f"result of analysis {analysis} and characteristic {characteristic}"
     if count != VECTORS[characteristic]:
-        raise ValueError(f"{count} values per node for characteristic {characteristic}")
+        raise ValueError(
+            f"{count} values per node, must be {VECTORS[characteristic]} for data characteristic {characteristic}"
+        )
     width = count * (2 if data_type > 4 else 1)
     labels, rows, index = [], [], 0
     body = [line for line in lines if line.strip()]

@@ -77,8 +77,8 @@ def control_lines(fits: Sequence[FittedDamper]) -> str:
         lines.append(f"# {condition:<18} {damping:>16.5g} {friction:>13.4g} {force:>15.4g} {slope:>14.4g}")
     dampings = [each.damping for each in settings]
     lines += [
-        "# for a table [AXLE.damper.control]: the coefficient replaces the curve; friction, gas and stop remain those",
-        f"# of the table of the damper, as in damper{fits[0].name}.toml",
+        "# values for the section [AXLE.damper.control]: the coefficient replaces the curve; friction, gas and stop",
+        f"# stay in the section of the damper, for example those in damper{fits[0].name}.toml",
         f"minimum_damping = {rounded(min(dampings), 5)!r}  # [N s/m]",
         f"maximum_damping = {rounded(max(dampings), 5)!r}  # [N s/m]",
     ]

@@ -144,7 +144,7 @@ def chrono_car(name: str, path: Path, tyre_file: Path | None = None) -> NewCar:
     car = Car(vehicle_of(table))
     header = (
         f"{name}: made by `python -m vehicle new` from {path.name} of Project Chrono.\n"
-        "Behind each value: [unit] file and name in Chrono, or assumed and why.\n"
+        "Behind each value stand its unit and its origin: file and name in Chrono, or assumed and why.\n"
         "Frame: x to the rear, y to the driver's right, z up, z = 0 where unloaded front tyres stand. SI units."
     )
     left_out = [f"left out: {text}" for key, text in LEFT_OUT.items() if key in vehicle or key in model]

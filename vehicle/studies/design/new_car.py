@@ -113,7 +113,8 @@ def new_car(name: str, source: Path | str, stated: StatedNumbers, *, scale: bool
     _require_met(checks)
     header = (
         f"{name}: made by `python -m vehicle new` from the template {template.name}.\n"
-        "Behind each value: [unit] where it comes from: given, estimated by ..., or the template with its own source.\n"
+        "Behind each value stand its unit and its origin: given, estimated by ..., or taken from the template (and\n"
+        "the source stated there).\n"
         "Frame: x to the rear, y to the driver's right, z up. SI units."
     )
     text = vehicle_text(car.vehicle, header, sources, template.name, before)

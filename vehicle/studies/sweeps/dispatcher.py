@@ -167,8 +167,8 @@ class Dispatcher:
                     suspects.extend(self._run_waiting(waiting, cases, keep))
         except CancelledError:
             raise SimulationError(
-                "the executor cancelled its runs (lost Dask scheduler?); finished rows are stored, continue with "
-                "--resume"
+                "the runs were cancelled, possibly because the connection to the cluster (Dask) was lost; finished "
+                "runs are stored, continue with --resume"
             ) from None
         finally:
             if self.make is not None and not isinstance(self.make, StandingExecutor):

@@ -142,16 +142,17 @@ class PosteriorSettings(Settings):
         metavar="K",
     )
     discrepancy: float = setting(
-        "expected error of the model itself, standard deviation in each third octave [-]; default: %(default)g",
+        "expected relative error of the model in each third octave, a standard deviation [-]; default: %(default)g",
         DISCREPANCY,
         factor=0.01,
         type=float,
         metavar="PERCENT",
-        help="expected error of the model itself, standard deviation in each third octave [%%]; default: %(default)g",
+        help="expected relative error of the model in each third octave, a standard deviation [%%]; default: %(default)g",
     )
     rival: Sequence[str] = setting(
-        "compare the fitted law with another: its settings, for example damper.viscous_law=degressive, and its "
-        "parameters with bounds, for example damper.degressive_viscous=2e3:1e4",
+        "compare the fitted law with a second one; give the settings of the second law, for example "
+        "damper.viscous_law=degressive, and its parameters with bounds, for example "
+        "damper.degressive_viscous=2e3:1e4",
         (),
         nargs="+",
         metavar="PATH=VALUE",

@@ -110,7 +110,9 @@ def fit_sentences(tuned: TunedCar) -> list[str]:
         sentences.append(f"not converged: {result.message}; narrow the bounds, or start nearer with --set PATH=VALUE")
     if final is None:
         if any(each.signal is not None for each in tuned.measurements):
-            sentences.append("not checked with the complete model; --engine mujoco makes the last steps with it")
+            sentences.append(
+                "not checked with the complete model; with --engine mujoco the last steps of the fit use that model"
+            )
     else:
         moved = max(final.moved.items(), key=lambda item: abs(item[1]), default=("", 0.0))
         state = "settled" if final.settled else "not settled"
