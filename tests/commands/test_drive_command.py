@@ -58,7 +58,7 @@ BAD = {
     "no such channel of the file": (["--channel", f"{CHANNEL}=Dof 9*"], 3, "matches no channel"),
     "no acceleration": (["--channel", f"{CHANNEL}=1", "--unit", "mm"], 3, "found a displacement"),
     "band beyond the record": (["--channel", f"{CHANNEL}=1", "--band", "0.1:50"], 2, "and within 0.5 to 100 Hz"),
-    "band upside down": (["--channel", f"{CHANNEL}=1", "--band", "50:1"], 2, "the lower first, as 1:50"),
+    "band upside down": (["--channel", f"{CHANNEL}=1", "--band", "50:1"], 2, "the lower first, for example 1:50"),
     "gain": (["--channel", f"{CHANNEL}=1", "--gain", "1.5"], 2, "--gain 1.5: must be above 0 and up to 1"),
     "too few channels": (
         ["--channel", f"{CHANNEL}=1", "--wheel", "front_right", "--wheel", "front_left"], 2, "at least as many channels"

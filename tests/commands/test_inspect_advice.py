@@ -76,7 +76,7 @@ def test_the_comparison_of_a_file_of_many_channels_is_short(tmp_path, capsys):
     written(tmp_path / "a.csv", time, columns)
     assert inspect([str(tmp_path / "a.csv")]) == 0
     head, line = capsys.readouterr().out.splitlines()[-2:]
-    assert head.endswith("tune takes the same --map; 15 more channels fit, --json lists them:")
+    assert head.endswith("`tune` accepts the same --map); 15 more channels fit, --json lists them:")
     mapped = [word.split("=") for word in shlex.split(line) if "=" in word]
     assert len(mapped) == 10 and sum(model.startswith("plate_") for model, _ in mapped) == 4
     assert {name.removesuffix(" z") for model, name in mapped if model.endswith("_z")} == {*points} - {"Motor"}

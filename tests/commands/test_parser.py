@@ -183,7 +183,7 @@ def test_no_message_shows_the_name_of_a_function(name):
         ("shaker", "--input", "--input: needs a value; see "),
         ("shaker", "--input low.csv --set body.mass = 900", "= 900: write PATH=VALUE without blanks around '='; see "),
         ("sweep", "body.mass 800 900", "body.mass 800 900: belongs to no option; names without an option come first; "),
-        ("compare", "runs/low", "missing: --measured; two runs are compared by "),
+        ("compare", "runs/low", "missing: --measured; to compare two runs, type python -m vehicle report "),
         ("tune", "sedan --measured a.csv", "--measured: FRFs are given by --frf FILE, time histories by --record FILE"),
         ("tune", "sedan --vary body.mass=800:900", "the parameters to fit are given by --parameters PATH=LOW:HIGH"),
     ],

@@ -107,7 +107,8 @@ def measurement_options(parser: Parser) -> None:
         type=speed_value,
         action=_OfMeasurement,
         metavar="KM/H|channel:NAME",
-        help="speed on the preceding --road [km/h]; for a road recorded over time also channel:NAME, the channel with the speed",
+        help="speed on the preceding --road [km/h]; for a road recorded over time also channel:NAME, the channel with "
+        "the speed",
     )
     words = "tyre contact on the preceding --road; default: patch, on an obstacle cams"
     setting_options(files, RoadSettings, "contact", action=_OfMeasurement, help=words)

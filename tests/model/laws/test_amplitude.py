@@ -101,14 +101,14 @@ BAD: dict[str, tuple[type, dict[str, Any], str]] = {
     "no stroke": (
         Bushing,
         {"friction_force": (0.0, 0.0, 100.0)},
-        "Bushing.friction_stroke.z: found 0.0 m, must be at least 1e-06 m, because friction_force.z is 100.0 N; set the "
-        "displacement at which the friction is half its maximum, or for no friction friction_force.z = 0",
+        "Bushing.friction_stroke.z: found 0.0 m, must be at least 1e-06 m, because friction_force.z is 100.0 N; set "
+        "the displacement at which the friction is half its maximum, or for no friction friction_force.z = 0",
     ),
     "no stroke of a hydromount": (
         Hydromount,
         {"friction_force": (50.0, 0.0, 0.0), "maxwell_stiffness": 1e5, "maxwell_damping": 1e3},
-        "Hydromount.friction_stroke.x: found 0.0 m, must be at least 1e-06 m, because friction_force.x is 50.0 N; set the "
-        "displacement at which the friction is half its maximum, or for no friction friction_force.x = 0",
+        "Hydromount.friction_stroke.x: found 0.0 m, must be at least 1e-06 m, because friction_force.x is 50.0 N; set "
+        "the displacement at which the friction is half its maximum, or for no friction friction_force.x = 0",
     ),
     "a negative force": (
         Bushing,

@@ -137,9 +137,9 @@ def acceleration_events(displacement: Mapping[str, Vector], timestep: float) -> 
         if abs(acceleration[index]) > LARGEST_ACCELERATION:
             share = 100.0 * float(np.mean(np.abs(acceleration) > LARGEST_ACCELERATION))
             events.append(
-                f"plate {wheel}: the acceleration below {ACCELERATION_BAND:g} Hz reaches {acceleration[index]:.4g} m/s2 "
-                f"at t = {index * timestep:.6g} s, and exceeds {LARGEST_ACCELERATION:g} m/s2 for {number(share, 2)} % of "
-                "the time, as in a pothole or on a rough road; the tyre may lift off"
+                f"plate {wheel}: the acceleration below {ACCELERATION_BAND:g} Hz reaches {acceleration[index]:.4g} "
+                f"m/s2 at t = {index * timestep:.6g} s, and exceeds {LARGEST_ACCELERATION:g} m/s2 for "
+                f"{number(share, 2)} % of the time, as in a pothole or on a rough road; the tyre may lift off"
             )
     return events
 

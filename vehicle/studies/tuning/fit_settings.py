@@ -142,12 +142,12 @@ class PosteriorSettings(Settings):
         metavar="K",
     )
     discrepancy: float = setting(
-        "expected relative error of the model in each third octave, a standard deviation [-]; default: %(default)g",
+        "expected relative error of the model in a third octave (standard deviation) [-]; default: %(default)g",
         DISCREPANCY,
         factor=0.01,
         type=float,
         metavar="PERCENT",
-        help="expected relative error of the model in each third octave, a standard deviation [%%]; default: %(default)g",
+        help="expected relative error of the model in a third octave (standard deviation) [%%]; default: %(default)g",
     )
     rival: Sequence[str] = setting(
         "compare the fitted law with a second one; give the settings of the second law, for example "
