@@ -64,9 +64,7 @@ def _dampers(summary: RunSummary) -> list[str]:
     limit, fast = 1e3 * share["slip_velocity"], 1e3 * summary["saturated_velocity"]
     started = {wheel: time for wheel, time in first.items() if time is not None}
     slow = max(full.values()) >= NAMED_SHARE
-    every, ending = ("both dampers", "") if len(first) == 2 else ("the damper", "s")
-    if len(first) > 2:
-        every = "all dampers"
+    every, ending = {1: ("the damper", "s"), 2: ("both dampers", "")}.get(len(first), ("all dampers", ""))
     if started:
         shares = _each(first, lambda w, side: f"{number(100 * share[w])} % ({side})", " and ")
         earliest = min(started, key=lambda wheel: started[wheel])

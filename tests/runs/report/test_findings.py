@@ -28,6 +28,22 @@ def test_the_share_of_incoherent_lines_is_that_of_the_table(reported):
 
 
 @pytest.mark.parametrize(
+    ("wheels", "words"),
+    [
+        (["fl"], "the damper sticks"),
+        (["fr", "fl"], "both dampers stick"),
+        (["fr", "fl", "rr", "rl"], "all dampers stick"),
+    ],
+)
+def test_one_two_and_four_dampers_stick(reported, wheels, words):
+    summary = read_summary(reported.folder)
+    summary["slip_share"] |= dict.fromkeys(wheels, 0.0)
+    summary["first_slip_s"] = dict.fromkeys(wheels)
+    summary["friction_saturated_share"] = dict.fromkeys(wheels, 0.0)
+    assert f"\ndamper      {words} all the time (|v| < 6 mm/s)\nresonances" in summary_text(summary)
+
+
+@pytest.mark.parametrize(
     ("full", "console", "page"),
     [
         (5e-5, ["both dampers stick all the time (|v| < 6 mm/s)"], "Both dampers are all the time stuck: "),
