@@ -147,9 +147,9 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
     laws = {name: fields.get(f"law/{name}", np.zeros(0)) for name in rows}
     ends = {
         name: (int(model.eq_obj1id[index]), int(model.eq_obj2id[index]))
-        for index, (name, own) in enumerate(rows.items())
+        for index, (name, indices) in enumerate(rows.items())
         # A fluid carries no static force.
-        if len(own) == 3 and not name.startswith(FLUID)
+        if len(indices) == 3 and not name.startswith(FLUID)
     }
     rotational = [name for name in ends if laws[name].size and laws[name][TURNING] > 0.0]
     torques = dict(zip(rotational, preload[preload.size - 3 * len(rotational) :].reshape(-1, 3), strict=True))
@@ -164,11 +164,11 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
     standing, springs, treads = np.zeros((len(numbers), 6)), [], set()
     # Sites, directions, stiffness, preload, torque, rotational stiffness and nonlinear laws by axis.
     soft, hard = list[tuple[Any, ...]](), list[tuple[Any, ...]]()
-    for index, (name, own) in enumerate(rows.items()):
+    for index, (name, indices) in enumerate(rows.items()):
         law = laws[name]
         if name in ends:
             moving, carrier = (int(model.site_bodyid[site]) for site in ends[name])
-            force, torque = preload[own.start : own.stop], torques.get(name, np.zeros(3))
+            force, torque = preload[indices.start : indices.stop], torques.get(name, np.zeros(3))
             if not bodies & {moving, carrier}:
                 continue
             if model.body_mocapid[carrier] >= 0:
@@ -186,7 +186,7 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
         elif model.eq_type[index] == mujoco.mjtEq.mjEQ_TENDON and law.size:
             lower, upper = (model.site(f"{name}/{end}").id for end in ("lower", "upper"))
             if bodies & {int(model.site_bodyid[lower]), int(model.site_bodyid[upper])}:
-                pull = float(preload[own.start])
+                pull = float(preload[indices.start])
                 springs.append(
                     Spring(
                         lower=lower,

@@ -76,15 +76,12 @@ class Station:
 
 
 def ride_figures(car: CarModel, axles: Mapping[str, AxleRide], *, roll: bool = True) -> dict[str, RideFigure]:
-    """Compute the headline figures of a car at rest.
+    """Compute the figures of a car at rest: "heave", "pitch", "roll", then "front wheel hop" and so on by axle.
 
     Args:
         car: car in static equilibrium, with standing tyres.
         axles: its axles, with their dampers stuck or sliding; see `axle_rides`.
         roll: False leaves out roll, which needs the roll centres of the axles; its figure is nan.
-
-    Returns:
-        Figures by motion: "heave", "pitch", "roll", then "front wheel hop" and so on by axle.
 
     Raises:
         SimulationError: an axle has no equilibrium near its design position.

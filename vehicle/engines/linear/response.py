@@ -28,7 +28,7 @@ def frequency_response(
     *,
     driven: npt.ArrayLike | None = None,
 ) -> npt.NDArray[np.complex128]:
-    """Return the response of outputs per driven displacement, exact at every line.
+    """Return the exact response per driven displacement; (..., m) for one output, (..., outputs, m) for several.
 
     H(jw) = (jw)^p (C (jw I - A)^-1 (b0 + jw b1) + g), by the poles of A: C V diag(1/(jw - s)) V^-1 b. Systems whose
     eigenvectors are nearly dependent (critical damping) are solved directly at each line.
@@ -39,9 +39,6 @@ def frequency_response(
         outputs: name of an output, or several.
         quantity: displacement (p = 0) [m/m], velocity (p = 1) [m/s per m] or acceleration (p = 2) [m/s2 per m].
         driven: amplitude of each input relative to the driven displacement, shape (w,); 1 for all by default.
-
-    Returns:
-        Complex response, shape (..., m) for one output, (..., outputs, m) for several.
 
     Raises:
         ConfigurationError: an unknown output, a frequency that is not a finite number of at least zero, or a model

@@ -50,10 +50,10 @@ class LoadPlaces:
         self.names = car.vehicle.load_channels if names is None else tuple(names)
         equalities = equality_rows(model)
         self.connections: list[tuple[str, Index, int]] = []
-        for name, own in equalities.items():
-            if len(own) == 3:
+        for name, indices in equalities.items():
+            if len(indices) == 3:
                 carrier = int(model.site_bodyid[model.eq_obj2id[model.equality(name).id]])
-                self.connections.append((name.rpartition("/")[2], np.array(own), carrier))
+                self.connections.append((name.rpartition("/")[2], np.array(indices), carrier))
         own_rows = rows.layout.bushings.rows
         self.oblique = {int(own_rows[index, 0]): way for index, way in rows.directions.items()}
         self.springs = [(spring.name, equalities[spring.name].start) for spring in composition.springs]

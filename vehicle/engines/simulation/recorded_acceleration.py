@@ -49,14 +49,11 @@ WEIGHTS = _weights()
 
 
 def acceleration(position: Vector, interval: float) -> Vector:
-    """Compute the second time derivative of a record in place, to save memory.
+    """Compute the second time derivative [unit/s2] of a record in place, a view of its first n values; (n,).
 
     Args:
         position: positions at the n samples of the record and AHEAD more, in any unit, overwritten; (n + AHEAD,).
         interval: sampling interval T [s].
-
-    Returns:
-        Acceleration [unit/s2], a view of the first n values; (n,).
     """
     count, initial, past = position.size - AHEAD, position[0], np.zeros(AHEAD)
     for first in range(0, count, BLOCK):

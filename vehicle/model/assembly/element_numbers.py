@@ -187,15 +187,12 @@ def hold_numbers(vehicle: Vehicle) -> Numbers:
 def element_numbers(
     vehicle: Vehicle, body: Superelement, like: tuple[Vehicle, Sequence[Numbers]] | None = None
 ) -> list[Numbers]:
-    """Return the numbers of every element of a car.
+    """Return the numbers of every element: body, parts, springs on joints, connections, springs, dampers, hold.
 
     Args:
         vehicle: the car.
         body: superelement of the car, with the masses fixed to it.
         like: another car with the same elements and body, and its numbers, which are reused for equal elements.
-
-    Returns:
-        Numbers of each element, in the order: body, parts, springs on joints, connections, springs, dampers, hold.
     """
     makers: list[Callable[[Any], Numbers]] = []
     elements: list[list[Any]] = []

@@ -37,7 +37,7 @@ class BeamSection:
 
 
 def local_stiffness(length: float, section: BeamSection) -> FloatArray:
-    """Return the stiffness matrix of a beam in its local axes.
+    """Return the stiffness of a beam in its local axes [N/m, N, N m], (12, 12): (ux, uy, uz, rx, ry, rz) of both nodes.
 
     Axial E A / L, torsion G J / L, and in each bending plane the cubic-interpolation terms 12, 6 L, 4 L^2, 2 L^2
     times E I / L^3.
@@ -45,9 +45,6 @@ def local_stiffness(length: float, section: BeamSection) -> FloatArray:
     Args:
         length: distance between the end nodes [m].
         section: cross-section stiffnesses.
-
-    Returns:
-        Stiffness [N/m, N, N m], shape (12, 12), order (ux, uy, uz, rx, ry, rz) of the first and of the second node.
 
     Source: J. S. Przemieniecki, Theory of Matrix Structural Analysis, 1968, eq. (5.116) without shear deformation.
     """
@@ -123,14 +120,11 @@ def beam_stiffness(start: ArrayLike, end: ArrayLike, section: BeamSection) -> Fl
 
 
 def frame_stiffness(positions: FloatArray, beams: list[tuple[int, int, BeamSection]]) -> FloatArray:
-    """Assemble the stiffness matrix of a space frame.
+    """Assemble the stiffness matrix of a space frame [N/m, N, N m], (6 n, 6 n): (ux, uy, uz, rx, ry, rz) node by node.
 
     Args:
         positions: node positions [m], shape (n, 3).
         beams: first node, second node and section of each beam.
-
-    Returns:
-        Stiffness [N/m, N, N m], shape (6 n, 6 n), order (ux, uy, uz, rx, ry, rz) node by node.
     """
     stiffness = np.zeros((6 * len(positions), 6 * len(positions)))
     for first, second, section in beams:

@@ -43,14 +43,11 @@ class BodyFrame:
         return self.skeleton.node_mass
 
     def modes(self, factors: Mapping[str, float], count: int) -> tuple[FloatArray, FloatArray]:
-        """Compute the lowest free-free modes.
+        """Compute the lowest free modes: frequencies [Hz], (count,), mass-normalised shapes [kg^-1/2], (count, n, 3).
 
         Args:
             factors: factor of every member group [1].
             count: number of elastic modes.
-
-        Returns:
-            Frequencies [Hz], shape (count,); mass-normalised shapes [kg^-1/2], shape (count, n, 3).
         """
         condensed, _ = condense_rotations(self._stiffness(factors))
         skeleton = self.skeleton

@@ -75,14 +75,11 @@ def pack(control: SemiActiveDamper) -> npt.NDArray[np.float64]:
 
 
 def in_steps(numbers: npt.ArrayLike, timestep: float) -> npt.NDArray[Any]:
-    """Return the records of controlled dampers for a time step.
+    """Return the records of `SETTING` of controlled dampers for a time step, (...), without controllers.
 
     Args:
         numbers: parameters from `pack`, (..., 8).
         timestep: time step [s]; period and delay are rounded to whole steps, the period to at least one.
-
-    Returns:
-        Records of `SETTING`, (...), without controllers.
     """
     values = np.asarray(numbers, dtype=float)
     records = np.concatenate([values, np.zeros((*values.shape[:-1], 1))], axis=-1)

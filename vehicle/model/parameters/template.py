@@ -199,15 +199,15 @@ def _check(template: Template, raw: Mapping[str, Any]) -> None:
                     f"port_defaults.{port}: unknown name {word!r}; the most similar is {nearest(word, allowed)}"
                 )
     used: set[str] = set()
-    known: dict[str, Collection[str]] = {"joint": joints, **dict.fromkeys(_PARTS, parts)}
-    known |= dict.fromkeys(_POINTS, template.hardpoints)
+    names_of: dict[str, Collection[str]] = {"joint": joints, **dict.fromkeys(_PARTS, parts)}
+    names_of |= dict.fromkeys(_POINTS, template.hardpoints)
 
     def look(where: str, table: Mapping[str, Any]) -> None:
         for key, value in table.items():
             if isinstance(value, Mapping):
                 look(f"{where}.{key}", value)
                 continue
-            allowed = known.get(key)
+            allowed = names_of.get(key)
             for word in value if isinstance(value, list) else [value]:
                 head, _, side = str(word).partition(":")
                 if key == "name" and not NAME_PATTERN.fullmatch(head):

@@ -49,7 +49,7 @@ def plate(origin: ArrayLike, axis: int, span: Sequence[float], corners: Sequence
 
 
 def lathe(profile: ArrayLike, *, sections: int = 24, closed: bool = False) -> trimesh.Trimesh:
-    """Build the body of revolution of a profile about the z axis.
+    """Build the body of revolution of a profile about the z axis; outward normals if it is closed.
 
     x = r cos(phi), y = r sin(phi), phi = 2 pi k / sections
 
@@ -59,9 +59,6 @@ def lathe(profile: ArrayLike, *, sections: int = 24, closed: bool = False) -> tr
         profile: points (r, z) [m], shape (n, 2); an open profile that begins and ends on the axis gives a closed body
         sections: number of divisions of the full turn
         closed: join the last point to the first (a ring that does not touch the axis)
-
-    Returns:
-        mesh with outward normals if it is closed
     """
     phi = 2 * np.pi * np.arange(sections) / sections
     vertices: list[Array] = []

@@ -99,7 +99,7 @@ def grid(points: Array, *, flip: bool = False) -> trimesh.Trimesh:
 
 
 def coons(bottom: Array, top: Array, left: Array, right: Array) -> Array:
-    """Return the bilinearly blended surface between four boundary curves.
+    """Return the bilinearly blended surface between four boundary curves; (m, n, 3), v along the first index.
 
     S(u, v) = (1-v) bottom(u) + v top(u) + (1-u) left(v) + u right(v) - bilinear blend of the four corners
 
@@ -108,9 +108,6 @@ def coons(bottom: Array, top: Array, left: Array, right: Array) -> Array:
         top: curve at v = 1, shape (n, 3)
         left: curve at u = 0, shape (m, 3), from the bottom to the top
         right: curve at u = 1, shape (m, 3)
-
-    Returns:
-        points, shape (m, n, 3), v along the first index
 
     Source: S. A. Coons, Surfaces for computer-aided design of space forms, MIT MAC-TR-41, 1967.
     """

@@ -32,7 +32,7 @@ from vehicle.model.flexbody.sources.free_body_modes import (
 def craig_bampton(
     body: BodyMatrices, free: FreeModes, attachments: Sequence[Any], up_to: float, held_to: float
 ) -> tuple[ReducedModes, int]:
-    """Compute the modes of the free body by Craig-Bampton reduction.
+    """Return the modes of the free body by Craig-Bampton reduction, and the number of fixed-interface modes used.
 
     Args:
         body: K and M.
@@ -40,9 +40,6 @@ def craig_bampton(
         attachments: N of each attachment, with displacement u = N' x for degrees of freedom x; sparse, shape (dofs, 3).
         up_to: highest mode of the reduced K and M [Hz]; modes above become residual flexibility.
         held_to: highest fixed-interface mode in the basis [Hz].
-
-    Returns:
-        Modes of the reduced K and M; number of fixed-interface modes in the basis.
     """
     constraint = np.hstack([attachment.toarray() for attachment in attachments])
     displacement = free.factor.solve(constraint)
