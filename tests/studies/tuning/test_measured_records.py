@@ -12,6 +12,7 @@ from vehicle.signals.formats import uff_writer
 from vehicle.signals.formats.channel import Channel, uniform_axis
 from vehicle.signals.formats.text_format import write_table
 from vehicle.studies.tuning.measured_targets import measured_histories
+from vehicle.studies.tuning.record_target import RecordTarget
 
 NOISE = 0.02
 STRIBECK = ("damper.friction_law='stribeck'", "damper.stribeck_friction=160.0", "damper.coulomb_friction=60.0")
@@ -110,6 +111,7 @@ def test_a_record_contains_its_plate(tmp_path):
     assert entry.target.window == pytest.approx((2.0, 5.999))
     assert any("begins in motion: the first 2 s are left out" in text for text in entry.notices)
     # What is left of the start at rest: sticking is remembered longer than two seconds at single instants.
+    assert isinstance(entry.target, RecordTarget)
     assert np.sqrt(np.mean(entry.target.residuals(Car.load()) ** 2)) < 0.02
     with pytest.raises(ConfigurationError, match="found a low-pass of 0 Hz, must be above 0"):
         measured_histories(Car.load(), file, None, names, lowpass=0.0)

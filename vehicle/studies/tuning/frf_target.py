@@ -167,18 +167,14 @@ class FrfTarget:
         pairs = [pair for name in self.data.names if (pair := row_of(name, model.names)) is not None]
         return np.array([factor * np.interp(frequency, model.frequency, model.response[row]) for row, factor in pairs])
 
-    def misfit(self, response: Complex, groups: Mapping[str, float], lags: Mapping[str, float] | None = None) -> Vector:
+    def misfit(self, response: Complex, groups: Mapping[str, float], lags: Mapping[str, float]) -> Vector:
         """Return Re, Im of ln(H exp(-2 pi i f d) / Hm) over the deviation, (2 channels, m); 0 where undefined."""
-        delays = self.delays.of(self.data.channels, groups, lags or {})
+        delays = self.delays.of(self.data.channels, groups, lags)
         return scaled_ratio(self.data.response, late(response, self.data.frequency, delays), self.deviation)
 
     def settled(self, groups: Mapping[str, float]) -> Self:
         """Return the target with known delays of all groups [s]."""
         return replace(self, delays=self.delays.settled(groups))
-
-    def residuals(self, model: Car | Run) -> Vector:
-        """Return `misfit` of a model with the known delays, (2 channels, frequencies)."""
-        return self.misfit(self.response(model), {})
 
     def lags(self, model: Car) -> dict[str, PhaseDelay]:
         """Return the lag of best agreement with a car for each channel; only channels with the same motion."""

@@ -163,12 +163,12 @@ class LevelTarget:
         reference = self.delays.of([self.reference], groups, lags)
         return self.delays.of(self.outputs, groups, lags) - reference
 
-    def misfit(self, response: Complex, groups: Mapping[str, float], lags: Mapping[str, float] | None = None) -> Vector:
+    def misfit(self, response: Complex, groups: Mapping[str, float], lags: Mapping[str, float]) -> Vector:
         """Return the residuals of FRFs, see `FrfTarget.misfit`, in rows of `lines_per_row`, (rows, lines of a row).
 
         The windows are not moved: a delay of 1 % of their length lowers |H| by less than 0.1 %.
         """
-        turned = late(response, self.data.frequency, self._delays(groups, lags or {}))
+        turned = late(response, self.data.frequency, self._delays(groups, lags))
         rows = scaled_ratio(self.data.response, turned, self.deviation)
         parts = -(-self.lines.size // self.lines_per_row)
         whole = np.zeros((rows.shape[0], parts * self.lines_per_row))
@@ -178,10 +178,6 @@ class LevelTarget:
     def settled(self, groups: Mapping[str, float]) -> Self:
         """Return the target with known delays of all groups [s]."""
         return replace(self, histories=self.histories.settled(groups))
-
-    def residuals(self, model: Car | Run) -> Vector:
-        """Return `misfit` of a model with the known delays, (rows, lines of a row)."""
-        return self.misfit(self.response(model), {})
 
     def lags(self, model: Car) -> dict[str, PhaseDelay]:
         """Return the lag of best agreement with a car for each channel; only channels with the same motion."""

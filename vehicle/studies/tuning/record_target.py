@@ -156,10 +156,10 @@ class RecordTarget:
             )
         return self._filtered(np.array([run[name] for name in names]))
 
-    def misfit(self, response: Vector, groups: Mapping[str, float], lags: Mapping[str, float] | None = None) -> Vector:
+    def misfit(self, response: Vector, groups: Mapping[str, float], lags: Mapping[str, float]) -> Vector:
         """Return (ym - y(t - d)) over the RMS of ym, (channels, samples); 0 where the run has no value."""
         measured = self.measured()
-        delays = self.delays.of(self.recorded, groups, lags or {})
+        delays = self.delays.of(self.recorded, groups, lags)
         residuals = measured - self._delayed(response, delays)
         residuals[np.round(self.kept - delays[:, None] / self.record.step) > self.record.time.size - 1] = 0.0
         return np.asarray(residuals / np.sqrt(np.mean(measured**2, axis=1, keepdims=True)))
@@ -174,7 +174,7 @@ class RecordTarget:
 
     def residuals(self, model: Car | Run) -> Vector:
         """Return (ym - y) over the RMS of ym, (channels, samples), with y from `model_histories`."""
-        return self.misfit(self.response(model), {})
+        return self.misfit(self.response(model), {}, {})
 
     def lags(self, model: Car) -> dict[str, PhaseDelay]:
         """Return the lag of best agreement with a car for each channel; only channels with the same motion."""
