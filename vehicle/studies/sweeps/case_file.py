@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.digits import aligned
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.parameter_list import flattened
 from vehicle.model.parameters.paths import assignments
@@ -175,17 +176,8 @@ class CaseResults:
 
     def lines(self) -> list[str]:
         """Return the printed table, and the best car in words."""
-        rows = self.rows()
-        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-        table = [
-            "  ".join(
-                cell.ljust(width) if column == 0 else cell.rjust(width)
-                for column, (cell, width) in enumerate(zip(row, widths, strict=True))
-            ).rstrip()
-            for row in rows
-        ]
         meaning = f"{self.name}: RMS after the weightings of a seat (ISO 2631-1); {self.error_words}"
-        return [*table, meaning, self.sentence]
+        return [*aligned(self.rows()), meaning, self.sentence]
 
     @property
     def error_words(self) -> str:
@@ -221,7 +213,7 @@ def case_results(table: SweptCases, cars: Sequence[str]) -> CaseResults:
         name=name,
         weighted=table.column(name).reshape(len(inputs), -1),
         unweighted=table.column(name.replace(WEIGHTED, UNWEIGHTED)).reshape(len(inputs), -1),
-        errors=change_errors(table, np.arange(len(table.cases)).reshape(len(inputs), -1).T.tolist(), name)[0].T,
+        errors=change_errors(table.rows(), np.arange(len(table.cases)).reshape(len(inputs), -1).T.tolist(), name)[0].T,
     )
 
 
