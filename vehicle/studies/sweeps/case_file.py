@@ -193,8 +193,10 @@ class CaseResults:
         best = int(np.nanargmin(means))
         if best == 0:
             return "Over all inputs no car is smoother than the car as it is."
+        doubt = ", not more than its error" if abs(means[best]) <= self.half_widths[-1, best] else ""
         return (
-            f"Over all inputs the smoothest car is {self.cars[best]!r}: {means[best]:+.1f} % against the car as it is."
+            f"Over all inputs the smoothest car is {self.cars[best]!r}: {means[best]:+.1f} % against the car as it is"
+            f"{doubt}."
         )
 
 
