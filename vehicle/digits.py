@@ -1,6 +1,8 @@
-"""Numbers for people, with a number of significant digits and no exponent."""
+"""Numbers for people, with a number of significant digits and no exponent; times; tables of texts."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 
 def rounded(value: float, digits: int) -> float:
@@ -28,3 +30,20 @@ def duration(seconds: float) -> str:
         if seconds >= size:
             return f"{number(seconds / (0.5 * size), 2)} {unit}"
     return f"{seconds:.0f} s"
+
+
+def aligned(rows: Sequence[Sequence[str]], *, left: int = 1) -> list[str]:
+    """Return rows of cells as lines with aligned columns.
+
+    Args:
+        rows: cells; all rows have the same number.
+        left: number of first columns that are aligned left; the others are aligned right.
+    """
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return [
+        "  ".join(
+            cell.ljust(width) if column < left else cell.rjust(width)
+            for column, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ).rstrip()
+        for row in rows
+    ]

@@ -24,6 +24,7 @@ from vehicle.names import AXES
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.comfort import comfort_values
 from vehicle.signals.analysis.comfort_error import WAVES, difference_error
+from vehicle.signals.analysis.ride_comfort import ERROR, UNWEIGHTED, WEIGHTED, comfort_columns, wave_names
 from vehicle.signals.analysis.road_level import CLASSES, REFERENCE
 from vehicle.signals.excitation.iso_road import isotropic_coherence
 from vehicle.signals.excitation.road_drive import RoadDrive
@@ -89,29 +90,33 @@ def comfort(repetitions: int) -> Rows:
     rows: Rows = []
     for duration in (10.0, 30.0, 60.0):
         for kind, length in (("generated road", 1), ("Gaussian road", PERIOD)):
-            seconds = duration - SKIP
             found = [
-                comfort_values(1.0 / RATE, np.array([car.record(seconds, length * duration, seed) for car in cars]))
+                comfort_columns(
+                    1.0 / RATE, np.array([car.record(duration, length * duration, seed) for car in cars]), skip=SKIP
+                )
                 for seed in range(repetitions)
             ]
-            values = np.array([one.overall for one in found])
-            error = np.array([one.error[0] * one.overall[0] for one in found])
-            apart = np.array([difference_error(*one.waves) for one in found])
-            gap = values[:, 0] - values[:, 1]
-            rows.append(
-                {
-                    "road": kind,
-                    "duration": duration,
-                    "comfort": values[:, 0].mean(),
-                    "scatter": values[:, 0].std(ddof=1),
-                    "stated": np.sqrt(np.mean(error**2)),
-                    "covers_95": np.mean(np.abs(values[:, 0] - values[:, 0].mean()) < 1.96 * error),
-                    "difference": gap.mean(),
-                    "its_scatter": gap.std(ddof=1),
-                    "its_error": np.sqrt(np.mean(apart**2)),
-                    "it_covers_95": np.mean(np.abs(gap - gap.mean()) < factor * apart),
-                }
-            )
+            for name in (UNWEIGHTED, WEIGHTED):
+                values = np.array([one[name] for one in found])
+                error = np.array([one[f"{name}{ERROR}"][0] * one[name][0] for one in found])
+                waves = np.array([[one[each] for each in wave_names(name)] for one in found])
+                apart = difference_error(*np.moveaxis(waves[:, 0::2] + 1j * waves[:, 1::2], 2, 0))
+                gap = values[:, 0] - values[:, 1]
+                rows.append(
+                    {
+                        "road": kind,
+                        "value": name,
+                        "duration": duration,
+                        "comfort": values[:, 0].mean(),
+                        "scatter": values[:, 0].std(ddof=1),
+                        "stated": np.sqrt(np.mean(error**2)),
+                        "covers_95": np.mean(np.abs(values[:, 0] - values[:, 0].mean()) < 1.96 * error),
+                        "difference": gap.mean(),
+                        "its_scatter": gap.std(ddof=1),
+                        "its_error": np.sqrt(np.mean(apart**2)),
+                        "it_covers_95": np.mean(np.abs(gap - gap.mean()) < factor * apart),
+                    }
+                )
     return rows
 
 

@@ -20,6 +20,7 @@ from vehicle.commands.options import (
     vehicle_options,
 )
 from vehicle.commands.parser import Parser
+from vehicle.digits import aligned
 from vehicle.errors import ConfigurationError
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
 
@@ -123,12 +124,8 @@ def job(options: argparse.Namespace) -> None:
         print(json.dumps(data[0] | ({"channels": data} if len(data) > 1 else {}), indent=2, allow_nan=False))
         return
     for results in channels:
-        rows = order_rows(results)
-        widths = [max(len(cell) for cell in column) for column in zip(HEADS, *rows, strict=True)]
         print(f"{car.vehicle.name}, {results.channel}, {caption}; amplitudes")
-        for row in (HEADS, *rows):
-            print("  ".join(f"{cell:>{width}}" for cell, width in zip(row, widths, strict=True)))
-        print("\n".join(order_points_sentences(results)))
+        print("\n".join([*aligned([HEADS, *order_rows(results)], left=0), *order_points_sentences(results)]))
 
 
 def _data(results: OrderPoints) -> dict[str, Any]:

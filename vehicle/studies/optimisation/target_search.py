@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from vehicle.digits import number
+from vehicle.digits import aligned, number
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.paths import value_of as parameter_value
 from vehicle.model.parameters.ranges import Range
@@ -135,7 +135,7 @@ class TargetSearch:
         ]
         figures = [("target", "input", "limit", "before", "after", "now"), *self.rows()]
         errors = [ERROR_WORDS] if any(error > 0.0 for error in self.after_error) else []
-        return [*_aligned(parameters), *_aligned(figures), *errors, self.sentence]
+        return [*aligned(parameters), *aligned(figures), *errors, self.sentence]
 
     def summary(self) -> dict[str, Any]:
         """Return the result for `summary.json`."""
@@ -200,10 +200,13 @@ def meet_targets(
         for index, (source, measure) in enumerate(measures.items()):
             settings = SweepSettings(engine="reduced", measure=measure, skip=measure.skip, executor=executor)
             plan = plan_sweep(car, changes, source, settings)
-            # The cars of the sample take long; those of a step are few.
-            begun, part = index / len(measures), SAMPLE_SHARE / len(measures)
-            each = partial(_within, progress, SAMPLE_SHARE * begun, part) if len(changes) >= SAMPLE else None
-            table = plan.run(progress=each)
+
+            def report(part: float, done: float = index / len(measures)) -> None:
+                # The cars of the sample take long; those of a step are few.
+                if progress is not None and len(changes) >= SAMPLE:
+                    progress(SAMPLE_SHARE * (done + part / len(measures)))
+
+            table = plan.run(progress=report)
             # With one change the sweep runs the unchanged car first.
             columns |= {name: table.column(name)[-len(changes) :] for name in measure.units}
         return np.stack([columns[f"{name}{suffix}"] for suffix in ("", ERROR) for name in names], axis=1)
@@ -233,12 +236,6 @@ def meet_targets(
         change=replace(change, excess=change.excess / np.array([figure.weight for figure in figures.values()])),
         inputs=tuple(str(source) for source in measures),
     )
-
-
-def _within(progress: Callable[[float], None] | None, begun: float, part: float, finished: float) -> None:
-    """Report a finished fraction of a part of the search that began at a fraction `begun`."""
-    if progress is not None:
-        progress(begun + part * finished)
 
 
 def outlook(ranges: int, figures: Mapping[str, Figure], duration: float) -> str:
@@ -281,15 +278,3 @@ def _with_start(vehicle: Vehicle, bounds: Range) -> Range:
 
 def _finite(value: float) -> float | None:
     return value if math.isfinite(value) else None
-
-
-def _aligned(rows: Sequence[Sequence[str]]) -> list[str]:
-    """Return rows of texts as lines with aligned columns."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return [
-        "  ".join(
-            cell.ljust(width) if column == 0 else cell.rjust(width)
-            for column, (cell, width) in enumerate(zip(row, widths, strict=True))
-        ).rstrip()
-        for row in rows
-    ]

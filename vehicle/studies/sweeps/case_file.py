@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.digits import aligned
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.parameter_list import flattened
 from vehicle.model.parameters.paths import assignments
@@ -175,17 +176,8 @@ class CaseResults:
 
     def lines(self) -> list[str]:
         """Return the printed table, and the best car in words."""
-        rows = self.rows()
-        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-        table = [
-            "  ".join(
-                cell.ljust(width) if column == 0 else cell.rjust(width)
-                for column, (cell, width) in enumerate(zip(row, widths, strict=True))
-            ).rstrip()
-            for row in rows
-        ]
         meaning = f"{self.name}: RMS after the weightings of a seat (ISO 2631-1); {self.error_words}"
-        return [*table, meaning, self.sentence]
+        return [*aligned(self.rows()), meaning, self.sentence]
 
     @property
     def error_words(self) -> str:
@@ -201,8 +193,10 @@ class CaseResults:
         best = int(np.nanargmin(means))
         if best == 0:
             return "Over all inputs no car is smoother than the car as it is."
+        doubt = ", not more than its error" if abs(means[best]) <= self.half_widths[-1, best] else ""
         return (
-            f"Over all inputs the smoothest car is {self.cars[best]!r}: {means[best]:+.1f} % against the car as it is."
+            f"Over all inputs the smoothest car is {self.cars[best]!r}: {means[best]:+.1f} % against the car as it is"
+            f"{doubt}."
         )
 
 
@@ -221,7 +215,7 @@ def case_results(table: SweptCases, cars: Sequence[str]) -> CaseResults:
         name=name,
         weighted=table.column(name).reshape(len(inputs), -1),
         unweighted=table.column(name.replace(WEIGHTED, UNWEIGHTED)).reshape(len(inputs), -1),
-        errors=change_errors(table, np.arange(len(table.cases)).reshape(len(inputs), -1).T.tolist(), name)[0].T,
+        errors=change_errors(table.rows(), np.arange(len(table.cases)).reshape(len(inputs), -1).T.tolist(), name)[0].T,
     )
 
 

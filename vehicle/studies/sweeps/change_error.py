@@ -7,8 +7,7 @@ event, as an obstacle, is the same for every car: its differences have no random
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import Protocol
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -25,23 +24,16 @@ NO_ERROR = "no +-: one event has no random error"
 """Words of tables with and without errors."""
 
 
-class StoredRows(Protocol):
-    """Cases of a sweep with their rows, see `SweptCases`."""
-
-    def rows(self) -> Iterator[Row]:
-        """Return the rows with numbers as texts of all digits."""
-
-
 def is_event(row: Row, name: str) -> bool:
     """Return True for a run on one event, whose comfort value has no random error; see `Signal`."""
     return row["values"].get(wave_names(name)[0]) == "nan"
 
 
-def change_errors(table: StoredRows, cars: Sequence[Sequence[int]], name: str) -> tuple[Vector, Vector]:
+def change_errors(rows: Iterable[Row], cars: Sequence[Sequence[int]], name: str) -> tuple[Vector, Vector]:
     """Return the standard errors of the changes from the first car, in the unit of the value.
 
     Args:
-        table: table of a sweep.
+        rows: all rows of a sweep, with numbers as texts of all digits.
         cars: numbers of the rows of each car on n inputs.
         name: comfort value, as "weighted".
 
@@ -49,7 +41,7 @@ def change_errors(table: StoredRows, cars: Sequence[Sequence[int]], name: str) -
         Errors, (cars, n), 0 on an input that is one event; NaN for a failed run, and for a car without n rows. 1 for
         each input that is one event, 0 for the others, (n,).
     """
-    names, listed = wave_names(name), [(is_event(row, name), row["values"]) for row in table.rows()]
+    names, listed = wave_names(name), [(is_event(row, name), row["values"]) for row in rows]
     parts = np.array([[float(values.get(each, "nan")) for each in names] for _, values in listed])
     waves = parts[:, 0::2] + 1j * parts[:, 1::2]
     first = list(cars[0])

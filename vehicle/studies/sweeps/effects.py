@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.digits import number
+from vehicle.digits import aligned, number
 from vehicle.drawing.rendering.tornado_plot import draw_tornado, plot_tornado
 from vehicle.studies.sweeps.change_error import MEANING_OF_ERROR, NO_ERROR
 
@@ -138,14 +138,7 @@ def effect_lines(effects: Effects) -> list[str]:
         ]
         for each in effects.shown
     ]
-    widths = [max(len(row[column]) for row in (heads, *rows)) for column in range(len(heads))]
-    lines = [
-        "  ".join(
-            cell.ljust(width) if column == 0 else cell.rjust(width)
-            for column, (cell, width) in enumerate(zip(row, widths, strict=True))
-        ).rstrip()
-        for row in (heads, *rows)
-    ]
+    lines = aligned([heads, *rows])
     if len(effects.effects) > len(rows):
         lines.append(f"and {len(effects.effects) - len(rows)} parameters with smaller effects in {EFFECTS}")
     lines.append(f"change of {effects.name!r}, {effects.base:.4g} m/s2 of the unchanged car; {effects.error_words}")

@@ -152,7 +152,7 @@ def effects_of(
     rows = np.arange(len(table.cases)).reshape(inputs, -1)
     means = table.column(name)[rows].mean(axis=0)
     changes = 100.0 * (means / means[0] - 1.0)
-    widths = 100.0 * half_width(change_errors(table, rows.T.tolist(), name)[0]) / means[0]
+    widths = 100.0 * half_width(change_errors(table.rows(), rows.T.tolist(), name)[0]) / means[0]
     varied = [path for path in parameters if path not in without]
     effects = []
     for index, path in enumerate(varied):

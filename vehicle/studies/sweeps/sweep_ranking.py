@@ -10,6 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.digits import aligned
 from vehicle.digits import number as number_text
 from vehicle.model.parameters.parameter_list import value_text
 from vehicle.model.parameters.paths import unit_of_override, values_of_override
@@ -175,7 +176,7 @@ def ranked_cars(table: SweptCases) -> RankedCars | None:
     if not order:
         return None
     rows_of_cars = list(cars.values())
-    errors, events = change_errors(table, rows_of_cars, ranked_by)
+    errors, events = change_errors(table.rows(), rows_of_cars, ranked_by)
     widths = 100.0 * half_width(errors) / weighted[0]
     return RankedCars(
         prefix=prefix,
@@ -212,8 +213,7 @@ def ranking_lines(cars: RankedCars) -> list[str]:
         ]
         for car in shown
     ]
-    widths = [max(len(row[column]) for row in [heads, *rows]) for column in range(len(heads))]
-    lines = ["  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in [heads, *rows]]
+    lines = aligned([heads, *rows], left=0)
     left = len(cars.order) - len(shown)
     if left > 0:
         lines.append(f"and {left} more cars in table.csv")
