@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 import scipy
+from scipy.integrate import solve_ivp
 from scipy.signal import lfilter
 
 from tests.validation import validated
@@ -179,6 +180,22 @@ def test_the_peak_of_a_mode_in_a_run_up():
         source="second derivation: exact integration of the oscillator at 20 kHz",
         abs=0.02,  # the envelope leaves out the second pole of the pair, a share of the damping ratio
     )
+
+
+def test_the_peak_of_a_slow_mode_in_a_fast_run_up():
+    """The equation of the envelope, integrated step by step: b = 500, where a quadrature of its solution is alone."""
+    frequency, damping, b = 10.0, 0.02, 500.0
+    bandwidth = 2.0 * np.pi * frequency * damping
+    times = np.linspace(-0.1, 0.6, 1401)
+    solved = solve_ivp(
+        lambda u, a: (1j * b * u - 1.0) * a + 1.0, (-2.0, 0.6), [1.0 / (1.0 + 2j * b)], t_eval=times, rtol=1e-8,
+        atol=1e-10,
+    )  # fmt: skip
+    top = np.argmax(np.abs(solved.y[0]))
+    peak, late = run_up_peak(frequency, damping, b * bandwidth**2 / (2.0 * np.pi))
+    # The function looks for the top on 801 times, 0.008 apart here; the top is sqrt(1/b) = 0.045 wide.
+    assert peak == pytest.approx(abs(solved.y[0][top]), rel=4e-3)
+    assert late == pytest.approx(b * bandwidth / (2.0 * np.pi) * times[top], rel=0.05)
 
 
 def test_an_order_cut_separates_half_orders():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,7 +14,17 @@ from vehicle.errors import ConfigurationError
 from vehicle.runs.output.run_obstacle import obstacle_values
 from vehicle.runs.targets.figure import QUANTITIES, Figure
 from vehicle.runs.targets.values import Histories, value_of
-from vehicle.runs.targets.verdict import MET, MISSED, NOT_RUN, UNDECIDED, Rated, read_targets, sentence, state_of
+from vehicle.runs.targets.verdict import (
+    MET,
+    MISSED,
+    NOT_RUN,
+    UNDECIDED,
+    Rated,
+    read_targets,
+    sentence,
+    state_of,
+    verdict,
+)
 from vehicle.signals.analysis.ride_comfort import comfort_columns
 from vehicle.studies.optimisation.ride import ride_measure
 
@@ -102,6 +113,20 @@ def test_ratio_of_two_waves():
     )  # fmt: skip
     value, error = value_of(figure("ratio", channels=("above",), over=("below",), band=(1.0, 10.0)), ride)
     assert value == pytest.approx(0.4, rel=1e-12) and error == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_run_whose_channel_rests_does_not_hide_a_miss(on_road):
+    """Two runs of one car, in both orders; over the channel of the first a ratio is no number."""
+    ride = ride_of(on_road)
+    rest = replace(ride, of=lambda name: ride.of(name) * (name != "seat_rail_acc_y"))
+    ratio = figure("ratio", channels=("seat_rail_acc_z",), over=("seat_rail_acc_y",), unit="-", at_most=1e-3)
+    runs = [
+        SimpleNamespace(name=name, label="sedan", summary={"input": {"file": ""}}, histories=histories)
+        for name, histories in (("rest", rest), ("ride", ride))
+    ]
+    for order in (runs, runs[::-1]):
+        rated = verdict({"loud": ratio}, order)["sedan"]["loud"]
+        assert (rated.state, rated.run, rated.runs) == (MISSED, "ride", 2)
 
 
 def test_figures_of_an_obstacle_are_those_of_its_summary(on_cleat):

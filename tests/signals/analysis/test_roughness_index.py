@@ -117,6 +117,13 @@ def test_index_by_integration_over_a_corner():
     assert roughness_index(step, height).overall == pytest.approx(expected, rel=1e-3)
 
 
+@pytest.mark.parametrize("step", [0.05, 0.28, COARSEST])
+def test_a_constant_grade_has_no_index(step):
+    """11 m of start are no whole number of the coarse steps."""
+    height = 0.05 * step * np.arange(round(100.0 / step))
+    assert roughness_index(step, height).overall == pytest.approx(0.0, abs=1e-9)
+
+
 def test_refused_profiles():
     with pytest.raises(DataError, match=r"the heights are 0.5 m apart, must be at most 0.3 m"):
         roughness_index(0.5, np.zeros(100))

@@ -111,6 +111,31 @@ def test_a_measured_file_names_the_channel_of_its_rail(tmp_path, capsys):
     assert f"SEAT value (z, Wk)       {expected.rms:.4g}, of VDV {expected.vdv:.4g}" in capsys.readouterr().out
 
 
+def test_a_rail_at_another_rate_needs_resampling(tmp_path, capsys):
+    """Tones of 5 Hz, 1 m/s2 on the seat at 200 Hz and 2 m/s2 on the rail at 100 Hz, in one LVM file over 30 s."""
+    head = [
+        "LabVIEW Measurement", "Separator\tTab\nDecimal_Separator\t.\nMulti_Headings\tYes\nX_Columns\tMulti",
+        "***End_of_Header***", "Channels\t2", "Samples\t6000\t\t3000", "Date\t2026/01/02\t\t2026/01/02",
+        "Time\t10:00:00.0\t\t10:00:00.0", "Y_Unit_Label\tm/s2\t\tm/s2", "X_Dimension\tTime\t\tTime",
+        "X0\t0\t\t0", "Delta_X\t0.005\t\t0.01", "***End_of_Header***", "X_Value\tseat\tX_Value\trail\tComment",
+    ]  # fmt: skip
+    seat, rail = (
+        [f"{t:.6f}\t{size * np.sin(10.0 * np.pi * t):.6f}" for t in np.arange(30.0, step=step)]
+        for size, step in ((1.0, 0.005), (2.0, 0.01))
+    )
+    rows = [f"{above}\t{below}" for above, below in zip(seat, rail + ["\t"] * 3000, strict=True)]
+    path = tmp_path / "two_rates.lvm"
+    path.write_text("\n".join([*head, *rows, ""]))
+    command = ["--input", str(path), "--channel", "z=seat", "--rail", "z=rail"]
+    assert comfort(command) == 3
+    message = (
+        "the seat is at 200 Hz from 0 to 29.995 s, the rail at 100 Hz from 0 to 29.99 s; the SEAT value needs both"
+    )
+    assert message in capsys.readouterr().err
+    assert comfort([*command, "--resample", "100", "--to", "29"]) == 0
+    assert "SEAT value (z, Wk)       0.5, of VDV 0.5" in capsys.readouterr().out
+
+
 def test_a_sweep_of_a_car_with_a_seat(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     path = "seat.driver.bushings.cushion.stiffness.z"

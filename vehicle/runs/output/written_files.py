@@ -13,7 +13,6 @@ model: never a file that another command wrote below, which has a list of its ow
 from __future__ import annotations
 
 import errno
-import hashlib
 import json
 import os
 import re
@@ -22,6 +21,7 @@ from pathlib import Path
 
 from vehicle.errors import ConfigurationError
 from vehicle.replacement import folder_being_made, is_being_made
+from vehicle.signals.formats.file_digest import digest
 
 MARKER = ".vehicle-files"
 UNFINISHED, COMPLETE = ".vehicle-unfinished", ".vehicle-complete"
@@ -91,8 +91,7 @@ def _append(marker: Path, text: str) -> None:
 
 def digest_of(path: Path) -> str:
     """Return the beginning of the SHA-256 of a file."""
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()[:DIGITS]
+    return digest(path)[:DIGITS]
 
 
 def written(folder: Path) -> dict[str, frozenset[str]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import resources
 from pathlib import Path
 
@@ -152,10 +152,10 @@ def verdict(figures: Mapping[str, Figure], runs: Sequence[RatedRun]) -> dict[str
             state = state_of(figure, value, error)
             values[run.label].append(Rated(value=value, error=error, state=state, run=run.name, runs=1))
         for car, each in values.items():
-            worst = max(each, key=lambda rated_run: figure.sense * rated_run.value, default=Rated())
-            rated[car][name] = Rated(
-                value=worst.value, error=worst.error, state=worst.state, run=worst.run, runs=len(each)
-            )
+            # A ratio over a channel at rest is no number, and not worse than the values of other runs.
+            known = [rated_run for rated_run in each if not math.isnan(rated_run.value)] or each
+            worst = max(known, key=lambda rated_run: figure.sense * rated_run.value, default=Rated())
+            rated[car][name] = replace(worst, runs=len(each))
     return rated
 
 

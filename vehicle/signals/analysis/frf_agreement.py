@@ -178,7 +178,7 @@ def band_errors(
     Args:
         frequency: lines [Hz], (m,).
         measured, simulated: FRFs, (m,).
-        weight: weights of the lines, such as the product of both coherences, (m,) [-].
+        weight: weights of the lines, for example the product of both coherences, (m,) [-].
         bands: lower and upper edges [Hz].
 
     Returns:

@@ -78,7 +78,7 @@ def sums_of_poles(grid: PoleGrid, columns: Vector, halves: NDArray[np.int_]) -> 
         halves: lines n on each side of the centre of each window, in ascending order, shape (s,).
 
     Returns:
-        Vector and imaginary parts, shape (2, poles, s, c), of s(x) and of s(-x).
+        Real and imaginary parts, shape (2, poles, s, c), of s(x) and of s(-x).
     """
     middle, (count, width) = len(columns) // 2, columns.shape[1:]
     after, before = columns[middle + 1 :], columns[middle - 1 :: -1]

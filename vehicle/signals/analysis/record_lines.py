@@ -2,7 +2,7 @@
 
     X_k = sum_j x_j exp(-2 pi i j k / n) = sum_b exp(-2 pi i b L k / n) Z_b(k),   blocks b of L samples
 
-A transform of all n samples needs up to ten times the memory of the record if n has a large prime factor, such as
+A transform of all n samples needs up to ten times the memory of the record if n has a large prime factor, as
 60 001 or 3 600 001 (a minute and an hour at 1 kHz), and five times the time of a neighbouring n. Z_b is the zoomed
 transform of a block, a chirp z-transform; the sum over b uses Horner's scheme. The result agrees with the transform of
 all n samples to 1e-13 of the strongest line.

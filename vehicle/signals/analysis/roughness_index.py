@@ -97,7 +97,7 @@ def roughness_index(step: float, height: ArrayLike, *, segment: float = 100.0) -
     averaged = max(1, round(AVERAGED / step))
     slope = (profile[averaged:] - profile[:-averaged]) / (averaged * step)
     start = round(STARTED / step)
-    mean_slope = (profile[min(start, profile.size - 1)] - profile[0]) / STARTED
+    mean_slope = (profile[start] - profile[0]) / (start * step)
     matrix, drive = step_matrices(step)
     # Each mode of the step is a recursion of the first order.
     poles, shapes = np.linalg.eig(matrix)

@@ -18,7 +18,7 @@ longer."""
 def thinned(positions: Vector, edges: Indices, nodes: int = MOST_NODES, lines: int = MOST_LINES) -> Indices:
     """Return the lines of a wireframe with a limited number of nodes and lines.
 
-    Nodes without an edge are omitted, such as middle nodes of elements. If the mesh is too large, nodes are selected by
+    Nodes without an edge are omitted, as middle nodes of elements. If the mesh is too large, nodes are selected by
     farthest-point sampling. Each other node belongs to the region of the nearest selected node along the edges, and two
     regions with a common edge are connected by a line.
 

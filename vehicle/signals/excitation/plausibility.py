@@ -54,7 +54,7 @@ class ImplausibleError(DataError):
 def check_level(
     path: Path, displacement: Mapping[str, Vector], timestep: float, units: Mapping[str, str] | None = None
 ) -> list[str]:
-    """Reject levels that indicate a wrong unit or quantity; return notices on rare events, such as a pothole.
+    """Reject levels that indicate a wrong unit or quantity; return notices on rare events, for example a pothole.
 
     Args:
         displacement: wheel -> plate displacement [m], shape (n,).

@@ -60,7 +60,7 @@ class Signal:
 
     Args:
         time: sample times [s], shape (n,), first value 0, uniform.
-        displacement: wheel, such as 'fr' -> plate displacement [m], shape (n,), positive upwards.
+        displacement: wheel, as 'fr' -> plate displacement [m], shape (n,), positive upwards.
         notices: messages on changes and suspicious features of the data.
         source: name of the file or description of the generator.
         sha256: hexadecimal digest of the file, None for a generated signal.

@@ -72,7 +72,7 @@ def read_signal(
 
     Args:
         path: measurement file of any format of `vehicle.signals.formats`.
-        wheel: wheel that a plain `displacement` column drives, such as `car.vehicle.shaker_wheel`; None if the columns
+        wheel: wheel that a plain `displacement` column drives, as `car.vehicle.shaker_wheel`; None if the columns
             name their wheels.
         interpolate: fill missing displacements by a cubic spline over gaps up to 10 ms.
         remove_mean: subtract the mean of each column.

@@ -39,8 +39,8 @@ class Channel:
         axis: times [s] or frequencies [Hz], (n,); None if missing.
         kind: quantity of the axis.
         function: time history, frequency response, coherence, or another name from the file.
-        place: measurement point, such as a node or a sensor; empty if missing.
-        direction: signed axis, such as +Z.
+        place: measurement point, for example a node or a sensor; empty if missing.
+        direction: signed axis, as +Z.
         reference: point and direction of the input of a frequency response.
         remark: note on this channel for the reader.
     """

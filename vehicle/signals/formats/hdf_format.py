@@ -98,7 +98,7 @@ def _walk(path: Path, file: Any, h5py: Any, notices: list[str]) -> tuple[tuple[C
 
 
 def _object_class(variable: Any) -> str:
-    """Return the class of a MATLAB object, such as a table; empty for arrays, structures and cells."""
+    """Return the class of a MATLAB object, for example a table; empty for arrays, structures and cells."""
     matlab_class = variable.attrs.get("MATLAB_class", b"")
     matlab_class = matlab_class.decode("latin-1") if isinstance(matlab_class, bytes) else str(matlab_class)
     return (

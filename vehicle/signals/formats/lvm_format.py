@@ -258,7 +258,7 @@ def _times(
 
 
 def _step(text: str) -> tuple[float, str]:
-    """Parse a time step [s]; for fixed decimals, such as 0.000977, recover the only matching whole rate."""
+    """Parse a time step [s]; for fixed decimals, as 0.000977, recover the only matching whole rate."""
     step = float(text)
     _, point, decimals = text.partition(".")
     if not point or not decimals.isdecimal() or step <= 0.0:

@@ -63,7 +63,7 @@ def check_matrix(path: Path, data: bytes, order: str, where: str, depth: int = 0
 
 
 def object_name(path: Path, data: bytes, order: str) -> tuple[str, str] | None:
-    """Return name and class of a MATLAB object, such as a table; None for other matrices.
+    """Return name and class of a MATLAB object, for example a table; None for other matrices.
 
     Args:
         data: bytes of the element without its tag.

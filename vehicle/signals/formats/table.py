@@ -92,7 +92,7 @@ class Table:
     sha256: str
 
     def row(self, row: int) -> str:
-        """Return the name of a row, such as "line 7", for messages."""
+        """Return the name of a row, as "line 7", for messages."""
         return f"{'line' if self.header.line else 'sample'} {self.lines[row]}"
 
     def place(self, row: int) -> str:

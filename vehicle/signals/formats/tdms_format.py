@@ -25,7 +25,7 @@ NO_DATE = 1904
 
 @contextmanager
 def _remarks() -> Iterator[list[str]]:
-    """Collect log messages of npTDMS, such as on an incomplete segment, that indicate missing data."""
+    """Collect log messages of npTDMS, as on an incomplete segment, that indicate missing data."""
     messages: list[str] = []
     handler = logging.Handler()
     handler.emit = lambda record: messages.append(record.getMessage())  # type: ignore[method-assign]

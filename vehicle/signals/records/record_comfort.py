@@ -161,7 +161,7 @@ def evaluate_comfort(
 
     Raises:
         ConfigurationError: unknown file or point of contact, or a SEAT value of a point other than a seat.
-        DataError: bad data, or a mean or drift that changes the result.
+        DataError: bad data, a mean or drift that changes the result, or a seat and a rail at different times.
 
     Source: ISO 2631-1:1997; BS 6841:1987; ISO 10326-1 (SEAT); ISO 5349-1:2001; EN 12299:2009; Directive 2002/44/EC.
     """
@@ -213,6 +213,15 @@ def evaluate_comfort(
         below = _read(file, rail, rail_choice, contact, offset, checked="z")
         if "z" not in record.channels or "z" not in below.channels:
             raise ConfigurationError("--rail: z is missing; the SEAT value needs z at the seat and at the rail")
+        ends, ends_below = (np.array([each.time[0], each.time[-1], each.step]) for each in (record, below))
+        if np.max(np.abs(ends - ends_below)) > 0.5 * record.step or record.time.size != below.time.size:
+            spans = [
+                f"{1.0 / step:.6g} Hz from {first:.6g} to {last:.6g} s" for first, last, step in (ends, ends_below)
+            ]
+            raise DataError(
+                f"{file}: the seat is at {spans[0]}, the rail at {spans[1]}; the SEAT value needs both at the same "
+                "times; set --resample HZ for another rate, --from and --to for another span"
+            )
         seat_and_rail = np.array([record.channels["z"], below.channels["z"]])
         seat_and_rail = without_offset(seat_and_rail) if removed else seat_and_rail
         summary["seat_value"] = asdict(
