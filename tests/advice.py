@@ -1,7 +1,5 @@
 """Run the commands that `inspect` advises for a file, as printed."""
 
-from __future__ import annotations
-
 import contextlib
 import io
 import shlex

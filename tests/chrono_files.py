@@ -1,7 +1,5 @@
 """Two vehicles in the JSON format of Project Chrono, made for the tests: wishbones, and struts in front."""
 
-from __future__ import annotations
-
 import copy
 import json
 from collections.abc import Mapping

@@ -1,7 +1,5 @@
 """Cars and short runs that several test folders share, made once a session."""
 
-from __future__ import annotations
-
 import gc
 
 import pytest

@@ -1,7 +1,5 @@
 """Inputs of others that once gave wrong numbers: a folder beside the project, of which the project holds no copy."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """A limit of the size of a file, which every writer meets as it meets a full disk."""
 
-from __future__ import annotations
-
 import resource
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -5,8 +5,6 @@ those of damaged measurement files alone. Each mutation depends on its number al
 process, with a signal of two seconds and the reduced engine.
 """
 
-from __future__ import annotations
-
 import argparse
 import contextlib
 import io

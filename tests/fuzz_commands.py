@@ -3,8 +3,6 @@
 Run by `python -m tests.fuzz`.
 """
 
-from __future__ import annotations
-
 import functools
 import io
 import random

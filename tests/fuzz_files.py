@@ -1,7 +1,5 @@
 """Damaged files of loggers, bus logs, frames and Parquet against `vehicle inspect`; run by `python -m tests.fuzz`."""
 
-from __future__ import annotations
-
 import functools
 import io
 import json

@@ -1,7 +1,5 @@
 """Mutations of a text for `python -m tests.fuzz`."""
 
-from __future__ import annotations
-
 import random
 import re
 

@@ -1,7 +1,5 @@
 """Periodic input, whose FRF has no leakage, with which the engines are tested."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from vehicle.signals.excitation.band import lines_in_band, period_of

@@ -1,7 +1,5 @@
 """Property files of a small car, in the format of Adams Car: a damper, a spring, a bushing and two stops."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The core dependencies: what the main job imports and nothing else, each with a lower bound and a locked version."""
 
-from __future__ import annotations
-
 import ast
 import re
 import sys

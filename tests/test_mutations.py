@@ -1,7 +1,5 @@
 """The seeded faults of `tools/mutations.py` can be tried: each text stands once, and its tests exist."""
 
-from __future__ import annotations
-
 from tools.mutations import FAULTS, ROOT
 
 

@@ -1,7 +1,5 @@
 """No test waits for a number of seconds of its own: a slow machine may take ten times as long."""
 
-from __future__ import annotations
-
 import ast
 from pathlib import Path
 

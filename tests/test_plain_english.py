@@ -1,7 +1,5 @@
 """The sources stay as plain as they are: rates of private phrases and vague names may fall, and must not rise."""
 
-from __future__ import annotations
-
 import importlib.util
 from collections import Counter
 from pathlib import Path

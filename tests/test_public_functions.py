@@ -1,7 +1,5 @@
 """What the public functions refuse before anything is computed, and how they read their arguments."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """`from vehicle import ...`: every public name exists, is imported at its first use alone, and says what it is."""
 
-from __future__ import annotations
-
 import ast
 import inspect
 import subprocess

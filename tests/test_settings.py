@@ -1,7 +1,5 @@
 """Settings of functions and commands: one declaration for Python, its documentation, the checks and the options."""
 
-from __future__ import annotations
-
 import inspect
 import re
 from importlib import import_module

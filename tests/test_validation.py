@@ -1,7 +1,5 @@
 """The validation page: rows that are recorded, compared with the page and written into it."""
 
-from __future__ import annotations
-
 import dataclasses
 import re
 

@@ -5,8 +5,6 @@ default of all that call it) and writes their rows into the page. In any other r
 rows there.
 """
 
-from __future__ import annotations
-
 import math
 import os
 import re

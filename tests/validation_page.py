@@ -1,7 +1,5 @@
 """The page `docs/validation.md`: written from rows, read back, merged, and compared with those that a test records."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -1,7 +1,5 @@
 """Speed of the bench: processor time of all numbers, and of a frame. `python -m tests.benchmarks.bench_speed`."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import time

@@ -3,8 +3,6 @@
 `python -m tests.benchmarks.blas_threads [--threads 8]`: two processes compute each job alternately; minimum of five.
 """
 
-from __future__ import annotations
-
 import argparse
 import hashlib
 import json

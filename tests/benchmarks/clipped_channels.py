@@ -5,8 +5,6 @@ deviation. Sound: noise as it is and rounded, sines that the rate is a multiple 
 waves as they are and with edges of several samples, telegraph signals, trains of bumps with rests, sweeps, shocks.
 """
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Iterator, Sequence
 

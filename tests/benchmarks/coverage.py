@@ -5,8 +5,6 @@ Parts: `comfort`, comfort_error and the error of a difference, of a linear car o
 intervals of Sobol indices; `tuning`, standard errors of fitted parameters.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections.abc import Callable, Sequence

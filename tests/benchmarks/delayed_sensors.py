@@ -4,8 +4,6 @@
 12.3 ms late and have noise of 4 % of their RMS.
 """
 
-from __future__ import annotations
-
 import argparse
 import tempfile
 from collections.abc import Mapping, Sequence

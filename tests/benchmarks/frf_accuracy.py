@@ -4,8 +4,6 @@ Peaks are judged by B = 2 zeta f T, the lines within the half-power width of the
 coherence at every peak. Then lines without input, resonances of 1 and 20 minutes, two plates, time of 33 channels.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import sys

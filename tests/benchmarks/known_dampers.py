@@ -9,8 +9,6 @@ those of LSODA of SciPy (relative tolerance 1e-7) with dry friction that sticks 
 no part of the damper.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import sys
 import time

@@ -1,7 +1,5 @@
 """Linear systems whose FRF is known, and records of them with a known coherence."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

@@ -5,8 +5,6 @@
 Asked: the named motion holds half of the energy, or two motions are named with their shares.
 """
 
-from __future__ import annotations
-
 from vehicle.engines.linear.motion_names import NAMED
 from vehicle.runs.car import Car
 

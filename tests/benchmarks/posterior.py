@@ -4,8 +4,6 @@
 friction against a degressive damper at five levels of noise, for a hidden car of each.
 """
 
-from __future__ import annotations
-
 import argparse
 import time
 from collections.abc import Mapping

@@ -3,8 +3,6 @@
 Each record is drawn with a given band, evaluated at shifted and stretched times, and given noise of its own.
 """
 
-from __future__ import annotations
-
 import argparse
 import time
 from collections.abc import Sequence

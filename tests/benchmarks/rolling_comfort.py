@@ -3,8 +3,6 @@
 python -m tests.benchmarks.rolling_comfort [--duration 30] [--speed 80] [--engine reduced]
 """
 
-from __future__ import annotations
-
 import argparse
 
 from vehicle.commands.road import road_drive

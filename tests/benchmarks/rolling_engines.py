@@ -8,8 +8,6 @@ against MuJoCo at its own step; `fine` at a step of 0.25 ms; `odd` and `even` ar
 with the road and that do not: without and with products of two motions.
 """
 
-from __future__ import annotations
-
 import argparse
 from dataclasses import replace
 

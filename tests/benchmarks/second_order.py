@@ -8,8 +8,6 @@ two suspension travels, of their velocities, and of a travel and the second deri
 second order. Then the difference of the RMS without and with the second order.
 """
 
-from __future__ import annotations
-
 import argparse
 from dataclasses import replace
 

@@ -3,8 +3,6 @@
 Counts first (rows, degrees of freedom), then time: medians of interleaved runs on one core, and the price in accuracy.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

@@ -8,8 +8,6 @@ with the largest error that was not stated. Then a table of all main channels: s
 or 1 %. FOLDER keeps the RMS values of MuJoCo.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 from pathlib import Path

@@ -5,8 +5,6 @@ values at once, so the time is that of planning, dispatch, storing and writing o
 as for worker processes.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import pickle

@@ -1,7 +1,5 @@
 """The bench follows a slider, and its benchmark runs; times are compared within a run, not judged."""
 
-from __future__ import annotations
-
 import time
 
 import pytest

@@ -1,7 +1,5 @@
 """The bench of the FRF estimate with few seeds: what it must show, with the scatter that few seeds leave."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

@@ -1,7 +1,5 @@
 """The benchmark runs and says what it should; times are not judged here."""
 
-from __future__ import annotations
-
 import json
 import os
 

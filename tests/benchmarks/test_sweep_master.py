@@ -1,7 +1,5 @@
 """The benchmark of the process of a sweep runs; a case takes little memory there."""
 
-from __future__ import annotations
-
 import tracemalloc
 
 import numpy as np

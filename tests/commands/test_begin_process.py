@@ -1,7 +1,5 @@
 """What a process is told that is one command, and one that only calls a command is not."""
 
-from __future__ import annotations
-
 import atexit
 import gc
 import os

@@ -1,7 +1,5 @@
 """`python -m vehicle body show`: tables, files, and a model that is not the body of the vehicle file."""
 
-from __future__ import annotations
-
 import csv
 import json
 import tomllib

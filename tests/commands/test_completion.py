@@ -1,7 +1,5 @@
 """`python -m vehicle --version` and `--print-completion`: the script is run by bash itself."""
 
-from __future__ import annotations
-
 import subprocess
 import tomllib
 from pathlib import Path

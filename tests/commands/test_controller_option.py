@@ -1,7 +1,5 @@
 """`shaker --controller`: the FMU of a controller for all semi-active dampers of a car."""
 
-from __future__ import annotations
-
 import json
 import sys
 import tomllib

@@ -1,7 +1,5 @@
 """`python -m vehicle drive`: files, figures, and what it refuses."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -3,8 +3,6 @@
 The files that other tests make are checked where they are made, see `tests/conftest.py`.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

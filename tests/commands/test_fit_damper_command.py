@@ -1,7 +1,5 @@
 """`python -m vehicle fit-damper`: printed summary, files, and lines that are the fitted law in a vehicle file."""
 
-from __future__ import annotations
-
 import json
 import tomllib
 from pathlib import Path

@@ -1,7 +1,5 @@
 """`inspect` prints a command that runs as printed; several files give one table."""
 
-from __future__ import annotations
-
 import json
 import shlex
 

@@ -1,7 +1,5 @@
 """The rig for axles as a command: table, JSON, files, refusals."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

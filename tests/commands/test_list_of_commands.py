@@ -1,7 +1,5 @@
 """`python -m vehicle`: the list, the same command under both of its names, the same options everywhere."""
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

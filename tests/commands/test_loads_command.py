@@ -1,7 +1,5 @@
 """`python -m vehicle loads`: the files of a run with loads, and what is refused."""
 
-from __future__ import annotations
-
 import csv
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The argument parser of all commands: groups of options that act, values with a minus, one meaning for each word."""
 
-from __future__ import annotations
-
 import argparse
 import contextlib
 from importlib import import_module

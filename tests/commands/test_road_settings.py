@@ -1,7 +1,5 @@
 """Settings of a road: declared once, for the command line, for Python and for its documentation."""
 
-from __future__ import annotations
-
 from vehicle.commands.road import road_of
 from vehicle.commands.shaker import parser
 from vehicle.runs.car.road import Road

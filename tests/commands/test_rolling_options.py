@@ -1,7 +1,5 @@
 """Which commands let the tyres roll, and what they say of it."""
 
-from __future__ import annotations
-
 import argparse
 import json
 from pathlib import Path

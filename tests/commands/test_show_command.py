@@ -1,7 +1,5 @@
 """The command that shows a car: text, JSON, files, parameters, refusals."""
 
-from __future__ import annotations
-
 import csv
 import json
 

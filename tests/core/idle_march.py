@@ -1,7 +1,5 @@
 """A march with given numbers, and zeros or empty arrays for all others: for tests of its parts."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

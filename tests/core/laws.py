@@ -1,7 +1,5 @@
 """Laws of the core at single states, as Python functions of records and numbers."""
 
-from __future__ import annotations
-
 import ctypes
 from typing import Any
 

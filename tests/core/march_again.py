@@ -3,8 +3,6 @@
 It imports numpy and the core alone, so that it also runs with a checked memory (`tools/core_sanitized.py`).
 """
 
-from __future__ import annotations
-
 import ctypes
 import pickle
 import sys

@@ -3,8 +3,6 @@
 `python -m tests.core.recorded_march FILE` writes those of all cases to a file for `march_again`.
 """
 
-from __future__ import annotations
-
 import pickle
 import sys
 from pathlib import Path

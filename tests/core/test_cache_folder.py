@@ -1,7 +1,5 @@
 """Folder of a core that is compiled on this machine: without a home folder, not where others write."""
 
-from __future__ import annotations
-
 import os
 import tempfile
 

@@ -1,7 +1,5 @@
 """All processors give equal bits: AVX2, SSE2 and WebAssembly march every law to the same last digit."""
 
-from __future__ import annotations
-
 import ctypes
 import shutil
 import subprocess

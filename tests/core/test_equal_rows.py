@@ -1,7 +1,5 @@
 """Both variants of x86-64 give equal bits of the rows of MuJoCo: AVX2 and SSE2 run every law to the same last digit."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

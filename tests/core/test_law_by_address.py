@@ -1,7 +1,5 @@
 """A control law of the user's own: a C function by its address, here one of ctypes, in both engines."""
 
-from __future__ import annotations
-
 import ctypes
 from contextlib import contextmanager
 

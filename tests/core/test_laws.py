@@ -1,7 +1,5 @@
 """Laws of the core against their classes, which have the equations and are tested by closed forms."""
 
-from __future__ import annotations
-
 import dataclasses
 import itertools
 

@@ -1,7 +1,5 @@
 """A record with a wrong length or index is an exception in Python, not a crash or wrong numbers of the core."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import mujoco

@@ -1,7 +1,5 @@
 """A friction law of the user's own: a C function by its address, in both engines, a batch and the laws of arrays."""
 
-from __future__ import annotations
-
 import ctypes
 import math
 

@@ -1,7 +1,5 @@
 """A damper law of the user's own: a C function by its address, in both engines, a batch and the linear system."""
 
-from __future__ import annotations
-
 import ctypes
 
 import numpy as np

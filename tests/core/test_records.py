@@ -1,7 +1,5 @@
 """Records of Python and of the core have one layout; arrays that do not fit are refused, not read as other numbers."""
 
-from __future__ import annotations
-
 from typing import NamedTuple, get_type_hints
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The core's transform, weighting, density and spline, which the page of a report uses, against NumPy and SciPy."""
 
-from __future__ import annotations
-
 import ctypes
 
 import numpy as np

@@ -5,8 +5,6 @@ the picture is its caption. `python -m tests.documentation.gallery [PAGE ...]` r
 `tests.documentation.pages` does, and replaces their pictures.
 """
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """The page of the architecture: its drawing is that of the script, and both name every package."""
 
-from __future__ import annotations
-
 import re
 
 from tests.test_architecture import PACKAGE, ROOT, WINGS

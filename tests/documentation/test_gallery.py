@@ -1,7 +1,5 @@
 """Every page of the gallery runs, is short, and has the picture and the numbers that its commands make."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

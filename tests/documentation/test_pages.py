@@ -1,7 +1,5 @@
 """Every command and example of README.md and docs/ runs, and prints what its page shows."""
 
-from __future__ import annotations
-
 import argparse
 import json
 from importlib import import_module

@@ -1,7 +1,5 @@
 """The site builds without a warning, and needs no network."""
 
-from __future__ import annotations
-
 import re
 import shlex
 import subprocess

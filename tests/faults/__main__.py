@@ -1,7 +1,5 @@
 """`make faults`: every system call of every command fails once, random kills; writes the table `docs/faults.md`."""
 
-from __future__ import annotations
-
 import argparse
 import contextlib
 import io

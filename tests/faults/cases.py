@@ -1,7 +1,5 @@
 """Cases of the fault table: a command in a forked process with one fault, and what is true afterwards."""
 
-from __future__ import annotations
-
 import ctypes
 import errno
 import os

@@ -1,7 +1,5 @@
 """What a case runs: a command, or a way of writing alone."""
 
-from __future__ import annotations
-
 import ctypes
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, Future

@@ -1,7 +1,5 @@
 """Jobs of the fault table: each command that writes, with each option that writes, and short inputs."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Iterator, Sequence
 from importlib import import_module

@@ -1,7 +1,5 @@
 """Process with the preloaded library that runs the cases of commands and prints their outcomes as lines of JSON."""
 
-from __future__ import annotations
-
 import contextlib
 import dataclasses
 import json

@@ -1,7 +1,5 @@
 """Build the preloaded library, run the cases of commands in processes of their own, and count the outcomes."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

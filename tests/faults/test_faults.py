@@ -1,7 +1,5 @@
 """The fault table has every command that writes; a sample of it is run, the ways of writing without a computation."""
 
-from __future__ import annotations
-
 import pytest
 
 from tests.faults.cases import FAULTS

@@ -1,7 +1,5 @@
 """The half car with rider, with controlled dampers in bodies and rows of MuJoCo, without the lumped model."""
 
-from __future__ import annotations
-
 import mujoco
 import numpy as np
 

@@ -1,7 +1,5 @@
 """A small car on four rolling wheels: hubs on springs at the wheel centres, and its motion derived on paper."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any

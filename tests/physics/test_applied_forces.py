@@ -1,7 +1,5 @@
 """Applied forces in both engines: linear car solved directly, friction, mean forces, energy, batches, variants."""
 
-from __future__ import annotations
-
 import math
 
 import mujoco

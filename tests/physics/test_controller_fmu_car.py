@@ -1,7 +1,5 @@
 """A controller in an FMU on the complete car: equal to the own law in both engines, and failures in a run."""
 
-from __future__ import annotations
-
 import sys
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The degressive damper as simulated: its law, alone and with friction, against a stiff solver, and in the car."""
 
-from __future__ import annotations
-
 import mujoco
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Forces in the axes of a part, which turn with it: at finite rotations, in the stiffness, and in both engines."""
 
-from __future__ import annotations
-
 import mujoco
 import numpy as np
 import pytest

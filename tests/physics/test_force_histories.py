@@ -1,7 +1,5 @@
 """Histories of applied forces: files and run-ups against an own fine integration of the linear car, both engines."""
 
-from __future__ import annotations
-
 import mujoco
 import numpy as np
 import pytest

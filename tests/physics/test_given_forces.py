@@ -1,7 +1,5 @@
 """Histories of forces: as recorded channels, from Python in place of a file; linear responses per unit of a force."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

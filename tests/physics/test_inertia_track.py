@@ -1,7 +1,5 @@
 """Hydromount with an inertia track: by its closed form in a run, and in the matrices, runs and variants of the car."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A car reflected in its middle plane, with reflected plates, has the reflected motion and loads."""
 
-from __future__ import annotations
-
 import copy
 import re
 from typing import Any

@@ -1,7 +1,5 @@
 """The modal superelement in MuJoCo: a free body under a force at a node, and its axes when it is turned."""
 
-from __future__ import annotations
-
 import mujoco
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Elements with a rotational stiffness on a flexible body whose nodes have rotations: against all of K and M."""
 
-from __future__ import annotations
-
 import mujoco
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """A tyre that never pulls: max(0, load - k r - c r'), against quadrature with events, and on the car."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp

@@ -1,7 +1,5 @@
 """A record of the plates that begins at another height than zero: the car stands settled at the first sample."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

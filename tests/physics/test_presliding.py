@@ -1,7 +1,5 @@
 """Presliding friction in both engines: loops, creep, order in the step, the limit of a stiff curve."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A car with property files of Adams Car runs in both engines as with the same numbers in its file."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -43,8 +43,7 @@ LIMITS = {
 def test_response_up_to_100_hz(engine, damper):
     limit = LIMITS[engine, damper]
     car = Car.load(None, [f"damper.coulomb_friction={FRICTION[damper]}"])
-    channels = [f"{point}_acc_{axis}" for point in ("knuckle_fr", "seat_rail", "engine") for axis in "xyz"]
-    channels += ["suspension_mount_fr_acc_z", "body_front_acc_z"]
+    channels = ["knuckle_fr_acc_z", "seat_rail_acc_z", "engine_acc_z", "suspension_mount_fr_acc_z", "body_front_acc_z"]
     run = car.run(periodic_motion(), engine=engine, channels=[*channels, "plate_fr_displacement"])
     responses = np.array([run[name][:-1] for name in channels])
     plate = run["plate_fr_displacement"][None, :-1]

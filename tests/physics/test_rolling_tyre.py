@@ -1,7 +1,5 @@
 """Tyres that roll: poles against derivations on paper, the limit of standing, energy, and both engines."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Round tyres at rest: lowest point of the tread at any attitude, and the stiffness that a fixed patch takes off."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import mujoco

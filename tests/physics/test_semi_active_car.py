@@ -1,7 +1,5 @@
 """Semi-active dampers on the complete car: limits, settings as a channel, both engines, what is refused."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Semi-active dampers of both engines against the lumped half car with rider, every law, with delay and rate."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import mujoco

@@ -1,7 +1,5 @@
 """Friction of a damper that grows with the side force on its rod: by the statics of a strut, and in both engines."""
 
-from __future__ import annotations
-
 import mujoco
 import numpy as np
 import pytest

@@ -4,8 +4,6 @@ The difference of the engines is the finite motion of the parts, a relative erro
 tables with breakpoints in proportion to the motion act as in large motion.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from tests.physics.test_mirrored_car import DECOUPLER, FILE, crooked, plates

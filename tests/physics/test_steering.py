@@ -1,7 +1,5 @@
 """Steering of rack, column and wheel: mode in closed form, both engines, resonance over speed, friction of the rack."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import scipy

@@ -1,7 +1,5 @@
 """A car that is quick to build, for the studies on roads."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """The course: answers of its exercises by a second way, hints for wrong answers, notebooks made of its pages."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

@@ -1,7 +1,5 @@
 """`python -m scenarios.four_post`: what sticks on a smooth input and slides on a rough one, against the matrices."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

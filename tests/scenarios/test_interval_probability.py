@@ -1,7 +1,5 @@
 """Predictive probability of a published interval: calibration by Monte Carlo, near misses, limits."""
 
-from __future__ import annotations
-
 import itertools
 import math
 

@@ -1,7 +1,5 @@
 """No curve of a chart is behind its legend."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

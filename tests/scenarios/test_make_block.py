@@ -1,7 +1,5 @@
 """The pavement of `scenarios.inputs.make_block`: its spectrum, its tracks, its file."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

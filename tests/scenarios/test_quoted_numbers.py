@@ -1,7 +1,5 @@
 """Numbers that README.md and docs/trust.md quote from the table of published results are those of the table."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Callable

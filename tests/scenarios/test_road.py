@@ -1,7 +1,5 @@
 """`python -m scenarios.road` as a user runs it; the scaling of a linear car with friction; and its rows."""
 
-from __future__ import annotations
-
 import json
 from types import SimpleNamespace
 

@@ -1,7 +1,5 @@
 """The study of semi-active dampers: settings, sentences on values, and the measure on a run."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """`python -m scenarios.wheel_shake` as a user runs it: friction makes the shake of a wheel, a road takes it."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

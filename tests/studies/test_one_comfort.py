@@ -1,7 +1,5 @@
 """One comfort everywhere: report, run in Python, sweep and search give the same numbers under the same names."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Commands as a user runs them: in a folder of their own, with a short signal."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path

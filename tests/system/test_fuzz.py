@@ -1,7 +1,5 @@
 """A few of the mutations of `python -m tests.fuzz`, and the judge that must see what is wrong."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

@@ -1,7 +1,5 @@
 """The package as it is installed: built as a wheel, run by its console script in an empty folder."""
 
-from __future__ import annotations
-
 import importlib.util
 import json
 import os

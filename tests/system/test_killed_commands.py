@@ -1,7 +1,5 @@
 """What a killed command leaves: results of before or new ones, whole, and a sentence of the next command."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

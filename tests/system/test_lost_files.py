@@ -1,7 +1,5 @@
 """No file is lost that a run did not write: folders, films, links, two runs at once."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """Every traceback that was seen, every input that hung: one message, an exit code of the contract, at once."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -3,8 +3,6 @@
 Every call that opens a file for writing, makes, renames or removes one is in a list with its reason.
 """
 
-from __future__ import annotations
-
 import ast
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """A car on a road by the main job: the same plates as the road command, what the summary says, what is refused."""
 
-from __future__ import annotations
-
 import csv
 import json
 
@@ -73,15 +71,6 @@ def test_plates_that_follow_later_run_on_a_road_without_frfs(shaker, tmp_path):
     assert summary["comfort"]["seat_rail"]["rms_2_50_hz"]["z"] > 0.0
 
 
-def test_a_sweep_drives_over_a_road(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    # On four wheels, as other tests: the march is compiled for each number of dampers and plates.
-    arguments = ["--vehicle", "focus_road", "--vary", "*.damper.coulomb_friction=20,90", "--engine", "reduced"]
-    assert sweep([*arguments, "--road", "A", "--speed", "100", "--duration", "4", "--output", "out", "--quiet"]) == 0
-    table = (tmp_path / "out" / "table.csv").read_text(encoding="utf-8")
-    assert table.count("road_A_100") == 2
-
-
 def test_seeds_of_a_road_give_the_error_of_a_difference(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     arguments = ["--vehicle", "focus_road", "--vary", "*.damper.coulomb_friction=20,90", "--engine", "reduced"]
@@ -129,7 +118,6 @@ def test_a_road_is_evaluated_from_two_seconds_on(shaker, tmp_path):
     ("arguments", "message"),
     [
         ([], "set --input FILE, or a road, for example --road C --speed 80"),
-        ([], "set --input FILE, or a road"),
         (["--road"], "--road: the road is missing; give a class of ISO 8608 (A to H) or FILE.csv"),
         (["--road", "C"], "the speed on the road is missing"),
         (["--road", "Z", "--speed", "80"], "road class 'Z': must be one of A, B"),

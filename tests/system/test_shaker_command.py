@@ -160,12 +160,6 @@ def test_right_wheel_and_text_histories(shaker, short_signal, tmp_path):
     assert len(lines) == 2 + 6001
 
 
-def test_shipped_inputs_are_found_by_name(shaker):
-    outcome = shaker("--input", "lov.csv")
-    assert outcome.code == 2
-    assert "lov.csv" in outcome.err and "Did you mean low.csv?" in outcome.err
-
-
 def test_modes_command(capsys):
     from vehicle.commands.modes import main
 

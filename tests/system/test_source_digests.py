@@ -1,7 +1,5 @@
 """The digest of the program changes with every file it stands for: without one, old results pass as new."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

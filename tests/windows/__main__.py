@@ -7,8 +7,6 @@ FOLDER is made by `tools/windows_folder.py FOLDER --for-wine`. Wine is not Windo
 differ, so a good table means "tested with CPython for Windows under wine".
 """
 
-from __future__ import annotations
-
 import argparse
 import shlex
 import shutil

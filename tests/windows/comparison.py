@@ -1,7 +1,5 @@
 """Comparison of the results of a command on two systems: texts without paths and times, numbers within 1e-8."""
 
-from __future__ import annotations
-
 import csv
 import difflib
 import json

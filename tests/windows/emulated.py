@@ -1,7 +1,5 @@
 """Processes: of this system, and of CPython for Windows under wine."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

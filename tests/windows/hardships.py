@@ -1,7 +1,5 @@
 """What a laptop does to a command: a kill, a lock, a file open in another program, a full disk, a read-only folder."""
 
-from __future__ import annotations
-
 import csv
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """The notebooks of the documentation run from top to bottom and say what they said."""
 
-from __future__ import annotations
-
 import os
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What a car, a run and its FRFs look like in a notebook, and as tables of pandas and xarray."""
 
-from __future__ import annotations
-
 import sys
 import xml.etree.ElementTree as ElementTree
 

@@ -1,7 +1,5 @@
 """Choice of the OpenGL library and of ffmpeg, and what is said where one is missing."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Pictures of a stage: floor, horizon, and the frame that does not move."""
 
-from __future__ import annotations
-
 from contextlib import closing
 
 import mujoco

@@ -1,7 +1,5 @@
 """What deforms in the film, against the sites of the recorded places and their modal shapes."""
 
-from __future__ import annotations
-
 import mujoco
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Which part of a record a film shows, and how slowly."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np

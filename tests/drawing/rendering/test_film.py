@@ -1,7 +1,5 @@
 """A film of a fabricated recording, and the frame around it."""
 
-from __future__ import annotations
-
 import subprocess
 
 import mujoco

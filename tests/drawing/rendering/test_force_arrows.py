@@ -1,7 +1,5 @@
 """Arrows of forces in a film: their lengths, signs and points, and their length in the picture."""
 
-from __future__ import annotations
-
 import dataclasses
 from contextlib import closing
 

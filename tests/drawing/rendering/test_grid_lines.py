@@ -1,7 +1,5 @@
 """Grid lines drawn at once are those of matplotlib's ticks, and ticks without a label are not made."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from matplotlib import rc_context

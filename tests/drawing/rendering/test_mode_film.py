@@ -1,7 +1,5 @@
 """A mode as a film: its motion against MuJoCo's own kinematics, its cycles, and what the command refuses."""
 
-from __future__ import annotations
-
 import subprocess
 from types import SimpleNamespace
 from typing import Any

@@ -1,7 +1,5 @@
 """Pose mathematics of the film against MuJoCo's own kinematics."""
 
-from __future__ import annotations
-
 import mujoco
 import numpy as np
 import pytest

@@ -5,8 +5,6 @@ severity 1.0 on linear RGB. OKLab: Ottosson, A perceptual color space for image 
 just be noticed is about 0.02 there.
 """
 
-from __future__ import annotations
-
 import re
 from itertools import combinations
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Axes stand where the margins in inches say, and so do their labels and titles."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg

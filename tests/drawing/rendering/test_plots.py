@@ -1,7 +1,5 @@
 """The pictures of a run: they exist, name their units, and are the same bytes every time."""
 
-from __future__ import annotations
-
 import dataclasses
 import sys
 from typing import Any

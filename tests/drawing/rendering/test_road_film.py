@@ -1,7 +1,5 @@
 """A car on four wheels on the road: what passes under it is what its plates did."""
 
-from __future__ import annotations
-
 import dataclasses
 from pathlib import Path
 

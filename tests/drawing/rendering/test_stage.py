@@ -1,7 +1,5 @@
 """Shapes on the car change what is seen, and nothing else."""
 
-from __future__ import annotations
-
 import mujoco
 import numpy as np
 import pytest

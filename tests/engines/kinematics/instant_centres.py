@@ -4,8 +4,6 @@ A rigid link to the body, or a slide through a fixed point, cannot exchange powe
 unit vector d through a point p, d . (v + w x p) = 0. Five lines leave one motion. Nothing of the simulator is used.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Kinematics of an ideal MacPherson strut by root finding, without bodies and without Jacobians."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Kinematics and compliance of the axle against the geometry of a MacPherson strut and against the car's matrices."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

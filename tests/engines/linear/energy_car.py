@@ -12,8 +12,6 @@ potential has. It is taken off here; everything else is V. Nothing here knows of
 Jacobians: parameters, element constants and the superelement are all that is shared with the simulation.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

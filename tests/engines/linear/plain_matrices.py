@@ -1,7 +1,5 @@
 """The matrices of a car from plain arrays: for systems small enough to be known in closed form."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from vehicle.engines.linear.car_matrices import CarMatrices

@@ -1,7 +1,5 @@
 """A car without a time step gets the largest sufficient step."""
 
-from __future__ import annotations
-
 from vehicle.model.parameters.shipped import FOCUS_FILE
 from vehicle.model.parameters.toml_file import read_table
 from vehicle.model.parameters.vehicle import vehicle_of

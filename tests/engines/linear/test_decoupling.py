@@ -1,7 +1,5 @@
 """Decoupling of the engine on its mounts: own six-degree code, energy of the modes of the car, torque roll axis."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

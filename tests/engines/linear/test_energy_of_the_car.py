@@ -1,7 +1,5 @@
 """Modes of the car with gravity and preloads, compared with an independent derivation from energies."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The sedan at 280 km/h: a fast hold of its course alone is unstable; a single-track model on paper agrees."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Contributions of body modes to a channel, and of attachments to a mode: both sums are exact."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Names of modes: shares of the kinetic energy by named motion, against closed forms, M and the animation."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 from typing import Any
 

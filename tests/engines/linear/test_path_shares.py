@@ -1,7 +1,5 @@
 """Paths of a mode into the body: their sum, their forces, and a wheel that moves the body by its own axle."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

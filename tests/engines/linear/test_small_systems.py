@@ -1,7 +1,5 @@
 """Modes and frequency responses of matrices small enough to be known in closed form."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Item 49: a car that falls over by itself is refused in both engines by what moves, and its modes list it."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

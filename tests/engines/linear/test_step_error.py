@@ -1,7 +1,5 @@
 """Item 51: a step that is too long is rejected before the run, with the part and a sufficient step."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

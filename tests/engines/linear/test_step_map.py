@@ -1,7 +1,5 @@
 """The one-step map equals a step of the compiled model, and its poles converge to those of the matrices."""
 
-from __future__ import annotations
-
 import mujoco
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Modified cars equal the cars that are built, for every number of the shipped vehicle files."""
 
-from __future__ import annotations
-
 import gc
 import weakref
 from dataclasses import fields, is_dataclass

@@ -13,8 +13,6 @@ solver nor the integrator of MuJoCo takes part. Source: regular perturbation, Na
 1979, chapter 2.
 """
 
-from __future__ import annotations
-
 import copy
 from typing import Any, NamedTuple
 

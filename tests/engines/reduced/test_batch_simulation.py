@@ -1,7 +1,5 @@
 """Many cars at once against each of them alone: the same bits in any company, the same motion, exact friction."""
 
-from __future__ import annotations
-
 import dataclasses
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Cars that lack dampers, on one axle or both, gravity, damping, a moving road or outputs, in both engines."""
 
-from __future__ import annotations
-
 import tomllib
 from pathlib import Path
 from typing import Any

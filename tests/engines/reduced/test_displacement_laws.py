@@ -1,7 +1,5 @@
 """Bump stops, tables and tyres that lift off in the reduced engine: against a stiff solver, in batches, and MuJoCo."""
 
-from __future__ import annotations
-
 import dataclasses
 from typing import Any
 

@@ -5,8 +5,6 @@ second order in the motion: it falls with the level, and over 10 s of class A it
 channel. Along and across of the wheel carriers, which are made of rotations, 2.5 s leave more of it to chance: 1.6 %.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Long records: plates are made piece by piece, and what cannot be held is refused before it is computed."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

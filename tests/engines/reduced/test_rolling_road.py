@@ -5,8 +5,6 @@ friction; half their sum holds what is of second order in the motion, as the pre
 that moves along an arc. The reduced engine contains the load, and not the arcs.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Terms of the reduced engine that no run shows clearly, by their closed forms."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

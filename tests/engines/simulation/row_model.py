@@ -1,7 +1,5 @@
 """Small MuJoCo models in the naming convention of the generated car, and a stepper for them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import mujoco

@@ -1,7 +1,5 @@
 """Total force of the dampers in MuJoCo's data: the sensors hold what the channels of a run hold."""
 
-from __future__ import annotations
-
 import mujoco
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Item 52: a run whose energy balance does not close says so, and one that is wrong fails."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """A law along three axes with more numbers than those of today."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from tests.engines.simulation.row_model import Stepper, add_bushing, add_free_body, element_law, empty_spec

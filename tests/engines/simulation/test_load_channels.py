@@ -1,7 +1,5 @@
 """Loads of the car: against the trim, Newton's law, the closed form of a bushing, and between the engines."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import mujoco

@@ -1,7 +1,5 @@
 """A body of more modes than its attachments can tell apart: against the model in which MuJoCo holds them all."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

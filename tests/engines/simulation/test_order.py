@@ -1,7 +1,5 @@
 """Order of convergence of the row scheme in the step, and stability of what may be stiff."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Recorded accelerations: true in the band of use, without what lies above half the sampling rate, up to both ends."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from scenarios.signals.random_road import random_road

@@ -1,7 +1,5 @@
 """The sparse form of a run: pattern, factor, and the same motion as with dense rows."""
 
-from __future__ import annotations
-
 import ctypes
 
 import mujoco

@@ -1,7 +1,5 @@
 """Curves of the plots of the bench."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 from typing import Any
 

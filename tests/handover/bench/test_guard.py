@@ -1,7 +1,5 @@
 """Requests that the bench rejects."""
 
-from __future__ import annotations
-
 import pytest
 
 from vehicle.handover.bench.guard import Guard

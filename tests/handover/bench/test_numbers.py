@@ -1,7 +1,5 @@
 """Numbers of the bench: those of a run, FRFs of the linear car, excerpts and roads."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

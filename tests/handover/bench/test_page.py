@@ -1,7 +1,5 @@
 """Page of the bench on a real server, attacked by raw websocket clients; no browser."""
 
-from __future__ import annotations
-
 import os
 import socket
 import time

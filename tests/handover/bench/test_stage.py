@@ -1,7 +1,5 @@
 """Moving picture of the bench: modes, road and moved points on the nodes of a real server; no browser."""
 
-from __future__ import annotations
-
 import math
 from types import SimpleNamespace
 from typing import Any

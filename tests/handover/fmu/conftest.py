@@ -1,7 +1,5 @@
 """FMUs of the car of Bommer 2006 that several tests share."""
 
-from __future__ import annotations
-
 import pytest
 
 from vehicle.runs.car import Car

@@ -1,7 +1,5 @@
 """Master of an FMU in tests: FMPy drives the library of this platform step by step."""
 
-from __future__ import annotations
-
 import shutil
 import tempfile
 import weakref

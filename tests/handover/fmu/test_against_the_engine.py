@@ -1,7 +1,5 @@
 """An FMU against the reduced engine: the same car at the same step on the same plates."""
 
-from __future__ import annotations
-
 import dataclasses
 from dataclasses import replace
 from pathlib import Path

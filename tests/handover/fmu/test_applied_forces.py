@@ -1,7 +1,5 @@
 """Applied forces of a car as inputs of its FMU, against the reduced engine with the same histories."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

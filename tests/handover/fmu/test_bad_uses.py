@@ -1,7 +1,5 @@
 """What an FMU refuses, each with a sentence that says what is wrong and how to mend it."""
 
-from __future__ import annotations
-
 import ctypes
 import math
 import shutil

@@ -1,7 +1,5 @@
 """Tunable parameters, commands, communication steps and warnings of an FMU against other ways to the same motion."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """File of an FMU: valid for FMPy, equal bytes, libraries of these sources, refusals of the command."""
 
-from __future__ import annotations
-
 import json
 import zipfile
 from pathlib import Path

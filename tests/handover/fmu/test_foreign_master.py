@@ -1,7 +1,5 @@
 """An FMU in libcosim, a foreign master in C++ that loads FMUs with the FMI Library of the FMU compliance checker."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

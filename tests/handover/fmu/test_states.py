@@ -1,7 +1,5 @@
 """Instances of an FMU: equal bits after a state was set back or stored, and beside other instances."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

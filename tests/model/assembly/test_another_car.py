@@ -1,7 +1,5 @@
 """The generator takes any MacPherson front end: another car's hardpoints, its own body nodes, its own file."""
 
-from __future__ import annotations
-
 import mujoco
 import numpy as np
 import pytest

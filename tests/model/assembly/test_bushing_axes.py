@@ -1,7 +1,5 @@
 """A bushing along a line: its stiffness in the matrices, in MuJoCo at rest, and in the kinematics of an axle."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

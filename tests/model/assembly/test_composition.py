@@ -1,7 +1,5 @@
 """A car of data: one table adds a bushing, one entry a channel; own templates; mirrored sides; messages by table."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import Any

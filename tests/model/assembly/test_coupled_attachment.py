@@ -1,7 +1,5 @@
 """Bushings and joints in series with an attachment that couples the axes: against complex stiffnesses, in a car."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -5,8 +5,6 @@ the height of the centre of gravity, so that pitch does not move it along x, and
 car does not know. Then both are the same equations; the composed ones come from differences of forces, good to 1e-8.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A seat with its occupant on the complete car: apparent mass in closed form, channels, a file over another car."""
 
-from __future__ import annotations
-
 import dataclasses
 from typing import Any
 

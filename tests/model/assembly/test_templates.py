@@ -1,7 +1,5 @@
 """Templates of other axles and of a seat: a double wishbone against closed form in the plane, a beam, an occupant."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Small body for tests: a box of steel tubes with unequal corner masses."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Simulated modal test of the shipped body at twenty points: a universal file with its true modes and random errors."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Valid files of body models in every format, and changes that make them invalid."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

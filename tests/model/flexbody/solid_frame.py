@@ -1,7 +1,5 @@
 """A car-size frame of solid elements with point masses, as an input deck of CalculiX."""
 
-from __future__ import annotations
-
 import itertools
 import subprocess
 

@@ -1,7 +1,5 @@
 """Beam computed with ANSYS: matrices in the formats of ANSYS give the frequencies in its result file."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

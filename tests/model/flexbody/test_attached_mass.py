@@ -1,7 +1,5 @@
 """Masses attached to a flexible body: component-mode assembly against second derivations."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import scipy.linalg

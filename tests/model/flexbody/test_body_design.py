@@ -1,7 +1,5 @@
 """Body design: no geometry of the vehicle in the file, a source for every value, errors that name the entry."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

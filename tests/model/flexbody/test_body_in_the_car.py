@@ -1,7 +1,5 @@
 """Properties fitted on the complete car with stuck dampers: engine modes, wheel mode near 28 Hz, knuckle peak."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Body models from matrices and from modes: closed forms, modes by a second method, invalid sources."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 

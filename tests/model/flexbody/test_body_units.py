@@ -1,7 +1,5 @@
 """Units of bodies: consistent units, rejected units, and the option named in the message."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

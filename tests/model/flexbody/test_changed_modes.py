@@ -1,7 +1,5 @@
 """Frequency and damping of single body modes: changed by a vehicle file, in both engines, identified by a fit."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

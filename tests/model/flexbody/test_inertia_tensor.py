@@ -1,7 +1,5 @@
 """Inertia tensors: the tensor of the thesis is not physical; the nearest and the improved tensor are physical."""
 
-from __future__ import annotations
-
 import mujoco
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Body model from a modal test only: car with this body against car with the tested body."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

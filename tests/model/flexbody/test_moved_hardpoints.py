@@ -1,7 +1,5 @@
 """Common geometry: a moved hardpoint moves the node of the recomputed body; a rigid body needs no file."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np

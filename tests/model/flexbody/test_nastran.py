@@ -1,7 +1,5 @@
 """Matrices punched by Nastran: DMIG in three formats, nodes as GRID, and rejected files."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 

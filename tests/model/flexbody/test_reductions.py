@@ -1,7 +1,5 @@
 """Reductions of Rubin and of Craig and Bampton against closed sums and the classical partitioned matrices."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import scipy

@@ -1,7 +1,5 @@
 """Checks of a modal superelement: all invalid data are rejected with a message that contains the remedy."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Mirror symmetry: opposite nodes, and the parity of synthetic shapes."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

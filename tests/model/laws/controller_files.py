@@ -1,7 +1,5 @@
 """FMUs of controllers for tests: the library of tests/data/controller behind any model description."""
 
-from __future__ import annotations
-
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Forces of a vehicle file that are none: each one sentence with the key and what to set."""
 
-from __future__ import annotations
-
 import pytest
 
 from vehicle import Car, road

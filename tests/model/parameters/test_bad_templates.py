@@ -1,7 +1,5 @@
 """Templates that are none: each one sentence with file and table, and the exit code 2."""
 
-from __future__ import annotations
-
 import pytest
 
 from tests.model.parameters.test_bad_cars import TEXT, said_of

@@ -1,7 +1,5 @@
 """Orders of an engine: crank drive by its kinetic energy and by series, gas by its work, cylinders by their firing."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any

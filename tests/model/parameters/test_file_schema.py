@@ -1,7 +1,5 @@
 """JSON Schema of vehicle files and templates against jsonschema: shipped files pass, slips of the pen do not."""
 
-from __future__ import annotations
-
 import json
 import tomllib
 from typing import Any

@@ -1,7 +1,5 @@
 """Files of the cars: a unit and a source behind every value; of the Focus printed numbers, round trips, overrides."""
 
-from __future__ import annotations
-
 import dataclasses
 import re
 import tomllib

@@ -1,7 +1,5 @@
 """Every path that `show --search` or the bench offers can be read and set, for all shipped cars."""
 
-from __future__ import annotations
-
 import pytest
 
 from vehicle.handover.bench.setting import settings

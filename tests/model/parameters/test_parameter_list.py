@@ -1,7 +1,5 @@
 """All parameters of a car with unit, range and source; comments of vehicle files by path."""
 
-from __future__ import annotations
-
 from vehicle import Car
 from vehicle.model.parameters.parameter_list import CHANGED, DEFAULT, parameter_list
 from vehicle.model.parameters.paths import value_at

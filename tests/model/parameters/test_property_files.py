@@ -1,7 +1,5 @@
 """Property files of Adams Car in a vehicle file: numbers, units, signs, sources, and files that are refused."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

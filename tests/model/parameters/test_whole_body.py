@@ -1,7 +1,5 @@
 """Mass or centre of gravity of the body varied alone: the tensor is that of the body whose particles are varied."""
 
-from __future__ import annotations
-
 import tomllib
 from pathlib import Path
 

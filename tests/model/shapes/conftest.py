@@ -1,7 +1,5 @@
 """Hardpoints for the tests of the shapes: a front end similar to the shipped car, without reading its file."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Scene of a MacPherson car on plates and blocks, built from its points like that of a composed car."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

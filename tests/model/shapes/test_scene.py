@@ -1,7 +1,5 @@
 """Complete scene: closed, finite, mirrored, and at its hardpoints."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import trimesh

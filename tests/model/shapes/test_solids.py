@@ -1,7 +1,5 @@
 """Bodies of revolution, swept tubes, slabs and boxes against closed forms."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

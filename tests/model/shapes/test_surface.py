@@ -1,7 +1,5 @@
 """Curves, the surfaces between them, and placements."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """`car[path]`: every path that can be set is read, with its value, and without reading the file again."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """Cars and runs to files and other processes and back: the same car, the same channels and values."""
 
-from __future__ import annotations
-
 import dataclasses
 import pickle
 from concurrent.futures import ProcessPoolExecutor

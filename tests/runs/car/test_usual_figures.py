@@ -1,7 +1,5 @@
 """Usual ranges of the figures of a car: each has a source, each figure outside is flagged, the sedan has none."""
 
-from __future__ import annotations
-
 import json
 import math
 

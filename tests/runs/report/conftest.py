@@ -1,7 +1,5 @@
 """One short run with all its files and its report, made once."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The report in a real browser: no error, no request, a mode that moves, another that is picked, print."""
 
-from __future__ import annotations
-
 import base64
 import io
 import json

@@ -1,7 +1,5 @@
 """The report as a file: complete, self-contained, the same numbers as the summary, and refused where it cannot be."""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 import re

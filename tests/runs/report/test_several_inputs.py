@@ -1,7 +1,5 @@
 """Statements of a report of runs on different inputs."""
 
-from __future__ import annotations
-
 import dataclasses
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Templates of the pages: values are escaped, a forgotten value is an error, every template is used."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Every law of a car in the section "Try it", in a real browser, against the reduced engine."""
 
-from __future__ import annotations
-
 import pytest
 
 from tests.runs.report.test_trial import STRIBECK, Page, changes_of, deviations, random_states, scaled, shipped

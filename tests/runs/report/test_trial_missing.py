@@ -1,7 +1,5 @@
 """Reports without the section "Try it", or without one of its sliders."""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 from typing import Any

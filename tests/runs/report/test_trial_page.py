@@ -1,7 +1,5 @@
 """The section "Try it" as a reader sees it: moving picture, sliders with fixed positions, steady layout, size."""
 
-from __future__ import annotations
-
 import dataclasses
 import io
 import json

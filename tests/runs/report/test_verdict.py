@@ -1,7 +1,5 @@
 """First page of a report with targets."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Targets: every figure equals the value of its run elsewhere; verdict, error, inputs, and wrong files."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from types import SimpleNamespace
 

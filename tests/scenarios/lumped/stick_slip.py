@@ -1,7 +1,5 @@
 """Exact motion of a mass on a spring with set-valued Coulomb friction under a sine force: closed forms."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Every drive gives its value and its true rate."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

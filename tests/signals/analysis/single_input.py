@@ -1,7 +1,5 @@
 """FRFs to a single input, for tests of the estimator of several inputs."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The error of an overall RMS and of a difference, against the scatter of Gaussian records."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Hand-arm vibration, daily exposure and rail comfort: printed factors, closed forms, and what is refused."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

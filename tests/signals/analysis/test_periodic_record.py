@@ -1,7 +1,5 @@
 """Recognition of periodic inputs, and FRFs over whole periods, against an analytic oscillator and known noise."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.signal import lsim

@@ -1,7 +1,5 @@
 """Periodic inputs with random phases: density, delays, exact FRFs of a linear system, error of a nonlinear one."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

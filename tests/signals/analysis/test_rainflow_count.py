@@ -1,7 +1,5 @@
 """Rainflow counts: the example of the standard, sine loads in closed form, and the sentence without the package."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

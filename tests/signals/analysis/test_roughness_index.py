@@ -1,7 +1,5 @@
 """International roughness index: published step matrices, a wave, random roads, segments and what is refused."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp

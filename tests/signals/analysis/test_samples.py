@@ -1,7 +1,5 @@
 """Rows of signals as they stand, and what is refused of them."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Wireframes of meshes: few enough lines for a picture, spread over the whole mesh and connected as it is."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import scipy

@@ -1,7 +1,5 @@
 """Own forms of a few functions of SciPy whose import takes longer than they: the same numbers."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import scipy.fft

@@ -1,7 +1,5 @@
 """Small CSV files for the tests of this folder."""
 
-from __future__ import annotations
-
 from functools import partial
 from pathlib import Path
 

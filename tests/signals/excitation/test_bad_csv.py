@@ -1,7 +1,5 @@
 """Items 1 to 12, 14, 17 and 19 of the list of bad inputs: one refusal each, with its whole message or decisive part."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Two tracks of ISO 8608: level, relation of the tracks against the integral, delay of the rear, speed."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.integrate import quad

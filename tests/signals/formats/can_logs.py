@@ -1,7 +1,5 @@
 """The same frames of a CAN bus in every container that the readers know."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple

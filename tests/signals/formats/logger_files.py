@@ -1,7 +1,5 @@
 """Small files of loggers, as their programs write them, for the tests of the readers and the mutations of `fuzz`."""
 
-from __future__ import annotations
-
 import math
 
 RACECHRONO = """This file is created using RaceChrono Pro v9.1.3 ( http://racechrono.com/ ).

@@ -1,7 +1,5 @@
 """Archives of arrays are judged by their headers; numbers beyond every sensor are refused by their cells."""
 
-from __future__ import annotations
-
 import warnings
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Equal results are equal files: no format holds the time of writing, the time zone or a name of the moment."""
 
-from __future__ import annotations
-
 import time
 
 import pytest

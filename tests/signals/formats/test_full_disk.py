@@ -1,7 +1,5 @@
 """A full disk is one error of each writer, also where the library reports it as late as it closes the file."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

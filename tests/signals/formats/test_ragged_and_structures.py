@@ -1,7 +1,5 @@
 """Remarks of single rows, names beyond their columns, structures of MATLAB, durations, formulas, directions."""
 
-from __future__ import annotations
-
 import json
 import re
 

@@ -1,7 +1,5 @@
 """Stamps that do not show when each sample was taken: the clock is that of the number of samples over the span."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

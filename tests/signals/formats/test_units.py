@@ -1,7 +1,5 @@
 """Factors of all units of measurement files against the constants of SciPy (CODATA, NIST SP 811)."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy import constants as c

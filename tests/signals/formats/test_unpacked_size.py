@@ -1,7 +1,5 @@
 """Compressed files that would fill the memory are refused by their headers, before anything is unpacked."""
 
-from __future__ import annotations
-
 import io
 import struct
 import tracemalloc

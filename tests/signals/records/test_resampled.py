@@ -1,7 +1,5 @@
 """Jittered clocks: made uniform before anything else, in every command alike; slow records up to 0.4 of their rate."""
 
-from __future__ import annotations
-
 import json
 import shlex
 

@@ -1,7 +1,5 @@
 """Records of a test machine: channels, units, conditions, velocity, signs, run-up."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Waveforms of tests of a damper: sines, triangles, velocity steps and random motion are named rightly."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -5,8 +5,6 @@ the two joints of its arm, the tie rod its length, the top of a strut stays on i
 height. Solved by Newton's method in Chrono's frame on the left side; the project solves it in coordinates of joints.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Optimisation problems without a car for tests."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from vehicle.model.parameters.ranges import Range

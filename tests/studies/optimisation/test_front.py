@@ -1,7 +1,5 @@
 """Fronts against the definition, and against shapes with closed-form knee point, hypervolume and distance."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """`python -m vehicle optimise` as a user runs it."""
 
-from __future__ import annotations
-
 import csv
 import json
 import shlex

@@ -1,7 +1,5 @@
 """Quantities of the ride against closed forms and against independent computations from a run."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

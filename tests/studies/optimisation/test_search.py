@@ -1,7 +1,5 @@
 """Search against closed-form fronts: a quarter car, a front with a limit; and reproducibility with a seed."""
 
-from __future__ import annotations
-
 import importlib
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Replication of a known plate signal from the response of the car, and the linearisation it uses."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

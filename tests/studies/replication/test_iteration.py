@@ -1,7 +1,5 @@
 """The iteration on systems with closed-form responses: two masses between two plates, and a wrong FRF."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import scipy

@@ -1,7 +1,5 @@
 """Objects that worker processes import: a cheap measure, inputs that kill a worker, a user-defined executor."""
 
-from __future__ import annotations
-
 import os
 import signal
 import time

@@ -1,7 +1,5 @@
 """A sweep over single variations: the car itself is the base, and what a run does not vary has the value of the car."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Sobol indices of the comfort of a car: command and Python against the indices of the written table."""
 
-from __future__ import annotations
-
 import csv
 from types import SimpleNamespace
 from typing import Any

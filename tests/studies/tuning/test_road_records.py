@@ -1,7 +1,5 @@
 """Fits to road records: a measured profile with the speed, heights over time, FRFs in classes of the input level."""
 
-from __future__ import annotations
-
 import json
 import re
 from dataclasses import replace
