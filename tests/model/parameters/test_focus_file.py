@@ -150,6 +150,13 @@ def test_an_override_may_name_an_axis():
             "main_spring=3",
             "--set main_spring=3: main_spring is a group; set one of front.main_spring.stiffness",
         ),
+        *(
+            (
+                f"damper.viscous={text}",
+                f"--set damper.viscous={text}: must be the new value, not a change of the present one, which is 2250",
+            )
+            for text in ("+20", "+25%", "*1.2", "2250+20")
+        ),
         (
             "damper.viscous=many",
             (

@@ -22,6 +22,9 @@ from vehicle.names import AXES, SIDE_SIGN
 Optional = Callable[[], Iterable[str]]
 """Function that returns the optional paths of a table, see `optional_paths`."""
 
+RELATIVE = re.compile(r"^\+|[%*]|\d[+]\d")
+"""A change of a value, such as +20, *1.2, 125% or 80+20; not an exponent such as 1e+5."""
+
 DECIMAL = re.compile(r"[+-]?(0|[1-9][0-9]*)(\.[0-9]+([eE][+-]?[0-9]+)?|[eE][+-]?[0-9]+)")
 """TOML number with a decimal point or an exponent."""
 
@@ -356,8 +359,12 @@ def parsed_value(assignment: str, text: str, old: Any) -> Any:
         old: value that is replaced.
 
     Raises:
-        ConfigurationError: the text is not a TOML value.
+        ConfigurationError: the text is not a TOML value, or a change of the old value such as +20 or 125%.
     """
+    if _is_number(old) and RELATIVE.search(text):
+        raise ConfigurationError(
+            f"--set {assignment}: must be the new value, not a change of the present one, which is {old:g}"
+        )
     if DECIMAL.fullmatch(text):
         return float(text)  # the most frequent case; the TOML parser is slow
     try:

@@ -64,7 +64,7 @@ class VehicleVariants:
             if numbers is None:
                 return None
             for path, owner in numbers:
-                value = parsed_value(assignment, text, 0.0)
+                value = parsed_value(assignment, text, value_at(table, path))
                 if isinstance(value, bool) or not isinstance(value, int | float):
                     return None
                 put(table, {path: value}, copies)
