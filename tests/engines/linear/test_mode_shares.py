@@ -49,7 +49,7 @@ def test_the_parts_of_forces_add_up_to_their_response(stuck):
     matrices = Car.load("sedan", texts).matrices
     forced, amplitudes = np.array(matrices.lines.frequencies), force_amplitudes(matrices)
     every = np.arange(len(amplitudes))
-    unit = unit_response(matrices, [CHANNEL], forced, every, stuck=stuck)[:, 0]
+    unit = unit_response(matrices, [CHANNEL], forced.tolist(), every, stuck=stuck)[:, 0]
     assert len(forced) > 1
     for line, frequency in enumerate(forced / (2.0 * np.pi)):
         found = forced_mode_shares(matrices, CHANNEL, frequency, amplitudes[:, line], stuck=stuck)

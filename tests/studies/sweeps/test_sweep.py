@@ -301,7 +301,7 @@ def test_a_worker_that_joins_a_running_sweep_is_used(cluster):
     joined: list[float] = []
 
     def join(fraction):
-        if not joined:
+        if fraction and not joined:
             widened(cluster)
             joined.append(time.time())
 

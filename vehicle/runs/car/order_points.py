@@ -180,8 +180,11 @@ def order_points(
         ConfigurationError: no points or both kinds, a value out of range, no force, or nothing of this name turns.
         DataError: a run is too short for its orders.
     """
-    options = {"rpm": rpm, "speed": speed, "orders": orders, "angle": angle, "surface": surface, "duration": duration}
-    return order_points_at(car, [channel], engine=engine, **options)[0]
+    (points,) = order_points_at(
+        car, [channel], rpm=rpm, speed=speed, orders=orders, angle=angle, surface=surface, duration=duration,
+        engine=engine,
+    )  # fmt: skip
+    return points
 
 
 def order_points_at(

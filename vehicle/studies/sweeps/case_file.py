@@ -60,10 +60,11 @@ class CaseFile:
             raise ConfigurationError('CaseFile.roads: no input; set roads = ["C"] and speeds = [80], or signals')
         if bool(self.roads) != bool(self.speeds):
             raise ConfigurationError("CaseFile.speeds: set roads and speeds [km/h] together")
-        for name in (*self.speeds, *self.roads) if isinstance(self.speeds, Mapping) else ():
+        by_road = self.speeds if isinstance(self.speeds, Mapping) else dict.fromkeys(self.roads, self.speeds)
+        for name in (*by_road, *self.roads):
             if name not in self.roads:
                 raise ConfigurationError(f"CaseFile.speeds: {name!r} is not among roads; add it there, or remove it")
-            if not dict(self.speeds).get(name):
+            if not by_road.get(name):
                 raise ConfigurationError(f"CaseFile.speeds: no speed on {name!r}; add {name!r} = [80], in km/h")
 
     @property

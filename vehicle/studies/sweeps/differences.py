@@ -85,7 +85,7 @@ class DifferencesWriter:
         self._writer.writerow(["input", *paths, "cars differ on", *heads])
         self._factor = float(stdtrit(2 * WAVES, 0.975))
         self._first: dict[Input, Numbers] = {}
-        self._seeds: dict[str, dict[tuple[str, ...], tuple[Sequence[str], list[float]]]] = {}
+        self._seeds: dict[str, dict[tuple[str, ...], tuple[Sequence[str], list[Numbers]]]] = {}
         self._source: Input | None = None
         self._base: Numbers = ()
         self._road = ""
