@@ -42,12 +42,12 @@ VEHICLES = {
     "part of an axle": (
         "[front.parts.caliper]",
         "[front.parts.brake]",
-        "front.parts.brake: unknown parameter; the nearest known",
+        "front.parts.brake: unknown parameter; the most similar known",
     ),
     "no value": (
         "viscous = 2250.0",
         "# nothing",
-        "front.damper.viscous: missing; viscous_law = linear needs it [N s/m]",
+        "front.damper.viscous: missing; viscous_law = linear needs this value [N s/m]",
     ),
     "of a side": (
         *put("[front.left.bushing.arm_rear]\nstiffness = [1, 1, 1]"),
@@ -153,11 +153,11 @@ VEHICLES = {
         'stiffness = "soft"',
         "stiffness: found 'soft', must be a",
     ),
-    "a number for a table": (*put("[front.left]\nbushings = 3"), "front.left.bushings: found 3, must be a table"),
+    "a number for a table": (*put("[front.left]\nbushings = 3"), "front.left.bushings: found 3, must be a section"),
     "a number for a side": (
         "[front.hardpoints]",
         "left = 3\n[front.hardpoints]",
-        "front.left: found 3, must be a table",
+        "front.left: found 3, must be a section",
     ),
     "a date": (
         "mass = 4.05",

@@ -136,7 +136,9 @@ def test_a_wrong_template_is_rejected(change, templates):
 
 def test_the_schema_has_unit_meaning_and_range_of_a_parameter(vehicles):
     mass = vehicles.schema["definitions"]["vehicle"]["properties"]["body"]["properties"]["mass"]
-    assert mass["description"].startswith("[kg] mass of the trimmed body (without engine and axles")
+    assert mass["description"].startswith(
+        "[kg] mass of the trimmed body (with seats and interior) (without engine and axles"
+    )
     assert (mass["exclusiveMinimum"], mass["minimum"], mass["maximum"]) == (0.0, 100.0, 5000.0)
 
 

@@ -53,7 +53,9 @@ def test_a_path_that_is_no_number_is_refused_with_the_nearest(car, path):
 
 def test_the_nearest_path_has_its_axis(car):
     for misspelt in ("bushings.suspension_mount.stifness.z", "suspension_mount.stifness.z"):
-        with pytest.raises(ConfigurationError, match=r"nearest is front\.bushings\.suspension_mount\.stiffness\.z$"):
+        with pytest.raises(
+            ConfigurationError, match=r"most similar path is front\.bushings\.suspension_mount\.stiffness\.z$"
+        ):
             value_of(car.vehicle, misspelt)
 
 

@@ -126,8 +126,8 @@ IMPOSSIBLE = {
             *("body.inertia.izz=2000", "body.inertia.ixy=82.03"),
             "body.flexible=false",
         ],
-        r"body\.cog: found \[0\.8, 0\.0, 1\.011\] m, with which rear support right would carry -\d+ N and the car "
-        r"the centre of gravity must lie between the points where the car stands on the ground",
+        r"body\.cog: found \[0\.8, 0\.0, 1\.011\] m\. The car would tip over, because rear support right would carry "
+        r"-\d+ N; the centre of gravity must lie between the points where the car stands on the ground",
     ),
     "inertia with a turned sign": (
         ["body.inertia.izx=-1800"],
