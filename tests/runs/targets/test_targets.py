@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -118,7 +119,7 @@ def test_a_run_whose_channel_rests_does_not_hide_a_miss(on_road):
     ride = ride_of(on_road)
     rest = replace(ride, of=lambda name: ride.of(name) * (name != "seat_rail_acc_y"))
     ratio = figure("ratio", channels=("seat_rail_acc_z",), over=("seat_rail_acc_y",), unit="-", at_most=1e-3)
-    runs = [
+    runs: list[Any] = [
         SimpleNamespace(name=name, label="sedan", summary={"input": {"file": ""}}, histories=histories)
         for name, histories in (("rest", rest), ("ride", ride))
     ]

@@ -20,7 +20,7 @@ VELOCITY_SHARE = 0.1
 
 def half_cosine(*, samples: int, timestep: float, length: float) -> Vector:
     """Return `half_cosine_at` for samples at a time step [s] from 0 on, (n,); ones for a length of 0."""
-    return half_cosine_at(np.arange(samples) * timestep, length) if length > 0.0 else np.ones(samples)
+    return half_cosine_at(np.asarray(np.arange(samples) * timestep), length) if length > 0.0 else np.ones(samples)
 
 
 def half_cosine_at(time: Vector, length: float) -> Vector:
