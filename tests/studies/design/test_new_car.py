@@ -17,6 +17,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Car, Road
 from vehicle.runs.car.inertia_survey import SURVEY, AxleGeometry
 from vehicle.studies.design.stated_numbers import stated_numbers
+from vehicle.studies.design.tyre_size import unloaded_radius
 
 SEDAN = {
     "kerb-mass": 1652.9, "front-axle-load": 844.8, "cog-height": 0.4889, "wheelbase": 2.757, "track-front": 1.5,
@@ -247,6 +248,16 @@ def test_the_size_of_a_tyre_is_its_radius_without_load(surveyed):
     deflection = 425.0 * 9.81 / surveyed["front.bushings.tyre.stiffness"].value[2]
     assert 0.015 < deflection < 0.025
     assert wheels["fl"].center[2] - wheels["fl"].patch[2] + deflection == pytest.approx(0.31595, abs=1e-5)
+
+
+def test_a_tyre_of_a_van_has_its_c():
+    assert unloaded_radius("215/65R16C 109/107T") == unloaded_radius("215/65R16") == pytest.approx(0.34295, abs=1e-6)
+
+
+def test_a_new_car_has_the_step_that_it_needs_and_not_that_of_its_template(surveyed):
+    """The step of the sedan, 1 ms, makes a creeping motion of a van of 2100 kg wrong by 12 %."""
+    assert Car.load("sedan").vehicle.solver.timestep == 1e-3
+    assert surveyed.vehicle.solver.timestep is None
 
 
 def test_survey_inertia_is_that_of_the_whole_car(surveyed):

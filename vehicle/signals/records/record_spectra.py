@@ -215,8 +215,11 @@ def _chosen(
 def _road_levels(
     road: Mapping[str, object] | None, step: float, channels: Mapping[str, Vector], evaluated: slice
 ) -> dict[str, RoadLevel]:
-    """Return the level of the road under the front wheels; the rear wheels follow in their tracks."""
-    speed = road.get("speed_kmh") if road else None
+    """Return the level of the road under the front wheels; the rear wheels follow in their tracks.
+
+    An obstacle is a single event, which has no class.
+    """
+    speed = road.get("speed_kmh") if road and not road.get("obstacle") else None
     if not isinstance(speed, int | float):
         return {}
     levels = {}

@@ -106,7 +106,9 @@ def new_car(name: str, source: Path | str, stated: StatedNumbers, *, scale: bool
         table["load"] = dict(stated.load)
         sources |= {f"load.{load}": "given" for load in stated.load}
     targets = targets_of(template, stated)
-    table = solved({**table, "name": name}, template, targets)
+    # The step of the template is short enough for the template; without it each car gets its own.
+    solver = {key: value for key, value in table.get("solver", {}).items() if key != "timestep"}
+    table = solved({**table, "name": name, "solver": solver}, template, targets)
     sources |= {"name": "given", **_sources_of_targets(targets, stated, template)}
     car = new_car_of(table, template)
     checks = checks_of(car, template, stated)

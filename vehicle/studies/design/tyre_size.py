@@ -15,8 +15,8 @@ from vehicle.studies.design.template_car import TemplateCar
 INCH = 25.4e-3
 """Unit of the rim diameter [m], UN Regulation No. 30, 2.17.1.2."""
 
-SIZE = re.compile(r"P?(\d+)/(\d+) *Z?R *(\d+)(?: *\d+ *[A-Z])?", re.IGNORECASE)
-"""Width [mm], height in percent of it, rim [inch] of a radial tyre; load index and speed symbol may follow."""
+SIZE = re.compile(r"P?(\d+)/(\d+) *Z?R *(\d+)C?(?: *[\d/]+ *[A-Z])?", re.IGNORECASE)
+"""Width [mm], height in percent of it, rim [inch] of a radial tyre; C, load index and speed symbol may follow."""
 
 RANGES = {"width": (105, 395, "mm"), "height": (20, 95, "% of the width"), "rim": (10, 24, "inch")}
 """Minimum, maximum and unit of the numbers of a size; assumed: tyres of passenger cars that are sold."""
