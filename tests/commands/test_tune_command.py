@@ -98,13 +98,15 @@ def test_the_fitted_file_runs_and_the_report_is_whole(fitted, tmp_path):
     assert {"time_1_bench.png", "correlation.png"} <= {path.name for path in fitted.iterdir()}
 
 
-def test_console_says_the_values_first(record, tmp_path, capsys):
+def test_console_says_what_is_unexplained_then_the_values(record, tmp_path, capsys):
     """FRFs estimated from the same record; friction and viscous damping of a stuck damper are not determined."""
     words = ["focus", "--frf", str(record), "--stuck", *MAP, "--parameters", BOUNDS[0], BOUNDS[3], "--spacing", "1"]
     assert main([*words, "--output", str(tmp_path / "tune")]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert lines[0].startswith("damper.viscous ") and "start 2250, bounds 800 to 4000" in lines[0]
-    assert lines[2].startswith("--set damper.viscous=2250 --set suspension_mount.stiffness.z=")
+    # The dampers slid: a car with stuck ones cannot follow, and the first line says it.
+    assert lines[0].startswith("these parameters do not explain the measurement: ")
+    assert lines[1].startswith("damper.viscous ") and "start 2250, bounds 800 to 4000" in lines[1]
+    assert lines[3].startswith("--set damper.viscous=2250 --set suspension_mount.stiffness.z=")
     (text,) = [line for line in lines if line.startswith("not determined: damper.viscous")]
     assert "the data do not determine this parameter" in text
 

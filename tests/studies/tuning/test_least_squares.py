@@ -181,14 +181,14 @@ def test_a_model_with_bad_residuals_is_rejected():
         def residuals(self, values):
             return np.full((4, 3), np.nan)
 
-    with pytest.raises(SimulationError, match=r"not finite at lower=1.6e\+05"):
+    with pytest.raises(SimulationError, match=r"no finite result at lower=1.6e\+05"):
         fitted(Broken())
 
     class Short(MeasuredMasses):
         def residuals(self, values):
             return np.ones((1, 2))
 
-    with pytest.raises(ConfigurationError, match="2 values for 3 parameters"):
+    with pytest.raises(ConfigurationError, match="found 2 measured values for 3 parameters"):
         fitted(Short())
 
 

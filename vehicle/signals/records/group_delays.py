@@ -86,8 +86,8 @@ class GroupDelay:
         others = 0.0 if self.against == RUN else self.delay
         separate = [
             f"{channel} {'lags' if delay > others else 'leads'} the other {self.group} by "
-            f"{1e3 * abs(delay - others):.3g} ms: a delay of this sensor? Remove it with --delay "
-            f"{channel}={1e3 * delay:.5g}ms{after}"
+            f"{1e3 * abs(delay - others):.3g} ms: wrong parameters of the car or a late sensor; only if this sensor is "
+            f"known to lag, set --delay {channel}={1e3 * delay:.5g}ms{after}"
             for channel, delay in self.unlike.items()
         ]
         if self.against == RUN or not abs(remainder) > max(SHARE_OF_STEP * step, SIGNIFICANT * self.error):
@@ -96,8 +96,8 @@ class GroupDelay:
             *separate,
             f"the {self.group} {'lag' if self.delay > 0.0 else 'lead'} the {self.against} by "
             f"{1e3 * abs(self.delay):.3g} ms (+- {number(1e3 * self.error, 1)} ms, in {self.agreeing} of "
-            f"{self.channels} channels): a sensor delay, or a car with other phases? `tune` fits both; remove a "
-            f"sensor delay with --delay {self.group}={1e3 * self.delay:.5g}ms{after}",
+            f"{self.channels} channels): wrong parameters of the car or late sensors; `tune` fits both together. Only "
+            f"if the sensors are known to lag, set --delay {self.group}={1e3 * self.delay:.5g}ms{after}",
         ]
 
 

@@ -81,7 +81,8 @@ class TuningResult:
         at_bound: paths whose value ended at a bound: wrong bounds, or a model that cannot reproduce the data.
         condition: largest over smallest singular value of the weighted Jacobian, columns in half widths [-].
         rows: statistics of the residuals, row by row.
-        before: root of the mean square of the weighted residuals at the start [-].
+        before: root of the mean square of the weighted residuals at the start [-]. The weights follow from the
+            residuals of this fit: compare fits by `TunedCar.total_error`, not by this number.
         after: root of the mean square at the fitted values [-]; 1 if the residuals are as large as the estimated noise.
         cost: half the sum of squares of the weighted residuals.
         evaluations: number of model evaluations, including those for the Jacobians.

@@ -21,6 +21,18 @@ production, so that the fit would not distinguish it from another specimen."""
 NO_MOTION = 100.0
 """RMS error of a model that does not move, over the RMS of the measurement [%]: that of a mean of zero."""
 
+UNEXPLAINED = 20.0
+"""RMS error of a channel after a fit, over the RMS of the measurement and beyond its known noise [%], above which the
+parameters do not explain the measurement. At one frequency it is an error of 1.7 dB or 11 degrees: several times that
+of a calibrated sensor, so that something else of the car is wrong. The standard errors hold the scatter of the
+residuals, not the shift of the values by such an error."""
+
+OFTEN_WRONG = (
+    "suspension_mount.stiffness.z", "damper.viscous", "damper.coulomb_friction", "tyre.stiffness.z",
+    "main_spring.stiffness",
+)  # fmt: skip
+"""Parameters that vary most between specimens or are known least, named as examples for a further fit."""
+
 FIRST = "check delays (--delay), signs (--turn) and units (--unit) of the channels first"
 """Advice: check the channels before the model is doubted."""
 
@@ -64,6 +76,27 @@ def what_data_leave_open(result: TuningResult) -> tuple[str, ...]:
         if error > UNSURE and path not in delays
     ]
     return tuple(sentences)
+
+
+def unexplained(errors: Sequence[tuple[str, float, float, float]], others: Sequence[str]) -> str:
+    """Return the statement that a fit does not explain the measurement; empty if all channels are explained.
+
+    Args:
+        errors: name of each channel, its RMS error before and after the fit, and its known noise, each over the RMS of
+            the measurement [%].
+        others: examples of parameters of the car that were not fitted.
+    """
+    left = [entry for entry in errors if entry[2] > np.hypot(UNEXPLAINED, entry[3])]
+    if not left:
+        return ""
+    name, before, after, _ = max(left, key=lambda entry: entry[2])
+    example = f", for example {' or '.join(others)}" if others else ""
+    return (
+        f"these parameters do not explain the measurement: {number(after)} % of the RMS of {name} remain as error "
+        f"(before the fit {number(before)} %, limit {UNEXPLAINED:g} %). The standard errors hold only if the rest of "
+        f"the car is right and the remainder is noise. Check signs (--turn) and units (--unit) of the channels, then "
+        f"fit another parameter{example}: each alone, and together with these; the smallest remaining error counts"
+    )
 
 
 def refusal(result: TuningResult, errors: Sequence[tuple[str, float]]) -> str:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -10,8 +11,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.model.parameters.paths import overrides_of, unit_of
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.paths import full_path, overrides_of, unit_of, value_of
 from vehicle.model.parameters.ranges import Range
+from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car import Car, Run
 from vehicle.signals.analysis.frf_agreement import log_ratio
 from vehicle.signals.analysis.response_name import ResponseName
@@ -20,7 +23,7 @@ from vehicle.studies.tuning.fit_result import TuningResult, known
 from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.full_steps import FullSteps, full_steps
 from vehicle.studies.tuning.level_target import LevelTarget
-from vehicle.studies.tuning.limits_of_data import refusal, what_data_leave_open
+from vehicle.studies.tuning.limits_of_data import OFTEN_WRONG, refusal, unexplained, what_data_leave_open
 from vehicle.studies.tuning.measured_targets import MeasuredTarget
 from vehicle.studies.tuning.record_target import RecordTarget
 from vehicle.threads import one_blas_thread
@@ -87,13 +90,40 @@ class TunedCar:
     @cached_property
     def refusal(self) -> str:
         """Reason why the values are not to be used: a bound, or an error above that of no motion; empty without."""
-        names = [
-            (f"{channel} in {each.target.name}", error)
-            for each, (_, after) in zip(self.measurements, self._errors, strict=True)
-            for channel, error in zip(_labels(each.target), after[:, -1].tolist(), strict=True)
-            if np.isfinite(error)
+        return refusal(self.result, [(name, after) for name, _, after, _ in self._shares])
+
+    @cached_property
+    def unexplained(self) -> str:
+        """Statement that the fit leaves a large error, see `limits_of_data.unexplained`; empty if refused or small."""
+        return "" if self.refusal else unexplained(self._shares, _unfitted(self.start.vehicle, self.result.values))
+
+    @property
+    def determined(self) -> bool:
+        """True if the fit explains the measurement and its data determine all parameters."""
+        return not (self.refusal or self.unexplained or what_data_leave_open(self.result))
+
+    @property
+    def total_error(self) -> tuple[float, float]:
+        """Error before and after the fit [%]: root of the mean square over all channels, each over its measured RMS.
+
+        Unlike the weighted residuals, whose weights each fit takes from its own residuals, it can be compared between
+        fits of one measurement.
+        """
+        shares = np.array([(before, after) for _, before, after, _ in self._shares]).reshape(-1, 2)
+        before, after = np.sqrt(np.mean(shares**2, axis=0)).tolist()
+        return before, after
+
+    @cached_property
+    def _shares(self) -> list[tuple[str, float, float, float]]:
+        """Name of each compared channel; its error before and after, and its known noise, over its RMS [%]."""
+        return [
+            (f"{channel} in {each.target.name}", *shares)
+            for each, tables in zip(self.measurements, self._errors, strict=True)
+            for channel, *shares in zip(
+                _labels(each.target), *(table[:, -1].tolist() for table in tables), _noise(each.target), strict=True
+            )
+            if np.isfinite(shares[0])
         ]
-        return refusal(self.result, names)
 
     @cached_property
     def _errors(self) -> tuple[tuple[Vector, Vector], ...]:
@@ -139,6 +169,7 @@ class TunedCar:
         result, vehicle = self.result, self.start.vehicle
         return {
             "car": vehicle.name,
+            "unexplained": self.unexplained,
             "measurements": [{"name": each.target.name, "notices": list(each.notices)} for each in self.measurements],
             "parameters": [
                 {
@@ -172,6 +203,7 @@ class TunedCar:
             "converged": result.converged,
             "message": result.message,
             "cars_computed": result.evaluations,
+            "error_percent": dict(zip(("before", "after"), self.total_error, strict=True)),
             "weighted_residual": {"before": result.before, "after": result.after},
             "agreement": [
                 {key: value for key, value in asdict(row).items() if key != "label"} | {"plate": row.plate or None}
@@ -239,6 +271,29 @@ def tuned_car(
 def _labels(target: FrfTarget | LevelTarget | RecordTarget) -> tuple[str, ...]:
     """Return the names of the compared channels."""
     return tuple(target.record.channels) if isinstance(target, RecordTarget) else target.data.labels
+
+
+def _unfitted(vehicle: Vehicle, fitted: Iterable[str]) -> list[str]:
+    """Return two parameters of a car that were not fitted, as examples for a further fit."""
+    fitted_paths, examples = {full_path(vehicle.table, path) for path in fitted}, []
+    for end in OFTEN_WRONG:
+        for path in (end, f"front.{end}"):
+            with suppress(ConfigurationError):
+                if value_of(vehicle, path) > 0.0 and full_path(vehicle.table, path) not in fitted_paths:
+                    examples.append(path)
+                    break
+    return examples[:2]
+
+
+def _noise(target: FrfTarget | LevelTarget | RecordTarget) -> list[float]:
+    """Return the noise that the coherence of FRFs states, over the RMS of each channel [%]; 0 for time histories."""
+    if isinstance(target, RecordTarget):
+        return [0.0] * len(_labels(target))
+    power = np.where(np.isfinite(target.deviation), np.abs(target.data.response) ** 2, 0.0)
+    # Re and Im of ln H have this standard deviation each.
+    noise = 2.0 * np.sum(np.nan_to_num(target.deviation) ** 2 * power, axis=1)
+    shares = 100.0 * np.sqrt(noise / np.maximum(power.sum(axis=1), np.finfo(float).tiny))
+    return [float(share) for share in shares]
 
 
 def _model_errors(target: FrfTarget | LevelTarget | RecordTarget, car: Car) -> Vector:

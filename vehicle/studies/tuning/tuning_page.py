@@ -50,7 +50,7 @@ def tuning_page(
     parts = [
         ("Result", "result", _result(tuned, figures)),
         ("Fitted values", "values", _values(tuned)),
-        ("What the data leave open", "open", fill("left_open", sentences=what_data_leave_open(tuned.result))),
+        ("What the data leave open", "open", _left_open(tuned)),
         *([("Posterior", "posterior", _posterior(tuned, figures, posteriors))] if posteriors else []),
         ("Before and after", "agreement", _agreement(tuned, figures)),
         ("Residuals", "residuals", _residuals(tuned)),
@@ -87,13 +87,24 @@ def _result(tuned: TunedCar, figures: Mapping[str, Callable[[Path], None]]) -> M
     left_open = what_data_leave_open(result)
     texts = [
         *([f"Do not use this fit: {tuned.refusal}."] if tuned.refusal else []),
-        f"The measurement asks for {', '.join(changes)}.",
+        *([_sentence(tuned.unexplained)] if tuned.unexplained else []),
+        f"The {'fit gives' if tuned.unexplained else 'measurement asks for'} {', '.join(changes)}.",
         f"The largest error against the measurement ({channel_words(row.label)}, {row.measure}) "
-        f"{word} from {number(row.before)} to {number(row.after)} {row.unit}; the data "
-        + (f"leave open: {left_open[0]}." if left_open else "determine every parameter."),
+        f"{word} from {number(row.before)} to {number(row.after)} {row.unit}"
+        + (f"; the data leave open: {left_open[0]}" if left_open else "")
+        + ("; the data determine every parameter." if tuned.determined else "."),
     ]
     shown = [drawing(figures[name], name) for name in _curves(figures)[:1]]
     return fill("answer", texts=[" ".join(texts)], figure=Markup().join(shown))
+
+
+def _sentence(text: str) -> str:
+    return f"{text[:1].upper()}{text[1:]}."
+
+
+def _left_open(tuned: TunedCar) -> Markup:
+    said = [_sentence(tuned.unexplained)] if tuned.unexplained else []
+    return fill("left_open", sentences=[*said, *what_data_leave_open(tuned.result)], determined=tuned.determined)
 
 
 def _curves(figures: Mapping[str, Callable[[Path], None]]) -> list[str]:

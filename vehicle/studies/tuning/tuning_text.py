@@ -39,17 +39,19 @@ def known_digits(value: float, error: float) -> int:
 
 
 def tuning_text(tuned: TunedCar) -> str:
-    """Return the result of a fit: values, options, what the data leave open, errors before and after, final check."""
+    """Return the result of a fit: an unexplained error, values, options, what is left open, agreement, final check."""
     result = tuned.result
     settings = " ".join(f"--set {text}" for text in tuned.settings)
-    lines = value_lines(result, tuned.start.vehicle)
+    lines = [tuned.unexplained] if tuned.unexplained else []
+    lines += value_lines(result, tuned.start.vehicle)
     lines += [settings or f"do not use this fit: {tuned.refusal}"]
     lines += [*delay_lines(tuned), *source_lines(result, tuned.start.vehicle)]
-    left_open = what_data_leave_open(result)
-    lines += [f"not determined: {text}" for text in left_open] or [
-        "the data determine every parameter: no standard error is above 10 %, no two parameters have a "
-        "correlation of 0.9 or more"
-    ]
+    lines += [f"not determined: {text}" for text in what_data_leave_open(result)]
+    if tuned.determined:
+        lines.append(
+            "the data determine every parameter: no standard error is above 10 %, no two parameters have a "
+            "correlation of 0.9 or more"
+        )
     lines += agreement_lines(tuned.agreement)
     return "\n".join([*lines, *fit_sentences(tuned)])
 
@@ -65,7 +67,13 @@ def delay_lines(tuned: TunedCar) -> list[str]:
         large = abs(value) > max(SIGNIFICANT * error, 500.0 * SHARE_OF_STEP * 2.0 * target.half_sample)
         lines.append(
             f"the {delay.group} of {target.name} {'lead' if value < 0.0 else 'lag'} the input by {spread}, fitted "
-            "with the parameters" + (f": a sensor delay? To fix it, set {delay.option(1e-3 * value)}" if large else "")
+            "with the parameters"
+            + (
+                ": wrong parameters of the car that are not fitted, or late sensors; only if the sensors are known to "
+                f"lag, set {delay.option(1e-3 * value)}"
+                if large
+                else ""
+            )
         )
     return lines
 
@@ -102,9 +110,10 @@ def agreement_lines(agreement: Sequence[Agreement]) -> list[str]:
 def fit_sentences(tuned: TunedCar) -> list[str]:
     """Return sentences on the end of the fit and on its last steps with the complete model."""
     result, final = tuned.result, tuned.final
+    before, after = tuned.total_error
     sentences = [
-        f"{result.evaluations} cars computed; weighted residuals {result.before:.3g} before, {result.after:.3g} "
-        "after the fit"
+        f"{result.evaluations} cars computed; error over all channels {number(before)} % of RMS before, "
+        f"{number(after)} % after the fit (comparable between fits of one measurement)"
     ]
     if not result.converged:
         sentences.append(f"not converged: {result.message}; narrow the bounds, or start nearer with --set PATH=VALUE")
