@@ -19,7 +19,7 @@ def test_targets_come_first(reported, tmp_path, monkeypatch, capsys):
     )
     assert main([str(reported.folder), "--targets", "targets.toml", "--output", "verdict.html"]) == 0
     noted = capsys.readouterr().out
-    assert "note        1 of 2 targets have no run; they need class C: python -m vehicle shaker --vehicle " in noted
+    assert "note        no run for 1 of 2 targets; missing class C: python -m vehicle shaker --vehicle " in noted
     assert " --road C --set damper.coulomb_friction=100\n" in noted
     page = Path("verdict.html").read_text(encoding="utf-8")
     first = page[page.index('<section id="targets">') : page.index('<section id="result">')]

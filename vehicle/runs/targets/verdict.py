@@ -182,7 +182,7 @@ def missing_runs(figures: Mapping[str, Figure], runs: Sequence[RatedRun]) -> str
                 without[name] = inputs[figure.where] = commands[_command_for(figure, car)] = None
     if not without:
         return ""
-    return (f"{len(without)} of {len(figures)} targets have no run; they need {'; '.join(inputs)}: "
+    return (f"no run for {len(without)} of {len(figures)} targets; missing {'; '.join(inputs)}: "
             f"{' && '.join(commands)}")  # fmt: skip
 
 

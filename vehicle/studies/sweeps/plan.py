@@ -108,7 +108,7 @@ class SweepPlan:
         for name, number in roads.items():
             if reason := reason_for_mujoco(self.cases[number * count], measure):
                 return (f"outside the valid range of the reduced engine on {name}, at least for the first car: "
-                        f"{reason} (on class C {ERROR_ON_CLASS_C}); --engine mujoco is exact there",)  # fmt: skip
+                        f"{reason} (on class C {ERROR_ON_CLASS_C}); --engine mujoco runs the complete model",)  # fmt: skip
         return ()
 
     def run(self, **changed: Any) -> SweepTable:
