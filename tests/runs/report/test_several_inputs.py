@@ -55,6 +55,7 @@ def test_a_mode_outside_the_band_or_in_a_hole_is_no_cause(reported):
     ]  # fmt: skip
     run = read_run(reported.folder)
     measured, modes = main_band(weighted_bands(run)), run.car.modes("sliding")
+    assert measured is not None
     mode = strongest(run, measured, modes)
     assert mode is not None and measured.low <= mode.frequency < measured.high
     edges = np.array([0.9, 1.1, 1.3]) * mode.frequency

@@ -22,7 +22,7 @@ from vehicle.runs.report.findings import damper_state
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.main_band import MainBand, main_band, weighted_bands
 from vehicle.runs.report.markup import templates
-from vehicle.runs.report.run_input import change_half_width, input_words, references
+from vehicle.runs.report.run_input import change_half_width, input_text, references
 from vehicle.runs.report.svg_figure import drawing
 from vehicle.signals.analysis.modal_assurance import mac
 from vehicle.signals.records.run_summary import slip_shares
@@ -60,7 +60,7 @@ def answer(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> Markup:
     for number_of_run, (run, run_modes, reference) in enumerate(zip(runs, modes, compared, strict=True)):
         if reference is None:
             if number_of_run and number_of_run not in compared:
-                statements.append(f"{run.name} is not compared: no other run here is on {input_words(run)}.")
+                statements.append(f"{run.name} is not compared: no other run here is on {input_text(run)}.")
             continue
         before = runs[reference]
         texts = [_effect(before, run)]
@@ -87,7 +87,7 @@ def _of_one(run: FinishedRun, modes: Modes) -> Markup:
         return fill("no_comfort")
     total = comfort["iso2631"]["vector_sum"]["weighted_rms"]
     texts = [
-        f"On {input_words(run)} the weighted acceleration at the seat rail of {run.car.vehicle.name} is "
+        f"On {input_text(run)} the weighted acceleration at the seat rail of {run.car.vehicle.name} is "
         f"{number(total)} m/s²: {' to '.join(reactions(total))} (ISO 2631-1; lower is better)."
     ]
     band = main_band(spectra)
@@ -168,7 +168,7 @@ def _effect(first: FinishedRun, run: FinishedRun) -> str:
         effect = f"stays at {number(before)} m/s²"
     else:
         word, rating = ("rises", ", worse") if percent > 0.0 else ("falls", ", better")
-        if input_words(first) != input_words(run):
+        if input_text(first) != input_text(run):
             rating = ""  # of the inputs, not of the cars
         change, width = difference(before, after), change_half_width(first, run)
         if width is not None:
@@ -193,7 +193,7 @@ def _percent(first: FinishedRun, run: FinishedRun) -> float | None:
 def what_changed(first: FinishedRun, run: FinishedRun) -> str:
     """Return what differs between two runs: car, parameters, input, engine."""
     parts = []
-    vehicles, inputs = [first.car.vehicle, run.car.vehicle], [input_words(each) for each in (first, run)]
+    vehicles, inputs = [first.car.vehicle, run.car.vehicle], [input_text(each) for each in (first, run)]
     changed = _without_followers(
         first, run, [row for row in changed_parameters(vehicles) if not row[0].startswith(OF_THE_RUN)]
     )

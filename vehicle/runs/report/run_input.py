@@ -16,7 +16,7 @@ from vehicle.signals.analysis.ride_comfort import WEIGHTED, comfort_columns, wav
 from vehicle.signals.records.record_spectra import evaluated_from
 
 
-def input_words(run: FinishedRun) -> str:
+def input_text(run: FinishedRun) -> str:
     """Return the input in words: the road with its speed, or the file with its level."""
     road, excitation = run.summary["input"].get("road") or {}, run.summary["input"]
     if road.get("level"):
@@ -36,10 +36,10 @@ def references(runs: Sequence[FinishedRun]) -> list[int | None]:
         None for the first run on an input. If no two runs have the same input, the inputs themselves are compared: the
         first run is the reference of all others.
     """
-    words = [input_words(run) for run in runs]
-    if len(set(words)) == len(words):
+    inputs = [input_text(run) for run in runs]
+    if len(set(inputs)) == len(inputs):
         return [None, *[0] * (len(runs) - 1)]
-    return [None if words.index(text) == number else words.index(text) for number, text in enumerate(words)]
+    return [None if inputs.index(text) == number else inputs.index(text) for number, text in enumerate(inputs)]
 
 
 def change_half_width(first: FinishedRun, run: FinishedRun) -> float | None:

@@ -75,11 +75,6 @@ class RatedRun:
         overrides = self.summary["vehicle"]["overrides"]
         return [text for text in overrides if not text.startswith("driving.speed=") and "one_sided=" not in text]
 
-    def belongs_to(self, figure: Figure) -> bool:
-        """Return True if the run is on the input of a figure."""
-        excitation = self.summary["input"]
-        return figure.on(self.name, excitation["file"], excitation.get("road"))
-
     @property
     def histories(self) -> Histories:
         """Time histories and static data for the figures."""
@@ -151,7 +146,7 @@ def verdict(figures: Mapping[str, Figure], runs: Sequence[RatedRun]) -> dict[str
     for name, figure in figures.items():
         values: dict[str, list[Rated]] = {car: [] for car in rated}
         for run in runs:
-            if not run.belongs_to(figure):
+            if not _is_on(run, figure):
                 continue
             try:
                 value, error = value_of(figure, run.histories)
@@ -178,7 +173,7 @@ def missing_runs(figures: Mapping[str, Figure], runs: Sequence[RatedRun]) -> str
     cars = {run.label: run for run in runs}
     for name, figure in figures.items():
         for label, car in cars.items():
-            if not any(run.label == label and run.belongs_to(figure) for run in runs):
+            if not any(run.label == label and _is_on(run, figure) for run in runs):
                 without[name] = inputs[figure.where] = commands[_command_for(figure, car)] = None
     if not without:
         return ""
@@ -186,18 +181,24 @@ def missing_runs(figures: Mapping[str, Figure], runs: Sequence[RatedRun]) -> str
             f"{' && '.join(commands)}")  # fmt: skip
 
 
+def _is_on(run: RatedRun, figure: Figure) -> bool:
+    """Return True if a run is on the input of a figure."""
+    excitation = run.summary["input"]
+    return figure.on(run.name, excitation["file"], excitation.get("road"))
+
+
 def _command_for(figure: Figure, run: RatedRun) -> str:
     """Return the command that runs the car of a run on the input of a figure."""
     name, file = run.summary["vehicle"]["name"], run.summary["vehicle"]["file"]
     shipped = name in CARS and (file is None or Path(file) == vehicle_file(name))
-    words = ["python", "-m", "vehicle", "shaker", "--vehicle", name if shipped else str(file)]
+    parts = ["python", "-m", "vehicle", "shaker", "--vehicle", name if shipped else str(file)]
     if road := figure.road or figure.obstacle:
-        words += ["--road", road, *([] if figure.speed is None else ["--speed", f"{figure.speed:g}"])]
+        parts += ["--road", road, *([] if figure.speed is None else ["--speed", f"{figure.speed:g}"])]
     else:
-        words += ["--input", figure.signal or "FILE.csv"]
+        parts += ["--input", figure.signal or "FILE.csv"]
     for text in run.changes:
-        words += ["--set", text]
-    return shlex.join([*words, "--output", f"runs/{figure.run}"] if figure.run else words)
+        parts += ["--set", text]
+    return shlex.join([*parts, "--output", f"runs/{figure.run}"] if figure.run else parts)
 
 
 def sentence(figures: Mapping[str, Figure], car: str, rated: Mapping[str, Rated]) -> str:
