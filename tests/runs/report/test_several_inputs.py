@@ -98,4 +98,5 @@ def test_what_a_road_sets_is_no_change_of_the_car(on_roads):
     first, _, cleat, _ = on_roads
     assert first.car.vehicle.table != cleat.car.vehicle.table
     told = what_changed(first, cleat)
+    assert base_run(cleat) is None, "the car is unchanged"
     assert "one sided" not in told and "one_sided" not in told and "cleat" in told
