@@ -67,6 +67,7 @@ def _job(options: argparse.Namespace) -> None:
         force=options.force,
         progress=ProgressLine("report    ", enabled=not options.quiet),
         targets=options.targets,
+        notice=None if options.quiet else lambda text: print(f"note        {text}"),
         film=film,
         author=options.author,
         project=options.project,

@@ -274,3 +274,17 @@ def test_the_colour_of_a_bar_says_smoother_or_rougher_and_its_text_which_value()
         ("+20 % failed", 0.0, 1.19),
     ]
     assert axis.get_xlabel().endswith("blue: smoother, amber: rougher")
+
+
+def test_title_and_labels_of_long_parameters_have_room(tmp_path):
+    """The title of the axis lies inside the picture, and the text at a bar inside the axes."""
+    labels = ["front_subframe.bushings.hydromount.stiffness.z  150000 N/m", "body.mass  1200 kg"]
+    figure = Figure(figsize=(8.0, 2.6), layout="constrained")
+    axis: Any = figure.subplots()
+    draw_tornado(axis, labels, np.array([[-24.5, 14.8], [3.0, -2.0]]), np.array([4.1, 0.5]), ("-20 %", "+20 %"))
+    figure.savefig(tmp_path / "effects.png")
+    title, frame = axis.xaxis.label.get_window_extent(), axis.get_window_extent()
+    assert figure.bbox.x0 <= title.x0 and title.x1 <= figure.bbox.x1
+    for text in axis.texts:
+        box = text.get_window_extent()
+        assert frame.x0 <= box.x0 and box.x1 <= frame.x1, text.get_text()

@@ -16,7 +16,7 @@ from vehicle.runs.report.page import Trial, report_page
 
 def test_of_many_runs_the_first_the_calmest_and_the_loudest_have_pictures(reported, monkeypatch):
     """A page of 32 runs had 43 MB: each run had its drawing, its time histories and its modes."""
-    for plot in ("sections.plot_time", "response_section.plot_frfs", "car_section.plot_car", "answer.plot_changes"):
+    for plot in ("sections.plot_time", "sections.plot_frfs", "car_section.plot_car", "answer.plot_changes"):
         monkeypatch.setattr(f"vehicle.runs.report.{plot}", empty_figure)
     monkeypatch.setattr("vehicle.runs.report.page.curves_over_each_other", lambda runs: Markup(len(runs)))
     run, runs = read_run(reported.folder), []

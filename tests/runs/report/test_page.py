@@ -237,7 +237,7 @@ def test_parameters_are_in_words():
     ("words", "message"),
     [
         (["nowhere"], "nowhere: is not a folder; give the folder of a run"),
-        (["."], "has no summary.json; give the folder of a run"),
+        (["."], "contains no summary.json; give the folder of a run"),
         (["{run}", "--output", "page.txt"], "--output page.txt: the name must end in .html"),
         (["{run}", "--video"], "--video: shows two runs side by side, found 1"),
         (

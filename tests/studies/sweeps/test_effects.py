@@ -124,7 +124,22 @@ def test_sentence():
     )
     assert effect_sentence(of(effect("a", NAN, 3.0))) == "a matters most: +20 % makes the ride 3 % rougher."
     assert effect_sentence(of(effect("a", -1.0, 0.9, 1.2))).startswith("No effect is larger than its error")
+    # 3.0 and 2.5 differ by less than sqrt(0.5^2 + 0.4^2); 2.5 and 0.9 by more than sqrt(0.4^2 + 0.3^2).
+    close = of(effect("a", -9.0, 9.0, 1.0), effect("b", 3.0, -1.0, 0.5), effect("c", 2.5, -1.0, 0.4))
+    assert effect_sentence(close).endswith("then come b and c; not decided within the errors: rank of b and c.")
+    decided = of(effect("a", -9.0, 9.0, 1.0), effect("b", 2.5, -1.0, 0.4), effect("c", 0.9, -0.3, 0.3))
+    assert effect_sentence(decided).endswith("then come b and c.")
+    # An effect inside its error does not come next, but may be larger than the one that does.
+    noise = of(effect("a", -3.0, 3.0, 0.5), effect("b", 2.8, -1.0, 3.5))
+    assert effect_sentence(noise).endswith("3 % rougher; not decided within the errors: rank of a.")
     assert effect_sentence(of()) == "No varied parameter changes the comfort here."
+
+
+def test_effects_without_a_sense_are_marked():
+    marks = [effect("a", *values).mark for values in ((0.2, 0.1, 2.8), (0.2, 0.1, NAN), (-1.0, 0.9, 0.5))]
+    assert marks == ["within +-", "same sign", ""]
+    lines = str(of(effect("a", -4.0, 3.0, 0.5), effect("b", 2.0, 1.0, 0.5))).splitlines()
+    assert [line.split()[-1] for line in lines[1:3]] == ["0.50", "sign"]
 
 
 def test_table_file_and_picture(tmp_path):

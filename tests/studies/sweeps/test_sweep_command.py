@@ -154,7 +154,10 @@ def test_the_engine_and_its_reason_are_told_before_the_runs():
         r"is valid up to 0\.05 rad; --engine reduced takes about \d+ s for all 2 runs \(on class C comfort", note
     )
     assert plan_sweep(car, change, roads[:1]).engine_notes() == ()
-    assert plan_sweep(car, change, roads, SweepSettings(engine="reduced")).engine_notes() == ()
+    (note,) = plan_sweep(car, change, roads, SweepSettings(engine="reduced")).engine_notes()
+    assert note.startswith("outside the valid range of the reduced engine on road_C_50, at least for the first car: ")
+    assert "is valid up to 0.05 rad (on class C comfort within" in note
+    assert plan_sweep(car, change, roads[:1], SweepSettings(engine="reduced")).engine_notes() == ()
     # Whoever asks for MuJoCo hears what the other engine costs, and whether it applies.
     for inputs, means in ((roads[:1], "inside its valid range (comfort within 0.1 %)"), (roads, "outside its valid")):
         (note,) = plan_sweep(car, change, inputs, SweepSettings(engine="mujoco")).engine_notes()

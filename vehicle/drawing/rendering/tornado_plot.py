@@ -62,6 +62,7 @@ def draw_tornado(axis: Any, labels: Sequence[str], changes: Vector, half_widths:
     axis.axvline(0.0, color=INK, linewidth=0.8)
     axis.set_yticks(rows, labels, fontsize=9)
     axis.invert_yaxis()
-    axis.margins(x=0.12)
-    axis.set_xlabel("change of the weighted acceleration [%]; blue: smoother, amber: rougher")
+    # The texts at the bars are not part of the data: room for them on both sides.
+    axis.margins(x=0.22)
+    axis.set_xlabel("change [%]; blue: smoother, amber: rougher")
     axis.grid(visible=False, axis="y")

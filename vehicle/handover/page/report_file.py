@@ -11,7 +11,8 @@ from vehicle.runs.output.folder import check_file, write_text
 from vehicle.runs.output.work_folder import put_in_order
 from vehicle.runs.report.finished_run import read_run
 from vehicle.runs.report.page import report_page
-from vehicle.runs.targets.verdict import read_targets
+from vehicle.runs.report.verdict_section import rated_runs
+from vehicle.runs.targets.verdict import missing_runs, read_targets
 
 
 def write_report(
@@ -21,6 +22,7 @@ def write_report(
     force: bool = False,
     progress: Callable[[float], None] | None = None,
     targets: Path | str | None = None,
+    notice: Callable[[str], None] | None = None,
     film: Path | str | None = None,
     author: str = "",
     project: str = "",
@@ -33,6 +35,7 @@ def write_report(
         force: replace a report that was written there before.
         progress: called with the finished fraction.
         targets: TOML file of figures with limits, or "ride" for the shipped one; the report begins with the verdict.
+        notice: called with a line on targets without a run, and the commands that make these runs.
         film: film of two runs side by side, as `film_of_two` writes it, for the page; none by default.
         author, project: names in the head of the page; may be empty.
 
@@ -54,6 +57,8 @@ def write_report(
     check_file(path, ending=".html", force=force)
     figures = None if targets is None else read_targets(targets)
     finished = [read_run(folder) for folder in folders]
+    if notice is not None and figures is not None and (text := missing_runs(figures, rated_runs(finished))):
+        notice(text)
     pair = None if film is None else Path(film)
     page = report_page(finished, progress, trial=trial, targets=figures, pair=pair, author=author, project=project)
     write_text(path, page)

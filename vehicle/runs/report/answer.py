@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
@@ -23,6 +22,7 @@ from vehicle.runs.report.findings import damper_state
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.main_band import MainBand, main_band, weighted_bands
 from vehicle.runs.report.markup import templates
+from vehicle.runs.report.run_input import change_half_width, input_text, references
 from vehicle.runs.report.svg_figure import drawing
 from vehicle.signals.analysis.modal_assurance import mac
 from vehicle.signals.records.run_summary import slip_shares
@@ -48,7 +48,7 @@ DIRECTIONS = {"x": "fore-aft", "y": "lateral", "z": "vertical"}
 def answer(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> Markup:
     """Return the statement on a single run, or statements and a picture of each further run against the first.
 
-    A run on another input than the first is compared with the first run on that input, if there is one before it.
+    Each run is compared with the first run on its input (`references`).
 
     Args:
         modes: modes of the car of each run, for dampers "stuck" and "sliding".
@@ -56,9 +56,12 @@ def answer(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> Markup:
     if len(runs) == 1:
         return _of_one(runs[0], modes[0])
     statements, figure, changes = [], Markup(), {}
-    for number_of_run, (run, run_modes) in enumerate(zip(runs[1:], modes[1:], strict=True), 1):
-        on_input = [k for k in range(number_of_run) if _input_words(runs[k]) == _input_words(run)]
-        reference = on_input[0] if on_input else 0
+    compared = references(runs)
+    for number_of_run, (run, run_modes, reference) in enumerate(zip(runs, modes, compared, strict=True)):
+        if reference is None:
+            if number_of_run and number_of_run not in compared:
+                statements.append(f"{run.name} is not compared: no other run here is on {input_text(run)}.")
+            continue
         before = runs[reference]
         texts = [_effect(before, run)]
         if abs(_percent(before, run) or 0.0) >= SMALL:
@@ -84,7 +87,7 @@ def _of_one(run: FinishedRun, modes: Modes) -> Markup:
         return fill("no_comfort")
     total = comfort["iso2631"]["vector_sum"]["weighted_rms"]
     texts = [
-        f"On {_input_words(run)} the weighted acceleration at the seat rail of {run.car.vehicle.name} is "
+        f"On {input_text(run)} the weighted acceleration at the seat rail of {run.car.vehicle.name} is "
         f"{number(total)} m/s²: {' to '.join(reactions(total))} (ISO 2631-1; lower is better)."
     ]
     band = main_band(spectra)
@@ -118,19 +121,6 @@ def comfort_bands(run: FinishedRun, modes: Modes, width: float) -> Markup:
         partial(plot_bands, edges=bands.edges, powers=powers, modes=marked, caption=run.caption, width=width),
         f"Frequencies of the weighted acceleration of {run.name}",
     )
-
-
-def _input_words(run: FinishedRun) -> str:
-    """Return the input in words: the road with its speed, or the file with its level."""
-    road, excitation = run.summary["input"].get("road") or {}, run.summary["input"]
-    if road.get("level"):
-        return f"a level road at {road['speed_kmh']:g} km/h"
-    if road.get("class"):
-        return f"a road of class {road['class']} at {road['speed_kmh']:g} km/h"
-    if road.get("speed_kmh"):
-        named = road.get("obstacle") or road.get("profile") or Path(excitation["file"]).name
-        return f"{named} at {road['speed_kmh']:g} km/h"
-    return f"{Path(excitation['file']).name} (RMS {1e3 * excitation['rms_m']:.3g} mm)"
 
 
 def _is_within(band: MainBand) -> str:
@@ -178,9 +168,13 @@ def _effect(first: FinishedRun, run: FinishedRun) -> str:
         effect = f"stays at {number(before)} m/s²"
     else:
         word, rating = ("rises", ", worse") if percent > 0.0 else ("falls", ", better")
-        if _input_words(first) != _input_words(run):
+        if input_text(first) != input_text(run):
             rating = ""  # of the inputs, not of the cars
-        effect = f"{word} from {number(before)} to {number(after)} m/s² ({difference(before, after)}{rating})"
+        change, width = difference(before, after), change_half_width(first, run)
+        if width is not None:
+            change = f"{change.removesuffix(' %')} ± {number(width, 2)} %"
+            rating = rating if abs(percent) > width else ", not more than its error: take a longer road"
+        effect = f"{word} from {number(before)} to {number(after)} m/s² ({change}{rating})"
     return f"{what_changed(first, run)}: the weighted acceleration at the seat rail (ISO 2631-1) {effect}."
 
 
@@ -199,17 +193,19 @@ def _percent(first: FinishedRun, run: FinishedRun) -> float | None:
 def what_changed(first: FinishedRun, run: FinishedRun) -> str:
     """Return what differs between two runs: car, parameters, input, engine."""
     parts = []
-    vehicles = [first.car.vehicle, run.car.vehicle]
+    vehicles, inputs = [first.car.vehicle, run.car.vehicle], [input_text(each) for each in (first, run)]
     changed = _without_followers(
         first, run, [row for row in changed_parameters(vehicles) if not row[0].startswith(OF_THE_RUN)]
     )
+    if inputs[0] != inputs[1]:
+        # Set by the road, as tyres that lift off an obstacle.
+        changed = [row for row in changed if not row[0].endswith(".one_sided")]
     if len(changed) > MOST_CHANGES and vehicles[0].name != vehicles[1].name:
         parts.append(f"car {vehicles[1].name} instead of {vehicles[0].name}")
     elif len(changed) > MOST_CHANGES:
         parts.append(f"{len(changed)} other parameters, among them {parameter_words(changed[0][0])}")
     else:
         parts += [_change_words(path, unit, old, new) for path, unit, (old, new) in changed]
-    inputs = [_input_words(each) for each in (first, run)]
     if inputs[0] != inputs[1]:
         parts.append(f"{inputs[1]} instead of {inputs[0]}")
     engines = [each.summary["solver"]["engine"] for each in (first, run)]

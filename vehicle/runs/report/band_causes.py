@@ -55,7 +55,8 @@ def strongest(run: FinishedRun, band: MainBand, modes: Sequence[Mode]) -> Mode |
         modes: modes of the car in this state of the dampers.
 
     Returns:
-        The mode; None if no plate is recorded or no mode has a positive share.
+        The mode; None if no plate is recorded, no mode has a positive share, or the one with the largest share cannot
+        cause the band (`MainBand.explained_by`): it only passes the vibration on.
     """
     first = round(evaluated_from(run.summary) / run.recording.timestep)
     system = run.car.matrices.system
@@ -65,7 +66,8 @@ def strongest(run: FinishedRun, band: MainBand, modes: Sequence[Mode]) -> Mode |
     stuck = damper_state(run) == "stuck"
     result = mode_shares(system, f"{POINT}_acc_{band.axis}", lines.frequency, lines.plates, stuck=stuck)
     at = int(np.argmax(result.shares))
-    return mode_of(modes, result, at) if result.shares[at] > 0.0 else None
+    mode = mode_of(modes, result, at) if result.shares[at] > 0.0 else None
+    return mode if mode is not None and band.explained_by(mode.frequency) else None
 
 
 def paths(run: FinishedRun, axis: str, mode: Mode) -> dict[str, float]:

@@ -57,7 +57,13 @@ def base_run(run: FinishedRun) -> FinishedRun | None:
 def _unchanged(run: FinishedRun) -> Car | None:
     """Return the unchanged car with the driving state and the solver of the run; None if nothing is changed."""
     origin = run.summary["vehicle"]
-    kept = [text for text in origin["overrides"] if text.startswith(OF_THE_RUN)]
+    road = run.summary["input"].get("road") or {}
+    # An obstacle sets tyres that lift off: they belong to the run.
+    kept = [
+        text
+        for text in origin["overrides"]
+        if text.startswith(OF_THE_RUN) or (road.get("obstacle") and ".one_sided=" in text)
+    ]
     file = None if origin["file"] is None else Path(origin["file"])
     if len(kept) < len(origin["overrides"]):
         car = Car.load(file, kept)

@@ -16,6 +16,7 @@ from vehicle.runs.report.differences import changed_parameters, difference, key_
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.general_notices import without_general
 from vehicle.runs.report.markup import templates
+from vehicle.runs.report.run_input import references
 from vehicle.runs.report.spectra_section import spectra
 from vehicle.runs.report.svg_figure import drawing
 
@@ -75,17 +76,17 @@ Table = tuple[list[str], list[tuple[str, ...]]]
 
 
 def _figures_beside(runs: Sequence[FinishedRun]) -> Table:
-    """Return the key figures of runs: a row for each, with its change against the first run."""
-    figures = [key_figures(run) for run in runs]
-    heads = ["", "unit", runs[0].name]
-    for run in runs[1:]:
-        heads += [run.name, "change"]
+    """Return the key figures of runs: a row for each, with its change against the first run on the same input."""
+    figures, compared = [key_figures(run) for run in runs], references(runs)
+    heads = ["", "unit"]
+    for run, base in zip(runs, compared, strict=True):
+        heads += [run.name] if base is None else [run.name, f"change from {runs[base].name}" if base else "change"]
     rows = []
     for name, unit in dict.fromkeys(key for table_of_run in figures for key in table_of_run):
         values = [table_of_run.get((name, unit)) for table_of_run in figures]
-        cells = [number(values[0])]
-        for value in values[1:]:
-            cells += [number(value), difference(values[0], value, unit)]
+        cells = []
+        for value, base in zip(values, compared, strict=True):
+            cells += [number(value)] if base is None else [number(value), difference(values[base], value, unit)]
         rows.append((name, unit, *cells))
     return heads, rows
 

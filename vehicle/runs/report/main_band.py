@@ -29,6 +29,22 @@ class MainBand:
     # mean square in the band over that of all axes; of a difference, over its total. May exceed 1 if other bands change
     # in the other direction [-].
     share: float
+    edges: Vector  # of the third octaves in the band [Hz], (n + 1,)
+    parts: Vector  # their mean square, or its change; positive in the direction of the whole [(m/s2)^2], (n,)
+
+    def explained_by(self, frequency: float) -> bool:
+        """Return True if a mode can cause the band: it lies inside, and its third octave is not below the mean.
+
+        In a third octave below the mean of the band the vibration has a hole, not a resonance; on a road the wheelbase
+        makes such holes at the frequencies where front and rear wheels move against each other.
+
+        Args:
+            frequency: frequency of the mode [Hz].
+        """
+        if not self.low <= frequency < self.high:
+            return False
+        at = int(np.searchsorted(self.edges, frequency, side="right")) - 1
+        return bool(self.parts[at] >= np.mean(self.parts))
 
 
 def weighted_bands(run: FinishedRun) -> dict[str, ChannelSpectrum]:
@@ -77,6 +93,8 @@ def main_band(spectra: dict[str, ChannelSpectrum], before: dict[str, ChannelSpec
         high=float(bands.edges[high + 1]),
         peak=float(bands.nominal[np.argmax(along)]),
         share=float(np.sign(powers[axis].sum()) * along[low : high + 1].sum() / total),
+        edges=np.asarray(bands.edges[low : high + 2]),
+        parts=np.asarray(along[low : high + 1]),
     )
 
 

@@ -22,10 +22,7 @@ def verdict_section(figures: Mapping[str, Figure], runs: Sequence[FinishedRun]) 
         figures: figures with their limits, see `vehicle.runs.targets.verdict.read_targets`.
         runs: finished runs of one or several cars.
     """
-    rated = verdict(
-        figures,
-        [RatedRun(name=run.name, car=run.car, recording=run.recording, summary=run.summary) for run in runs],
-    )
+    rated = verdict(figures, rated_runs(runs))
     rows = [
         {
             "words": figure.words or name.replace("_", " "),
@@ -45,6 +42,11 @@ def verdict_section(figures: Mapping[str, Figure], runs: Sequence[FinishedRun]) 
         caption="value and its 95 % interval on a random road; undecided if the limit lies inside the interval; the "
         "worst of several runs",
     )
+
+
+def rated_runs(runs: Sequence[FinishedRun]) -> list[RatedRun]:
+    """Return finished runs for the verdict."""
+    return [RatedRun(name=run.name, car=run.car, recording=run.recording, summary=run.summary) for run in runs]
 
 
 def _value(rated: Rated) -> str:

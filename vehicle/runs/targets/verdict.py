@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib import resources
@@ -11,6 +12,7 @@ from pathlib import Path
 from vehicle.engines.simulation.recording import Recording
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.channel_words import channels_named
+from vehicle.model.parameters.shipped import CARS, vehicle_file
 from vehicle.model.parameters.toml_file import build, read_table
 from vehicle.runs.car import Car
 from vehicle.runs.targets.figure import Figure
@@ -65,11 +67,13 @@ class RatedRun:
     @property
     def label(self) -> str:
         """Name of the car and its changed parameters, except those set by the road."""
-        vehicle = self.summary["vehicle"]
-        changed = [
-            text for text in vehicle["overrides"] if not text.startswith("driving.speed=") and "one_sided=" not in text
-        ]
-        return ", ".join([vehicle["name"], *changed])
+        return ", ".join([self.summary["vehicle"]["name"], *self.changes])
+
+    @property
+    def changes(self) -> list[str]:
+        """Changed parameters of the car, "path=value", except those set by the road."""
+        overrides = self.summary["vehicle"]["overrides"]
+        return [text for text in overrides if not text.startswith("driving.speed=") and "one_sided=" not in text]
 
     @property
     def histories(self) -> Histories:
@@ -142,8 +146,7 @@ def verdict(figures: Mapping[str, Figure], runs: Sequence[RatedRun]) -> dict[str
     for name, figure in figures.items():
         values: dict[str, list[Rated]] = {car: [] for car in rated}
         for run in runs:
-            excitation = run.summary["input"]
-            if not figure.on(run.name, excitation["file"], excitation.get("road")):
+            if not _is_on(run, figure):
                 continue
             try:
                 value, error = value_of(figure, run.histories)
@@ -157,6 +160,45 @@ def verdict(figures: Mapping[str, Figure], runs: Sequence[RatedRun]) -> dict[str
             worst = max(known, key=lambda rated_run: figure.sense * rated_run.value, default=Rated())
             rated[car][name] = replace(worst, runs=len(each))
     return rated
+
+
+def missing_runs(figures: Mapping[str, Figure], runs: Sequence[RatedRun]) -> str:
+    """Return a line on the inputs without a run, and the commands that make them; empty if every figure has its runs.
+
+    Args:
+        figures: figures with their limits.
+        runs: finished runs of one or several cars.
+    """
+    inputs, commands, without = dict[str, None](), dict[str, None](), dict[str, None]()
+    cars = {run.label: run for run in runs}
+    for name, figure in figures.items():
+        for label, car in cars.items():
+            if not any(run.label == label and _is_on(run, figure) for run in runs):
+                without[name] = inputs[figure.where] = commands[_command_for(figure, car)] = None
+    if not without:
+        return ""
+    return (f"no run for {len(without)} of {len(figures)} targets; missing {'; '.join(inputs)}: "
+            f"{' && '.join(commands)}")  # fmt: skip
+
+
+def _is_on(run: RatedRun, figure: Figure) -> bool:
+    """Return True if a run is on the input of a figure."""
+    excitation = run.summary["input"]
+    return figure.on(run.name, excitation["file"], excitation.get("road"))
+
+
+def _command_for(figure: Figure, run: RatedRun) -> str:
+    """Return the command that runs the car of a run on the input of a figure."""
+    name, file = run.summary["vehicle"]["name"], run.summary["vehicle"]["file"]
+    shipped = name in CARS and (file is None or Path(file) == vehicle_file(name))
+    parts = ["python", "-m", "vehicle", "shaker", "--vehicle", name if shipped else str(file)]
+    if road := figure.road or figure.obstacle:
+        parts += ["--road", road, *([] if figure.speed is None else ["--speed", f"{figure.speed:g}"])]
+    else:
+        parts += ["--input", figure.signal or "FILE.csv"]
+    for text in run.changes:
+        parts += ["--set", text]
+    return shlex.join([*parts, "--output", f"runs/{figure.run}"] if figure.run else parts)
 
 
 def sentence(figures: Mapping[str, Figure], car: str, rated: Mapping[str, Rated]) -> str:

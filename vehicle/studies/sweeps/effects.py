@@ -46,6 +46,21 @@ class Effect:
     half_width: float
 
     @property
+    def mark(self) -> str:
+        """Words for an effect without a sense: not above its error, or equal signs at both ends; empty otherwise."""
+        if self.largest <= self.half_width:
+            return "within +-"
+        return "same sign" if self.change_low * self.change_high > 0.0 else ""
+
+    def is_apart(self, other: Effect) -> bool:
+        """Return True if the ranks of two effects are decided: they differ by more than sqrt(half_width^2 of both).
+
+        Without half widths, on one event, every difference decides.
+        """
+        widths = np.nan_to_num([self.half_width, other.half_width])
+        return abs(self.largest - other.largest) > math.hypot(*widths)
+
+    @property
     def largest(self) -> float:
         """Larger change of comfort [%]; 0 if both runs failed."""
         return max(
@@ -125,7 +140,8 @@ class Effects:
 def effect_lines(effects: Effects) -> list[str]:
     """Return the lines of the table of the largest effects, and the result in words."""
     percent = number(100.0 * effects.share)
-    heads = ["parameter", "value", f"-{percent} %", f"+{percent} %", "+-"]
+    marked = any(each.mark for each in effects.shown)
+    heads = ["parameter", "value", f"-{percent} %", f"+{percent} %", "+-", *([""] if marked else [])]
     rows = [
         [
             each.path,
@@ -135,6 +151,7 @@ def effect_lines(effects: Effects) -> list[str]:
                 for change in (each.change_low, each.change_high)
             ),
             f"{each.half_width:.2f}" if math.isfinite(each.half_width) else "-",
+            *([each.mark] if marked else []),
         ]
         for each in effects.shown
     ]
@@ -161,8 +178,16 @@ def effect_sentence(effects: Effects) -> str:
         for sign, change in (("-", first.change_low), ("+", first.change_high))
         if math.isfinite(change)
     ]
+    following = [each for each in others[:2] if not each.largest <= each.half_width]
     text = f"{first.path} matters most: {', '.join(turns)}"
-    return text + (f"; then come {' and '.join(each.path for each in others[:2])}." if others else ".")
+    if following:
+        text += f"; then come {' and '.join(each.path for each in following)}"
+    named = (first, *following)
+    # A parameter that is not named counts too: it may be before a named one.
+    unsure = [each.path for each in named if not all(each.is_apart(o) for o in effects.effects if o is not each)]
+    if unsure:
+        text += f"; not decided within the errors: rank of {' and '.join(unsure)}"
+    return f"{text}."
 
 
 def write_effects(path: Path, effects: Effects) -> None:

@@ -19,6 +19,7 @@ from vehicle.model.parameters.shipped import FOCUS_FILE, vehicle_file
 from vehicle.model.parameters.vehicle import load_vehicle, overridden
 from vehicle.runs.car import Car
 from vehicle.settings import with_settings
+from vehicle.signals.excitation.road_drive import RoadDrive
 from vehicle.studies.sweeps.case import all_tyre_words
 from vehicle.studies.sweeps.case_evaluation import reason_for_mujoco
 from vehicle.studies.sweeps.case_table import Cases, Combinations, RowChanges
@@ -64,11 +65,14 @@ class SweepPlan:
         """Return a message on the inputs on which MuJoCo runs the first or the last car, with the reason.
 
         For this both cars, in which the varied values have their first and their last value, are run on each input with
-        the reduced engine; from their computing time the message says how long that engine takes for all runs.
+        the reduced engine; from their computing time the message says how long that engine takes for all runs. With
+        the reduced engine the message names the first input on which the first car leaves its valid range.
         """
         engine = self.cases[0].engine
-        if engine == "reduced" or not isinstance(self.measure, BatchMeasure):
+        if not isinstance(self.measure, BatchMeasure):
             return ()
+        if engine == "reduced":
+            return self._outside_range(self.measure)
         count, reasons, states, seconds = len(self.cases.changes), {}, [], 0.0
         for number, (source, _) in enumerate(self.cases.inputs):
             for car, which in {count - 1: "last", 0: "first"}.items():
@@ -93,6 +97,19 @@ class SweepPlan:
         if engine == "mujoco":
             return (f"{asked} {error}, outside its valid range {where}",)
         return (f"engine mujoco {where}; {reduced} {error}",)
+
+    def _outside_range(self, measure: BatchMeasure) -> tuple[str, ...]:
+        """Return a message on the first input on which the first car leaves the valid range of the reduced engine."""
+        count, roads = len(self.cases.changes), dict[str, int]()
+        for number, (source, _) in enumerate(self.cases.inputs):
+            # Other seeds of a road hardly differ in the largest rotation.
+            one_seed = replace(source, tagged=False) if isinstance(source, RoadDrive) else source
+            roads.setdefault(one_seed.name, number)
+        for name, number in roads.items():
+            if reason := reason_for_mujoco(self.cases[number * count], measure):
+                return (f"outside the valid range of the reduced engine on {name}, at least for the first car: "
+                        f"{reason} (on class C {ERROR_ON_CLASS_C}); --engine mujoco runs the complete model",)  # fmt: skip
+        return ()
 
     def run(self, **changed: Any) -> SweepTable:
         """Run the sweep, see `vehicle.studies.sweeps.sweep.sweep_cases`; `changed` replaces settings."""

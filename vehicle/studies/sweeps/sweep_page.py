@@ -105,6 +105,7 @@ def _effects(effects: Effects, caption: str) -> Markup:
             f"{change:+.2f}" if math.isfinite(change) else "failed" for change in (each.change_low, each.change_high)
         )
         width = number(each.half_width if math.isfinite(each.half_width) else None, 2)
+        width = ", ".join(filter(None, (width, each.mark.replace("+-", "±"))))
         rows.append(
             (each.path, each.unit, *(number(value, 4) for value in (each.value, each.low, each.high)), *changes, width)
         )

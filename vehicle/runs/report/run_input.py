@@ -1,0 +1,77 @@
+"""Inputs of the runs of a report: their words, the runs that are compared, and the error of a change on one road."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from scipy.special import stdtrit
+
+from vehicle.names import AXES
+from vehicle.runs.report.finished_run import FinishedRun
+from vehicle.runs.report.main_band import POINT
+from vehicle.signals.analysis.comfort_error import WAVES, difference_error
+from vehicle.signals.analysis.ride_comfort import WEIGHTED, comfort_columns, wave_names
+from vehicle.signals.records.record_spectra import evaluated_from
+
+
+def input_text(run: FinishedRun) -> str:
+    """Return the input in words: the road with its speed, or the file with its level."""
+    road, excitation = run.summary["input"].get("road") or {}, run.summary["input"]
+    if road.get("level"):
+        return f"a level road at {road['speed_kmh']:g} km/h"
+    if road.get("class"):
+        return f"a road of class {road['class']} at {road['speed_kmh']:g} km/h"
+    if road.get("speed_kmh"):
+        named = road.get("obstacle") or road.get("profile") or Path(excitation["file"]).name
+        return f"{named} at {road['speed_kmh']:g} km/h"
+    return f"{Path(excitation['file']).name} (RMS {1e3 * excitation['rms_m']:.3g} mm)"
+
+
+def references(runs: Sequence[FinishedRun]) -> list[int | None]:
+    """Return the number of the run with which each run is compared: the first one on its input.
+
+    Returns:
+        None for the first run on an input. If no two runs have the same input, the inputs themselves are compared: the
+        first run is the reference of all others.
+    """
+    inputs = [input_text(run) for run in runs]
+    if len(set(inputs)) == len(inputs):
+        return [None, *[0] * (len(runs) - 1)]
+    return [None if inputs.index(text) == number else inputs.index(text) for number, text in enumerate(inputs)]
+
+
+def change_half_width(first: FinishedRun, run: FinishedRun) -> float | None:
+    """Return half of the 95 % interval of the change of the weighted acceleration at the seat rail [%].
+
+    The error is that of two cars on the same random road, `vehicle.signals.analysis.comfort_error.difference_error`,
+    times t_0.975 with 2 `WAVES` degrees of freedom, over the value of the first run.
+
+    Args:
+        first, run: runs.
+
+    Returns:
+        The half width; None unless both drive on the same random road, with the same seed and the same evaluated span.
+    """
+    road, names = first.summary["input"].get("road") or {}, [f"{POINT}_acc_{axis}" for axis in AXES]
+    roads = [_same_for_both(each) for each in (first, run)]
+    recorded = all(name in each.recording.channels for each in (first, run) for name in names)
+    if not (road.get("class") or road.get("profile")) or roads[0] != roads[1] or not recorded:
+        return None
+    values = []
+    for each in (first, run):
+        rail = np.stack([each.recording.channels[name] for name in names])[None]
+        values.append(
+            comfort_columns(each.recording.timestep, rail, skip=evaluated_from(each.summary), names=(WEIGHTED,))
+        )
+    waves = np.array([[float(columns[name][0]) for name in wave_names(WEIGHTED)] for columns in values])
+    error = difference_error(*(waves[:, 0::2] + 1j * waves[:, 1::2]))
+    return 100.0 * float(stdtrit(2 * WAVES, 0.975) * error / values[0][WEIGHTED][0])
+
+
+def _same_for_both(run: FinishedRun) -> tuple[object, ...]:
+    """Return what two runs on one road have in common: road, level, and evaluated span."""
+    road = run.summary["input"].get("road") or {}
+    parts = (road.get(key) for key in ("class", "profile", "speed_kmh", "seed", "coherence"))
+    return *parts, run.summary["input"]["rms_m"], run.summary["input"]["duration_s"], evaluated_from(run.summary)
