@@ -155,8 +155,8 @@ def film_name(value: str, default: str) -> Path:
 def damper_option(parser: argparse._ActionsContainer) -> None:
     """Add --damper, the state of the dampers for modes and FRFs of the linear car."""
     states = ("stuck", "sliding")
-    words = "dampers stuck by their friction, or sliding; default: stuck"
-    parser.add_argument("--damper", choices=states, default="stuck", help=words)
+    help_text = "dampers stuck by their friction, or sliding; default: stuck"
+    parser.add_argument("--damper", choices=states, default="stuck", help=help_text)
 
 
 def resume_options(parser: Parser) -> None:

@@ -103,10 +103,10 @@ def job(options: argparse.Namespace) -> None:
     folder = None if options.output is None else output_folder_of(options, options.output)
     driving = [f"driving.speed={speeds[0] / 3.6!r}"] if rpm and speeds else []
     car = Car.load(options.vehicle, [*options.overrides, *driving])
-    words = ",".join(options.channel or ["seat rail z"]).split(",")
+    asked_channels = ",".join(options.channel or ["seat rail z"]).split(",")
     channels = order_points_at(
         car,
-        words,
+        asked_channels,
         rpm=rpm,
         speed=() if rpm else speeds,
         orders=orders,

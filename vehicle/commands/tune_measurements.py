@@ -110,8 +110,8 @@ def measurement_options(parser: Parser) -> None:
         help="speed on the preceding --road [km/h]; for a road recorded over time also channel:NAME, the channel with "
         "the speed",
     )
-    words = "tyre contact on the preceding --road; default: patch, on an obstacle cams"
-    setting_options(files, RoadSettings, "contact", action=_OfMeasurement, help=words)
+    help_text = "tyre contact on the preceding --road; default: patch, on an obstacle cams"
+    setting_options(files, RoadSettings, "contact", action=_OfMeasurement, help=help_text)
     setting_options(files, LevelSettings, "levels", "reference", action=_OfMeasurement)
     files.add_argument(
         "--any-level", action="store_true", help="accept plate levels and accelerations beyond a real shaker"

@@ -350,4 +350,4 @@ def test_rows_of_a_sweep_may_have_different_parameters():
     plan = plan_sweep(Car.load(), [stiff, {**stiff, "damper.friction_law": "presliding"}], ShortRoad())
     assert [len(case.overrides) for case in plan.cases] == [1, 2] and plan.notes == ()
     (note,) = plan_sweep(Car.load(), [stiff, {"damper.viscous": 2e3, **stiff}], ShortRoad()).notes
-    assert "without effect" in note
+    assert "has no effect" in note

@@ -164,9 +164,9 @@ def _of_several(
     of_shown = [runs[k] for k in shown]
     few = fill("few_of_many", count=len(runs)) if len(shown) < len(runs) else Markup()
     # Runs on several inputs are compared on each of them.
-    told = shown if len({run.caption for run in runs}) == 1 else range(len(runs))
+    compared = shown if len({run.caption for run in runs}) == 1 else range(len(runs))
     parts = [
-        ("Result", "result", few + answer([runs[k] for k in told], [modes[k] for k in told]) + explained()),
+        ("Result", "result", few + answer([runs[k] for k in compared], [modes[k] for k in compared]) + explained()),
         *([("Film", "film", film_part(pair))] if pair is not None else []),
         ("Comparison of the runs", "comparison", numbers_beside(runs)),
         ("Frequency responses and spectra", "responses", curves_over_each_other(of_shown)),

@@ -192,8 +192,8 @@ class RideProblem:
         changed = scaled(self.table, self.targets, factors)
         _require_inertia(changed, self.targets)
         roll = any(name.startswith("roll_stiffness") for name in names)
-        found = quantities(new_car_of(changed, self.template), self.template, roll=roll)
-        return [found[name] for name in names]
+        figures = quantities(new_car_of(changed, self.template), self.template, roll=roll)
+        return [figures[name] for name in names]
 
     def factor_bounds(self) -> tuple[Vector, Vector]:
         """Return the lower and the upper bound of the factor on the parameter of each target."""
@@ -218,8 +218,8 @@ class RideProblem:
         lower, upper = self.factor_bounds()
 
         def deviation(factors: Vector) -> Vector:
-            found = np.array(self.values(factors, [target.name for target in self.targets]))
-            return np.asarray(found / aims - 1.0)
+            figures = np.array(self.values(factors, [target.name for target in self.targets]))
+            return np.asarray(figures / aims - 1.0)
 
         factors = np.clip(np.ones(len(aims)), lower, upper)
         residual = deviation(factors)

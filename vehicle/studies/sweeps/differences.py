@@ -106,8 +106,8 @@ class DifferencesWriter:
             self._base = self._first.setdefault(case.source, numbers)
             if isinstance(case.source, RoadDrive) and case.source.tagged:
                 self._road = replace(case.source, tagged=False).name
-        kind = CLASS if isinstance(case.source, RoadDrive) else RECORDS
-        population = EVENT if is_event(row, UNWEIGHTED) else kind
+        by_source = CLASS if isinstance(case.source, RoadDrive) else RECORDS
+        population = EVENT if is_event(row, UNWEIGHTED) else by_source
         self._waiting.append((case.source.name, parameters, population, numbers, self._base))
         if self._road:
             cars = self._seeds.setdefault(self._road, {})

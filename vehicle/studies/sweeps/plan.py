@@ -78,11 +78,11 @@ class SweepPlan:
             for car, which in {count - 1: "last", 0: "first"}.items():
                 began = clock.perf_counter()
                 states.append(reason := reason_for_mujoco(self.cases[number * count + car], self.measure))
-                taken = clock.perf_counter() - began
+                duration_s = clock.perf_counter() - began
                 if reason:
                     reasons[source.name] = which, reason
             # A vector of cars takes as long as one car; the last run found the program compiled.
-            seconds += taken * math.ceil(count / FILL)
+            seconds += duration_s * math.ceil(count / FILL)
         reduced = f"--engine reduced takes about {duration(max(seconds, 1.0))} for all {len(self.cases)} runs"
         asked = f"engine mujoco as asked; {reduced}"
         if not reasons:
@@ -107,8 +107,8 @@ class SweepPlan:
             roads.setdefault(one_seed.name, number)
         for name, number in roads.items():
             if reason := reason_for_mujoco(self.cases[number * count], measure):
-                return (f"outside the valid range of the reduced engine on {name}, at least for the first car: "
-                        f"{reason} (on class C {ERROR_ON_CLASS_C}); --engine mujoco runs the complete model",)  # fmt: skip
+                where = f"outside the valid range of the reduced engine on {name}, at least for the first car"
+                return (f"{where}: {reason} (on class C {ERROR_ON_CLASS_C}); --engine mujoco runs the complete model",)
         return ()
 
     def run(self, **changed: Any) -> SweepTable:
