@@ -68,7 +68,7 @@ def test_rows_say_what_was_missed(masses):
 
 def test_notes_name_everything(masses):
     text = "\n".join(fit_notes("A fit", masses, finished(masses)))
-    assert "colour: the data do not determine this parameter: " in text and "held at 2" in text
+    assert "colour: the data do not determine this parameter: " in text and "kept at 2" in text
     assert "| damping | 166.667 to 13500 | 2100 |" in text and "-0.50" in text
     assert "body, phase | 60" in text
     assert "damping 1" in frozen_note(masses, {**TRUE, "colour": 2.0})
