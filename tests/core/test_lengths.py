@@ -59,11 +59,10 @@ def test_a_count_or_a_first_row_that_does_not_fit_is_refused(marches):
         for name in ("inputs", "sums", "plates", "dampers"):
             assert refused(fields, **{name: fields[name] + 1000}), name
             assert refused(fields, **{name: -1}), name
-        for name in fields["rows"]._fields:
-            changed = fields["rows"]._replace(**{name: -1})
-            assert refused(fields, rows=changed), name
+        for name in fields["rows"]:
+            assert refused(fields, rows={**fields["rows"], name: -1}), name
     for name in ("slip", "gain", "law", "inputs", "work", "direct"):
-        assert refused(marches["stribeck"], rows=rows._replace(**{name: 10**6})) == f"rows.{name}"
+        assert refused(marches["stribeck"], rows={**rows, name: 10**6}) == f"rows.{name}"
     for name in ("every", "check_every"):
         assert refused(marches["stribeck"], **{name: 0}) == name
 

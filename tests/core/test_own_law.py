@@ -145,12 +145,14 @@ def test_laws_that_are_refused():
             register_law("wrong", wrong)
     with pytest.raises(ConfigurationError, match=r"'missing': is not registered in this process \(registered: line"):
         car_with("missing").run(ROAD, engine="reduced", skip=0.5)
-    with pytest.raises(ConfigurationError, match=r"damper\.function: found 'line' with control\.law = sky"):
+    with pytest.raises(
+        ConfigurationError, match=r"damper\.function: found the Python function 'line' with control\.law = sky"
+    ):
         car_with("line", **{"front.damper.control.law": "skyhook"})
 
 
 def test_an_fmu_does_not_contain_it(tmp_path):
-    with pytest.raises(ConfigurationError, match=r"function: found 'line'"):
+    with pytest.raises(ConfigurationError, match=r"function: found the Python function 'line'"):
         write_fmu(car_with("line"), tmp_path / "car.fmu")
 
 

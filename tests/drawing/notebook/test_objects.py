@@ -108,7 +108,7 @@ def test_tables_of_orders_need_the_same_library(monkeypatch):
     monkeypatch.setitem(sys.modules, "pandas", None)
     one = np.ones((1, 1))
     lines = OrderLines(orders=one[0], frequency=one[0], amplitude=one.astype(complex), error=one, segments=1)
-    with pytest.raises(MissingPartError, match="to_dataframe: needs pandas, which is not installed"):
+    with pytest.raises(MissingPartError, match="to_dataframe needs pandas, which is not installed"):
         named_orders(lines, ("seat_rail_acc_z",), ("m/s2",), "crank").to_dataframe()
 
 
