@@ -59,7 +59,7 @@ def test_a_count_or_a_first_row_that_does_not_fit_is_refused(marches):
         for name in ("inputs", "sums", "plates", "dampers"):
             assert refused(fields, **{name: fields[name] + 1000}), name
             assert refused(fields, **{name: -1}), name
-        for name in fields["rows"]:
+        for _, name in records()["Sections"]:
             assert refused(fields, rows={**fields["rows"], name: -1}), name
     for name in ("slip", "gain", "law", "inputs", "work", "direct"):
         assert refused(marches["stribeck"], rows={**rows, name: 10**6}) == f"rows.{name}"

@@ -65,10 +65,10 @@ def test_velocities_and_forces_of_coupled_dampers_are_consistent(count, own_gain
         table = table_of(gain, laws, DOUBLE)
         t, r = table.table, table.rows
         arriving, hold = size * generator.standard_normal(count), 20.0 * generator.standard_normal(count)
-        t[r.work :][:count], t[r.hold :][:count] = arriving[:, None], hold[:, None]
-        t[r.stick :][:count] = 0.0  # The forces are constant over the step.
+        t[r["work"] :][:count], t[r["hold"] :][:count] = arriving[:, None], hold[:, None]
+        t[r["stick"] :][:count] = 0.0  # The forces are constant over the step.
         solve(table, count)
-        velocity, force = t[r.velocity :][:count, 0], t[r.inputs :][:count, 0]
+        velocity, force = t[r["velocity"] :][:count, 0], t[r["inputs"] :][:count, 0]
         # v = a + G f, and f follows from v: the curve acts with the mean of both ends.
         # The iteration leaves a share `ACCURACY` of the change of a force in the step, here from 0.
         left = ACCURACY * np.max(gain) * np.max(np.abs(force))

@@ -96,7 +96,9 @@ def read_dofs(path: Path) -> tuple[IntArray, IntArray]:
             "pressures and other degrees of freedom are not supported."
         ) from error
     if equations and equations != list(range(1, len(rows) + 1)):
-        raise DataError(f"{path}: equations are not 1 to {len(rows)} in this order. Specify the complete mapping file.")
+        raise DataError(
+            f"{path}: the equations must be 1 to {len(rows)} in this order. Give the complete mapping file."
+        )
     return np.array(nodes), np.array(directions)
 
 
