@@ -74,7 +74,7 @@ def test_the_curve_is_scaled_by_limit_and_stiffness():
 BAD: dict[str, tuple[dict[str, Any], str]] = {
     "no stiffness": (
         {"presliding_stiffness": None},
-        "Damper.presliding_stiffness: missing; friction_law = presliding needs it [N/m]",
+        "Damper.presliding_stiffness: missing; friction_law = presliding needs this value [N/m]",
     ),
     "one slope too many": (
         {"presliding_force": (0.5, 1.0), "presliding_slope": (1.0, 0.5, 0.2)},

@@ -250,6 +250,11 @@ def test_the_size_of_a_tyre_is_its_radius_without_load(surveyed):
     assert wheels["fl"].center[2] - wheels["fl"].patch[2] + deflection == pytest.approx(0.31595, abs=1e-5)
 
 
+def test_the_size_of_a_tyre_is_said_to_set_its_radius_alone(tmp_path, capsys):
+    made(tmp_path / "low", "--tyre-size", "205/45R16")
+    assert any("sets the radius alone" in note for note in json.loads(capsys.readouterr().out)["notes"])
+
+
 def test_a_tyre_of_a_van_has_its_c():
     assert unloaded_radius("215/65R16C 109/107T") == unloaded_radius("215/65R16") == pytest.approx(0.34295, abs=1e-6)
 

@@ -264,5 +264,13 @@ def _notes(car: Car, template: TemplateCar, stated: StatedNumbers, ratio: float)
         *_unusual_notes(car, template, stated),
         f"as in {template.name}: {scaled}parts of axles and powertrain, bushings, mounts, damper friction, tyres; "
         "these values are marked 'template' in the file",
+        *(
+            [
+                f"--tyre-size {stated.tyre_size} sets the radius alone; stiffness and mass of tyres and wheels follow from "
+                f"{template.name}: set your own with --set"
+            ]
+            if stated.tyre_size
+            else []
+        ),
         *(f"left out from {template.name}: {text}" for text in template.left_out),
     )
