@@ -198,12 +198,15 @@ def test_both_engines_see_the_rotations_of_a_body_design(tmp_path, capsys):
     assert np.std(stepped - linear) < 0.003 * size
     assert np.std(rigid[channel] - linear) > 0.01 * size
     for file, notice in (
-        (tmp_path / "turning.toml", "rotational stiffness: strut_top_fr"),
-        (None, "unknown at strut_top_fr"),
+        (
+            tmp_path / "turning.toml",
+            "the body model contains the rotations at these points with rotational stiffness: strut_top_fr",
+        ),
+        (None, "rotational stiffness: missing at strut_top_fr"),
     ):
         options = [] if file is None else ["--vehicle", str(write_vehicle(tmp_path, file.name))]
         assert body_command.main(["show", *options]) == 0
-        assert f"rotation of the body at points with rotational stiffness: {notice}" in capsys.readouterr().out
+        assert notice in capsys.readouterr().out
 
 
 def write_vehicle(folder, body):

@@ -79,7 +79,7 @@ REFUSED: dict[str, tuple[dict[str, float], dict[str, Any], str]] = {
     ),
     "no crank": (IMBALANCE, {"rpm": [750.0], "angle": "wheel_fr"}, "wheel_fr does not turn with the crankshaft"),
     "not the crank": (IMBALANCE, {"rpm": [750.0]}, "sedan has no force that turns with crank"),
-    "too many": (IMBALANCE, {"speed": np.linspace(60.0, 90.0, 500).tolist()}, "gives 500 points, must be at most 400"),
+    "too many": (IMBALANCE, {"speed": np.linspace(60.0, 90.0, 500).tolist()}, "found 500 points, must be at most 400"),
     "too short": (IMBALANCE, {"speed": [60.0], "duration": 2.5}, "turns, must be at least 16"),
 }
 

@@ -230,8 +230,8 @@ def order_points_at(
             results[0][0].angle in (force.law.angle, force.name) for force in run.car.vehicle.composition.forces
         ):
             raise ConfigurationError(
-                f"orders: no force of {car.vehicle.name} turns with {results[0][0].angle}; add a table "
-                "[engine.orders], [front.imbalance] or [force.NAME]"
+                f"orders: {car.vehicle.name} has no force that turns with {results[0][0].angle}; add a section "
+                "[engine.orders], [front.imbalance] or [force.NAME] to the vehicle file"
             )
     joined = []
     for channel, name in enumerate(names):

@@ -264,13 +264,14 @@ def _notes(car: Car, template: TemplateCar, stated: StatedNumbers, ratio: float)
         *_unusual_notes(car, template, stated),
         f"as in {template.name}: {scaled}parts of axles and powertrain, bushings, mounts, damper friction, tyres; "
         "these values are marked 'template' in the file",
-        *(
-            [
-                f"--tyre-size {stated.tyre_size} sets the radius alone; stiffness and mass of tyres and wheels follow from "
-                f"{template.name}: set your own with --set"
-            ]
-            if stated.tyre_size
-            else []
-        ),
+        *_tyre_notes(template, stated),
         *(f"left out from {template.name}: {text}" for text in template.left_out),
     )
+
+
+def _tyre_notes(template: TemplateCar, stated: StatedNumbers) -> list[str]:
+    """Return the note on what the size of a tyre leaves as it is."""
+    if not stated.tyre_size:
+        return []
+    others = f"stiffness and mass of tyres and wheels follow from {template.name}"
+    return [f"--tyre-size {stated.tyre_size} sets the radius alone; {others}: set your own with --set"]
