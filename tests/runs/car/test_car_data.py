@@ -205,7 +205,7 @@ def test_what_is_not_defined_is_said_in_words(shown):
     assert "rear: no steering figures, because its template five_link has no steering_axis" in str(shown["focus_road"])
     assert "front: modes with sliding dampers use the smallest damping" in str(shown["sedan"])
     weightless = Car.load("sedan", {"gravity": 0.0}).show()
-    assert "need gravity" in str(weightless) and weightless.axles[0].ride_frequency_hz is None
+    assert "not defined without gravity" in str(weightless) and weightless.axles[0].ride_frequency_hz is None
 
 
 TRIPLE = """

@@ -71,7 +71,7 @@ def test_a_saved_run_is_a_run_again(runs, name, time_format, tmp_path):
 
 
 def test_a_folder_without_its_files_is_no_run(runs, tmp_path):
-    with pytest.raises(ConfigurationError, match=r"has no summary\.json"):
+    with pytest.raises(ConfigurationError, match=r"contains no summary\.json"):
         Run.load(tmp_path)
     folder = runs["reduced"].save(tmp_path / "run")
     (folder / "time.npz").unlink()

@@ -14,7 +14,7 @@ COMPARED = ("seat_rail_acc_z", "plate_fl_displacement")
 @pytest.fixture(scope="module")
 def runs():
     """Runs of two cars on the same signal: as shipped, and with half the friction."""
-    signal = random_road(rms=5.25e-4, seed=5, wheel="fl", duration=10.0)
+    signal = random_road(rms=5.25e-4, seed=5, wheel="fl", duration=20.0)
     return [Car.load("focus", changes).run(signal, engine="reduced") for changes in ([], [FRICTION])]
 
 

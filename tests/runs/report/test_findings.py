@@ -46,7 +46,7 @@ def test_one_two_and_four_dampers_stick(reported, wheels, words):
 @pytest.mark.parametrize(
     ("full", "console", "page"),
     [
-        (5e-5, ["both dampers stick all the time (|v| < 6 mm/s)"], "Both dampers are all the time stuck: "),
+        (5e-5, ["both dampers stick all the time (|v| < 6 mm/s)"], "Both dampers are stuck all the time: "),
         (
             0.04,
             [

@@ -19,7 +19,7 @@ def test_a_report_without_sliders_says_why(reported):
     summary: Any = run.summary
     cams: Any = {**summary, "input": {**summary["input"], "road": {"tyre_contact": "cams"}}}
     over_obstacles = dataclasses.replace(run, summary=cams)
-    assert "through cams" in trial(over_obstacles).content
+    assert "with cams" in trial(over_obstacles).content
     assert "This report has no sliders for this car or input" in report_page([over_obstacles], trial=trial)
     silent = {name: history for name, history in run.recording.channels.items() if not name.startswith("plate")}
     recording = dataclasses.replace(run.recording, channels=silent)

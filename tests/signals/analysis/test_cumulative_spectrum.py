@@ -66,5 +66,5 @@ def test_bands_of_a_short_record_are_left_out():
     assert bands.nominal[np.isnan(bands.rms)].tolist() == [0.5, 0.63, 0.8, 1.0]
     with pytest.raises(DataError, match="above the 500 Hz"):
         CumulativeSpectrum(STEP, np.sin(TIME)).third_octaves(0.5, 800.0)
-    with pytest.raises(DataError, match="no midband frequency"):
+    with pytest.raises(DataError, match="no centre frequency of a third octave"):
         CumulativeSpectrum(STEP, np.sin(TIME)).third_octaves(2.1, 2.2)

@@ -41,9 +41,11 @@ def test_the_seat_is_weighted_wd_wd_wk():
     assert found["vector_sum"]["vdv"] == pytest.approx(sum(found[axis]["vdv"] ** 4 for axis in "xyz") ** 0.25)
     assert (found["duration_s"], found["place"]) == (pytest.approx(60.0), "seat")
     assert found["reasons"][2].startswith(
-        "z: MTVV and crest factor leave out the first 3.5 s, in which Wk settles; with"
+        "z: MTVV and crest factor leave out the first 3.5 s, in which weighting Wk settles. With"
     )
-    assert found["reasons"][3].startswith("msdv: 60 s hold 6.0 periods of 0.1 Hz; ISO 2631-1, D.1, requires 240 s")
+    assert found["reasons"][3].startswith(
+        "motion sickness dose (msdv): only a rough estimate; 60 s hold 6.0 periods of 0.1 Hz, and ISO 2631-1, D.1, requires 240 s"
+    )
     assert len(found["reasons"]) == 4
     # of a record that starts at rest the switching-on is real: 1.5 instead of 1.414
     rest = evaluate(STEP, [sine(1.0, 0.5), sine(4.0, 0.7), sine(8.0)], from_rest=True)
@@ -63,7 +65,7 @@ def test_a_shock_within_the_settling_time_gives_no_impossible_ratio():
     assert found["z"]["crest_factor"] == pytest.approx(np.max(np.abs(weighted)) / rms, rel=1e-9)
     assert found["z"]["mtvv_ratio"] == pytest.approx(found["z"]["mtvv"] / rms, rel=1e-9)
     (said,) = [text for text in found["reasons"] if text.startswith("z: MTVV")]
-    assert "the weighted RMS, " in said and "with them, is" in said
+    assert "The weighted RMS is" in said and "with them and" in said
 
 
 def test_motion_sickness_uses_wf():

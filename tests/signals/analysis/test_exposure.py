@@ -142,5 +142,5 @@ def test_bad_arguments_are_refused():
         mtvv(STEP, SINE, average="fast")  # type: ignore[arg-type]
     with pytest.raises(ConfigurationError, match="integration_s: found 0 s"):
         mtvv(STEP, SINE, integration_s=0.0)
-    with pytest.raises(ConfigurationError, match=r"eVDV: found RMS 1.0 and duration 0.0"):
+    with pytest.raises(ConfigurationError, match=r"eVDV: found RMS 1.0 m/s2, must be at least 0, and duration 0.0 s"):
         estimated_vibration_dose_value(1.0, 0.0)

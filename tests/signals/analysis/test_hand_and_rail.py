@@ -140,4 +140,4 @@ def test_command(tmp_path, capsys):
     assert main(["--input", str(file), "--place", "train_floor"]) == 0
     assert "mean comfort N_MV of each 5 minutes (EN 12299)  " in capsys.readouterr().out
     assert main(["--input", str(file), "--place", "feet", "--exposure", "8"]) == 2
-    assert "feet has no action value" in capsys.readouterr().err
+    assert "no action value for feet" in capsys.readouterr().err

@@ -62,7 +62,7 @@ def test_a_response_that_has_not_settled_is_estimated_as_a_random_record():
     _, response, _ = lsim(state_space(damping=0.01), excitation, np.arange(excitation.size) * STEP)
     (found,) = whole_record_responses(STEP, excitation[None], response, names=["seat"])
     assert found.estimator.startswith("local rational")
-    assert "seat changes by" in found.reasons[0]
+    assert "seat is not settled: it changes by" in found.reasons[0]
     assert "record more periods" in found.reasons[0]
 
 
@@ -72,7 +72,7 @@ def test_a_nonlinear_response_is_estimated_as_a_random_record():
     for share, name in ((0.001, "periodic"), (0.5, "local rational")):
         (found,) = whole_record_responses(STEP, excitation[None], response + share * np.std(response) * friction)
         assert found.estimator.startswith(name)
-    assert "scatter by" in found.reasons[0]
+    assert "scatters by" in found.reasons[0]
     np.testing.assert_allclose(found.frequency * PERIOD, np.round(found.frequency * PERIOD))  # lines of one period
 
 

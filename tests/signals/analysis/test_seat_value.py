@@ -146,4 +146,4 @@ def test_a_sweep_of_a_car_with_a_seat(tmp_path, monkeypatch):
     values = {key: [float(row[key]) for row in rows] for key in rows[0] if key.startswith("seat_")}
     value = next(values[key] for key in values if key.startswith("seat_value"))
     assert value[0] < value[1] < 1.0  # a softer cushion isolates better
-    assert sum(key.startswith("seat_weighted") for key in values) == 4
+    assert sum(key.startswith("seat_weighted") for key in values) == 5  # three axes, their sum and its error

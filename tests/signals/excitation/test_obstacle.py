@@ -50,9 +50,9 @@ def test_texts_name_shape_sizes_side_and_place() -> None:
         ("cleat:20x50@near", "METRES"),
         ("cleat:20x0", "allowed: 1 to 50000"),
         ("half_round:900", "radius 900; allowed: 1 to 500"),
-        ("cobbles:10x120x1.5", "number 1.5; must be a whole number"),
-        ("speed_bump:100x100", "height 100 over length 100; must be at most 50"),
-        ("cobbles:20x39x10", "height 20 over length 39; must be at most 19.5"),
+        ("cobbles:10x120x1.5", "found 1.5 stones, must be a whole number"),
+        ("speed_bump:100x100", "height 100 mm, must be at most 50 mm, half of the length"),
+        ("cobbles:20x39x10", "height 20 mm, must be at most 19.5 mm, half of the length"),
     ],
 )
 def test_wrong_texts_are_rejected_with_the_right_form(text, message) -> None:

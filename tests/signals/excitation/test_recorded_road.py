@@ -217,7 +217,7 @@ def crg(path, form, grid, slope=None):
 def test_a_reference_line_that_turns_to_either_side_is_named(tmp_path, turn, curved):
     path = crg(tmp_path / "road.crg", "LRFI", np.zeros((20, 3)), 0.3 + turn * np.arange(20))
     path.write_text(path.read_text().replace("reference line slope,m/m", "reference line phi,rad"))
-    assert ("its reference line is curved" in road_words(read_surface(path))) == curved
+    assert ("curved reference line" in road_words(read_surface(path))) == curved
 
 
 @pytest.mark.parametrize("form", ["LRFI", "LDFI", "KRBI", "KDBI"])
@@ -298,7 +298,7 @@ def test_every_damage_is_named_with_the_file(tmp_path, form):
     refused(whole.replace(b"REFERENCE_LINE_END_U = 119.5", b"REFERENCE_LINE_END_U = 102.5"), "its header states")
     refused(
         whole.replace(b"D:long section 3,m\n", b"D:long section 3,m\nD:long section 4,m\n"),
-        "claims|fewer than the 4 numbers of its header",
+        "its header states|fewer than the 4 numbers of its header",
     )
     refused(whole.replace(b"D:long section 3,m\n", b""), "sections|according|more than the 2 numbers of its header")
     refused(whole.replace(b"REFERENCE_LINE_INCREMENT = 0.5", b"REFERENCE_LINE_INCREMENT = 0"), "must be above 0")
@@ -353,7 +353,7 @@ def test_a_damaged_or_binary_erd_is_refused(tmp_path):
         read_road(path, 1.5)
     erd(path)
     path.write_text(path.read_text().rsplit(" ", 2)[0])
-    with pytest.raises(DataError, match=r"39[89] numbers; 200 samples of 2 channels in the header"):
+    with pytest.raises(DataError, match=r"39[89] numbers, but the header states 200 samples of 2 channels"):
         read_road(path, 1.5)
     erd(path)
     path.write_text(path.read_text().replace("XUNITS  m", "XUNITS  s"))

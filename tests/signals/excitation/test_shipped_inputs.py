@@ -116,7 +116,7 @@ def test_a_miss_lists_the_names(tmp_path, monkeypatch):
 @pytest.mark.parametrize("name", ["inputs/low.csv", "../inputs/low.csv"])
 def test_a_path_is_no_shipped_name(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(ConfigurationError, match="not found"):
+    with pytest.raises(ConfigurationError, match="neither a file nor a shipped input"):
         find_input(name)
 
 

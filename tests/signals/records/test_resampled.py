@@ -149,7 +149,7 @@ def test_a_plate_below_125_hz_ends_at_its_band(tmp_path):
     for choice in (None, Choice(resample=1000.0), Choice(channels={"fr": "1"}, resample=1000.0)):
         signal = read_signal(path, wheel="fr", choice=choice)
         assert signal.highest == pytest.approx(40.0) and signal.band((1.0, 50.0))[1] == pytest.approx(40.0)
-        assert any("usable up to 40 Hz" in text for text in signal.notices)
+        assert any("valid up to 40 Hz" in text for text in signal.notices)
         assert signal.timestep == pytest.approx(1e-3)
         middle = slice(2000, 13000)
         expected = 1e-3 * np.sin(2 * np.pi * 7.0 * signal.time)

@@ -76,7 +76,7 @@ def test_a_velocity_that_lags_is_replaced(tmp_path):
 def test_signs(tmp_path):
     plain = read_test(write(tmp_path / "a.csv"))
     opposite = read_test(write(tmp_path / "b.csv", sign=-1.0))
-    assert any("sign inverted" in text for text in opposite.notices)
+    assert any("it is inverted" in text for text in opposite.notices)
     np.testing.assert_allclose(opposite.force, plain.force)
     turned = read_test(tmp_path / "a.csv", compression=True)
     np.testing.assert_allclose(turned.displacement, -plain.displacement)

@@ -272,5 +272,5 @@ def test_a_file_that_is_no_json_is_refused(tmp_path):
     (tmp_path / "car.json").write_text('{"Axles": [')
     with pytest.raises(VehicleError, match=r"car\.json: not a JSON file"):
         chrono_car("small", tmp_path / "car.json")
-    with pytest.raises(VehicleError, match=r"none\.json: no such file"):
+    with pytest.raises(VehicleError, match=r"none\.json: the file does not exist"):
         chrono_car("small", tmp_path / "none.json")

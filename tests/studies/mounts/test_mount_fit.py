@@ -142,8 +142,11 @@ def test_units_and_order_of_the_columns_are_free(tmp_path):
     ("text", "said"),
     [
         (HEAD.replace("[N/mm]", "[lbf/in]") + ROWS, r"write stiffness \[N/mm\] or stiffness \[N/m\]"),
-        (HEAD.replace(" [mm]", "") + ROWS, r"'amplitude': write amplitude \[mm\]"),
-        (HEAD.replace("loss_angle [deg]", "loss factor [-]") + ROWS, r"no column 'loss_angle'; found"),
+        (HEAD.replace(" [mm]", "") + ROWS, r"'amplitude': the unit is missing or unknown; write amplitude \[mm\]"),
+        (
+            HEAD.replace("loss_angle [deg]", "loss factor [-]") + ROWS,
+            r"no column 'loss_angle', must be a single column; found",
+        ),
         (HEAD + ROWS.replace("5,0.1,305", "5,0.1,-305"), r"a\.csv:3: stiffness: found -305 N/mm, must be 3 to 1e"),
         (HEAD.replace("N/mm", "N/m") + ROWS, r"a\.csv:2: stiffness: found 301 N/m, must be 3000 to 1e"),
         (HEAD.replace("[mm]", "[m]") + ROWS, r"amplitude: found 0\.1 m, must be 1e-07 to 0\.02 m; check the unit"),

@@ -66,4 +66,4 @@ def test_a_sweep_without_any_effect_is_refused():
     plan = plan_sweep(
         Car.load("sedan"), {"*.damper.viscous": [1500.0, 2000.0]}, [ShortRoad()], SweepSettings(engine="reduced")
     )
-    assert len(plan.cases) == 2 and "without effect" in plan.notes[0]
+    assert len(plan.cases) == 2 and "has no effect" in plan.notes[0]
