@@ -62,7 +62,7 @@ def check_film_options(options: argparse.Namespace) -> None:
     )
     for name, value, lowest, allowed in wanted:
         if value is not None and not lowest <= value < math.inf:
-            raise ConfigurationError(f"{name} {value:g}: must be {allowed}")
+            raise ConfigurationError(f"{name} {value:g}: must be a finite number, {allowed}")
     mode = getattr(options, "video_mode", None)
     if mode is not None and (mode <= 0.0 or math.isinf(mode)):
         raise ConfigurationError(f"--video-mode {mode:g}: must be a frequency above 0 Hz, as --video-mode 28")

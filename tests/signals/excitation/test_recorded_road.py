@@ -300,7 +300,10 @@ def test_every_damage_is_named_with_the_file(tmp_path, form):
         whole.replace(b"D:long section 3,m\n", b"D:long section 3,m\nD:long section 4,m\n"),
         "its header states|fewer than the 4 numbers of its header",
     )
-    refused(whole.replace(b"D:long section 3,m\n", b""), "sections|according|more than the 2 numbers of its header")
+    refused(
+        whole.replace(b"D:long section 3,m\n", b""),
+        "sections|according|its header states|more than the 2 numbers of its header",
+    )
     refused(whole.replace(b"REFERENCE_LINE_INCREMENT = 0.5", b"REFERENCE_LINE_INCREMENT = 0"), "must be above 0")
     refused(whole.replace(b"LONG_SECTION_V_INCREMENT = 1.0", b"LONG_SECTION_V_INCREMENT = x"), "must be a number")
     refused(whole.replace(form.encode(), b"XXXX"), "the numbers have the format 'XXXX'; must be one of")
