@@ -13,7 +13,7 @@ from vehicle.studies.design.stated_numbers import StatedNumbers
 from vehicle.studies.design.template_car import TemplateCar
 
 INCH = 25.4e-3
-"""Unit of the rim diameter [m], UN Regulation No. 30, 2.17.1.2."""
+"""Unit of the rim diameter [m]."""
 
 SIZE = re.compile(r"P?(\d+)/(\d+) *Z?R *(\d+)C?(?: *[\d/]+ *[A-Z])?", re.IGNORECASE)
 """Width [mm], height in percent of it, rim [inch] of a radial tyre; C, load index and speed symbol may follow."""
@@ -33,7 +33,7 @@ def unloaded_radius(size: str) -> float:
     Raises:
         ConfigurationError: no size, or a number outside its range.
 
-    Source: UN Regulation No. 30 (ISO 4000-1), 6.1.2.1: outer diameter D = d + 2 H.
+    Source: UN Regulation No. 30 (ISO 4000-1): outer diameter D = d + 2 H.
     """
     form = "write width/height R rim, as 205/55R16: 205 mm wide, 55 % of it high, rim of 16 inch"
     matched = SIZE.fullmatch(size.strip())

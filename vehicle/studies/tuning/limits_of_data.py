@@ -21,11 +21,11 @@ production, so that the fit would not distinguish it from another specimen."""
 NO_MOTION = 100.0
 """RMS error of a model that does not move, over the RMS of the measurement [%]: that of a mean of zero."""
 
-UNEXPLAINED = 20.0
-"""RMS error of a channel after a fit, over the RMS of the measurement and beyond its known noise [%], above which the
-parameters do not explain the measurement. At one frequency it is an error of 1.7 dB or 11 degrees: several times that
-of a calibrated sensor, so that something else of the car is wrong. The standard errors hold the scatter of the
-residuals, not the shift of the values by such an error."""
+LARGEST_ERROR = 20.0
+"""Assumed limit of the RMS error of a channel after a fit, over the RMS of the measurement and beyond its known noise
+[%]: above it the parameters do not explain the measurement. At one frequency it is an error of 1.7 dB or 11 degrees,
+far above that of a calibrated sensor, so that something else of the car is wrong. The standard errors hold the scatter
+of the residuals, not the shift of the values by such an error."""
 
 OFTEN_WRONG = (
     "suspension_mount.stiffness.z", "damper.viscous", "damper.coulomb_friction", "tyre.stiffness.z",
@@ -86,14 +86,14 @@ def unexplained(errors: Sequence[tuple[str, float, float, float]], others: Seque
             the measurement [%].
         others: examples of parameters of the car that were not fitted.
     """
-    left = [entry for entry in errors if entry[2] > np.hypot(UNEXPLAINED, entry[3])]
+    left = [entry for entry in errors if entry[2] > np.hypot(LARGEST_ERROR, entry[3])]
     if not left:
         return ""
     name, before, after, _ = max(left, key=lambda entry: entry[2])
     example = f", for example {' or '.join(others)}" if others else ""
     return (
         f"these parameters do not explain the measurement: {number(after)} % of the RMS of {name} remain as error "
-        f"(before the fit {number(before)} %, limit {UNEXPLAINED:g} %). The standard errors hold only if the rest of "
+        f"(before the fit {number(before)} %, limit {LARGEST_ERROR:g} %). The standard errors hold only if the rest of "
         f"the car is right and the remainder is noise. Check signs (--turn) and units (--unit) of the channels, then "
         f"fit another parameter{example}: each alone, and together with these; the smallest remaining error counts"
     )
