@@ -43,6 +43,17 @@ def pytest_runtest_protocol(item):
     _present["test"] = item.nodeid
 
 
+@pytest.hookimpl(wrapper=True)
+def pytest_fixture_setup(fixturedef):
+    """Build what a whole session shares as a program of its own would: the test that asks first must not matter."""
+    asking = _present["test"]
+    _present["test"] = "" if fixturedef.scope == "session" else asking
+    try:
+        return (yield)
+    finally:
+        _present["test"] = asking
+
+
 def pytest_collection_finish():
     """Take what is imported and collected out of the garbage collection, which otherwise walks it again and again."""
     gc.freeze()
