@@ -31,8 +31,23 @@ def pytest_collection_modifyitems(items):
     items.sort(key=lambda item: order.get(item.nodeid.partition("::")[0], len(order)))
 
 
-def pytest_configure():
+class SessionFixtures:
+    """Hook for the fixtures of a whole session, which pytest does not offer to the `conftest.py` of a folder."""
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_fixture_setup(self, fixturedef):
+        """Build them as a program of its own would: the test that asks first must not matter."""
+        asking = _present["test"]
+        _present["test"] = "" if fixturedef.scope == "session" else asking
+        try:
+            return (yield)
+        finally:
+            _present["test"] = asking
+
+
+def pytest_configure(config):
     """Draw figures only where a test looks at them; build equal cars once."""
+    config.pluginmanager.register(SessionFixtures())
     share_cars(lambda: _present["test"])
     leave_out_drawings(lambda: _present["test"])
 
@@ -41,17 +56,6 @@ def pytest_configure():
 def pytest_runtest_protocol(item):
     """Note the test, also for the fixtures of its module."""
     _present["test"] = item.nodeid
-
-
-@pytest.hookimpl(wrapper=True)
-def pytest_fixture_setup(fixturedef):
-    """Build what a whole session shares as a program of its own would: the test that asks first must not matter."""
-    asking = _present["test"]
-    _present["test"] = "" if fixturedef.scope == "session" else asking
-    try:
-        return (yield)
-    finally:
-        _present["test"] = asking
 
 
 def pytest_collection_finish():
