@@ -34,7 +34,7 @@ GROUPS = {
 def parser() -> Parser:
     """Return the parser of the options."""
     from vehicle.studies.design.car_class import CLASSES
-    from vehicle.studies.design.stated_numbers import StatedNumbers, option
+    from vehicle.studies.design.stated_numbers import AXLE_LOADS, StatedNumbers, option
 
     parser = command_parser("new", "Make a car from a template car and its masses, lengths and frequencies.")
     parser.add_argument(
@@ -77,8 +77,10 @@ def parser() -> Parser:
             declared = field_quantity(StatedNumbers, name)
             file = declared["is_file"]
             unit = f" [{declared['unit']}]" if declared["unit"] != "-" else ""
+            unit += ", or as 57%% of the kerb mass" if name in AXLE_LOADS else ""
             group.add_argument(
-                option(name), type=str if file else float, metavar="FILE" if file else "X",
+                option(name), type=str if file else _kg_or_percent if name in AXLE_LOADS else float,
+                metavar="FILE" if file else "X",
                 help=f"{declared['meaning']}{unit}",
             )  # fmt: skip
         if "tyre_radius" in names:
@@ -93,6 +95,14 @@ def parser() -> Parser:
     parser.add_argument("--force", action="store_true", help=FORCE_HELP)
     message_options(parser)
     return parser
+
+
+def _kg_or_percent(text: str) -> float | str:
+    """Return a number, or a text that is none, as "57%", which `stated_numbers` resolves or rejects."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
 
 def _job(options: argparse.Namespace) -> None:

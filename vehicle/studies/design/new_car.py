@@ -220,7 +220,7 @@ FOLLOWS: dict[str, tuple[str, ...]] = {
     "wheel rate [N/mm]": ("ride_frequency",),
     "ride rate [N/mm]": ("ride_frequency",),
     "ride frequency [Hz]": ("ride_frequency",),
-    "damping constant, sliding [N s/m]": ("damping_ratio", "damper_curve"),
+    "damping constant, smallest slope [N s/m]": ("damping_ratio", "damper_curve"),
     "tyre stiffness [N/mm]": ("wheel_hop",),
     "tyre deflection, static [mm]": ("wheel_hop",),
     "roll stiffness, springs [N m/deg]": ("ride_frequency",),

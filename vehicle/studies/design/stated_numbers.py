@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import partial
@@ -157,6 +158,10 @@ NOT_NUMBERS = ("tyre_size", "load", "inertia", "car_class", "of_class")
 NAMES = tuple(entry.name for entry in dataclasses.fields(StatedNumbers) if entry.name not in NOT_NUMBERS)
 
 
+AXLE_LOADS = ("front_axle_load", "rear_axle_load")
+"""Numbers that may also be stated in percent of the kerb mass."""
+
+
 def option(name: str) -> str:
     """Return the option of a number on the command line: "--kerb-mass"."""
     return f"--{name.replace('_', '-')}"
@@ -177,9 +182,26 @@ def stated_numbers(file: Path | None, more: Mapping[str, Any]) -> StatedNumbers:
         if file is not None and isinstance(table.get(name), str):
             table[name] = str(file.parent / table[name])
     table |= {name: value for name, value in more.items() if value is not None}
+    table |= {name: _load_of(name, table) for name in AXLE_LOADS if isinstance(table.get(name), str)}
     try:
         return build(StatedNumbers, table)
     except ConfigurationError as error:
         text = str(error).replace("StatedNumbers.", "")
         key = text.split(":")[0]
         raise ConfigurationError(f"{option(key)}{text[len(key) :]}" if key in NAMES else text) from None
+
+
+def _load_of(name: str, table: Mapping[str, Any]) -> float:
+    """Return an axle load in percent of the kerb mass, as "57%", in kg."""
+    text, mass = str(table[name]).strip(), table.get("kerb_mass")
+    try:
+        share = 0.01 * float(text.removesuffix("%"))
+    except ValueError:
+        share = math.nan
+    if not (text.endswith("%") and math.isfinite(share)):
+        raise ConfigurationError(
+            f"{option(name)} {table[name]!r}: must be a number in kg, or a share of the kerb mass as 57%"
+        )
+    if not isinstance(mass, (int, float)):
+        raise ConfigurationError(f"{option(name)} {text}: is a share of the kerb mass; state {option('kerb_mass')} too")
+    return share * mass
