@@ -165,7 +165,7 @@ def _report(result: NewCar, file: Path, figures: Sequence[MotionFigure]) -> str:
         stated = "-" if check.stated is None else f"{check.stated:.6g}"
         deviation = "" if check.stated is None else f"{100.0 * check.deviation:z.3f} %"
         lines.append(f"{check.name.replace('_', ' ') + unit:<34}{stated:>10}{check.value:>12.6g}{deviation:>12}")
-    lines += ["", str(figures_table(figures)), "", *(f"note: {text}" for text in result.notes)]
+    lines += ["", str(figures_table(figures)), "", *(f"note: {text}" for text in _notes(result))]
     lines.append(f"run it: python -m vehicle shaker --vehicle {file} --road B --speed 80")
     return "\n".join(lines)
 
@@ -181,8 +181,15 @@ def _checks(result: NewCar, file: Path, figures: Sequence[MotionFigure]) -> dict
         "file": str(file),
         "checks": rows,
         "figures": [asdict(figure) for figure in figures],
-        "notes": list(result.notes),
+        "notes": _notes(result),
     }
+
+
+def _notes(result: NewCar) -> list[str]:
+    """Return the notes of a new car and those on the damping of its figures."""
+    from vehicle.runs.car.motion_figures import damper_notes
+
+    return [*result.notes, *damper_notes(result.car)]
 
 
 main = command(parser, _job)

@@ -11,11 +11,14 @@ from vehicle.names import AXES
 from vehicle.runs.car import Run
 from vehicle.signals.analysis.comfort import COMFORT_BAND, settling
 from vehicle.signals.analysis.evaluation import application, evaluate
-from vehicle.signals.analysis.ride_comfort import RIM
+from vehicle.signals.analysis.ride_comfort import ERROR, RIM, UNWEIGHTED, WEIGHTED
 from vehicle.signals.analysis.seat_value import seat_value
 from vehicle.signals.records.run_summary import ComfortSummary, RimSummary, SeatSummary
 
 RAIL, SEAT = "seat_rail", "seat"
+
+NORMAL_95 = 1.96
+"""Standard errors in half of a 95 % interval; its coverage is measured in `docs/theory/statistics.md`."""
 
 NO_SEAT = (
     "comfort of the seat: the car has no seat, so 'seat' is a point of its body, and there is no SEAT value; "
@@ -88,10 +91,13 @@ def _at(run: Run, point: str) -> ComfortSummary:
     xyz = [run[f"{point}_acc_{axis}"] for axis in AXES]
     rms: dict[str, float | None] = {**asdict(value.unweighted)}
     iso = evaluate(run.recording.timestep, xyz, skip=run.skip, from_rest=True, highest=run.signal.highest)
-    if run.signal.highest is None:
-        return {"rms_2_50_hz": rms, "iso2631": iso}
-    return {
-        "rms_2_50_hz": dict.fromkeys(rms),
-        "rms_of_band": {"band_hz": list(value.band), **rms},
-        "iso2631": iso,
-    }
+    entry: ComfortSummary = {"rms_2_50_hz": rms, "iso2631": iso}
+    if run.signal.highest is not None:
+        entry["rms_2_50_hz"] = dict.fromkeys(rms)
+        entry["rms_of_band"] = {"band_hz": list(value.band), **rms}
+    if (run.road or {}).get("class"):
+        entry["half_interval"] = {
+            name: NORMAL_95 * value.values[f"{name}{ERROR}"] * getattr(value, name).overall
+            for name in (UNWEIGHTED, WEIGHTED)
+        }
+    return entry
