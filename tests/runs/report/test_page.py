@@ -9,13 +9,14 @@ from html.parser import HTMLParser
 import mujoco
 import numpy as np
 import pytest
+from markupsafe import Markup
 
 from vehicle.commands.body import main as body_command
 from vehicle.commands.report import main
 from vehicle.commands.shaker import main as shaker
 from vehicle.drawing.rendering.wireframe import GROUPS, car_wireframe, unit_factor
 from vehicle.runs.car import Car
-from vehicle.runs.report.answer import answer, counterpart
+from vehicle.runs.report.answer import answer, counterpart, explained
 from vehicle.runs.report.band_causes import main_path, paths
 from vehicle.runs.report.base_run import base_run
 from vehicle.runs.report.comfort_class import reactions
@@ -183,6 +184,13 @@ def test_a_changed_car_is_compared_with_the_unchanged_one(reported, tmp_path):
     assert told.startswith("run against the unchanged focus (front damper Coulomb friction 100 instead of 125 N): ")
     assert f"from {before['weighted_rms']:.3g} to {after['weighted_rms']:.3g} m/s²" in told
     assert base_run(read_run(unchanged)) is None, "an unchanged car has no other to be compared with"
+
+
+def test_mode_and_path_are_explained_only_where_one_is_named(reported):
+    words, explanation = "caused mainly by the mode", "Mode and path come from the linear model"
+    assert words in reported.text and explanation in reported.text
+    for statement in ("stays at 0.1 m/s²", f"rises, {words} of 8.1 Hz"):
+        assert (explanation in explained(Markup(statement))) == (words in statement)
 
 
 @pytest.mark.parametrize(
