@@ -181,6 +181,8 @@ def test_a_changed_car_is_compared_with_the_unchanged_one(reported, tmp_path):
         for folder in (unchanged, reported.folder)
     )
     told = unescape(reported.text).partition('<p class="answer">')[2].partition("<")[0]
+    change = abs(after["weighted_rms"] / before["weighted_rms"] - 1.0)
+    assert ("many persons notice no difference" in reported.text) == (0.0005 <= change <= 0.11)
     assert told.startswith("run against the unchanged focus (front damper Coulomb friction 100 instead of 125 N): ")
     assert f"from {before['weighted_rms']:.3g} to {after['weighted_rms']:.3g} m/s²" in told
     assert base_run(read_run(unchanged)) is None, "an unchanged car has no other to be compared with"

@@ -39,6 +39,9 @@ MOST_CHANGES = 2
 SMALL = 0.05
 """Change [%] below which comfort counts as unchanged."""
 
+NOTICED = 11.0
+"""Change [%] up to which many persons do not notice a vibration: the largest median of `threshold.html`."""
+
 SLIP = 0.1
 """Change of the time in slip [percentage points] from which it is named."""
 
@@ -75,6 +78,10 @@ def answer(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> Markup:
         title = "Change of comfort and loads"
         caption = "blue: smaller vibration or load, amber: larger; grey: no rating"
         figure = drawing(partial(plot_changes, changes=changes, title=title, caption=caption), title)
+    pairs = [(runs[first], run) for run, first in zip(runs, compared, strict=True) if first is not None]
+    changed = [abs(_percent(*pair) or 0.0) for pair in pairs if input_text(pair[0]) == input_text(pair[1])]
+    if any(SMALL <= percent <= NOTICED for percent in changed):
+        figure = fill("threshold") + figure
     return fill("answer", texts=statements, figure=figure)
 
 
