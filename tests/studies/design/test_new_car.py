@@ -192,6 +192,8 @@ def test_an_axle_load_in_percent_is_a_share_of_the_kerb_mass(tmp_path):
         ),
         ("--rear-axle-load 43%", "--rear-axle-load 43%: is a share of the kerb mass; state --kerb-mass too"),
         ("--front-axle-load many%", "'many%': must be a number in kg, or a share of the kerb mass as 57%"),
+        ("--cog-height 550", "--cog-height: found 550.0 m, must be at most 1.5 .m, not mm; cars have 0.44 to 0.85 m"),
+        ("--damping-ratio-front 30", "front: found 30.0, must be at most 3.0 .a ratio: 30 % of the critical damping"),
         ("--cog-x 3", "--cog-x: the centre of gravity would be 3.000 m behind the front axle"),
         ("--kerb-mass 1500 --front-axle-load 800 --rear-axle-load 800", "together 1600 kg, must be the kerb mass"),
         (

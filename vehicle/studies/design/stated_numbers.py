@@ -27,6 +27,7 @@ CAR: dict[str, Any] = {"at_least": 100.0, "why": "kg, not t"}
 AXLE: dict[str, Any] = {"at_least": 20.0, "why": "kg, neither a share nor t"}
 METRES: dict[str, Any] = {"why": "m, not mm"}
 HOP: dict[str, Any] = {"at_least": 4.0, "at_most": 30.0, "why": "wheels of cars hop at 8 to 16 Hz"}
+RATIO: dict[str, Any] = {"why": "a ratio: 30 % of the critical damping are 0.3"}
 
 optional = partial(quantity, default=None)
 """Declaration of a number that need not be stated."""
@@ -54,7 +55,13 @@ class StatedNumbers:
         at_most=8.0,
         **METRES,
     )
-    cog_height: float | None = optional("m", "centre of gravity above the ground", above=0.0, at_most=3.0)
+    cog_height: float | None = optional(
+        "m",
+        "centre of gravity above the ground",
+        at_least=0.2,
+        at_most=1.5,
+        why="m, not mm; cars have 0.44 to 0.85 m, tracks of 1.4 to 1.7 m being 1 to 1.6 times twice the height",
+    )
     wheelbase: float | None = optional("m", "wheelbase", above=0.0, at_most=8.0, **METRES)
     track_front: float | None = optional("m", "track of the front wheels", above=0.0, at_most=4.0, **METRES)
     track_rear: float | None = optional("m", "track of the rear wheels", above=0.0, at_most=4.0, **METRES)
@@ -83,10 +90,10 @@ class StatedNumbers:
     wheel_hop_front: float | None = optional("Hz", "hop frequency of the front wheels; sets the tyre stiffness", **HOP)
     wheel_hop_rear: float | None = optional("Hz", "hop frequency of the rear wheels; sets the tyre stiffness", **HOP)
     damping_ratio_front: float | None = optional(
-        "-", "damping ratio of the front axle, dampers at 0.1 m/s", above=0.0, at_most=3.0
+        "-", "damping ratio of the front axle, dampers at 0.1 m/s", above=0.0, at_most=3.0, **RATIO
     )
     damping_ratio_rear: float | None = optional(
-        "-", "damping ratio of the rear axle, dampers at 0.1 m/s", above=0.0, at_most=3.0
+        "-", "damping ratio of the rear axle, dampers at 0.1 m/s", above=0.0, at_most=3.0, **RATIO
     )
     damper_curve_front: str | None = optional(
         "-", "damper test of the front axle: table of velocity and force", is_file=True
