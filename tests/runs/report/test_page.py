@@ -9,14 +9,13 @@ from html.parser import HTMLParser
 import mujoco
 import numpy as np
 import pytest
-from markupsafe import Markup
 
 from vehicle.commands.body import main as body_command
 from vehicle.commands.report import main
 from vehicle.commands.shaker import main as shaker
 from vehicle.drawing.rendering.wireframe import GROUPS, car_wireframe, unit_factor
 from vehicle.runs.car import Car
-from vehicle.runs.report.answer import answer, counterpart, explained
+from vehicle.runs.report.answer import answer, counterpart
 from vehicle.runs.report.band_causes import main_path, paths
 from vehicle.runs.report.base_run import base_run
 from vehicle.runs.report.comfort_class import reactions
@@ -148,10 +147,8 @@ def test_first_screen_answers_the_question(reported, tmp_path):
     before, after = (each["comfort"]["seat_rail"]["iso2631"]["vector_sum"]["weighted_rms"] for each in summaries)
     told = text.partition('<p class="answer">')[2].partition("<")[0]
     word = "rises" if after > before else "falls"
-    assert (
-        "front main spring stiffness 12000 instead of " in told
-        and f"{word} from {before:.3g} to {after:.3g} m/s²" in told
-    )
+    assert "front main spring stiffness 12000 instead of " in told
+    assert f"{word} from {before:.3g} to {after:.3g} m/s²" in told
     assert re.search(
         r"% of the change \(mean square\) is (fore-aft|lateral|vertical) between [\d.]+ and [\d.]+ Hz", told
     )
@@ -181,18 +178,11 @@ def test_a_changed_car_is_compared_with_the_unchanged_one(reported, tmp_path):
         for folder in (unchanged, reported.folder)
     )
     told = unescape(reported.text).partition('<p class="answer">')[2].partition("<")[0]
-    change = abs(after["weighted_rms"] / before["weighted_rms"] - 1.0)
-    assert ("many persons notice no difference" in reported.text) == (0.0005 <= change <= 0.11)
+    small = 5e-4 <= abs(after["weighted_rms"] / before["weighted_rms"] - 1.0) <= 0.11
+    assert ("many persons notice no difference" in reported.text) == small
     assert told.startswith("run against the unchanged focus (front damper Coulomb friction 100 instead of 125 N): ")
     assert f"from {before['weighted_rms']:.3g} to {after['weighted_rms']:.3g} m/s²" in told
     assert base_run(read_run(unchanged)) is None, "an unchanged car has no other to be compared with"
-
-
-def test_mode_and_path_are_explained_only_where_one_is_named(reported):
-    words, explanation = "caused mainly by the mode", "Mode and path come from the linear model"
-    assert words in reported.text and explanation in reported.text
-    for statement in ("stays at 0.1 m/s²", f"rises, {words} of 8.1 Hz"):
-        assert (explanation in explained(Markup(statement))) == (words in statement)
 
 
 @pytest.mark.parametrize(

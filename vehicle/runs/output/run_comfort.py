@@ -7,7 +7,7 @@ from typing import TypedDict
 
 import numpy as np
 
-from vehicle.names import AXES
+from vehicle.names import AXES, point_words
 from vehicle.runs.car import Run
 from vehicle.signals.analysis.comfort import COMFORT_BAND, settling
 from vehicle.signals.analysis.evaluation import application, evaluate
@@ -67,6 +67,12 @@ def rim_values(run: Run) -> RimValues:
 def comfort_notices(run: Run) -> list[str]:
     """Return a notice for each axis of the seat rail with a nonstationary level, and for a missing seat."""
     bare = [NO_SEAT] if _recorded(run, SEAT) and not run.car.vehicle.seated else []
+    if run.road and run.car.static.support_load:
+        places = ", ".join(point_words(name) for name in run.car.static.support_load)
+        bare.append(
+            f"comfort: {run.car.vehicle.name} is on the road with {len(run.car.vehicle.wheels)} wheels alone; its "
+            f"blocks ({places}) do not move; for a ride take a car on four wheels, for example focus_road"
+        )
     # An obstacle is a single event.
     if not _recorded(run, RAIL) or "obstacle" in (run.road or {}):
         return bare
