@@ -79,6 +79,7 @@ def test_the_file_holds_the_road_beside_what_the_tyre_takes(tmp_path, capsys):
     ("arguments", "code", "message"),
     [
         (["--speed", "80"], 2, "one of --class, --profile and --obstacle"),
+        (["--road", "B", "--speed", "80"], 2, "set --class B, --profile FILE.csv or --obstacle cleat:20x50 here"),
         (["--class", "A"], 2, "the speed on the road is missing"),
         (["--class", "K", "--speed", "80"], 2, "road class 'K': must be one of A, B"),
         (["--class", "A", "--speed", "0"], 2, "--speed 0 km/h: must be above 0"),
@@ -103,6 +104,12 @@ def test_refusals(arguments, code, message, tmp_path, monkeypatch, capsys):
     assert main(arguments) == code
     assert message in capsys.readouterr().err
     assert not (tmp_path / "road.csv").exists()
+
+
+def test_the_index_of_a_short_drive_names_its_length(tmp_path, capsys):
+    arguments = ["--class", "B", "--speed", "36", "--duration", "5", "--output", str(tmp_path / "a.csv")]
+    assert main([*arguments, "--no-figures", "--iri"]) == 0
+    assert " m/km over the 50 m of the drive" in capsys.readouterr().out
 
 
 def test_roughness_index_of_a_profile(tmp_path, capsys):

@@ -69,6 +69,7 @@ def test_plates_that_follow_later_run_on_a_road_without_frfs(shaker, tmp_path):
     assert "no FRFs: excitations: plate_fl_displacement" in outcome.out
     assert not any(summary["peaks"].values())
     assert summary["comfort"]["seat_rail"]["rms_2_50_hz"]["z"] > 0.0
+    assert "±" not in outcome.out
 
 
 def test_seeds_of_a_road_give_the_error_of_a_difference(tmp_path, monkeypatch):
@@ -101,7 +102,12 @@ def test_a_road_is_evaluated_from_two_seconds_on(shaker, tmp_path):
         time, rail = arrays["time"], [arrays[f"seat_rail_acc_{axis}"] for axis in "xyz"]
         velocity = arrays["damper_fr_velocity"]
     late = time >= 2.0 - 1e-9
-    expected = comfort_values(time[1] - time[0], [[record[late] for record in rail]]).overall[0]
+    value = comfort_values(time[1] - time[0], [[record[late] for record in rail]])
+    expected, half = value.overall[0], summary["comfort"]["seat_rail"]["half_interval"]
+    assert half["unweighted"] == pytest.approx(1.96 * value.error[0] * expected, rel=1e-9)
+    assert "2 wheels alone; its blocks (rear support right, rear support left) do not move" in outcome.out
+    assert f"seat rail {expected:.4f} ± {half['unweighted']:.4f} m/s2 unweighted RMS" in outcome.out
+    assert f" ± {half['weighted']:.4f} m/s2 weighted RMS (ISO 2631-1); ±: 95 % interval over roads of" in outcome.out
     assert summary["comfort"]["seat_rail"]["rms_2_50_hz"]["overall"] == pytest.approx(expected, rel=1e-9)
     assert summary["comfort"]["seat_rail"]["iso2631"]["duration_s"] == pytest.approx(3.0, abs=2e-3)
     limit = summary["slip_share"]["slip_velocity"]
@@ -112,6 +118,7 @@ def test_a_road_is_evaluated_from_two_seconds_on(shaker, tmp_path):
     for skip in ("-1", "nan", "5"):
         outcome = shaker(*given, "--output", "other", "--skip", skip)
         assert outcome.code == 2 and f"--skip {skip} s: must be at least 0 and below the 5 s" in outcome.err
+    assert "the 1.5 s of road_B_80; set a longer --duration" in shaker(*given, "--duration", "1.5").err
 
 
 @pytest.mark.parametrize(

@@ -194,9 +194,10 @@ def _report(
         ),
     ]
     if rates["wheel_rate_n_per_m"] is not None:
-        lines.append(f"wheel rate {1e-3 * rates['wheel_rate_n_per_m']:.2f} N/mm")
+        travel = ", opposite travel: anti-roll bar or beam included" if options.opposite else ""
+        lines.append(f"wheel rate {1e-3 * rates['wheel_rate_n_per_m']:.2f} N/mm{travel}")
     camber, toe = (0.1 * (rates[f"{name}_deg_per_m"] or 0.0) for name in ("camber", "toe"))
-    lines.append(f"in the design position: camber {camber:.3f} and toe-in {toe:.3f} deg per 100 mm")
+    lines.append(f"in the design position: camber {camber:z.3f} and toe-in {toe:z.3f} deg per 100 mm")
     return "\n".join(lines)
 
 

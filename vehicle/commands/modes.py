@@ -89,7 +89,7 @@ def parser() -> Parser:
 def _job(options: argparse.Namespace) -> None:
     _check_film_options(options)
     from vehicle.runs.car import Car
-    from vehicle.runs.car.motion_figures import motion_figures
+    from vehicle.runs.car.motion_figures import damper_notes, motion_figures
 
     if options.uff is not None and options.uff.exists():
         written_here = options.uff.is_file() and b"vehicle-on-shaker" in options.uff.read_bytes()[:500]
@@ -113,6 +113,7 @@ def _job(options: argparse.Namespace) -> None:
         reason = f"key figures of the suspension cannot be computed: {error}"
     table = modes_table(car, options.damper, figures)
     table["notices"] += [reason] if reason else []
+    table["notices"] += damper_notes(car) if options.damper == "sliding" else []
     if options.uff is not None:
         from vehicle.runs.output.folder import write_whole
         from vehicle.runs.output.mode_file import write_modes

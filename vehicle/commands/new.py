@@ -34,7 +34,7 @@ GROUPS = {
 def parser() -> Parser:
     """Return the parser of the options."""
     from vehicle.studies.design.car_class import CLASSES
-    from vehicle.studies.design.stated_numbers import StatedNumbers, option
+    from vehicle.studies.design.stated_numbers import AXLE_LOADS, StatedNumbers, option
 
     parser = command_parser("new", "Make a car from a template car and its masses, lengths and frequencies.")
     parser.add_argument(
@@ -77,8 +77,10 @@ def parser() -> Parser:
             declared = field_quantity(StatedNumbers, name)
             file = declared["is_file"]
             unit = f" [{declared['unit']}]" if declared["unit"] != "-" else ""
+            unit += ", or as 57%% of the kerb mass" if name in AXLE_LOADS else ""
             group.add_argument(
-                option(name), type=str if file else float, metavar="FILE" if file else "X",
+                option(name), type=str if file else _kg_or_percent if name in AXLE_LOADS else float,
+                metavar="FILE" if file else "X",
                 help=f"{declared['meaning']}{unit}",
             )  # fmt: skip
         if "tyre_radius" in names:
@@ -93,6 +95,14 @@ def parser() -> Parser:
     parser.add_argument("--force", action="store_true", help=FORCE_HELP)
     message_options(parser)
     return parser
+
+
+def _kg_or_percent(text: str) -> float | str:
+    """Return a number, or a text that is none, as "57%", which `stated_numbers` resolves or rejects."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
 
 def _job(options: argparse.Namespace) -> None:
@@ -155,7 +165,7 @@ def _report(result: NewCar, file: Path, figures: Sequence[MotionFigure]) -> str:
         stated = "-" if check.stated is None else f"{check.stated:.6g}"
         deviation = "" if check.stated is None else f"{100.0 * check.deviation:z.3f} %"
         lines.append(f"{check.name.replace('_', ' ') + unit:<34}{stated:>10}{check.value:>12.6g}{deviation:>12}")
-    lines += ["", str(figures_table(figures)), "", *(f"note: {text}" for text in result.notes)]
+    lines += ["", str(figures_table(figures)), "", *(f"note: {text}" for text in _notes(result))]
     lines.append(f"run it: python -m vehicle shaker --vehicle {file} --road B --speed 80")
     return "\n".join(lines)
 
@@ -171,8 +181,15 @@ def _checks(result: NewCar, file: Path, figures: Sequence[MotionFigure]) -> dict
         "file": str(file),
         "checks": rows,
         "figures": [asdict(figure) for figure in figures],
-        "notes": list(result.notes),
+        "notes": _notes(result),
     }
+
+
+def _notes(result: NewCar) -> list[str]:
+    """Return the notes of a new car and those on the damping of its figures."""
+    from vehicle.runs.car.motion_figures import damper_notes
+
+    return [*result.notes, *damper_notes(result.car)]
 
 
 main = command(parser, _job)

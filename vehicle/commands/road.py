@@ -52,6 +52,10 @@ def parser() -> Parser:
         help="also print the international roughness index (IRI) of each track and its class of ISO 8608; "
         "FILE_iri.csv has the IRI of every 100 m",
     )
+    parser.former(
+        "--road[ =]",
+        "--road is an option of shaker; set --class B, --profile FILE.csv or --obstacle cleat:20x50 here",
+    )
     output_options(parser, Path("road.csv"), metavar="FILE.csv")
     figures_option(parser)
     message_options(parser, quiet=True)
@@ -112,7 +116,8 @@ def _job(options: argparse.Namespace) -> None:
         print(f"{path}: {signal.source}; {signal.duration:g} s; RMS [mm] {sizes}")
         for side, (index, level) in roughness.items():
             low, high = number(index.segments.min()), number(index.segments.max())
-            ranged = f", {low} to {high} over 100 m" if index.segments.size > 1 else ""
+            short = f" over the {index.edges[-1] - index.edges[0]:.0f} m of the drive"
+            ranged = f", {low} to {high} over 100 m" if index.segments.size > 1 else short
             rated = "" if level is None else f"; class {level.letter} of ISO 8608"
             print(f"IRI of the {side} track: {number(index.overall)} m/km{ranged}{rated}")
 

@@ -98,9 +98,12 @@ def _comfort(summary: RunSummary) -> list[str]:
     if "seat_rail" in points:
         rms, (low, high) = unweighted_rms(points["seat_rail"])
         axes = ", ".join(f"{axis} {rms[axis]:.4f}" for axis in "xyz")
+        half = points["seat_rail"].get("half_interval", {})
+        plus = {name: f" ± {value:.4f}" for name, value in half.items()}
         lines.append(
-            f"comfort     seat rail {rms['overall']:.4f} m/s2 unweighted RMS, {low:g} to {high:g} Hz ({axes}); "
-            f"{_weighted(points, 'seat_rail'):.4f} m/s2 weighted RMS (ISO 2631-1)"
+            f"comfort     seat rail {rms['overall']:.4f}{plus.get('unweighted', '')} m/s2 unweighted RMS, {low:g} to "
+            f"{high:g} Hz ({axes}); {_weighted(points, 'seat_rail'):.4f}{plus.get('weighted', '')} m/s2 weighted RMS "
+            f"(ISO 2631-1){'; ±: 95 % interval over roads of this class' if half else _event_words(summary)}"
         )
     if (rim := summary.get("steering_wheel_rim")) is not None:
         axes = ", ".join(f"{axis} {rim['weighted_rms'][axis]:.4f}" for axis in "xyz")
@@ -114,6 +117,12 @@ def _comfort(summary: RunSummary) -> list[str]:
             f"SEAT value {ratio['rms']:.3f} (z, {ratio['weighting']}; of doses {ratio['vdv']:.3f})"
         )
     return lines
+
+
+def _event_words(summary: RunSummary) -> str:
+    """Return the time over which the RMS of an obstacle is taken; empty without an obstacle."""
+    begin, end = summary["evaluated_s"]
+    return "" if summary.get("obstacle") is None else f"; over {end - begin:.3g} s: a longer --duration lowers both"
 
 
 def _obstacle(summary: RunSummary) -> list[str]:

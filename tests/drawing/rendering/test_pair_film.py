@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import pickle
 from itertools import islice
+from types import SimpleNamespace
 
 import mujoco
 import numpy as np
@@ -14,10 +15,11 @@ from tests.drawing.rendering.conftest import POSE_STEP, FakeCar, FakeRun, fabric
 from vehicle.drawing.rendering.backend import choose_backend
 from vehicle.drawing.rendering.layout import TwoCars, font
 from vehicle.drawing.rendering.overlay import SLIP_COLOUR, STICK_COLOUR
-from vehicle.drawing.rendering.pair_shot import PairShot, fitted, two_lines
+from vehicle.drawing.rendering.pair_shot import PairShot, differing_dampers, fitted, two_lines
 from vehicle.drawing.rendering.scene import exaggeration_of
 from vehicle.drawing.rendering.shot import Take
 from vehicle.errors import ConfigurationError
+from vehicle.runs.car import Car
 
 STEPWISE = Take(start=0.1, duration=0.2, slow=1.0 / (30.0 * POSE_STEP), exaggeration=1.0)
 """A frame for each stored pose."""
@@ -67,6 +69,35 @@ def test_both_halves_show_the_same_time_to_the_same_scale(pair, run):
     assert right.largest == pytest.approx(2.0 * left.largest, rel=0.05)
     assert pair.scale_top >= max(left.node, right.node)
     assert left.lamps(0.2)["damper right"] and not right.lamps(0.2)["damper right"]
+
+
+@pytest.mark.parametrize(
+    ("changes", "wheels"),
+    [
+        ({"front.main_spring.stiffness": 3e4}, ()),
+        ({"rear.damper.viscous": 900.0}, ("rr",)),
+        ({"*.damper.coulomb_friction": 30.0}, ("fr", "rr")),
+    ],
+)
+def test_the_curve_is_that_of_the_dampers_that_differ(changes, wheels):
+    cars = [Car.load("focus_road"), Car.load("focus_road", changes)]
+    runs = [SimpleNamespace(car=SimpleNamespace(model=SimpleNamespace(vehicle=car.vehicle)), wheel="fr")
+            for car in cars]  # fmt: skip
+    assert differing_dampers(runs) == wheels
+
+
+def test_the_curve_of_a_damper_is_labelled_by_its_wheel(run, car):
+    other = beside(run, car)
+    changed = dataclasses.replace(car.vehicle, composition=_with_other_dampers(car.vehicle.composition))
+    other = dataclasses.replace(other, car=FakeCar(model=dataclasses.replace(car, vehicle=changed)))
+    shot = PairShot({"A": run, "B": other}, "", TwoCars(width=320, height=180), STEPWISE)
+    assert [trace.label for trace in shot.overlay.strip.traces][-1] == "damper right [mm/s]"
+
+
+def _with_other_dampers(composition):
+    laws = [dataclasses.replace(damper.law, coulomb_friction=1.0) for damper in composition.dampers]
+    dampers = [dataclasses.replace(damper, law=law) for damper, law in zip(composition.dampers, laws, strict=True)]
+    return dataclasses.replace(composition, dampers=tuple(dampers))
 
 
 def test_the_exaggeration_is_that_of_the_car_that_moves_more(run, car):

@@ -99,7 +99,7 @@ BAD = {
         ("members.front_rails.between: the section has width; must have width and wall (a tube) or area (a strut)"),
     ),
     "tube and strut": ("width = 0.055", "area = 1e-5\nwidth = 0.055", "the section has width, wall, area; must have"),
-    "factor of zero": ("factor = 1.0962", "factor = 0.0", "members.front_rails.factor: found 0.0 -, must be greater"),
+    "factor of zero": ("factor = 1.0962", "factor = 0.0", "members.front_rails.factor: found 0.0, must be greater"),
     "a node without a tube": (
         '"seat-seat_rail"',
         '"seat_rail-seat_rail_right"',
@@ -114,7 +114,7 @@ BAD = {
     "damping in percent": (
         "damping_ratio = 0.03",
         "damping_ratio = 3.0",
-        "damping_ratio: found 3.0 -, must be at",
+        "damping_ratio: found 3.0, must be at",
     ),
     "format": ('"body design 1"', '"body design 7"', "format: found 'body design 7', must be one of body design 1"),
     "cut off": ("[members.front_rails]", "[members.front", "not a TOML file"),

@@ -86,7 +86,7 @@ CASES = {
     ),
     "28 Stribeck exponent": (
         "damper.stribeck_exponent=-1",
-        "damper.stribeck_exponent: found -1.0 -, must be greater than 0.0",
+        "damper.stribeck_exponent: found -1.0, must be greater than 0.0",
     ),
     "29 negative branch": (
         "bushings.hydromount.maxwell_damping=-1",

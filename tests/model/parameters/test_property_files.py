@@ -58,6 +58,15 @@ def test_stops_act_from_their_clearances_on(tmp_path):
     assert np.interp(at, stop["displacement"], stop["force"]) == pytest.approx([-4000, -500, 0, 0, 0, 1500])
 
 
+def test_stops_without_clearance_act_from_the_design_position_on(tmp_path):
+    tables = {**FRONT_TABLES, "damper": FRONT_TABLES["damper"].replace("0.05", "0.0").replace("0.06", "0.0")}
+    stop = numbers(write_car(tmp_path, tables), "front.damper.stop")
+    assert stop["displacement"].count(0.0) == 1 and "-0.0" not in map(str, stop["displacement"] + stop["force"])
+    # The forces of the test with clearances, each that much nearer to the design position.
+    at = np.array([-0.025, -0.01, 0.0, 0.005])
+    assert np.interp(at, stop["displacement"], stop["force"]) == pytest.approx([-4000, -500, 0, 1500])
+
+
 def test_a_bump_stop_alone_leaves_extension_free(tmp_path):
     tables = {**FRONT_TABLES, "damper": FRONT_TABLES["damper"].partition("rebound =")[0]}
     stop = numbers(write_car(tmp_path, tables), "front.damper.stop")

@@ -203,9 +203,26 @@ def test_what_is_not_defined_is_said_in_words(shown):
     assert "wheelbase, anti-dive [%] and distribution of roll stiffness are not defined, because only 1 axle" in text
     assert "rear support right 1948 N" in text and "nan" not in text
     assert "rear: no steering figures, because its template five_link has no steering_axis" in str(shown["focus_road"])
-    assert "front: modes with sliding dampers use the smallest damping" in str(shown["sedan"])
     weightless = Car.load("sedan", {"gravity": 0.0}).show()
     assert "not defined without gravity" in str(weightless) and weightless.axles[0].ride_frequency_hz is None
+
+
+def test_figures_and_modes_name_the_damping_that_each_takes(cars, shown):
+    """By hand: damping ratio of the front wheels alone with the smaller of both constants is that of their modes."""
+    text = str(shown["sedan"])
+    constants = re.search(r"front: the figures .* at 0.1 m/s, (\d+) N s/m; modes .* fast motion, (\d+) N s/m", text)
+    assert constants is not None and "rear: the figures" not in text and "damping at 0.1 m/s [%]" in text
+    at_velocity, smallest = map(float, constants.groups())
+    law = cars["sedan"].vehicle.table["front"]["damper"]
+    force = np.interp([-0.1, 0.1], law["velocity"], law["force"])
+    assert at_velocity == pytest.approx(float(np.ptp(force)) / 0.2, abs=0.5)
+    assert smallest == pytest.approx(np.min(np.diff(law["force"]) / np.diff(law["velocity"])), abs=0.5)
+    axle = shown["sedan"].axles[0]
+    c = smallest * axle.damper_ratio**2 + cars["sedan"]["front.bushings.tyre.damping"].value[2]
+    k, m = axle.wheel_rate_n_per_m + axle.tyre_n_per_m, axle.unsprung_kg / 2.0
+    hop = [mode for mode in cars["sedan"].modes("sliding") if mode.description.startswith("front wheel hop")]
+    # The body and the bushings, which the calculation leaves out, move with the wheels in these modes.
+    assert [mode.damping_ratio for mode in hop] == pytest.approx([c / (2.0 * math.sqrt(k * m))] * 2, rel=0.08)
 
 
 TRIPLE = """

@@ -5,8 +5,10 @@ from html import unescape
 
 import numpy as np
 import pytest
+from markupsafe import Markup
 
 from vehicle.commands.summary_text import summary_text
+from vehicle.runs.report.answer import explained
 from vehicle.runs.report.findings import damper_sentences
 from vehicle.signals.formats.frf_file import read_frf
 from vehicle.signals.records.run_summary import read_summary
@@ -25,6 +27,13 @@ def test_the_share_of_incoherent_lines_is_that_of_the_table(reported):
         assert said is not None
         assert float(said[1]) == pytest.approx(np.median(finite), abs=1e-3)
         assert float(said[2]) == pytest.approx(100.0 * low, rel=0.05)
+
+
+def test_mode_and_path_are_explained_only_where_one_is_named(reported):
+    words, explanation = "caused mainly by the mode", "Mode and path come from the linear model"
+    assert words in reported.text and explanation in reported.text
+    for statement in ("stays at 0.1 m/s²", f"rises, {words} of 8.1 Hz"):
+        assert (explanation in explained(Markup(statement))) == (words in statement)
 
 
 @pytest.mark.parametrize(

@@ -60,7 +60,7 @@ def test_assumed_values_say_so():
             "seat.stiffness: found nan N/m, must be a finite number (stiffness of its support)",
         ),
         ("bump.length=0.0", "bump.length: found 0.0 m, must be greater than 0.0"),
-        ("semi_active.skyhook_share=1.5", "semi_active.skyhook_share: found 1.5 -, must be at most 1.0"),
+        ("semi_active.skyhook_share=1.5", "semi_active.skyhook_share: found 1.5, must be at most 1.0"),
         ("semi_active.control_period=0.0", "semi_active.control_period: found 0.0 s, must be greater than 0.0"),
         (
             "semi_active.maximum_damping=200.0",

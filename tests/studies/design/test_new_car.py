@@ -171,6 +171,12 @@ def test_the_command_line_takes_precedence_over_the_file(tmp_path):
     assert (stated.kerb_mass, stated.wheelbase) == (1400.0, 2.7)
 
 
+def test_an_axle_load_in_percent_is_a_share_of_the_kerb_mass(tmp_path):
+    (tmp_path / "numbers.toml").write_text('kerb_mass = 1500\nfront_axle_load = "57%"\n')
+    assert stated_numbers(tmp_path / "numbers.toml", {}).front_axle_load == pytest.approx(855.0, rel=1e-12)
+    assert stated_numbers(None, {"kerb_mass": 1000.0, "rear_axle_load": "43 %"}).rear_axle_load == pytest.approx(430.0)
+
+
 @pytest.mark.parametrize(
     ("numbers", "message"),
     [
@@ -179,6 +185,15 @@ def test_the_command_line_takes_precedence_over_the_file(tmp_path):
             "--kerb-mass: parts of sedan, scaled by 0.0726, are outside the range of cars: engine.parts.engine.mass",
         ),
         ("--kerb-mass 1500 --front-axle-load 1800", "--front-axle-load: .* must be inside the wheelbase of 2.757"),
+        (
+            "--kerb-mass 1450 --front-axle-load 57",
+            "--front-axle-load 57 kg: is 3.9 % of the kerb mass of 1450 kg, must be at least 20 %; cars have 42 to "
+            "65 % of it on the front axle; for 57 % of the kerb mass type --front-axle-load 57%",
+        ),
+        ("--rear-axle-load 43%", "--rear-axle-load 43%: is a share of the kerb mass; state --kerb-mass too"),
+        ("--front-axle-load many%", "'many%': must be a number in kg, or a share of the kerb mass as 57%"),
+        ("--cog-height 550", "--cog-height: found 550.0 m, must be at most 1.5 .m, not mm; cars have 0.44 to 0.85 m"),
+        ("--damping-ratio-front 30", "front: found 30.0, must be at most 3.0 .a ratio: 30 % of the critical damping"),
         ("--cog-x 3", "--cog-x: the centre of gravity would be 3.000 m behind the front axle"),
         ("--kerb-mass 1500 --front-axle-load 800 --rear-axle-load 800", "together 1600 kg, must be the kerb mass"),
         (

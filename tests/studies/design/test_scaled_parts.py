@@ -62,7 +62,19 @@ def test_an_electric_car_has_no_engine_on_hydromounts():
 
 def test_stated_numbers_precede_those_of_the_class():
     stated = StatedNumbers(car_class="small", kerb_mass=1050.0, front_axle_load=640.0)
-    values = {check.name: check.value for check in new_car("one", "sedan", stated).checks}
+    result = new_car("one", "sedan", stated)
+    values = {check.name: check.value for check in result.checks}
+    of_class, of_template = (note for note in result.notes if note.startswith("not stated"))
+    assert of_class == (
+        "not stated, assumed for class small: --ride-frequency-front, --ride-frequency-rear, --track-front, "
+        "--track-rear, --wheelbase, --cog-height, --tyre-radius"
+    )
+    assert of_template == (
+        "not stated, from sedan, largest influence on ride comfort first: its parts scaled by the kerb mass for "
+        "--wheel-hop-front, --wheel-hop-rear, --roll-stiffness-front, --roll-stiffness-rear; its own "
+        "--damping-ratio-front, --damping-ratio-rear; its radii of gyration for --roll-inertia, --pitch-inertia, "
+        "--yaw-inertia"
+    )
     assert values["kerb_mass"] == pytest.approx(1050.0) and values["front_axle_load"] == pytest.approx(640.0, rel=1e-3)
     with pytest.raises(ConfigurationError, match="--car-class 'bus': must be one of small, sedan, van"):
         new_car("one", "sedan", StatedNumbers(car_class="bus"))

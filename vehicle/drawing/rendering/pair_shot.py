@@ -51,7 +51,8 @@ class PairShot:
     def __init__(self, runs: Mapping[str, RecordedRun], difference: str, layout: TwoCars, take: Take) -> None:
         require_one_input(runs)
         both = list(runs.values())
-        excerpt = shared_excerpt(both, take)
+        dampers = differing_dampers(both)
+        excerpt = shared_excerpt(both, take, dampers[0] if dampers else None)
         size = (layout.main_width, layout.view_height)
         self.layout = layout
         self.scenes = [Scene(run, size, excerpt, take.speed, take.profile) for run in both]
@@ -78,7 +79,7 @@ class PairShot:
             strip=TraceStrip(
                 layout=layout,
                 time=both[0].recording.time,
-                traces=traces(self.scenes, cut, visible),
+                traces=traces(self.scenes, cut, visible, dampers),
                 visible=visible,
             ),
         )
@@ -128,12 +129,35 @@ def require_one_input(runs: Mapping[str, RecordedRun]) -> None:
         )
 
 
-def shared_excerpt(runs: Sequence[RecordedRun], take: Take) -> Excerpt:
-    """Return the excerpt of two runs: that of the first whose dampers slip, as slow as the faster of both needs."""
-    excerpts = [excerpt_of(run, take) for run in runs]
+def differing_dampers(runs: Sequence[RecordedRun]) -> tuple[str, ...]:
+    """Return a wheel of each axle whose damper differs between two cars, on the side of the excited wheel if it does.
+
+    Returns:
+        The wheels; empty for cars with the same dampers, or without a common damper.
+    """
+    cars = [run.car.model.vehicle.composition for run in runs]
+    laws = [{damper.name.removeprefix("damper_"): damper.law for damper in car.dampers} for car in cars]
+    placed = {wheel.name: wheel for wheel in cars[0].wheels}
+    differing = [wheel for wheel in laws[0] if wheel in placed and laws[0][wheel] != laws[1].get(wheel)]
+    side = placed[runs[0].wheel].side
+    by_axle: dict[str, str] = {}
+    for wheel in sorted(differing, key=lambda wheel: placed[wheel].side != side):
+        by_axle.setdefault(placed[wheel].axle, wheel)
+    return tuple(wheel for wheel in placed if wheel in by_axle.values())
+
+
+def shared_excerpt(runs: Sequence[RecordedRun], take: Take, wheel: str | None = None) -> Excerpt:
+    """Return the excerpt of two runs: that of the first whose dampers slip, as slow as the faster of both needs.
+
+    Args:
+        runs: the runs.
+        take: settings of the film.
+        wheel: see `excerpt_of`.
+    """
+    excerpts = [excerpt_of(run, take, wheel) for run in runs]
     slips = [excerpt.reason == "most damper motion" for excerpt in excerpts]
     chosen = runs[slips.index(True) if any(slips) else 0]
-    return excerpt_of(chosen, replace(take, slow=max(excerpt.slow for excerpt in excerpts)))
+    return excerpt_of(chosen, replace(take, slow=max(excerpt.slow for excerpt in excerpts)), wheel)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -171,8 +171,13 @@ class Shot:
         ]
 
 
-def excerpt_of(run: RecordedRun, take: Take) -> Excerpt:
+def excerpt_of(run: RecordedRun, take: Take, wheel: str | None = None) -> Excerpt:
     """Return the excerpt of a run in a film.
+
+    Args:
+        run: the run.
+        take: settings of the film.
+        wheel: wheel of the damper that decides; default: the excited wheel.
 
     Raises:
         ConfigurationError: the start is outside the record.
@@ -182,8 +187,9 @@ def excerpt_of(run: RecordedRun, take: Take) -> Excerpt:
     if take.start is not None and not 0.0 <= take.start < record:
         raise ConfigurationError(f"film, start: found {take.start:g} s, must be 0 to {record:g} s, within the record")
     slip = vehicle.damper.slip_velocity if dampers_of(recording) else 0.0
-    hub = hub_channel(vehicle.composition, run.wheel)
-    return choose_excerpt(recording, run.wheel, hub, slip, start=take.start, duration=take.duration, slow=take.slow)
+    wheel = wheel or run.wheel
+    hub = hub_channel(vehicle.composition, wheel)
+    return choose_excerpt(recording, wheel, hub, slip, start=take.start, duration=take.duration, slow=take.slow)
 
 
 def cut_of(excerpt: Excerpt, largest: float, take: Take) -> Cut:
@@ -213,13 +219,14 @@ def scale_words(cut: Cut, *, rests: bool) -> str:
     return scale + (" (at rest)" if rests else "")
 
 
-def traces(scenes: Sequence[Scene], cut: Cut, visible: float) -> list[Trace]:
+def traces(scenes: Sequence[Scene], cut: Cut, visible: float, dampers: Sequence[str] = ()) -> list[Trace]:
     """Return the curves below the picture (plate, seat rail, damper), scaled to their maxima in the shown time.
 
     Args:
         scenes: a scene, or two with the same plates, whose curves lie over each other.
         cut: shown excerpt.
         visible: length of the curves on the screen [s].
+        dampers: wheels whose dampers have a curve; default: the excited wheel.
     """
     first, wheel = scenes[0], scenes[0].wheel
     time = first.recording.time
@@ -229,7 +236,10 @@ def traces(scenes: Sequence[Scene], cut: Cut, visible: float) -> list[Trace]:
     for label, channel, scale, band, minimum in (
         (input_label, f"plate_{wheel}_displacement", 1e3, None, 1e3 * AT_REST),
         ("seat rail, vertical [m/s²]", "seat_rail_acc_z", 1.0, None, LEAST_ACCELERATION),
-        (f"damper {side_of(wheel, first.wheels)} [mm/s]", f"damper_{wheel}_velocity", 1e3, 1e3 * first.slip, 0.0),
+        *(
+            (f"damper {side_of(name, first.wheels)} [mm/s]", f"damper_{name}_velocity", 1e3, 1e3 * first.slip, 0.0)
+            for name in dampers or (wheel,)
+        ),
     ):
         if not all(channel in scene.recording.channels for scene in scenes):
             continue

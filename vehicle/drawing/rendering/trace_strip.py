@@ -15,7 +15,7 @@ from vehicle.drawing.rendering.rounding import round_up
 from vehicle.signals.analysis.samples import Vector
 
 GRID = (208, 212, 218)
-TRACE_COLOURS = tuple(tuple(bytes.fromhex(COLOURS[place][1:])) for place in (4, 0, 1))
+TRACE_COLOURS = tuple(tuple(bytes.fromhex(COLOURS[place][1:])) for place in (4, 0, 1, 1))
 PAIR_COLOURS = (INK, tuple(bytes.fromhex(COLOURS[2][1:])))
 """Colours of two runs: dark and green, which differ in brightness; lamps and arrows have other colours."""
 

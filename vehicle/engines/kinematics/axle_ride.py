@@ -38,6 +38,7 @@ from vehicle.engines.kinematics.axle_statics import AxlePosition, AxleStatics
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.model.laws.damper import viscous_law
 from vehicle.model.parameters.composition import PlacedWheel
+from vehicle.model.parameters.force_elements import Damper
 
 DAMPER_VELOCITY = 0.1
 """Damper velocity [m/s] at which a damper counts as a viscous constant: low-speed damping, which rules body motions."""
@@ -180,10 +181,14 @@ def _wheel_damping(car: CarModel, axle: str, statics: AxleStatics, motion: AxleP
     total = 0.0
     for damper in car.vehicle.composition.dampers:
         if damper.path.split(".")[0] == axle:
-            # The secant constant, mean of bump and rebound.
-            rebound, bump = viscous_law(damper.law).force(np.array([DAMPER_VELOCITY, -DAMPER_VELOCITY]))
-            total += float(rebound - bump) / (2.0 * DAMPER_VELOCITY) * ratios[damper.joint] ** 2
+            total += damper_constant(damper.law) * ratios[damper.joint] ** 2
     return total / len(statics.wheels)
+
+
+def damper_constant(law: Damper) -> float:
+    """Return (F_d(v) - F_d(-v)) / 2 v at `DAMPER_VELOCITY`, the mean of bump and rebound, without friction [N s/m]."""
+    rebound, bump = viscous_law(law).force(np.array([DAMPER_VELOCITY, -DAMPER_VELOCITY]))
+    return float(rebound - bump) / (2.0 * DAMPER_VELOCITY)
 
 
 def _tyre(car: CarModel, wheels: Sequence[PlacedWheel]) -> Support:

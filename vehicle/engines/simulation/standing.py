@@ -51,7 +51,7 @@ def require_body_modes(vehicle: Vehicle, body: Superelement) -> None:
             f"{model}: its first mode is at {first:.3g} Hz, {allowed}; check the units of its stiffness and mass"
         )
     raise ConfigurationError(
-        f"body.frequency_scale: found {scale:g} -, which puts the first mode of the body ({first:g} Hz in {model}) at "
+        f"body.frequency_scale: found {scale:g}, which puts the first mode of the body ({first:g} Hz in {model}) at "
         f"{first * scale:.3g} Hz, {allowed}"
     )
 

@@ -137,14 +137,15 @@ def stop_numbers(stop: Mapping[str, Any], ends: Mapping[str, list[Point]], path:
                 "its contact (penetration 0) and a force beyond it"
             )
         sign = -1.0 if end == "bump" else 1.0
-        displacement += [sign * (clearance + x) for x, _ in points[contact:]]
-        force += [sign * f for _, f in points[contact:]]
+        displacement += [sign * (clearance + x) + 0.0 for x, _ in points[contact:]]
+        force += [sign * f + 0.0 for _, f in points[contact:]]
     if len(ends) == 1:
         # The law goes on in a straight line: one more point keeps it at zero.
         at = max(displacement) + 1.0 if "bump" in ends else min(displacement) - 1.0
         displacement.append(at)
         force.append(0.0)
-    pairs = sorted(zip(displacement, force, strict=True))
+    # Without clearances both ends have their contact in the design position.
+    pairs = sorted(dict.fromkeys(zip(displacement, force, strict=True)))
     return {"displacement": [x for x, _ in pairs], "force": [f for _, f in pairs]}
 
 

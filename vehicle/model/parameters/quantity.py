@@ -134,10 +134,11 @@ def _check_number(path: str, number: Any, metadata: Any) -> None:
     unit = metadata["unit"]
     if isinstance(number, bool) or not isinstance(number, int | float):
         raise ConfigurationError(f"{path}: found {number!r}, must be a number [{unit}]")
+    found = f"{path}: found {number!r} {unit}".removesuffix(" -")
     if not math.isfinite(number):
-        raise ConfigurationError(f"{path}: found {number!r} {unit}, must be a finite number ({metadata['meaning']})")
+        raise ConfigurationError(f"{found}, must be a finite number ({metadata['meaning']})")
     if metadata["above"] is not None and not number > metadata["above"]:
-        raise ConfigurationError(f"{path}: found {number!r} {unit}, must be greater than {metadata['above']!r}")
+        raise ConfigurationError(f"{found}, must be greater than {metadata['above']!r}")
     minimum, maximum = metadata["at_least"], metadata["at_most"]
     if (minimum is None or number >= minimum) and (maximum is None or number <= maximum):
         return
@@ -145,8 +146,8 @@ def _check_number(path: str, number: Any, metadata: Any) -> None:
         f" ({metadata['why']})" if metadata["why"] and number >= 0.0 else ""
     )  # no reason is needed for a negative mass
     if minimum is not None and number < minimum:
-        raise ConfigurationError(f"{path}: found {number!r} {unit}, must be at least {minimum!r}{why}")
-    raise ConfigurationError(f"{path}: found {number!r} {unit}, must be at most {maximum!r}{why}")
+        raise ConfigurationError(f"{found}, must be at least {minimum!r}{why}")
+    raise ConfigurationError(f"{found}, must be at most {maximum!r}{why}")
 
 
 @functools.cache

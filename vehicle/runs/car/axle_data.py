@@ -57,7 +57,6 @@ class AxleData:
     spring_at_wheel_n_per_m: float | None  # sum of k i^2 of the springs of one side
     damper_ratio: float | None  # compression of the damper per wheel travel [-]
     damper_n_s_per_m: float | None  # damping constant of the modes with sliding dampers: the smallest slope of the law
-    curved_damper: bool  # True if the law of the damper has other slopes too
     tyre_n_per_m: float  # vertical stiffness of the tyre
     ride_rate_n_per_m: float  # wheel rate and tyre in series
     ride_frequency_hz: float | None  # undamped frequency of the sprung mass on the ride rate
@@ -128,7 +127,6 @@ def axle_data(car: Any, name: str) -> AxleData:
         damper_n_s_per_m=None
         if own_damper is None
         else float(car.matrices.viscous[vehicle.composition.dampers.index(own_damper)]),
-        curved_damper=own_damper is not None and own_damper.law.viscous_law != "linear",
         tyre_n_per_m=ride.tyre.stiffness,
         ride_rate_n_per_m=ride.ride.stiffness,
         ride_frequency_hz=None if math.isnan(ride.ride_frequency) else ride.ride_frequency,

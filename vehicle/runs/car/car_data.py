@@ -17,7 +17,7 @@ from vehicle.model.parameters.shipped import FOCUS_FILE
 from vehicle.names import point_words
 from vehicle.runs.car.axle import axle_names, car_at_rest, mass_and_cog
 from vehicle.runs.car.axle_data import AxleData, axle_data
-from vehicle.runs.car.motion_figures import MotionFigure, motion_figures
+from vehicle.runs.car.motion_figures import MotionFigure, damper_notes, motion_figures
 from vehicle.runs.car.usual_figures import UsualFigure, usual_figures
 from vehicle.threads import one_blas_thread
 
@@ -227,11 +227,6 @@ def _notes(car: Any, axles: Sequence[AxleData]) -> Iterator[str]:
                 f"{axle.name}: geometry, motion ratios and unsprung mass are computed with its bushings, because "
                 "ideal joints would lock this axle"
             )
-        if axle.curved_damper:
-            yield (
-                f"{axle.name}: modes with sliding dampers use the smallest damping, that of fast motion; in "
-                "slower motion the damping is larger"
-            )
         if math.isnan(axle.geometry.caster_deg):
             yield f"{axle.name}: no steering figures, because its template {axle.template} has no steering_axis"
         if math.isnan(axle.geometry.side_swing_arm_m):
@@ -242,5 +237,6 @@ def _notes(car: Any, axles: Sequence[AxleData]) -> Iterator[str]:
             yield f"{axle.name}: no roll centre, because the lines from both contact points are parallel"
         if {"right", "left"} & set(car.vehicle.table[axle.name]):
             yield f"{axle.name}: left and right wheel differ; values of a single wheel are those of the right wheel"
+    yield from damper_notes(car)
     if not car.vehicle.gravity:
         yield "sprung masses of the axles and ride frequencies are not defined without gravity"

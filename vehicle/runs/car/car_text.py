@@ -140,12 +140,15 @@ def figures_table(figures: Sequence[MotionFigure]) -> TextTable:
             modes = [f"{number(mode.frequency_hz, 2)} ({number(100.0 * mode.share)} %)" for mode in figure.modes]
             cells += [frequency.value_text, ratio.value_text, ", ".join(modes) or "-"]
         rows.append((motion, *cells, usual_range(motion)))
-    heads = (f"{state} [Hz]" for state in states)
+    heads = (
+        ("sliding [Hz]", "damping at 0.1 m/s [%]") if state == "sliding" else ("stuck [Hz]", "damping [%]")
+        for state in states
+    )
     return TextTable(
         title=f"Key figures, dampers {' and '.join(states)}",
         heads=(
             "figure",
-            *(word for head in heads for word in (head, "damping [%]", "modes with it [Hz] (share)")),
+            *(word for head in heads for word in (*head, "modes with it [Hz] (share)")),
             "usual, sliding [Hz]; [%]",
         ),
         rows=tuple(rows),

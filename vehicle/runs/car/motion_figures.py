@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
-from vehicle.engines.kinematics.axle_ride import DamperState, axle_rides
+from vehicle.engines.kinematics.axle_ride import DAMPER_VELOCITY, DamperState, axle_rides, damper_constant
 from vehicle.engines.kinematics.ride_figures import ride_figures
 from vehicle.engines.linear.car_modes import Mode
 from vehicle.runs.car.axle import car_at_rest
@@ -27,6 +27,9 @@ BODY_MOTIONS = {"heave": "body heave (z)", "pitch": "body pitch (Ry)", "roll": "
 
 MINIMUM_SHARE = 0.2
 """Minimum share of a motion in the kinetic energy of a mode that is listed for it."""
+
+MAXIMUM_DIFFERENCE = 0.01
+"""Maximum relative difference of the damping constants of figures and modes without a note: a digit of the ratio."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -107,6 +110,21 @@ def motion_share(mode: Mode, motion: str) -> float:
         for name, share in mode.motions.items()
         if any(word in name for word in hop) and axle in name.partition(" wheel ")[0].split()
     )
+
+
+def damper_notes(car: Any) -> Iterator[str]:
+    """Yield a sentence for each axle whose figures and modes take different constants of its dampers."""
+    constants = {}
+    for damper, smallest in zip(car.vehicle.composition.dampers, car.matrices.viscous, strict=True):
+        constants[damper.path.split(".")[0]] = damper_constant(damper.law), float(smallest)
+    axles = dict.fromkeys(wheel.axle for wheel in car.vehicle.composition.wheels)
+    for axle, (at_velocity, smallest) in ((axle, constants[axle]) for axle in axles if axle in constants):
+        if smallest < (1.0 - MAXIMUM_DIFFERENCE) * at_velocity:
+            yield (
+                f"{axle}: the figures heave, pitch, roll and wheel hop take the dampers at {DAMPER_VELOCITY:g} m/s, "
+                f"{at_velocity:.0f} N s/m; modes with sliding dampers take their smallest slope, that of fast motion, "
+                f"{smallest:.0f} N s/m: their damping is smaller"
+            )
 
 
 def _defined(value: float) -> float | None:

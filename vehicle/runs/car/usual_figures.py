@@ -68,7 +68,7 @@ AXLE_FIGURES: dict[str, tuple[Callable[[AxleData], float | None], int]] = {
     "spring stiffness [N/mm]": (lambda axle: _milli(axle.spring_n_per_m), 2),
     "motion ratio, spring / wheel": (lambda axle: axle.spring_ratio, 3),
     "motion ratio, damper / wheel": (lambda axle: axle.damper_ratio, 3),
-    "damping constant, sliding [N s/m]": (lambda axle: axle.damper_n_s_per_m, 0),
+    "damping constant, smallest slope [N s/m]": (lambda axle: axle.damper_n_s_per_m, 0),
     "wheel rate [N/mm]": (lambda axle: _milli(axle.wheel_rate_n_per_m), 2),
     "  spring times ratio squared [N/mm]": (lambda axle: _milli(axle.spring_at_wheel_n_per_m), 2),
     "tyre stiffness [N/mm]": (lambda axle: _milli(axle.tyre_n_per_m), 1),

@@ -7,15 +7,18 @@ from typing import TypedDict
 
 import numpy as np
 
-from vehicle.names import AXES
+from vehicle.names import AXES, point_words
 from vehicle.runs.car import Run
 from vehicle.signals.analysis.comfort import COMFORT_BAND, settling
 from vehicle.signals.analysis.evaluation import application, evaluate
-from vehicle.signals.analysis.ride_comfort import RIM
+from vehicle.signals.analysis.ride_comfort import ERROR, RIM, UNWEIGHTED, WEIGHTED
 from vehicle.signals.analysis.seat_value import seat_value
 from vehicle.signals.records.run_summary import ComfortSummary, RimSummary, SeatSummary
 
 RAIL, SEAT = "seat_rail", "seat"
+
+NORMAL_95 = 1.96
+"""Standard errors in half of a 95 % interval; its coverage is measured in `docs/theory/statistics.md`."""
 
 NO_SEAT = (
     "comfort of the seat: the car has no seat, so 'seat' is a point of its body, and there is no SEAT value; "
@@ -64,6 +67,12 @@ def rim_values(run: Run) -> RimValues:
 def comfort_notices(run: Run) -> list[str]:
     """Return a notice for each axis of the seat rail with a nonstationary level, and for a missing seat."""
     bare = [NO_SEAT] if _recorded(run, SEAT) and not run.car.vehicle.seated else []
+    if run.road and run.car.static.support_load:
+        places = ", ".join(point_words(name) for name in run.car.static.support_load)
+        bare.append(
+            f"comfort: {run.car.vehicle.name} is on the road with {len(run.car.vehicle.wheels)} wheels alone; its "
+            f"blocks ({places}) do not move; for a ride take a car on four wheels, for example focus_road"
+        )
     # An obstacle is a single event.
     if not _recorded(run, RAIL) or "obstacle" in (run.road or {}):
         return bare
@@ -88,10 +97,13 @@ def _at(run: Run, point: str) -> ComfortSummary:
     xyz = [run[f"{point}_acc_{axis}"] for axis in AXES]
     rms: dict[str, float | None] = {**asdict(value.unweighted)}
     iso = evaluate(run.recording.timestep, xyz, skip=run.skip, from_rest=True, highest=run.signal.highest)
-    if run.signal.highest is None:
-        return {"rms_2_50_hz": rms, "iso2631": iso}
-    return {
-        "rms_2_50_hz": dict.fromkeys(rms),
-        "rms_of_band": {"band_hz": list(value.band), **rms},
-        "iso2631": iso,
-    }
+    entry: ComfortSummary = {"rms_2_50_hz": rms, "iso2631": iso}
+    if run.signal.highest is not None:
+        entry["rms_2_50_hz"] = dict.fromkeys(rms)
+        entry["rms_of_band"] = {"band_hz": list(value.band), **rms}
+    if (run.road or {}).get("class"):
+        entry["half_interval"] = {
+            name: NORMAL_95 * value.values[f"{name}{ERROR}"] * getattr(value, name).overall
+            for name in (UNWEIGHTED, WEIGHTED)
+        }
+    return entry

@@ -39,10 +39,16 @@ MOST_CHANGES = 2
 SMALL = 0.05
 """Change [%] below which comfort counts as unchanged."""
 
+NOTICED = 11.0
+"""Change [%] up to which many persons do not notice a vibration: the largest median of `threshold.html`."""
+
 SLIP = 0.1
 """Change of the time in slip [percentage points] from which it is named."""
 
 DIRECTIONS = {"x": "fore-aft", "y": "lateral", "z": "vertical"}
+
+BY_MODE = "caused mainly by the mode"
+"""Words before the mode that a statement names."""
 
 
 def answer(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> Markup:
@@ -72,12 +78,16 @@ def answer(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> Markup:
         title = "Change of comfort and loads"
         caption = "blue: smaller vibration or load, amber: larger; grey: no rating"
         figure = drawing(partial(plot_changes, changes=changes, title=title, caption=caption), title)
+    pairs = [(runs[first], run) for run, first in zip(runs, compared, strict=True) if first is not None]
+    changed = [abs(_percent(*pair) or 0.0) for pair in pairs if input_text(pair[0]) == input_text(pair[1])]
+    if any(SMALL <= percent <= NOTICED for percent in changed):
+        figure = fill("threshold") + figure
     return fill("answer", texts=statements, figure=figure)
 
 
-def explained() -> Markup:
-    """Return the explanation of the statements."""
-    return fill("explained")
+def explained(statements: Markup) -> Markup:
+    """Return statements with the explanation of mode and path, if they name a mode."""
+    return statements + fill("explained") if BY_MODE in statements else statements
 
 
 def _of_one(run: FinishedRun, modes: Modes) -> Markup:
@@ -97,7 +107,7 @@ def _of_one(run: FinishedRun, modes: Modes) -> Markup:
         if mode is not None:
             # The linear model has the smallest slope of sliding dampers, and no friction.
             named = mode_words(mode, "at least " if damper_state(run) == "sliding" else "")
-            parts += [f"caused mainly by the mode of {named}", *_path_words(run, band, mode)]
+            parts += [f"{BY_MODE} of {named}", *_path_words(run, band, mode)]
         texts.append(f"{', '.join(parts)}{_damper_words(run)}.")
     return fill("answer", texts=[" ".join(texts)], figure="")
 
@@ -264,7 +274,7 @@ def _reason(first: FinishedRun, run: FinishedRun, modes: Modes, run_modes: Modes
             if states[0] == states[1]
             else f"of {mode_words(mode)} with {states[0]} dampers, which are {states[1]} now"
         )
-        parts += [f"caused mainly by the mode {moved}", *_path_words(first, band, mode)]
+        parts += [f"{BY_MODE} {moved}", *_path_words(first, band, mode)]
     slips = [slip_shares(each.summary) for each in (first, run)]
     if list(slips[0]) == list(slips[1]) and slips[0]:
         wheel = max(slips[0], key=lambda name: abs(slips[1][name] - slips[0][name]))

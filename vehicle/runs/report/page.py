@@ -124,7 +124,7 @@ def _of_one(run: FinishedRun, modes: Modes, trial_part: Markup) -> list[Part]:
         single, bands = single + bands, Markup()
     changed = None if base is None else answer([base, run], [modes_of(base), modes])
     parts = [
-        ("Result", "result", (single if changed is None else changed) + explained()),
+        ("Result", "result", explained(single if changed is None else changed)),
         ("This run", "alone", None if changed is None else single),
         ("Frequency responses", "responses", sections.responses(run, modes) if run.responses else None),
         ("Film", "film", film(run)),
@@ -166,7 +166,7 @@ def _of_several(
     # Runs on several inputs are compared on each of them.
     compared = shown if len({run.caption for run in runs}) == 1 else range(len(runs))
     parts = [
-        ("Result", "result", few + answer([runs[k] for k in compared], [modes[k] for k in compared]) + explained()),
+        ("Result", "result", few + explained(answer([runs[k] for k in compared], [modes[k] for k in compared]))),
         *([("Film", "film", film_part(pair))] if pair is not None else []),
         ("Comparison of the runs", "comparison", numbers_beside(runs)),
         ("Frequency responses and spectra", "responses", curves_over_each_other(of_shown)),

@@ -59,22 +59,20 @@ def film_of_two(
         again.append(_simulated(run))
         report(SIMULATED * count / len(saved))
     speed = (again[0].road or {}).get("speed_kmh")
+    off = max(deviation(run, new) for run, new in zip(saved, again, strict=True))
+    near = "equal" if off < ROUNDING else f"differ by {number(100.0 * off, 2)} % (RMS) from"
+    words = f"simulated again by the engine mujoco; its curves {near} the saved ones"
     settings = Take(**(take or {}), speed=float(speed) / 3.6 if isinstance(speed, int | float) else None)
     cut = pair_film(
         {run.name: new for run, new in zip(saved, again, strict=True)},
-        what_changed(*saved),
+        what_changed(*saved) + ("" if off < ROUNDING else f"; {words}"),
         path,
         settings,
         size=size,
         jobs=jobs,
         progress=lambda share: report(SIMULATED + (1.0 - SIMULATED) * share),
     )
-    off = max(deviation(run, new) for run, new in zip(saved, again, strict=True))
-    near = "equal" if off < ROUNDING else f"differ by {number(100.0 * off, 2)} % (RMS) from"
-    return (
-        f"{cut.start:.2f} to {cut.end:.2f} s, both runs simulated again by the engine mujoco; its curves {near} the "
-        "saved ones"
-    )
+    return f"{cut.start:.2f} to {cut.end:.2f} s, both runs {words}"
 
 
 def _simulated(run: FinishedRun) -> Run:

@@ -240,12 +240,14 @@ def comfort(run: FinishedRun, bands: Markup = NO_FIGURE) -> Markup:
             for axis in "xyz"
         ]
         whole = iso["vector_sum"]
-        rows.append(
-            ("all", "", number(whole["weighted_rms"]), "", "", number(whole["vdv"]), "", number(raw["overall"]))
-        )
+        half = {name: f" ± {number(width, 2)}" for name, width in value.get("half_interval", {}).items()}
+        weighted = number(whole["weighted_rms"]) + half.get("weighted", "")
+        unweighted = number(raw["overall"]) + half.get("unweighted", "")
+        rows.append(("all", "", weighted, "", "", number(whole["vdv"]), "", unweighted))
+        reasons = [*iso["reasons"], *(["±: 95 % interval over roads of this class"] if half else [])]
         span = f", {run.span} of the run" if run.span else ""
         caption = f"{point_words(point).capitalize()}, {iso['standard']}{span}"
-        points.append((caption, low, high, rows, iso["reasons"]))
+        points.append((caption, low, high, rows, reasons))
     matches = [
         (_range(low, high), word, [point for point, total in totals.items() if word in reactions(total)])
         for word, low, high in REACTIONS

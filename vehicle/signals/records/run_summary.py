@@ -64,11 +64,13 @@ Peaks = dict[str, list[PeakSummary]]
 class ComfortSummary(TypedDict):
     """Comfort at one output point; `iso2631` is the result of `analysis.evaluation.evaluate`.
 
-    `rms_of_band` replaces `rms_2_50_hz`, then null, where the band of the signal ends below 50 Hz.
+    `rms_of_band` replaces `rms_2_50_hz`, then null, where the band of the signal ends below 50 Hz. `half_interval`:
+    half of the 95 % interval of both overall values over roads of a class [m/s2], for a run on one of them.
     """
 
     rms_2_50_hz: dict[str, float | None]
     rms_of_band: NotRequired[dict[str, Any]]
+    half_interval: NotRequired[dict[str, float]]
     iso2631: dict[str, Any]
 
 

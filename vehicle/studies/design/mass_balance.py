@@ -23,6 +23,7 @@ from vehicle.model.parameters.vehicle import vehicle_of
 from vehicle.model.parameters.whole_body import put
 from vehicle.runs.car import Car
 from vehicle.runs.car.inertia_survey import SURVEY, AxleGeometry
+from vehicle.runs.car.usual_figures import usual_ranges
 from vehicle.studies.design.moved_points import Sources
 from vehicle.studies.design.stated_numbers import StatedNumbers, option
 from vehicle.studies.design.template_car import TemplateCar
@@ -31,6 +32,8 @@ Vector = npt.NDArray[np.float64]
 
 LIGHTEST_BODY = 100.0
 """Smallest mass of a body [kg], see `TrimmedBody`."""
+LEAST_SHARE = 0.2
+"""Smallest load of a stated axle as a share of the kerb mass: half of the smallest usual one, on the front axle."""
 ROUND_OFF = 1e-9
 """Product of inertia, as a share of the sum of the moments, that counts as zero."""
 LOAD_AGREES = 1e-6
@@ -75,6 +78,14 @@ def balanced(table: dict[str, Any], template: TemplateCar, stated: StatedNumbers
             f"{', '.join(map(option, stated_names))}: the centre of gravity would be {share * wheelbase:.3f} m "
             f"behind the front axle, must be inside the wheelbase of {wheelbase:g} m (kerb mass {mass:g} kg)"
         )
+    for name, load in (("front_axle_load", front), ("rear_axle_load", rear)):
+        if load is not None and load < LEAST_SHARE * mass:
+            low, high = usual_ranges()["load on the front axle [%]"]["all"]
+            percent = f"; for {load:g} % of the kerb mass type {option(name)} {load:g}%" if load < 100.0 else ""
+            raise ConfigurationError(
+                f"{option(name)} {load:g} kg: is {100.0 * load / mass:.1f} % of the kerb mass of {mass:g} kg, must be "
+                f"at least {100.0 * LEAST_SHARE:g} %; cars have {low} to {high} % of it on the front axle{percent}"
+            )
     parts = car_masses(kerb_model(table, template), body=False)
     if mass - parts.mass < LIGHTEST_BODY:
         minimum = LIGHTEST_BODY / (1.0 - parts.mass / mass) if parts.mass < mass else parts.mass + LIGHTEST_BODY

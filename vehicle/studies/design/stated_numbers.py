@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import partial
@@ -26,6 +27,7 @@ CAR: dict[str, Any] = {"at_least": 100.0, "why": "kg, not t"}
 AXLE: dict[str, Any] = {"at_least": 20.0, "why": "kg, neither a share nor t"}
 METRES: dict[str, Any] = {"why": "m, not mm"}
 HOP: dict[str, Any] = {"at_least": 4.0, "at_most": 30.0, "why": "wheels of cars hop at 8 to 16 Hz"}
+RATIO: dict[str, Any] = {"why": "a ratio: 30 % of the critical damping are 0.3"}
 
 optional = partial(quantity, default=None)
 """Declaration of a number that need not be stated."""
@@ -53,7 +55,13 @@ class StatedNumbers:
         at_most=8.0,
         **METRES,
     )
-    cog_height: float | None = optional("m", "centre of gravity above the ground", above=0.0, at_most=3.0)
+    cog_height: float | None = optional(
+        "m",
+        "centre of gravity above the ground",
+        at_least=0.2,
+        at_most=1.5,
+        why="m, not mm; cars have 0.44 to 0.85 m, tracks of 1.4 to 1.7 m being 1 to 1.6 times twice the height",
+    )
     wheelbase: float | None = optional("m", "wheelbase", above=0.0, at_most=8.0, **METRES)
     track_front: float | None = optional("m", "track of the front wheels", above=0.0, at_most=4.0, **METRES)
     track_rear: float | None = optional("m", "track of the rear wheels", above=0.0, at_most=4.0, **METRES)
@@ -82,10 +90,10 @@ class StatedNumbers:
     wheel_hop_front: float | None = optional("Hz", "hop frequency of the front wheels; sets the tyre stiffness", **HOP)
     wheel_hop_rear: float | None = optional("Hz", "hop frequency of the rear wheels; sets the tyre stiffness", **HOP)
     damping_ratio_front: float | None = optional(
-        "-", "damping ratio of the front axle, dampers at 0.1 m/s", above=0.0, at_most=3.0
+        "-", "damping ratio of the front axle, dampers at 0.1 m/s", above=0.0, at_most=3.0, **RATIO
     )
     damping_ratio_rear: float | None = optional(
-        "-", "damping ratio of the rear axle, dampers at 0.1 m/s", above=0.0, at_most=3.0
+        "-", "damping ratio of the rear axle, dampers at 0.1 m/s", above=0.0, at_most=3.0, **RATIO
     )
     damper_curve_front: str | None = optional(
         "-", "damper test of the front axle: table of velocity and force", is_file=True
@@ -157,6 +165,10 @@ NOT_NUMBERS = ("tyre_size", "load", "inertia", "car_class", "of_class")
 NAMES = tuple(entry.name for entry in dataclasses.fields(StatedNumbers) if entry.name not in NOT_NUMBERS)
 
 
+AXLE_LOADS = ("front_axle_load", "rear_axle_load")
+"""Numbers that may also be stated in percent of the kerb mass."""
+
+
 def option(name: str) -> str:
     """Return the option of a number on the command line: "--kerb-mass"."""
     return f"--{name.replace('_', '-')}"
@@ -177,9 +189,26 @@ def stated_numbers(file: Path | None, more: Mapping[str, Any]) -> StatedNumbers:
         if file is not None and isinstance(table.get(name), str):
             table[name] = str(file.parent / table[name])
     table |= {name: value for name, value in more.items() if value is not None}
+    table |= {name: _load_of(name, table) for name in AXLE_LOADS if isinstance(table.get(name), str)}
     try:
         return build(StatedNumbers, table)
     except ConfigurationError as error:
         text = str(error).replace("StatedNumbers.", "")
         key = text.split(":")[0]
         raise ConfigurationError(f"{option(key)}{text[len(key) :]}" if key in NAMES else text) from None
+
+
+def _load_of(name: str, table: Mapping[str, Any]) -> float:
+    """Return an axle load in percent of the kerb mass, as "57%", in kg."""
+    text, mass = str(table[name]).strip(), table.get("kerb_mass")
+    try:
+        share = 0.01 * float(text.removesuffix("%"))
+    except ValueError:
+        share = math.nan
+    if not (text.endswith("%") and math.isfinite(share)):
+        raise ConfigurationError(
+            f"{option(name)} {table[name]!r}: must be a number in kg, or a share of the kerb mass as 57%"
+        )
+    if not isinstance(mass, (int, float)):
+        raise ConfigurationError(f"{option(name)} {text}: is a share of the kerb mass; state {option('kerb_mass')} too")
+    return share * mass
