@@ -66,9 +66,10 @@ def parser() -> Parser:
     )
     parser.add_argument(
         "--each",
-        metavar="P%",
+        metavar="P%[,Dmm]",
         help="change each parameter alone by P percent, down and up, and rank them by their effect on comfort; --vary "
-        "PATH, as front.damper or viscous, chooses them; by default all stiffnesses, dampings, friction forces, masses",
+        "PATH, as front.damper or viscous, chooses them; by default all stiffnesses, dampings, friction forces, "
+        "masses; a coordinate, which has no percentage, is moved by D mm, 10 by default: 20%%,5mm",
     )
     parser.add_argument(
         "--measure",
@@ -129,13 +130,13 @@ def _job(options: argparse.Namespace) -> None:
     car = Car.load((listed and listed.vehicle) or options.vehicle, options.overrides)
     parameters: dict[str, tuple[float, str]] = {}
     without: tuple[str, ...] = ()
-    share = 0.0
+    share = shift = 0.0
     if listed is not None:
         changes = list(listed.cars.values())
     elif options.each is not None:
-        share = percent_of(options.each)
+        share, shift = steps_of(options.each)
         parameters = varied_parameters(car.vehicle, options.vary)
-        changes, without = single_changes(car.vehicle, parameters, share)
+        changes, without = single_changes(car.vehicle, parameters, share, shift)
     elif ranges:
         changes = sobol_changes(ranges, options.sobol)
     else:
@@ -160,7 +161,7 @@ def _job(options: argparse.Namespace) -> None:
         indices = comfort_indices(table, ranges) if ranges else None
         if indices is not None:
             write_whole(folder / SOBOL, lambda path: write_indices(path, indices))
-        effects = effects_of(table, parameters, share, without) if parameters else None
+        effects = effects_of(table, parameters, share, without, shift) if parameters else None
         # Read before the folder of the rows gets its name.
         cars, failed = None if ranges or parameters or listed else ranked_cars(table), table.failed
         results = None if listed is None else case_results(table, list(listed.cars))
@@ -215,18 +216,24 @@ def _job(options: argparse.Namespace) -> None:
         )
 
 
-def percent_of(text: str) -> float:
-    """Return the share of a text as "20%" or "20".
+def steps_of(text: str) -> tuple[float, float]:
+    """Return the share [-] and the shift of coordinates [m] of a text as "20%", "20" or "20%,5mm".
 
     Raises:
         ConfigurationError: no number.
     """
     from vehicle.errors import ConfigurationError
+    from vehicle.studies.sweeps.parameter_effects import SHIFT
 
+    percent, comma, length = text.strip().removeprefix("+-").partition(",")
     try:
-        return 0.01 * float(text.strip().removeprefix("+-").removesuffix("%"))
+        share = 0.01 * float(percent.removesuffix("%"))
+        return share, 1e-3 * float(length.removesuffix("mm")) if comma else SHIFT
     except ValueError:
-        raise ConfigurationError(f"--each {text!r}: must be a percentage, as --each 20%") from None
+        raise ConfigurationError(
+            f"--each {text!r}: must be a percentage, as --each 20%, or that and the shift of coordinates in mm, as "
+            "--each 20%,5mm"
+        ) from None
 
 
 def every_combination(texts: Sequence[str]) -> Combinations:

@@ -48,8 +48,8 @@ def parser() -> Parser:
         action="extend",
         default=[],
         metavar="PATH=LOW:HIGH",
-        help="parameter to fit and its bounds (above 0, in its unit), for example front.damper.viscous=800:4000. "
-        "The fit starts at the value of the car, or of --set",
+        help="parameter to fit and its bounds (in its unit, above 0 except for a coordinate), for example "
+        "front.damper.viscous=800:4000. The fit starts at the value of the car, or of --set",
     )
     measurement_options(parser)
     responses = parser.scoped_group(
@@ -161,7 +161,10 @@ def _posteriors(
         fixed = {each.path for each in rival if each.bounds is None}
         other = Car.load(options.car, [*options.overrides, *settings])
         bounds = {each.path: each.bounds for each in rival if each.bounds is not None}
-        middles = {path: (low, high, (low * high) ** 0.5) for path, (low, high) in bounds.items()}
+        middles = {
+            path: (low, high, (low * high) ** 0.5 if low > 0.0 else 0.5 * (low + high))
+            for path, (low, high) in bounds.items()
+        }
         shared = [entry for entry in parameters if entry.path not in {*fixed, *bounds}]
         laws.append(("rival law", other, [*shared, *ranges_of(other.vehicle, middles)]))
     posteriors = []

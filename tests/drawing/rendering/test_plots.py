@@ -263,7 +263,7 @@ def test_figures_of_runs_that_are_compared_have_equal_scales(long_run, tmp_path,
 def test_the_colour_of_a_bar_says_smoother_or_rougher_and_its_text_which_value():
     axis: Any = Figure().subplots()
     changes = np.array([[24.5, -14.8], [-11.4, np.nan]])
-    draw_tornado(axis, ["body.mass", "tyre"], changes, np.array([4.1, np.nan]), ("-20 %", "+20 %"))
+    draw_tornado(axis, ["body.mass", "tyre"], changes, np.array([4.1, np.nan]), [("-20 %", "+20 %")] * 2)
     bars = {bar.get_width(): matplotlib.colors.to_hex(bar.get_facecolor()) for bar in axis.patches}
     assert bars == {24.5: ROUGHER, -14.8: SMOOTHER, -11.4: SMOOTHER, 0.0: SMOOTHER}
     texts = [(text.get_text(), *text.xy) for text in axis.texts]
@@ -281,7 +281,7 @@ def test_title_and_labels_of_long_parameters_have_room(tmp_path):
     labels = ["front_subframe.bushings.hydromount.stiffness.z  150000 N/m", "body.mass  1200 kg"]
     figure = Figure(figsize=(8.0, 2.6), layout="constrained")
     axis: Any = figure.subplots()
-    draw_tornado(axis, labels, np.array([[-24.5, 14.8], [3.0, -2.0]]), np.array([4.1, 0.5]), ("-20 %", "+20 %"))
+    draw_tornado(axis, labels, np.array([[-24.5, 14.8], [3.0, -2.0]]), np.array([4.1, 0.5]), [("-20 %", "+20 %")] * 2)
     figure.savefig(tmp_path / "effects.png")
     title, frame = axis.xaxis.label.get_window_extent(), axis.get_window_extent()
     assert figure.bbox.x0 <= title.x0 and title.x1 <= figure.bbox.x1

@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 
 from tests.studies.optimisation.search_problems import box
+from vehicle import Car
 from vehicle.errors import ConfigurationError
 from vehicle.studies.optimisation.problem import Criterion, Tolerance, parsed_criteria, parsed_tolerance
 from vehicle.studies.optimisation.trials import Spread, Trials, bands, on_executor, samples_for
+from vehicle.studies.optimisation.variables import toleranced
 from vehicle.studies.sweeps.case import SignalFile
 from vehicle.studies.sweeps.case_result import Block, Result
 from vehicle.studies.sweeps.measure import ComfortMeasure
@@ -70,6 +72,11 @@ def test_tolerances():
     assert parsed_tolerance("a=15").value_at(200.0, -0.5) == pytest.approx(192.5)
     with pytest.raises(ConfigurationError, match=r"^--tolerance a=0: must be PATH=NUMBER in the unit"):
         parsed_tolerance("a=0")
+    sedan = Car.load("sedan").vehicle
+    ((tolerance, values),) = toleranced(sedan, [parsed_tolerance("strut_top.z=0.002")])
+    assert tolerance.value_at(values["front.hardpoints.strut_top.z"], 1.0) == pytest.approx(1.172)
+    with pytest.raises(ConfigurationError, match=r"strut_top.z=1%: a percentage of a coordinate .* strut_top.z=0.002"):
+        toleranced(sedan, [parsed_tolerance("strut_top.z=1%")])
 
 
 def test_points_are_rounded_within_their_bounds():

@@ -110,12 +110,37 @@ def test_parameters_without_effect_are_named():
 
 
 def effect(path, low, high, half_width=NAN):
-    return Effect(path=path, unit="N", value=10.0, low=8.0, high=12.0, change_low=low, change_high=high,
+    return Effect(path=path, unit="N", value=10.0, low=8.0, high=12.0, step="20 %", change_low=low, change_high=high,
                   half_width=half_width)  # fmt: skip
 
 
 def of(*effects, without=()):
-    return Effects(effects=effects, name="weighted", base=0.5, share=0.2, without=without)
+    return Effects(effects=effects, name="weighted", base=0.5, without=without)
+
+
+def test_a_coordinate_is_moved_by_a_length_whatever_its_origin():
+    """Its percentage would depend on the origin: 3.6 m of x by 72 cm, and y = 0 not at all."""
+    vehicle = Car.load("sedan").vehicle
+    groups = ("hardpoints.body_front", "rear.damper.viscous")
+    parameters = varied_parameters(vehicle, groups)
+    assert parameters["hardpoints.body_front.y"] == (0.0, "m") and len(parameters) == 4
+    changes, _ = single_changes(vehicle, {path: parameters[path] for path in list(parameters)[:2]}, 0.2)
+    texts = [each[0].split("=") for each in changes[1:]]
+    assert [(path, pytest.approx(float(value))) for path, value in texts] == [
+        ("hardpoints.body_front.x", 0.34), ("hardpoints.body_front.x", 0.36),
+        ("hardpoints.body_front.y", -0.01), ("hardpoints.body_front.y", 0.01),
+    ]  # fmt: skip
+    with pytest.raises(ConfigurationError, match="--each 300 mm: must be above 0 and at most 100 mm"):
+        single_changes(vehicle, parameters, 0.2, 0.3)
+    found = parameter_effects(
+        Car.load("sedan"), road("B", 80, duration=3), groups=("seat_rail", "rear.damper.viscous"), shift=0.005,
+        engine="reduced",
+    )  # fmt: skip
+    assert {each.path: each.ends for each in found.effects} == {
+        "rear.damper.viscous": ("-20 %", "+20 %"), "hardpoints.seat_rail.x": ("-5 mm", "+5 mm"),
+        "hardpoints.seat_rail.y": ("-5 mm", "+5 mm"), "hardpoints.seat_rail.z": ("-5 mm", "+5 mm"),
+    }  # fmt: skip
+    assert str(found).splitlines()[0].split() == ["parameter", "value", "step", "down", "up", "+-"]
 
 
 def test_sentence():

@@ -20,7 +20,7 @@ def plot_tornado(
     labels: Sequence[str],
     changes: Vector,
     half_widths: Vector,
-    ends: tuple[str, str],
+    ends: Sequence[tuple[str, str]],
     title: str = "",
     caption: str = "",
 ) -> None:
@@ -35,7 +35,9 @@ def plot_tornado(
         draw_tornado(figure.subplots(), labels, changes, half_widths, ends)
 
 
-def draw_tornado(axis: Any, labels: Sequence[str], changes: Vector, half_widths: Vector, ends: tuple[str, str]) -> None:
+def draw_tornado(
+    axis: Any, labels: Sequence[str], changes: Vector, half_widths: Vector, ends: Sequence[tuple[str, str]]
+) -> None:
     """Draw two bars for each parameter, its low and its high value, with their 95 % interval.
 
     Blue bars are smoother, amber bars rougher; the text at a bar is the value of the parameter.
@@ -45,16 +47,19 @@ def draw_tornado(axis: Any, labels: Sequence[str], changes: Vector, half_widths:
         labels: parameters; the first is on top.
         changes: changes at the low and the high value [%], (parameters, 2); NaN draws no bar.
         half_widths: half widths of the intervals [%], (parameters,); NaN draws none.
-        ends: names of the low and the high value, as "-20 %".
+        ends: names of the low and the high value of each parameter, as "-20 %".
     """
     rows, width = np.arange(len(labels), dtype=float), np.nan_to_num(half_widths)
-    for column, name in enumerate(ends):
+    for column, names_of_end in enumerate(zip(*ends, strict=True)):
         height = rows + (0.19 if column else -0.19)
         values = np.nan_to_num(changes[:, column])
         axis.barh(height, values, 0.34, color=np.where(values > 0.0, ROUGHER, SMOOTHER))
         shown = np.isfinite(half_widths) & np.isfinite(changes[:, column])
         axis.errorbar(values[shown], height[shown], xerr=half_widths[shown], fmt="none", ecolor=INK, elinewidth=0.9)
-        names = np.where(np.isfinite(changes[:, column]), name, f"{name} failed")
+        names = [
+            name if np.isfinite(change) else f"{name} failed"
+            for name, change in zip(names_of_end, changes[:, column], strict=True)
+        ]
         for row, value, half, text in zip(height, values, width, names, strict=True):
             side, across = (3, "left") if value > 0.0 or (value == 0.0 and column) else (-3, "right")
             end = value + np.copysign(half, side)

@@ -6,22 +6,48 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.paths import meant
+from vehicle.names import AXES
+
+LENGTH_OF_ONE = 0.05
+"""Shift of a coordinate [m] that counts as u = 1. A ratio of coordinates depends on the origin; with this length 10 mm
+count as much as 20 % of another parameter (assumed, as the shift of a point in `sweep --each 20%`)."""
+
+
+def is_coordinate(vehicle: Any, path: str) -> bool:
+    """Return True for a component of a point or of an offset: a length that may have either sign.
+
+    Args:
+        vehicle: the vehicle.
+        path: path of a component, as "front.hardpoints.strut_top.z".
+
+    Raises:
+        ConfigurationError: the path does not lead to a quantity.
+    """
+    if path.rpartition(".")[2] not in AXES:
+        return False
+    declared = vehicle.quantity_of(path) or vehicle.quantity_of(meant(vehicle.table, path)[0])
+    limits = declared.get("above"), declared.get("at_least")
+    return declared.get("unit") == "m" and limits == (None, None)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Range:
     """Limits of a parameter.
 
-    A sample is uniform in the range. A fit needs a start value and is logarithmic: u = ln(value / start).
+    A sample is uniform in the range. A fit needs a start value and is logarithmic: u = ln(value / start); for a
+    coordinate it is linear: u = (value - start) / length.
 
     Args:
         path: path of the parameter, see `vehicle.model.parameters.paths`.
-        low: minimum; above 0 for a fit.
+        low: minimum; above 0 for a logarithmic fit.
         high: maximum.
         start: start value of a fit, between both; NaN for a sample.
         reason: reason of the limits.
+        length: for a coordinate, the shift that counts as u = 1 [m], see `LENGTH_OF_ONE`; otherwise NaN.
 
     Raises:
         ConfigurationError: limits that are not finite or not ascending, or a start value outside the limits.
@@ -32,9 +58,16 @@ class Range:
     high: float
     start: float = math.nan
     reason: str = ""
+    length: float = math.nan
 
     def __post_init__(self) -> None:
-        if not math.isnan(self.start) and not 0.0 < self.low < self.start < self.high < math.inf:
+        least = 0.0 if math.isnan(self.length) else -math.inf
+        if not math.isnan(self.start) and not least < self.low < self.start < self.high < math.inf:
+            if least < 0.0:
+                raise ConfigurationError(
+                    f"parameter {self.path}: found bounds {self.low:g} and {self.high:g} and start {self.start:g}, "
+                    "must be lower < start < upper"
+                )
             raise ConfigurationError(
                 f"parameter {self.path}: found bounds {self.low:g} and {self.high:g} and start {self.start:g}, "
                 "must be 0 < lower < start < upper (the fit uses a logarithmic scale); for a parameter that may "
@@ -44,21 +77,32 @@ class Range:
             raise ConfigurationError(f"range of {self.path}: found {self.low!r} to {self.high!r}, must be ascending")
 
     @property
+    def is_linear(self) -> bool:
+        """True for a coordinate, whose ratios and percentages have no meaning."""
+        return not math.isnan(self.length)
+
+    @property
     def half_width(self) -> float:
-        """Half the logarithmic distance of the limits [-]."""
+        """Half the distance of the limits in u [-]."""
+        if self.is_linear:
+            return 0.5 * (self.high - self.low) / self.length
         return 0.5 * math.log(self.high / self.low)
 
-    def value(self, logarithm: float) -> float:
-        """Return the value at u = ln(value / start) [-], in the unit of the parameter."""
-        return self.start * math.exp(logarithm)
+    def value(self, u: float) -> float:
+        """Return the value at u [-], in the unit of the parameter."""
+        return self.start + self.length * u if self.is_linear else self.start * math.exp(u)
 
     def coordinate(self, value: float) -> float:
-        """Return u = ln(value / start) of a value [-]."""
-        return math.log(value / self.start)
+        """Return u of a value [-]."""
+        return (value - self.start) / self.length if self.is_linear else math.log(value / self.start)
 
     def slope(self, value: float) -> float:
         """Return d value / d u at a value, in the unit of the parameter."""
-        return value
+        return self.length if self.is_linear else value
+
+    def percent(self, change: float, value: float) -> float:
+        """Return a change over a value [%]; NaN for a coordinate."""
+        return math.nan if self.is_linear else 100.0 * change / value
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

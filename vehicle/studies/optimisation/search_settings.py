@@ -45,7 +45,8 @@ class SearchSettings(PoolSettings):
         flag="--tolerance",
         action="append",
         metavar="PATH=SIZE",
-        help="half of the band of a parameter, varied or not: in its unit, or in percent: 15%%; may be repeated",
+        help="half of the band of a parameter, varied or not: in its unit, or in percent: 15%%; of a "
+        "coordinate in m: 0.002; may be repeated",
     )
     samples: int | None = setting(
         "cars within the tolerances for each car tried; 8 by default, more where the quantile needs them",

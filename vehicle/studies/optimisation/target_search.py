@@ -13,7 +13,7 @@ import numpy as np
 from vehicle.digits import aligned, number
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.paths import value_of as parameter_value
-from vehicle.model.parameters.ranges import Range
+from vehicle.model.parameters.ranges import LENGTH_OF_ONE, Range, is_coordinate
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car import Car
 from vehicle.runs.targets.figure import Figure
@@ -74,9 +74,9 @@ class TargetSearch:
             return f"{self.car.vehicle.name} meets all {len(named)} targets as it is."
         if self.change.feasible:
             changes = [
-                f"{each.path} {100.0 * (value / each.start - 1.0):+.3g} %"
+                f"{each.path} {_change(each, value, '+.3g')}"
                 for each, value in zip(self.ranges, self.values, strict=True)
-                if abs(value / each.start - 1.0) > 5e-4
+                if abs(each.coordinate(value)) > 5e-4
             ]
             decisive = [named[index] for index in self.change.active]
             text = f"The smallest change that meets all {len(named)} targets: {', '.join(changes)}"
@@ -128,7 +128,7 @@ class TargetSearch:
                 each.path,
                 number(each.start, 4),
                 number(value, 4),
-                f"{100.0 * (value / each.start - 1.0):+.2f} %",
+                _change(each, value, "+.2f"),
                 f"{number(each.low, 4)} to {number(each.high, 4)}",
             )
             for each, value in zip(self.ranges, self.values, strict=True)
@@ -170,7 +170,8 @@ def meet_targets(
 ) -> TargetSearch:
     """Search for the smallest change of parameters with which a car meets all targets, with the reduced engine.
 
-    The size of a change is the root of the sum of (c ln(value / present value))^2 over the parameters.
+    The size of a change is the root of the sum of (c ln(value / present value))^2 over the parameters; for a coordinate
+    the logarithm is (value - present value) / `LENGTH_OF_ONE`.
 
     Args:
         car: car loaded by `Car.load`.
@@ -182,8 +183,8 @@ def meet_targets(
         progress: called with the finished fraction.
 
     Raises:
-        ConfigurationError: a figure without an input or with an unknown channel, a parameter that is not positive, or
-            bounds without the present value.
+        ConfigurationError: a figure without an input or with an unknown channel, a parameter that is neither positive
+            nor a coordinate, or bounds without the present value.
         SimulationError: the unchanged car cannot be run.
     """
     started = tuple(_with_start(car.vehicle, each) for each in ranges)
@@ -211,7 +212,7 @@ def meet_targets(
             columns |= {name: table.column(name)[-len(changes) :] for name in measure.units}
         return np.stack([columns[f"{name}{suffix}"] for suffix in ("", ERROR) for name in names], axis=1)
 
-    low, high = (np.log([getattr(each, key) / each.start for each in started]) for key in ("low", "high"))
+    low, high = (np.array([each.coordinate(getattr(each, key)) for each in started]) for key in ("low", "high"))
     # The processes of all batches of cars: each imports the program and builds the reference car once.
     with StandingExecutor(partial(process_pool, jobs) if jobs > 1 else ThisProcess) as executor:
         change = smallest_change(
@@ -223,7 +224,7 @@ def meet_targets(
         )
         ends = values(np.stack([np.zeros(len(started)), change.position]), executor).reshape(2, 2, -1).tolist()
     (before, before_error), (after, after_error) = (tuple(map(tuple, end)) for end in ends)
-    changed = {each.path: each.start * math.exp(u) for each, u in zip(started, change.position, strict=True)}
+    changed = {each.path: each.value(float(u)) for each, u in zip(started, change.position, strict=True)}
     return TargetSearch(
         car=car.with_(changed),
         ranges=started,
@@ -256,24 +257,33 @@ def outlook(ranges: int, figures: Mapping[str, Figure], duration: float) -> str:
 
 
 def _texts(ranges: Sequence[Range], position: Vector) -> tuple[str, ...]:
-    return tuple(f"{each.path}={each.start * math.exp(u)!r}" for each, u in zip(ranges, position, strict=True))
+    return tuple(f"{each.path}={each.value(float(u))!r}" for each, u in zip(ranges, position, strict=True))
+
+
+def _change(bounds: Range, value: float, digits: str) -> str:
+    """Return the change of a parameter as text: in percent, of a coordinate in mm."""
+    if bounds.is_linear:
+        return f"{1e3 * (value - bounds.start):{digits}} mm"
+    return f"{bounds.percent(value - bounds.start, bounds.start):{digits}} %"
 
 
 def _with_start(vehicle: Vehicle, bounds: Range) -> Range:
     """Return bounds with the present value as their start.
 
     Raises:
-        ConfigurationError: the value is not positive, or outside the bounds.
+        ConfigurationError: the value is neither positive nor a coordinate, or outside the bounds.
     """
     start = float(parameter_value(vehicle, bounds.path))
-    if not 0.0 < bounds.low <= start <= bounds.high:
+    linear = is_coordinate(vehicle, bounds.path)
+    if not (bounds.low <= start <= bounds.high and (linear or bounds.low > 0.0)):
         raise ConfigurationError(
-            f"--vary {bounds.path}={bounds.low:g}:{bounds.high:g}: the car has {start:g}; the bounds must be above 0 "
-            "and contain it, as the change is counted from it"
+            f"--vary {bounds.path}={bounds.low:g}:{bounds.high:g}: the car has {start:g}; the bounds must "
+            f"{'' if linear else 'be above 0 and '}contain it, as the change is counted from it"
         )
     # A present value at a bound is allowed: the search then goes one way. A range needs a start strictly inside.
-    low, high = min(bounds.low, start * (1.0 - 1e-12)), max(bounds.high, start * (1.0 + 1e-12))
-    return replace(bounds, low=low, high=high, start=start)
+    slack = 1e-12 * (LENGTH_OF_ONE if linear else start)
+    low, high = min(bounds.low, start - slack), max(bounds.high, start + slack)
+    return replace(bounds, low=low, high=high, start=start, length=LENGTH_OF_ONE if linear else math.nan)
 
 
 def _finite(value: float) -> float | None:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.paths import meant, value_of
-from vehicle.model.parameters.ranges import Range
+from vehicle.model.parameters.ranges import Range, is_coordinate
 from vehicle.model.parameters.toml_file import as_table
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car import Car
@@ -64,9 +64,16 @@ def toleranced(vehicle: Vehicle, tolerances: Sequence[Tolerance]) -> tuple[tuple
     """Return tolerances, each with full path to value of the vehicle.
 
     Raises:
-        ConfigurationError: a path is not a number of the vehicle, or two tolerances refer to the same value.
+        ConfigurationError: a path is not a number of the vehicle, two tolerances refer to the same value, or one is a
+            percentage of a coordinate.
     """
     each = [values_at(vehicle, "--tolerance", tolerance.path) for tolerance in tolerances]
+    for tolerance, values in zip(tolerances, each, strict=True):
+        if tolerance.relative and any(is_coordinate(vehicle, path) for path in values):
+            raise ConfigurationError(
+                f"--tolerance {tolerance.path}={100.0 * tolerance.width:g}%: a percentage of a coordinate depends on "
+                f"the origin; set a length in m, as {tolerance.path}=0.002"
+            )
     _require_unique("--tolerance", each)
     return tuple(zip(tolerances, each, strict=True))
 

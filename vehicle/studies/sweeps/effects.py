@@ -31,6 +31,7 @@ class Effect:
         unit: its unit.
         value: value of the car.
         low, high: changed values.
+        step: size of the change as text, "20 %", or "10 mm" for a coordinate.
         change_low, change_high: change of the weighted comfort value at them [%]; NaN for a failed run.
         half_width: half width of the 95 % interval of a change on roads of the class [%], the larger of both; NaN
             without one.
@@ -41,9 +42,15 @@ class Effect:
     value: float
     low: float
     high: float
+    step: str
     change_low: float
     change_high: float
     half_width: float
+
+    @property
+    def ends(self) -> tuple[str, str]:
+        """Names of the low and of the high value, as "-20 %" and "+20 %"."""
+        return f"-{self.step}", f"+{self.step}"
 
     @property
     def mark(self) -> str:
@@ -76,14 +83,12 @@ class Effects:
         effects: effects, sorted.
         name: comfort value, as "weighted".
         base: comfort value of the unchanged car, mean over the inputs [m/s2].
-        share: relative change of each parameter [-].
         without: parameters without effect.
     """
 
     effects: tuple[Effect, ...]
     name: str
     base: float
-    share: float
     without: tuple[str, ...]
 
     def __str__(self) -> str:
@@ -128,24 +133,26 @@ class Effects:
         return self.effects[:MOST_SHOWN]
 
     @property
-    def bars(self) -> tuple[list[str], npt.NDArray[np.float64], npt.NDArray[np.float64], tuple[str, str]]:
-        """Labels, changes at low and high value [%], (bars, 2), half widths [%], (bars,), and names of both ends."""
+    def bars(self) -> tuple[list[str], npt.NDArray[np.float64], npt.NDArray[np.float64], list[tuple[str, str]]]:
+        """Labels, changes at low and high value [%], (bars, 2), half widths [%], (bars,), and names of their ends."""
         labels = [f"{each.path}  {number(each.value)} {each.unit}" for each in self.shown]
         changes = np.array([(each.change_low, each.change_high) for each in self.shown])
-        percent = number(100.0 * self.share)
-        ends = f"-{percent} %", f"+{percent} %"
-        return labels, changes, np.array([each.half_width for each in self.shown]), ends
+        widths = np.array([each.half_width for each in self.shown])
+        return labels, changes, widths, [each.ends for each in self.shown]
 
 
 def effect_lines(effects: Effects) -> list[str]:
     """Return the lines of the table of the largest effects, and the result in words."""
-    percent = number(100.0 * effects.share)
     marked = any(each.mark for each in effects.shown)
-    heads = ["parameter", "value", f"-{percent} %", f"+{percent} %", "+-", *([""] if marked else [])]
+    steps = {each.step for each in effects.shown}
+    # Where coordinates are among the parameters, each row has its own step.
+    ends = effects.shown[0].ends if len(steps) == 1 else ("step", "down", "up")
+    heads = ["parameter", "value", *ends, "+-", *([""] if marked else [])]
     rows = [
         [
             each.path,
             f"{number(each.value, 4)} {each.unit}",
+            *([each.step] if len(steps) > 1 else []),
             *(
                 f"{change:+.2f} %" if math.isfinite(change) else "failed"
                 for change in (each.change_low, each.change_high)
@@ -170,12 +177,11 @@ def effect_sentence(effects: Effects) -> str:
     if not effects.effects:
         return "No varied parameter changes the comfort here."
     first, *others = effects.effects
-    percent = number(100.0 * effects.share)
     if math.isfinite(first.half_width) and first.largest <= first.half_width:
         return "No effect is larger than its error: take a longer road, or a larger change."
     turns = [
-        f"{sign}{percent} % makes the ride {number(abs(change), 2)} % {'rougher' if change > 0.0 else 'smoother'}"
-        for sign, change in (("-", first.change_low), ("+", first.change_high))
+        f"{end} makes the ride {number(abs(change), 2)} % {'rougher' if change > 0.0 else 'smoother'}"
+        for end, change in zip(first.ends, (first.change_low, first.change_high), strict=True)
         if math.isfinite(change)
     ]
     following = [each for each in others[:2] if not each.largest <= each.half_width]

@@ -11,11 +11,13 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.digits import number
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.idle import idle_parameters
 from vehicle.model.parameters.parameter_list import parameter_list
 from vehicle.model.parameters.paths import value_at
-from vehicle.model.parameters.vehicle import Vehicle
+from vehicle.model.parameters.ranges import is_coordinate
+from vehicle.model.parameters.vehicle import Vehicle, load_vehicle
 from vehicle.names import AXES
 from vehicle.runs.car import Car
 from vehicle.settings import with_settings
@@ -29,6 +31,10 @@ from vehicle.studies.sweeps.sweep_table import SweepTable
 
 UNITS = ("N/m", "N s/m", "N", "N m/rad", "N/rad", "kg")
 """Units of the parameters that are varied by default: stiffness, damping, friction and mass of a law or a part."""
+
+SHIFT = 0.01
+"""Default change of a coordinate [m], by which it is varied in place of a share: a share of it would depend on the
+origin. Assumed: a usual step of a study of hardpoints; the sliders of the bench reach five of them."""
 
 LEFT_OUT = ("gravity", "smoothing")
 """Last keys of parameters that are never varied by default: they belong to the computation."""
@@ -45,7 +51,7 @@ def varied_parameters(vehicle: Vehicle, groups: Sequence[str] = ()) -> dict[str,
         Path to value and unit; the forces of a curve are one parameter, whose value is the largest of them.
 
     Raises:
-        ConfigurationError: a group has no parameter that is a number other than 0.
+        ConfigurationError: a group has no parameter that is a number other than 0, or a coordinate.
     """
     numbers: dict[str, tuple[float, str]] = {}
     for each in parameter_list(vehicle, None):
@@ -58,7 +64,8 @@ def varied_parameters(vehicle: Vehicle, groups: Sequence[str] = ()) -> dict[str,
             numbers |= {
                 path: (float(part), each.unit) for path, part in components.items() if isinstance(part, int | float)
             }
-    nonzero = {path: pair for path, pair in numbers.items() if pair[0] != 0.0}
+    # Of a zero there is no share; a coordinate is moved.
+    nonzero = {path: pair for path, pair in numbers.items() if pair[0] != 0.0 or is_coordinate(vehicle, path)}
     if not groups:
         return {
             path: pair for path, pair in nonzero.items() if pair[1] in UNITS and path.rpartition(".")[2] not in LEFT_OUT
@@ -77,7 +84,7 @@ def varied_parameters(vehicle: Vehicle, groups: Sequence[str] = ()) -> dict[str,
 
 
 def single_changes(
-    vehicle: Vehicle, parameters: dict[str, tuple[float, str]], share: float
+    vehicle: Vehicle, parameters: dict[str, tuple[float, str]], share: float, shift: float = SHIFT
 ) -> tuple[list[tuple[str, ...]], tuple[str, ...]]:
     """Return the unchanged car and two cars for each parameter with effect, and the parameters without effect.
 
@@ -85,16 +92,24 @@ def single_changes(
         vehicle: the car.
         parameters: see `varied_parameters`.
         share: relative change of each parameter [-].
+        shift: change of each coordinate [m].
 
     Raises:
-        ConfigurationError: a share that is not between 0 and 1, or no parameter has an effect.
+        ConfigurationError: a share that is not between 0 and 1, a shift that is not between 0 and 0.1 m, or no
+            parameter has an effect.
     """
     if not 0.0 < share < 1.0:
         raise ConfigurationError(f"--each {100.0 * share:g} %: must be above 0 and below 100 %")
+    if not 0.0 < shift <= 0.1:
+        raise ConfigurationError(f"--each {1e3 * shift:g} mm: must be above 0 and at most 100 mm")
     without = tuple(path for path in parameters if idle_parameters(vehicle, (_scaled(vehicle, path, parameters, 1.0),)))
     changes: list[tuple[str, ...]] = [()]
-    for path in parameters:
-        if path not in without:
+    for path, (value, _) in parameters.items():
+        if path in without:
+            continue
+        if is_coordinate(vehicle, path):
+            changes += [(f"{path}={end!r}",) for end in (value - shift, value + shift)]
+        else:
             changes += [(_scaled(vehicle, path, parameters, factor),) for factor in (1.0 - share, 1.0 + share)]
     if len(changes) == 1:
         raise ConfigurationError(f"--vary: no parameter has an effect on this car: {', '.join(without)}")
@@ -130,13 +145,17 @@ def parameter_effects(car: Car, inputs: Source | Sequence[Source], settings: Eff
         ConfigurationError: a group without parameters, a share out of range, and as in `sweep`.
     """
     parameters = varied_parameters(car.vehicle, settings.groups)
-    changes, without = single_changes(car.vehicle, parameters, settings.share)
+    changes, without = single_changes(car.vehicle, parameters, settings.share, settings.shift)
     table = plan_sweep(car, changes, inputs, settings).run()
-    return effects_of(table, parameters, settings.share, without)
+    return effects_of(table, parameters, settings.share, without, settings.shift)
 
 
 def effects_of(
-    table: SweepTable, parameters: dict[str, tuple[float, str]], share: float, without: Sequence[str] = ()
+    table: SweepTable,
+    parameters: dict[str, tuple[float, str]],
+    share: float,
+    without: Sequence[str] = (),
+    shift: float = SHIFT,
 ) -> Effects:
     """Return the effects of the parameters of a sweep over `single_changes`, the mean over all inputs.
 
@@ -145,11 +164,14 @@ def effects_of(
         parameters: see `varied_parameters`.
         share: relative change of each parameter [-].
         without: parameters without effect, which have no run.
+        shift: change of each coordinate [m].
     """
     inputs = len({id(case.source) for case in table.cases})
     name = next(each for each in RANKED_BY if each in table.units)
     # The inputs vary slowest.
     rows = np.arange(len(table.cases)).reshape(inputs, -1)
+    base = table.cases[0]
+    vehicle = load_vehicle(base.vehicle, base.overrides[: base.shared])
     means = table.column(name)[rows].mean(axis=0)
     changes = 100.0 * (means / means[0] - 1.0)
     widths = 100.0 * half_width(change_errors(table.rows(), rows.T.tolist(), name)[0]) / means[0]
@@ -158,13 +180,16 @@ def effects_of(
     for index, path in enumerate(varied):
         value, unit = parameters[path]
         low, high = 1 + 2 * index, 2 + 2 * index
+        change, step = value * share, f"{number(100.0 * share)} %"
+        if is_coordinate(vehicle, path):
+            change, step = shift, f"{number(1e3 * shift)} mm"
         effects.append(
             Effect(
-                path=path, unit=unit, value=value, low=value * (1.0 - share), high=value * (1.0 + share),
+                path=path, unit=unit, value=value, low=value - change, high=value + change, step=step,
                 change_low=float(changes[low]), change_high=float(changes[high]),
                 half_width=float(max(widths[low], widths[high])),
             )
         )  # fmt: skip
     idle = [each.path for each in effects if each.largest <= 100.0 * ROUNDING]
     ranked = sorted((each for each in effects if each.path not in idle), key=lambda each: -each.largest)
-    return Effects(effects=tuple(ranked), name=name, base=float(means[0]), share=share, without=(*without, *idle))
+    return Effects(effects=tuple(ranked), name=name, base=float(means[0]), without=(*without, *idle))

@@ -97,6 +97,7 @@ class EffectSettings(SweepSettings):
     """Settings of the effects of single parameters."""
 
     share: float = setting("relative change of each parameter [-]; %(default)s by default", 0.2)
+    shift: float = setting("change of each coordinate [m], in place of a share; %(default)s by default", 0.01)
     groups: tuple[str, ...] | list[str] = setting(
         "parameters, as front.damper or viscous; by default all stiffnesses, dampings, friction forces and masses", ()
     )

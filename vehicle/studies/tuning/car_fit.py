@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.idle import idle_parameters
 from vehicle.model.parameters.paths import full_path, overrides_of, value_of
-from vehicle.model.parameters.ranges import Range
+from vehicle.model.parameters.ranges import LENGTH_OF_ONE, Range, is_coordinate
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car import Car
 from vehicle.studies.tuning.fit_result import TuningResult
@@ -87,7 +88,8 @@ def ranges_of(vehicle: Vehicle, parameters: Mapping[str, Bounds] | Sequence[Rang
             )
         overrides_of(vehicle, {path: bounds[0]})  # raises if the path is not a numeric parameter of the car
         start = bounds[2] if len(bounds) == 3 else value_of(vehicle, path)
-        ranges.append(Range(path=path, low=bounds[0], high=bounds[1], start=start))
+        length = LENGTH_OF_ONE if is_coordinate(vehicle, path) else math.nan
+        ranges.append(Range(path=path, low=bounds[0], high=bounds[1], start=start, length=length))
     return tuple(ranges)
 
 

@@ -53,12 +53,13 @@ def what_data_leave_open(result: TuningResult) -> tuple[str, ...]:
             "tight, or the data do not fit this model"
         )
     relative = {path: result.deviation_of_u(path) for path in result.free}
-    delays = {delay.path for delay in result.delays}
+    # A product, a ratio or a percentage of a delay or of a coordinate has no meaning.
+    linear = {each.path for each in (*result.delays, *(one for one in result.parameters if one.is_linear))}
     for (i, first), (j, second) in combinations(enumerate(result.free), 2):
         rho = float(result.correlation[i, j])
         if abs(rho) < CORRELATED:
             continue
-        if {first, second} & delays:
+        if {first, second} & linear:
             sentences.append(
                 f"{first} and {second}: correlation {rho:+.2f}: an error in the first value shifts the second"
             )
@@ -73,7 +74,13 @@ def what_data_leave_open(result: TuningResult) -> tuple[str, ...]:
     sentences += [
         f"{path}: standard error {number(100 * error, 2)} % of the value, above {100 * UNSURE:g} %"
         for path, error in relative.items()
-        if error > UNSURE and path not in delays
+        if error > UNSURE and path not in linear
+    ]
+    sentences += [
+        f"{each.path}: standard error {number(1e3 * relative[each.path] * each.length, 2)} mm, above "
+        f"{1e3 * UNSURE * each.length:g} mm"
+        for each in result.parameters
+        if each.is_linear and relative.get(each.path, 0.0) > UNSURE
     ]
     return tuple(sentences)
 

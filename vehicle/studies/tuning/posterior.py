@@ -131,9 +131,15 @@ def require_posterior(targets: Sequence[FrfTarget]) -> None:
 
 
 def values_at(parameters: Sequence[Range], points: Vector) -> Vector:
-    """Return values at points u in [-1, 1], (points, parameters): ln(value) = (ln(low high) + u ln(high / low)) / 2."""
-    low, high = (np.log([getattr(parameter, end) for parameter in parameters]) for end in ("low", "high"))
-    return np.asarray(np.exp(0.5 * (low + high + points * (high - low))))
+    """Return values at points v in [-1, 1], (points, parameters): ln(value) = (ln(low high) + v ln(high / low)) / 2.
+
+    A coordinate is (low + high + v (high - low)) / 2.
+    """
+    linear = np.array([parameter.is_linear for parameter in parameters])
+    ends = np.array([(parameter.low, parameter.high) for parameter in parameters]).T
+    low, high = np.where(linear, ends, np.log(np.where(linear, 1.0, ends)))
+    inside = 0.5 * (low + high + points * (high - low))
+    return np.where(linear, inside, np.exp(np.where(linear, 0.0, inside)))
 
 
 @one_blas_thread()

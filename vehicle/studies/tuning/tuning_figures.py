@@ -144,7 +144,11 @@ def plot_corner(path: Path, posterior: Posterior) -> None:
     width = max(1.75 * size, 5.0)
     with saved_figure(path, (width, width + 0.8), "Posterior", textwrap.fill(caption, int(13.0 * width))) as figure:
         axes: Any = figure.subplots(size, size, squeeze=False)
-        edges = [np.geomspace(parameter.low, parameter.high, 41) for parameter in parameters]
+        scales = ["linear" if parameter.is_linear else "log" for parameter in parameters]
+        edges = [
+            (np.linspace if parameter.is_linear else np.geomspace)(parameter.low, parameter.high, 41)
+            for parameter in parameters
+        ]
         for row, column in np.ndindex(size, size):
             axis = axes[row, column]
             if column > row:
@@ -162,11 +166,11 @@ def plot_corner(path: Path, posterior: Posterior) -> None:
                 ordered = np.sort(density.ravel())[::-1]
                 total = np.cumsum(ordered) / ordered.sum()
                 levels = sorted({float(ordered[int(np.searchsorted(total, share))]) for share in (0.9, 0.5)})
-                centres = [np.sqrt(each[1:] * each[:-1]) for each in (edges[column], edges[row])]
+                centres = [0.5 * (each[1:] + each[:-1]) for each in (edges[column], edges[row])]
                 axis.contourf(*centres, density.T, levels=[*levels, float(ordered[0]) + 1.0],
                               colors=["#c9d8ea", COLOURS[0]][-len(levels):])  # fmt: skip
-                axis.set(yscale="log", ylim=(parameters[row].low, parameters[row].high))
-            axis.set(xscale="log", xlim=(bounds.low, bounds.high))
+                axis.set(yscale=scales[row], ylim=(parameters[row].low, parameters[row].high))
+            axis.set(xscale=scales[column], xlim=(bounds.low, bounds.high))
             _few_ticks(axis.xaxis, bounds if row == size - 1 else None)
             if column != row:
                 _few_ticks(axis.yaxis, parameters[row] if column == 0 else None)
@@ -177,10 +181,12 @@ def plot_corner(path: Path, posterior: Posterior) -> None:
 
 
 def _few_ticks(axis: Any, bounds: Range | None) -> None:
-    """Set ticks at a third and two thirds of a logarithmic axis, without labels for None."""
+    """Set ticks at a fifth and four fifths of an axis, without labels for None."""
     axis.set_ticks([], minor=True)
     if bounds is None:
         axis.set_ticks([])
         return
-    ticks = [float(f"{bounds.low * (bounds.high / bounds.low) ** share:.2g}") for share in (0.2, 0.8)]
+    ticks = [bounds.low + (bounds.high - bounds.low) * share for share in (0.2, 0.8)]
+    if not bounds.is_linear:
+        ticks = [float(f"{bounds.low * (bounds.high / bounds.low) ** share:.2g}") for share in (0.2, 0.8)]
     axis.set_ticks(ticks, [f"{tick:.5g}" for tick in ticks], fontsize=7)

@@ -122,10 +122,10 @@ def _values(tuned: TunedCar) -> Markup:
                 parameter.path,
                 unit_of(vehicle, parameter.path),
                 number(value, 5),
-                *(number(known(each), 2) for each in (error, 100.0 * error / value)),
+                *(number(known(each), 2) for each in (error, parameter.percent(error, value))),
                 *(number(known(each.get(parameter.path)), 2) for each in (result.misfit_errors, result.lag_shifts)),
                 number(parameter.start, 5),
-                number(100.0 * (value / parameter.start - 1.0), 3),
+                number(known(parameter.percent(value - parameter.start, parameter.start)), 3),
                 f"{number(parameter.low, 5)} to {number(parameter.high, 5)}",
             )
         )

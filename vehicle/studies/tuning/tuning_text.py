@@ -22,7 +22,8 @@ def value_lines(result: TuningResult, vehicle: Vehicle) -> list[str]:
     for parameter in result.parameters:
         value, error = result.values[parameter.path], result.standard_errors[parameter.path]
         spread = f"+- {number(error, 2)}" if math.isfinite(error) else "without a standard error"
-        share = f" ({number(100 * error / value, 2)} %)" if math.isfinite(error) else ""
+        percent = parameter.percent(error, value)
+        share = f" ({number(percent, 2)} %)" if math.isfinite(percent) else ""
         shown = number(value, known_digits(value, error))
         lines.append(
             f"{parameter.path:<{width}}  {shown} {spread} {unit_of(vehicle, parameter.path)}{share}, start "
