@@ -124,7 +124,7 @@ def study(runs: CarRuns, folder: Path, *, quick: bool) -> Findings:
     results, from_records = {"all levels in one fit": final.result}, None
     notes = [
         data_note(measurements, engine or runs.engine, quick),
-        *fit_notes("All levels and bumps in one fit", final.result, final),
+        *fit_notes("All levels and bumps in one fit", final.result, final, tuning.vehicle),
     ]
     data: dict[str, Any] = {"true": true, "all": fit_numbers(final.result), "all_fast": fit_numbers(result)}
     if not quick:
@@ -139,9 +139,9 @@ def study(runs: CarRuns, folder: Path, *, quick: bool) -> Findings:
         from_records = tuning.finish(tuning.fit("bump records", parameters, records), bumps, None)
         results["bump records alone"] = from_records.result
         notes += [
-            *fit_notes("Bump records alone (time-domain step)", from_records.result, from_records),
-            *fit_notes("As the authors: low level alone, dampers stuck", stuck, None),
-            *fit_notes("Then the damper alone from the bump records, the rest frozen", damper, None),
+            *fit_notes("Bump records alone (time-domain step)", from_records.result, from_records, tuning.vehicle),
+            *fit_notes("As the authors: low level alone, dampers stuck", stuck, None, tuning.vehicle),
+            *fit_notes("Then the damper alone from the bump records, the rest frozen", damper, None, tuning.vehicle),
             frozen_note(damper, true),
         ]
         data |= {
