@@ -228,9 +228,9 @@ class ComfortRuns:
         cars = dict.fromkeys([base, *self.cars(variation, base).values()])
         return [case for car in cars for road in ROAD_RMS for case in self.cases(car, road)]
 
-    def point(self, value: float, car: Changes, road: str, reference: Changes, edge: float = ROAD_EDGE_HZ) -> Point:
+    def point(self, value: float, car: Changes, road: str, reference: Changes) -> Point:
         """Return the point of a car on a road, relative to a reference car."""
-        numbers, base = (self(self.cases(record, road, edge=edge)) for record in (car, reference))
+        numbers, base = (self(self.cases(record, road)) for record in (car, reference))
         return point(value, numbers, base)
 
     def nominal(self) -> dict[str, Point]:
