@@ -94,9 +94,8 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
         wheel=runs.wheel,
     )
     engine, paths = chosen_engine(options.engine), [parameter.path for parameter in RANGES]
-    where = {"engine": engine, "vehicle": runs.vehicle, "fixed": runs.overrides}
-    cases = table_cases(paths, points.tolist(), [road], **where)
-    (folder / "sweep").mkdir()
+    cases = table_cases(paths, points.tolist(), [road], engine=engine, vehicle=runs.vehicle, fixed=runs.overrides)
+    (folder / "sweep").mkdir(exist_ok=True)
     table = sweep(cases, RoadMeasure(lead=lead, wheel=runs.wheel), jobs=runs.jobs, folder=folder / "sweep")
     caption = (
         f"comfort of the seat rail on the {options.road} road, RMS {1e3 * road.rms:g} mm, {duration:g} s after "

@@ -153,7 +153,8 @@ def computed(runs: CarRuns, chosen: Iterable[Setting], duration: float, engine: 
 
 def cases_of(runs: CarRuns, chosen: Iterable[Setting], duration: float, engine: str) -> list[Case]:
     """Return the case of each setting."""
-    car, cases = runs.car(), []
+    car = runs.car()
+    cases: list[Case] = []
     for setting in chosen:
         inputs = inputs_of(car, Road(setting.road, setting.speed, duration=duration))
         changes = tuple(setting.changes(car.vehicle))

@@ -60,10 +60,11 @@ def finished(
     runs: CarRuns, result: TuningResult, measurements: Sequence[MeasuredTarget], engine: str | None
 ) -> FullSteps:
     """Continue a fit with full simulations, also of the low level, whose fast model is that of stuck dampers."""
-    where = {"vehicle": runs.vehicle, "overrides": runs.overrides, "engine": engine or runs.engine, "jobs": runs.jobs}
 
     def simulate(values: Mapping[str, float]) -> list[Run]:
-        changes, again = overrides_of(runs.car().vehicle, values), CarRuns(**where)
+        changes = overrides_of(runs.car().vehicle, values)
+        # Runs of its own: the cache of `runs` would keep the records of every step.
+        again = CarRuns(vehicle=runs.vehicle, overrides=runs.overrides, engine=engine or runs.engine, jobs=runs.jobs)
         signals = [measurement.signal for measurement in measurements if measurement.signal is not None]
         return again([again.case(signal, changes) for signal in signals])
 
@@ -89,9 +90,14 @@ def study(runs: CarRuns, folder: Path, *, quick: bool) -> Findings:
     result = fitted("all in one", car, parameters, measurements)
     final = finished(runs, result, measurements, engine)
     begin = car.with_(overrides_of(car.vehicle, {entry.path: entry.start for entry in parameters}))
-    used = {"measurements": tuple(measurements), "engine": engine or runs.engine}
-    figures = figures_of(TunedCar(start=begin, result=final.result, final=final, **used))
-    write_files(folder, {f"{name}.png": draw for name, draw in figures.items()})
+    tuned = TunedCar(
+        start=begin,
+        result=final.result,
+        measurements=tuple(measurements),
+        engine=engine or runs.engine,
+        final=final,
+    )
+    write_files(folder, {f"{name}.png": draw for name, draw in figures_of(tuned).items()})
     results, from_records = {"all levels in one fit": final.result}, None
     notes = [
         data_note(measurements, engine or runs.engine, quick),
