@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import TypeVar
 
 from vehicle.engines.simulation.recording import Recording
+from vehicle.errors import SimulationError
 from vehicle.runs.car import Car, Run
 from vehicle.studies.sweeps.case import Case, Input, digest, signal_of
 from vehicle.studies.sweeps.case_evaluation import run_of
 from vehicle.studies.sweeps.executors import process_pool
+from vehicle.studies.sweeps.measure import Measure
+from vehicle.studies.sweeps.store import ROWS
+from vehicle.studies.sweeps.sweep import sweep
+
+Item = TypeVar("Item")
+Found = TypeVar("Found")
 
 
 class CarRuns:
@@ -84,3 +92,39 @@ class CarRuns:
 def recording_of(case: Case) -> Recording:
     """Run a case in a worker process and return its recording."""
     return run_of(case).recording
+
+
+def in_processes(function: Callable[[Item], Found], items: Sequence[Item], jobs: int) -> list[Found]:
+    """Return the values of a function of independent items in their order; in this process with one job."""
+    if jobs > 1 and len(items) > 1:
+        with process_pool(min(jobs, len(items))) as pool:
+            return list(pool.map(function, items))
+    return [function(item) for item in items]
+
+
+def swept(
+    cases: Sequence[Case], measure: Measure, *, jobs: int = 1, folder: Path | None = None
+) -> list[Mapping[str, float]]:
+    """Return the values of cases in their order, run as a batch.
+
+    Args:
+        cases: the cases, sorted by car: building one costs more than most runs.
+        measure: the values of a run.
+        jobs: worker processes.
+        folder: for the rows of an unfinished study and the table of a finished one; made if missing.
+
+    Raises:
+        SimulationError: a run failed.
+    """
+    if not cases:
+        return []
+    if folder is not None:
+        folder.mkdir(exist_ok=True)
+    table = sweep(cases, measure, jobs=jobs, folder=folder)
+    for case, reason in table.failed[:1]:
+        raise SimulationError(f"{case.label}: {reason}; {len(table.failed)} of {len(cases)} runs failed")
+    values = [result.values for result in table.results]
+    if folder is not None:
+        # They served an interrupted study; a finished one must not read them when the program has changed.
+        (folder / ROWS).unlink()
+    return values

@@ -240,12 +240,13 @@ class Findings:
         """Write `results.md` and `results.json` without the unjudged rows; return the line to print."""
         left = self.unjudged or {}
         rows = [asdict(claim) for claim in self.claims if claim.name not in left]
-        counts, legend, table = headline(rows), [LEGEND], claim_table(rows)
+        counts = headline(rows)
+        table = [f"{counts}.", LEGEND, claim_table(rows)] if self.claims else []
         notes = [f"Tyres: {self.tyres}."] if self.tyres else []
         notes += [*(f"Not judged here: {name}: {why}." for name, why in left.items()), *self.notes]
         write_text(
             folder / "results.md",
-            "\n\n".join([f"# {self.title}", f"{counts}.", *legend, table, *notes]) + "\n",
+            "\n\n".join([f"# {self.title}", *table, *notes]) + "\n",
         )
         open_rows = {} if self.unjudged is None else {"not_judged": dict(left)}
         content = {"title": self.title, "rows": rows, "notes": notes, "tyre": self.tyres, **open_rows, **self.data}

@@ -4,24 +4,21 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
-from scenarios.car_runs import CarRuns
+from scenarios.car_runs import CarRuns, swept
 from scenarios.road_measure import RoadInput, RoadMeasure
 from scenarios.signals.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
-from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.paths import value_of
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.signals.analysis.ride_comfort import UNWEIGHTED, WEIGHTED
 from vehicle.studies.sweeps.case import Case
 from vehicle.studies.sweeps.case_evaluation import recordings_of, run_of
-from vehicle.studies.sweeps.sweep import sweep
 
 Vector = npt.NDArray[np.float64]
 
@@ -203,16 +200,9 @@ class ComfortRuns:
         """
         missing = [case for case in dict.fromkeys(cases) if case not in self._done]
         if missing:
-            self.folder.mkdir(exist_ok=True)
-            # A single job runs in this process: a worker process takes seconds to start.
-            inside = partial(ThreadPoolExecutor, 1) if self.runs.jobs == 1 else None
             measure = RoadMeasure(lead=self.records.lead, wheel=self.runs.wheel)
-            table = sweep(missing, measure, executor=inside, jobs=self.runs.jobs, folder=self.folder)
-            for case, reason in table.failed[:1]:
-                raise SimulationError(f"{case.label}: {reason}; {len(table.failed)} of {len(missing)} runs failed")
-            self._done.update(zip(missing, (result.values for result in table.results), strict=True))
-            # They served an interrupted study; a finished one must not read them when the program has changed.
-            (self.folder / "rows.jsonl").unlink()
+            values = swept(missing, measure, jobs=self.runs.jobs, folder=self.folder)
+            self._done.update(zip(missing, values, strict=True))
         return [self._done[case] for case in cases]
 
     def histories(
@@ -238,9 +228,9 @@ class ComfortRuns:
         cars = dict.fromkeys([base, *self.cars(variation, base).values()])
         return [case for car in cars for road in ROAD_RMS for case in self.cases(car, road)]
 
-    def point(self, value: float, car: Changes, road: str, reference: Changes, edge: float = ROAD_EDGE_HZ) -> Point:
+    def point(self, value: float, car: Changes, road: str, reference: Changes) -> Point:
         """Return the point of a car on a road, relative to a reference car."""
-        numbers, base = (self(self.cases(record, road, edge=edge)) for record in (car, reference))
+        numbers, base = (self(self.cases(record, road)) for record in (car, reference))
         return point(value, numbers, base)
 
     def nominal(self) -> dict[str, Point]:

@@ -1,9 +1,10 @@
 """A car over single obstacles at a row of speeds: peaks and doses at seat and rail, knuckle peaks, settling, lift-off.
 
 python -m scenarios.obstacles [--output DIR] [--quick] [--jobs N] [--obstacle TEXT ...] [--speeds KM/H,...]
-    [--video [FILE.mp4]] [--pavement [FILE.mp4]] [--engine auto|reduced|mujoco] [--vehicle FILE.toml] [--set PATH=VALUE]
+    [--engine auto|reduced|mujoco] [--vehicle FILE.toml] [--set PATH=VALUE]
 
-Rolling tyres that envelop the obstacle by two elliptical cams, and lift off.
+Rolling tyres that envelop the obstacle by two elliptical cams, and lift off. `python -m vehicle shaker` with
+`--road cleat:20x50 --speed 30 --video` films one passage.
 """
 
 from __future__ import annotations
@@ -11,19 +12,15 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import Any
 
 import numpy as np
 
-from scenarios.car_runs import CarRuns
+from scenarios.car_runs import CarRuns, in_processes
 from scenarios.charts import figure_file
 from scenarios.claims import OWN_CHECK, Claim, Findings, markdown
-from scenarios.inputs.make_block import write_block
-from scenarios.road.runs import one_sided_tyres
 from scenarios.study import QUICK_NOTE, car_study
 from vehicle.commands.parser import Parser
 from vehicle.drawing.rendering.figure import COLOURS, INK
@@ -31,10 +28,8 @@ from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.runs.car import Car, Run
 from vehicle.runs.car.road import Road
-from vehicle.runs.output.folder import write_whole
 from vehicle.runs.output.run_obstacle import obstacle_values
 from vehicle.signals.excitation.obstacle import Obstacle
-from vehicle.studies.sweeps.executors import process_pool
 
 CAR = "focus_road"
 
@@ -45,15 +40,6 @@ OBSTACLES = (*SHORT, "cobbles:10x120x100", *LONG)
 
 SPEEDS = (10.0, 20.0, 30.0, 40.0, 50.0, 60.0)
 """Speeds [km/h]."""
-
-FILM_SPEED, SLOW, EXAGGERATION = 30.0, 10.0, 2.0
-"""Speed of the film [km/h], the nearest one of the study; its slow motion, and the exaggeration of motion and road."""
-
-FILM_MARGINS_S = 0.12, 0.35
-"""Times before the first wheel reaches the obstacle and after the last one leaves it, in the film [s]."""
-
-PAVEMENT_M, PAVEMENT_START_S, PAVEMENT_FILM_S, PAVEMENT_SLOW = 30.0, 1.0, 4.0, 4.0
-"""Length of the stone pavement [m], the start of its film [s], length of the film [s] and its slow motion."""
 
 Values = Mapping[str, float]
 
@@ -83,13 +69,13 @@ class Passage:
 
     def run(self) -> Run:
         """Run the car, whose tyres lift off."""
-        return _car(self.vehicle, self.overrides).run(Road(self.obstacle, speed=self.speed), engine=self.engine)
+        return car_of(self.vehicle, self.overrides).run(Road(self.obstacle, speed=self.speed), engine=self.engine)
 
 
 @lru_cache(maxsize=2)
-def _car(vehicle: Path, overrides: tuple[str, ...]) -> Car:
-    lifting = one_sided_tyres(Car.load(vehicle, overrides).vehicle)
-    return Car.load(vehicle, (*lifting, *overrides))
+def car_of(vehicle: Path, overrides: tuple[str, ...]) -> Car:
+    """Return a car, cached in the process."""
+    return Car.load(vehicle, overrides)
 
 
 def passage_values(passage: Passage) -> dict[str, float]:
@@ -120,33 +106,19 @@ def passage_values(passage: Passage) -> dict[str, float]:
 
 
 def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
-    """Run all passages, write the picture and the film into the folder, and return the findings."""
+    """Run all passages, write the picture into the folder, and return the findings."""
     speeds = _speeds(options.speeds) if options.speeds else (SPEEDS[1::2] if options.quick else SPEEDS)
     obstacles = tuple(options.obstacle or (SHORT[:1] + LONG[1:] if options.quick else OBSTACLES))
     for text in obstacles:
         Obstacle.parse(text)
-    films = [name for name in (options.video, options.pavement) if name is not None]
-    if films:
-        from vehicle.commands.options import film_name
-        from vehicle.drawing.rendering.backend import require_film
-
-        for name in films:
-            film_name(name, "")
-        require_film()
-    first = Passage(
-        vehicle=runs.vehicle or vehicle_file(CAR),
-        overrides=runs.overrides,
-        engine=runs.engine,
-        obstacle=obstacles[0],
-        speed=min(speeds, key=lambda speed: abs(speed - FILM_SPEED)),
-    )
-    passages = [replace(first, obstacle=text, speed=speed) for text in obstacles for speed in speeds]
-    if runs.jobs > 1:
-        with process_pool(min(runs.jobs, len(passages))) as pool:
-            values = dict(zip(passages, pool.map(passage_values, passages), strict=True))
-    else:
-        values = {passage: passage_values(passage) for passage in passages}
-    car = _car(first.vehicle, first.overrides)
+    file = runs.vehicle or vehicle_file(CAR)
+    passages = [
+        Passage(vehicle=file, overrides=runs.overrides, engine=runs.engine, obstacle=text, speed=speed)
+        for text in obstacles
+        for speed in speeds
+    ]
+    values = dict(zip(passages, in_processes(passage_values, passages, runs.jobs), strict=True))
+    car = car_of(file, runs.overrides)
     points = tuple(point for point in ("seat_rail", "seat") if any(f"vdv {point}" in row for row in values.values()))
     caption = (
         f"{car.vehicle.name}, rolling tyres that lift off and envelop the obstacle by two elliptical cams; engine "
@@ -154,10 +126,6 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     )
     draw_over_speed(folder / "obstacles.png", values, points, caption)
     failed = [f"{passage.obstacle} at {passage.speed:g} km/h" for passage, row in values.items() if not row]
-    if options.video is not None:
-        film_passage(folder / options.video, replace(first, engine="mujoco").run())
-    if options.pavement is not None:
-        film_pavement(folder / options.pavement, car)
     return Findings(
         title="A car over obstacles: speed, peaks, doses, settling",
         claims=list(dose_claims(values)),
@@ -247,47 +215,6 @@ def draw_over_speed(path: Path, values: Mapping[Passage, Values], points: Sequen
         axes[1, 2].legend()
 
 
-def film_passage(path: Path, run: Run) -> None:
-    """Write a film of a passage in slow motion, until the last wheel is behind the obstacle."""
-    from vehicle.drawing.rendering.crew import drawing_jobs
-    from vehicle.drawing.rendering.film import film
-    from vehicle.drawing.rendering.shot import Take
-
-    road: Mapping[str, Any] = run.road or {}
-    (first, last), (before, after) = road["obstacle_s"], FILM_MARGINS_S
-    take = Take(
-        start=first - before,
-        duration=SLOW * (last - first + before + after),
-        slow=SLOW,
-        exaggeration=EXAGGERATION,
-        speed=road["speed_kmh"] / 3.6,
-        profile=(run.signal.time, run.signal.profile),
-    )
-    write_whole(path, lambda file: film(run, file, take, jobs=drawing_jobs()))
-
-
-def film_pavement(path: Path, car: Car) -> None:
-    """Write a film of a car on the stone pavement of `scenarios.inputs.make_block`, at `FILM_SPEED`."""
-    from vehicle.drawing.rendering.crew import drawing_jobs
-    from vehicle.drawing.rendering.film import film
-    from vehicle.drawing.rendering.shot import Take
-
-    with TemporaryDirectory() as folder:
-        surface = Path(folder) / "stone_pavement.crg"
-        write_block(surface, PAVEMENT_M, 1)
-        duration = PAVEMENT_START_S + PAVEMENT_FILM_S / PAVEMENT_SLOW + 0.1
-        run = car.run(Road(surface, speed=FILM_SPEED, duration=duration, contact="cams"), skip=0.0)
-    take = Take(
-        start=PAVEMENT_START_S,
-        duration=PAVEMENT_FILM_S,
-        slow=PAVEMENT_SLOW,
-        exaggeration=1.0,
-        speed=FILM_SPEED / 3.6,
-        profile=(run.signal.time, run.signal.profile),
-    )
-    write_whole(path, lambda file: film(run, file, take, jobs=drawing_jobs()))
-
-
 def _speeds(text: str) -> tuple[float, ...]:
     """Return the speeds of --speeds [km/h]."""
     try:
@@ -304,10 +231,6 @@ def add_options(parser: Parser) -> None:
     help_text = "obstacle in place of those of the study, as cleat:10x30; repeatable"
     parser.add_argument("--obstacle", action="append", metavar="TEXT", help=help_text)
     parser.add_argument("--speeds", metavar="KM/H,...", help="speeds [km/h], as 10,20,30")
-    film = f"film of the first obstacle at the speed next to {FILM_SPEED:g} km/h"
-    parser.add_argument("--video", nargs="?", const="obstacle.mp4", metavar="FILE.mp4", help=film)
-    film = f"film on a stone pavement, {FILM_SPEED:g} km/h, in slow motion"
-    parser.add_argument("--pavement", nargs="?", const="pavement.mp4", metavar="FILE.mp4", help=film)
 
 
 main = car_study("obstacles", study, add_options)

@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from scenarios.car_runs import CarRuns
+from scenarios.car_runs import CarRuns, swept
 from scenarios.charts import chart
 from scenarios.claims import OWN_CHECK, Claim, Findings, markdown
 from scenarios.comfort_runs import chosen_engine
@@ -27,16 +27,15 @@ from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car import Run
 from vehicle.runs.car.road import Road
-from vehicle.signals.analysis.comfort import comfort_values
-from vehicle.signals.analysis.seat_value import weighted_rms_of
 from vehicle.signals.analysis.spectra import band_rms
-from vehicle.studies.sweeps.case import Case, all_tyre_words, overrides_of
+from vehicle.studies.optimisation.ride import RideMeasure, ride_measure
+from vehicle.studies.sweeps.case import Case, all_tyre_words
+from vehicle.studies.sweeps.case_table import Cases
 from vehicle.studies.sweeps.measure import of_one
 from vehicle.studies.sweeps.run_batch import Runs, Vector
-from vehicle.studies.sweeps.sweep import sweep
+from vehicle.studies.sweeps.sweep_inputs import inputs_of
 
 CAR = "focus_road"
-RAIL = tuple(f"seat_rail_acc_{axis}" for axis in "xyz")
 LEAD_S = 3.0
 """Left out at the beginning [s]: the road rises for 1 s, and the body's heave at 1.3 Hz dies out."""
 
@@ -50,6 +49,17 @@ FACTORS = (0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0)
 """Passive settings, as shares of the passive damper: the range of the semi-active one."""
 
 DELAYS_MS = (0.0, 5.0, 10.0, 20.0, 40.0)
+
+COMFORT, TYRE = "weighted_z", "tyre_load"
+HEADS = {
+    COMFORT: "weighted rail z [m/s2]",
+    "unweighted": "unfiltered rail [m/s2]",
+    TYRE: "dynamic / static tyre load [-]",
+    "lowest_load": "lowest tyre load [-]",
+    "hop": "that of the wheel hop [-]",
+}
+"""Values of `HopMeasure` and their heads in the table."""
+
 CONTINUOUS = tuple(law for law in LAWS if not law.endswith("_on_off"))
 MARKS = dict(zip(CONTINUOUS, zip(COLOURS[1:], "os^", strict=False), strict=False))
 
@@ -77,26 +87,29 @@ class Setting:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class RideMeasure:
-    """Comfort at the seat rail and dynamic tyre load of a run.
+class HopMeasure:
+    """Comfort at the seat rail and dynamic tyre load of a run; `hop` is the load within `WHEEL_BAND`, RMS of all tyres.
 
-    `weighted` is the RMS of the rail's z, weighted by Wk; `unfiltered` the comfort value of the rail, 2 to 50 Hz, all
-    axes; `tyre` the RMS of dynamic over static load, of all tyres; `hop` that within `WHEEL_BAND`; `lowest` the lowest
-    load over the static one.
+    Attributes:
+        ride: measure of the other values, see `vehicle.studies.optimisation.ride`.
     """
 
-    wheels: tuple[str, ...]
-    timestep: float = 5e-4  # maximum step of the reduced engine [s]
+    ride: RideMeasure
 
     @property
     def channels(self) -> tuple[str, ...]:
         """Return the required channels."""
-        return (*RAIL, *(f"tyre_{wheel}_force_z" for wheel in self.wheels))
+        return self.ride.channels
+
+    @property
+    def timestep(self) -> float:
+        """Return the maximum step of the reduced engine [s]."""
+        return self.ride.timestep
 
     @property
     def units(self) -> Mapping[str, str]:
         """Return name to unit of each value."""
-        return {"weighted": "m/s2", "unfiltered": "m/s2", "tyre": "-", "hop": "-", "lowest": "-"}
+        return {**self.ride.units, "hop": "-"}
 
     def __call__(self, run: Run) -> dict[str, float]:
         """Return the values of a run."""
@@ -104,17 +117,17 @@ class RideMeasure:
 
     def of(self, runs: Runs) -> dict[str, Vector]:
         """Return the values of r runs; (r,) each."""
-        step = runs.timestep
-        kept = slice(round(LEAD_S / step), None)
-        xyz = runs.stacked(*RAIL)
-        loads = [runs[f"tyre_{wheel}_force_z"][:, kept] / runs.tyre_load[wheel][:, None] for wheel in self.wheels]
-        return {
-            "weighted": np.array([weighted_rms_of(step, histories, skip=LEAD_S)[2] for histories in xyz]),
-            "unfiltered": comfort_values(step, xyz[:, :, kept]).overall,
-            "tyre": np.sqrt(np.mean([np.mean((load - 1.0) ** 2, axis=1) for load in loads], axis=0)),
-            "hop": np.sqrt(np.mean([band_rms(step, load, WHEEL_BAND) ** 2 for load in loads], axis=0)),
-            "lowest": np.min([np.min(load, axis=1) for load in loads], axis=0),
-        }
+        kept = slice(round(LEAD_S / runs.timestep), None)
+        bands = [
+            band_rms(runs.timestep, runs[f"tyre_{wheel}_force_z"][:, kept] / runs.tyre_load[wheel][:, None], WHEEL_BAND)
+            for wheel in self.ride.wheels
+        ]
+        return {**self.ride.of(runs), "hop": np.sqrt(np.mean(np.square(bands), axis=0))}
+
+
+def measure_of(vehicle: Vehicle) -> HopMeasure:
+    """Return the measure of a vehicle."""
+    return HopMeasure(ride=replace(ride_measure(vehicle, tuple(HEADS)[:-1], LEAD_S), timestep=5e-4))
 
 
 Numbers = Mapping[str, float]
@@ -134,23 +147,18 @@ def settings(quick: bool) -> list[Setting]:
 def computed(runs: CarRuns, chosen: Iterable[Setting], duration: float, engine: str) -> dict[Setting, Numbers]:
     """Run all settings and return setting to values."""
     listed = list(chosen)
-    table = sweep(
-        cases_of(runs, listed, duration, engine), RideMeasure(wheels=runs.car().vehicle.wheels), jobs=runs.jobs
-    )
-    if table.failed:
-        raise ConfigurationError(f"{table.failed[0][0].label}: {table.failed[0][1]}")
-    columns = {name: table.column(name) for name in table.units}
-    return {setting: {name: float(columns[name][i]) for name in columns} for i, setting in enumerate(listed)}
+    cases = cases_of(runs, listed, duration, engine)
+    return dict(zip(listed, swept(cases, measure_of(runs.car().vehicle), jobs=runs.jobs), strict=True))
 
 
 def cases_of(runs: CarRuns, chosen: Iterable[Setting], duration: float, engine: str) -> list[Case]:
     """Return the case of each setting."""
-    vehicle, cases = runs.car().vehicle, []
+    car = runs.car()
+    cases: list[Case] = []
     for setting in chosen:
-        source = Road(setting.road, setting.speed, duration=duration).under(vehicle, runs.overrides)
-        shared = (*runs.overrides, *overrides_of(source))
-        changes = (*shared, *setting.changes(vehicle))
-        cases.append(Case(source=source, overrides=changes, engine=engine, vehicle=runs.vehicle, shared=len(shared)))
+        inputs = inputs_of(car, Road(setting.road, setting.speed, duration=duration))
+        changes = tuple(setting.changes(car.vehicle))
+        cases += Cases([changes], inputs, engine=engine, vehicle=runs.vehicle, fixed=runs.overrides)
     return cases
 
 
@@ -159,9 +167,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     engine, duration = chosen_engine(options.engine), 20.0 if options.quick else 60.0
     points = computed(runs, settings(options.quick), duration, engine)
     name, tyres = runs.car().vehicle.name, all_tyre_words(cases_of(runs, points, duration, engine))
-    shown = all_tyre_words(cases_of(runs, [Setting()], duration, engine))
     trade_off(folder / "trade_off.png", points, f"{name}, {duration:g} s of road, tyres {tyres}, engine {engine}")
-    delays(folder / "delay.png", points, f"{name}, {duration:g} s of road, tyres {shown}, engine {engine}")
     checks = [] if options.quick or engine == "mujoco" else [engines(runs, points, duration)]
     changed = f", changed: {', '.join(runs.overrides)}" if runs.overrides else ""
     conditions = f"Made with {name}{changed}; engine {engine}, {duration:g} s of each road, {LEAD_S:g} s left out."
@@ -169,7 +175,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
         title="Semi-active dampers on the complete car: comfort against dynamic tyre load",
         claims=[*claims(points), *checks],
         tyres=tyres,
-        notes=[table_of(points), *words(points), conditions, *([QUICK_NOTE] if options.quick else [])],
+        notes=[table_of(points), words(points), conditions, *([QUICK_NOTE] if options.quick else [])],
         data={"points": [asdict(setting) | dict(numbers) for setting, numbers in points.items()]},
     )
 
@@ -179,7 +185,7 @@ def engines(runs: CarRuns, points: Points, duration: float) -> Claim:
     both = [Setting(), Setting(law="skyhook")]
     stepped = computed(runs, both, duration, "mujoco")
     gaps = {f"{setting.law}, {name}": points[setting][name] / stepped[setting][name] - 1.0 for setting in both
-            for name in ("weighted", "tyre")}  # fmt: skip
+            for name in (COMFORT, TYRE)}  # fmt: skip
     text = ", ".join(f"{name} {100.0 * gap:+.2f} %" for name, gap in gaps.items())
     why = "1.5 %: tyre forces of MuJoCo are 0.8 % off at its step of 1 ms, and vanish with it"
     holds = max(map(abs, gaps.values())) < 0.015
@@ -194,7 +200,7 @@ def claims(points: Points) -> list[Claim]:
     """
     passive, rows = points[Setting()], []
     for law, name, quantity in (
-        ("skyhook", "weighted", "weighted acceleration of the rail"),
+        ("skyhook", COMFORT, "weighted acceleration of the rail"),
         ("groundhook", "hop", f"dynamic tyre load of the wheel hop, {WHEEL_BAND[0]:g} to {WHEEL_BAND[1]:g} Hz"),
     ):
         ratio = points[Setting(law=law)][name] / passive[name]
@@ -213,37 +219,20 @@ def claims(points: Points) -> list[Claim]:
     return rows
 
 
-def words(points: Points) -> list[str]:
-    """Return sentences on the findings."""
-    fixed = [
-        (setting.factor, numbers) for setting, numbers in points.items() if setting == Setting(factor=setting.factor)
-    ]
-    sentences = []
-    for name, quantity in (("weighted", "weighted rail"), ("unfiltered", "unfiltered rail"), ("tyre", "tyre load")):
-        base = points[Setting()][name]
-        best = min(fixed, key=lambda setting: setting[1][name])
-        laws = {law: 100.0 * (points[Setting(law=law)][name] / base - 1.0) for law in LAWS}
-        first = min(laws, key=lambda law: laws[law])
-        sentences.append(
-            f"{quantity.capitalize()}, road B at 80 km/h: lowest with {first} ({laws[first]:+.1f} % against the "
-            f"passive damper); the best passive setting is {best[0]:g} times the damper "
-            f"({100.0 * (best[1][name] / base - 1.0):+.1f} %); "
-            + ", ".join(f"{law} {value:+.1f} %" for law, value in laws.items())
-            + "."
-        )
+def words(points: Points) -> str:
+    """Return a text on the part of the tyre load that groundhook reduces."""
     hooked, passive = (points[Setting(law=law)] for law in ("groundhook", PASSIVE))
     hop = 100.0 * (hooked["hop"] / passive["hop"] - 1.0)
     remainder = 100.0 * (
-        np.sqrt((hooked["tyre"] ** 2 - hooked["hop"] ** 2) / (passive["tyre"] ** 2 - passive["hop"] ** 2)) - 1.0
+        np.sqrt((hooked[TYRE] ** 2 - hooked["hop"] ** 2) / (passive[TYRE] ** 2 - passive["hop"] ** 2)) - 1.0
     )
-    sentences.append(
+    whole = 100.0 * (hooked[TYRE] / passive[TYRE] - 1.0)
+    return (
         f"Groundhook changes the tyre load of the wheel hop ({WHEEL_BAND[0]:g} to {WHEEL_BAND[1]:g} Hz) by {hop:+.1f} "
-        f"%, the rest by {remainder:+.1f} %, the whole by {100.0 * (hooked['tyre'] / passive['tyre'] - 1.0):+.1f} %. "
-        "It damps the wheel against ground at rest and "
-        "leaves the body to swing: a quarter car with an ideal groundhook "
-        "does the same (docs/theory/elements.md, semi-active dampers)."
+        f"%, the rest by {remainder:+.1f} %, the whole by {whole:+.1f} %. It damps the wheel against ground at rest "
+        "and leaves the body to swing: a quarter car with an ideal groundhook does the same (docs/theory/elements.md, "
+        "semi-active dampers)."
     )
-    return sentences
 
 
 def table_of(points: Points) -> str:
@@ -255,18 +244,12 @@ def table_of(points: Points) -> str:
             setting.law,
             f"{setting.factor:g}",
             f"{setting.delay:g}",
-            *(f"{x:.4g}" for x in n.values()),
+            *(f"{n[name]:.4g}" for name in HEADS),
         )
         for setting, n in points.items()
     ]
-    heads = ("road", "speed [km/h]", "law", "passive factor [-]", "delay [ms]", "weighted rail z [m/s2]")
-    more = (
-        "unfiltered rail [m/s2]",
-        "dynamic / static tyre load [-]",
-        "that of the wheel hop [-]",
-        "lowest tyre load [-]",
-    )
-    return markdown((*heads, *more), rows)
+    heads = ("road", "speed [km/h]", "law", "passive factor [-]", "delay [ms]", *HEADS.values())
+    return markdown(heads, rows)
 
 
 def trade_off(path: Path, points: Points, description: str) -> None:
@@ -287,16 +270,14 @@ def trade_off(path: Path, points: Points, description: str) -> None:
                 if (setting.road, setting.speed, setting.delay) == (road, speed, 0.0)
             }
             passive = sorted(
-                (setting.factor, n["weighted"], n["tyre"])
-                for setting, n in road_points.items()
-                if setting.law == PASSIVE
+                (setting.factor, n[COMFORT], n[TYRE]) for setting, n in road_points.items() if setting.law == PASSIVE
             )
             axis.plot([n[1] for n in passive], [n[2] for n in passive], "k.-", linewidth=1.0, label=PASSIVE)
             for factor, x, y in passive:
                 axis.annotate(f"{factor:g}", (x, y), xytext=(3, 3), textcoords="offset points", fontsize=7)
             for setting, n in road_points.items():
                 if setting.law != PASSIVE:
-                    _mark(axis, setting.law, n["weighted"], n["tyre"])
+                    _mark(axis, setting.law, n[COMFORT], n[TYRE])
             axis.set(xlabel="weighted rail acceleration z [m/s²]", ylabel="dynamic / static tyre load, RMS [-]")
             axis.set_title(f"road {road}, {speed:g} km/h")
         axes[0].legend(fontsize=7)
@@ -306,26 +287,6 @@ def _mark(axis: Any, law: str, x: float, y: float) -> None:
     colour, mark = MARKS[law.removesuffix("_on_off")]
     face, label = ("none" if law.endswith("_on_off") else colour), law.replace("_on_off", ", on-off")
     axis.plot([x], [y], mark, color=colour, markerfacecolor=face, label=label)
-
-
-def delays(path: Path, points: Points, description: str) -> None:
-    """Write comfort and tyre load over the delay, relative to the passive damper."""
-    base = points[Setting()]
-    caption = (
-        f"Continuous laws on road {SHOWN[0]} at {SHOWN[1]:g} km/h; delay from sensor to setting of the damper; "
-        f"grey: passive damper. {description}."
-    )
-    panels: Sequence[tuple[str, str]] = (("weighted", "weighted rail acceleration z"), ("tyre", "dynamic tyre load"))
-    with chart(path, caption, columns=2, size=(9.4, 4.6)) as axes:
-        for axis, (name, label) in zip(axes, panels, strict=True):
-            for law in CONTINUOUS:
-                law_settings = [setting for setting in points if setting == Setting(law=law, delay=setting.delay)]
-                shown = sorted((setting.delay, points[setting][name] / base[name]) for setting in law_settings)
-                colour, mark = MARKS[law]
-                axis.plot(*np.transpose(shown), f"{mark}-", color=colour, label=law)
-            axis.axhline(1.0, color="#888888", linewidth=1.0)
-            axis.set(xlabel="delay [ms]", ylabel=f"{label}\nover that of the passive damper [-]")
-        axes[0].legend()
 
 
 main = car_study("semi_active", study)

@@ -18,12 +18,13 @@ import numpy as np
 from scenarios.car_runs import CarRuns
 from scenarios.charts import figure_file
 from scenarios.claims import DUPLICATE, Claim, Findings, markdown
-from scenarios.comfort_runs import Changes, ComfortRuns, Point, changes, comfort_options, records_of
+from scenarios.comfort_runs import ComfortRuns, Point, Variation, comfort_options, records_of
 from scenarios.comfort_sensitivity.figures import number, setting
 from scenarios.signals.exact_road import ROAD_RMS
 from scenarios.study import QUICK_NOTE, car_study
 from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.model.parameters.paths import value_of
+from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.signals.analysis.comfort import COMFORT_BAND
 from vehicle.signals.analysis.ride_comfort import WEIGHTED
 
@@ -32,10 +33,8 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     """Run all cars on both roads, write the chart into the folder, and return the findings."""
     comfort = ComfortRuns(runs, records_of(options), folder / "sweep")
     started = clock.perf_counter()
-    cars: list[Changes] = [(), *(car for parameter in PARAMETERS for car in ends(comfort, parameter).values())]
-    comfort([case for car in cars for road in ROAD_RMS for case in comfort.cases(car, road)])
-    seconds = clock.perf_counter() - started
     bars = all_bars(comfort)
+    seconds = clock.perf_counter() - started
     draw_tornado(folder / "tornado.png", comfort, bars)
     notes = [
         *setting(comfort),
@@ -115,25 +114,22 @@ class Bar:
         return max(values) - min(values)
 
 
-def ends(comfort: ComfortRuns, parameter: Parameter) -> dict[float, Changes]:
-    """Return value to overrides of the two cars of a parameter, low end first."""
-    vehicle = comfort.runs.car().vehicle
-    factors = ((1.0 - SHARE) ** parameter.power, (1.0 + SHARE) ** parameter.power)
-    pair = parameter.ends or tuple(value_of(vehicle, parameter.path) * factor for factor in factors)
-    return {value: changes(vehicle, parameter.path, value) for value in pair}
+def variation(vehicle: Vehicle, parameter: Parameter) -> Variation:
+    """Return the two values of a parameter, low end first."""
+    nominal, power = value_of(vehicle, parameter.path), parameter.power
+    values = parameter.ends or ((1.0 - SHARE) ** power * nominal, (1.0 + SHARE) ** power * nominal)
+    return Variation(name=parameter.path, label=parameter.label, path=parameter.path, values=values)
 
 
 def all_bars(comfort: ComfortRuns) -> list[Bar]:
     """Return the bars of all parameters, sorted by their largest swing on either road."""
-    bars = []
-    for parameter in PARAMETERS:
-        cars = ends(comfort, parameter)
-        low, high = cars
-        at_low, at_high = (
-            {road: comfort.point(value, car, road, ()) for road in ROAD_RMS} for value, car in cars.items()
-        )
-        nominal = value_of(comfort.runs.car().vehicle, parameter.path)
-        points = {"nominal": nominal, "low": low, "high": high}
+    vehicle, bars = comfort.runs.car().vehicle, []
+    varied = {parameter: variation(vehicle, parameter) for parameter in PARAMETERS}
+    comfort([case for each in varied.values() for case in comfort.all_cases(each)])
+    for parameter, each in varied.items():
+        curves = comfort.curves(each)
+        at_low, at_high = ({road: points[end] for road, points in curves.items()} for end in (0, 1))
+        points = {"nominal": value_of(vehicle, parameter.path), "low": each.values[0], "high": each.values[1]}
         bars.append(Bar(label=parameter.label, reason=parameter.reason, at_low=at_low, at_high=at_high, **points))
     return sorted(bars, key=lambda bar: -max(bar.swing(road) for road in ROAD_RMS))
 

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from scenarios.car_runs import CarRuns
+from scenarios.car_runs import CarRuns, in_processes
 from scenarios.charts import figure_file
 from scenarios.claims import OWN_CHECK, Claim, Findings, markdown
 from scenarios.study import QUICK_NOTE, car_study
@@ -26,7 +26,6 @@ from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.runs.car import Car, Run
 from vehicle.runs.car.road import Road
 from vehicle.signals.analysis.order_lines import order_lines
-from vehicle.studies.sweeps.executors import process_pool
 
 CAR, WHEEL, CHANNEL = "sedan", "fr", "seat_rail_acc_z"
 
@@ -116,12 +115,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
         )
         for road, speed, mass, changes in cases.values()
     ]
-    if runs.jobs > 1:
-        with process_pool(min(runs.jobs, len(pairs))) as pool:
-            results = list(pool.map(shake, pairs))
-    else:
-        results = [shake(pair) for pair in pairs]
-    values = dict(zip(cases, results, strict=True))
+    values = dict(zip(cases, in_processes(shake, pairs, runs.jobs), strict=True))
     name = _car(vehicle, runs.overrides).vehicle.name
     caption = (
         f"{name}, imbalance of the right front wheel; order 1 of the vertical acceleration of the seat rail, by the "

@@ -30,10 +30,8 @@ from scenarios.comfort_sensitivity.claims import (
 )
 from scenarios.comfort_sensitivity.figures import (
     curve_table,
-    draw_band_edge,
     draw_variation,
     draw_wheel,
-    edge_table,
     plain,
     setting,
 )
@@ -56,9 +54,6 @@ QUICK_WHY = f"records of {QUICK.duration:g} s tell it too coarsely"
 
 SURE = f"comfort value against {TITLES['coulomb_friction']}, smooth road"
 """Row that short records can judge: friction reduces comfort on a smooth road by far more than their error."""
-
-EDGES_HZ = (0.015, 0.02, 0.025, ROAD_EDGE_HZ, 0.035, 0.05, 0.1)
-"""Band edges at which the slip shares are shown [Hz]."""
 
 ENGINES = ("reduced", "mujoco")
 
@@ -133,11 +128,10 @@ main = car_study("comfort_sensitivity", study, comfort_options, add_options)
 
 
 def beyond_cases(comfort: ComfortRuns) -> list[Case]:
-    """Return the runs not in the thesis: other dampers and bodies, band edges, both engines on one record."""
+    """Return the runs not in the thesis: other dampers and bodies, both engines on one record."""
     more = [
         case for base in (DEGRESSIVE, RIGID_BODY) for variation in SOURCE for case in comfort.all_cases(variation, base)
     ]
-    edges = [case for edge in EDGES_HZ for road in ROAD_RMS for case in comfort.cases((), road, edge=edge)]
     checks = [
         case
         for car in corners(comfort).values()
@@ -145,7 +139,7 @@ def beyond_cases(comfort: ComfortRuns) -> list[Case]:
         for engine in ENGINES
         for case in comfort.cases(car, road, engine=engine, count=1)
     ]
-    return [*more, *comfort.all_cases(BODY), *edges, *checks, *trial_cases(comfort)]
+    return [*more, *comfort.all_cases(BODY), *checks, *trial_cases(comfort)]
 
 
 def degressive_points(comfort: ComfortRuns) -> dict[str, Point]:
@@ -182,14 +176,11 @@ def beyond_findings(
         notes.append(curve_table(variation.label, degressive[variation.name]))
     body = comfort.curves(BODY)
     draw_variation(folder / f"{BODY.name}.png", comfort, BODY, body)
-    edges = {road: [comfort.point(edge, (), road, (), edge) for edge in EDGES_HZ] for road in ROAD_RMS}
-    draw_band_edge(folder / "band_edge.png", comfort, edges)
-    notes += ["Body stiffness:", curve_table(BODY.label, body)]
-    notes += ["Band edge of the roads, nominal car:", edge_table(edges), check_table(comfort)]
+    notes += ["Body stiffness:", curve_table(BODY.label, body), check_table(comfort)]
     return notes, {
         "degressive": plain(degressive),
         "degressive_against_linear": {road: asdict(point) for road, point in against.items()},
-        **plain({BODY.name: body, "band_edge": edges}),
+        **plain({BODY.name: body}),
     }
 
 

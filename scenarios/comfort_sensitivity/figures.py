@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -12,7 +12,7 @@ import numpy as np
 from scenarios.charts import figure_file
 from scenarios.claims import markdown
 from scenarios.comfort_runs import Changes, ComfortRuns, Curves, Point, Variation, Vector, chosen_engine
-from scenarios.comfort_sensitivity.claims import PUBLISHED, PUBLISHED_SLIP
+from scenarios.comfort_sensitivity.claims import PUBLISHED
 from scenarios.comfort_sensitivity.histories import MEASURED_PEAKS, SPECTRUM_WINDOW_S, RoadLevels
 from scenarios.signals.exact_road import RATE_HZ, ROAD_EDGE_HZ, ROAD_RMS, velocity_density
 from scenarios.study import car_text
@@ -94,37 +94,6 @@ def draw_variation(
         axes[0, 0].set_ylabel("seat rail, z [m/s²]")
         axes[1, 0].set_ylabel("PSD of the seat rail, z [(m/s²)²/Hz]")
         axes[2, 0].set_ylabel("relative comfort value [%],\nlower is better")
-
-
-def draw_band_edge(path: Path, comfort: ComfortRuns, shares: Mapping[str, Sequence[Point]]) -> None:
-    """Write the figure of the slip shares over the band edge of the roads; `value` of the points is the edge [Hz]."""
-    slip_velocity = comfort.runs.car().vehicle.damper.slip_velocity
-    caption = (
-        f"Share of the time with the damper over the shaker above {1e3 * slip_velocity:g} mm/s (full) and above 1 mm/s "
-        f"(dotted), nominal car, {comfort.text()}; bars: two standard errors over the records; "
-        "dashed: published"
-    )
-    with figure_file(
-        path, (7.6, 5.0), f"Lower band edge of the roads, fitted to {ROAD_EDGE_HZ:g} Hz", caption
-    ) as figure:
-        axis = figure.subplots()
-        for road, points in shares.items():
-            edge = [point.value for point in points]
-            colour = ROAD_COLOURS[road]
-            axis.errorbar(
-                edge,
-                [100.0 * point.slip for point in points],
-                yerr=_two_errors([point.slip_error for point in points]),
-                color=colour,
-                marker="o",
-                markersize=3.5,
-                label=f"{road}, {1e3 * ROAD_RMS[road]:g} mm RMS",
-            )
-            axis.plot(edge, [100.0 * point.saturated for point in points], color=colour, linestyle=":")
-            axis.axhline(100.0 * PUBLISHED_SLIP[road], color=colour, linestyle="--", linewidth=0.9)
-        axis.axvline(ROAD_EDGE_HZ, color="#555555", linewidth=0.9)
-        axis.set(xlabel="lower band edge [Hz]", ylabel="share of the time in slip [%]", ylim=(0.0, 100.0))
-        axis.legend(loc="lower right")
 
 
 def draw_wheel(path: Path, comfort: ComfortRuns, levels: Mapping[str, RoadLevels]) -> None:
@@ -226,21 +195,15 @@ def curve_table(label: str, curves: Curves) -> str:
         "slip shares [%]",
         "lowest load [N] (time below 0)",
     )
-    return _points_table(
-        label,
-        curves,
-        columns,
-        lambda point: (
+
+    def cells(point: Point) -> tuple[str, ...]:
+        return (
             f"{100.0 * point.relative:.2f} ± {number(100.0 * point.relative_error)}",
             f"{point.comfort:.4f} ± {number(point.comfort_error, 4)}",
             f"{100.0 * point.slip:.1f}, {100.0 * point.saturated:.1f}, {100.0 * point.slip_left:.1f}",
             f"{point.lowest_load:.0f} ({100.0 * point.pulling:.2g} %)",
-        ),
-    )
+        )
 
-
-def _points_table(label: str, curves: Curves, columns: Sequence[str], cells: Callable[[Point], tuple[str, ...]]) -> str:
-    """Return a table with a row for each value: first the cells of one road, then those of the other road."""
     head = [f"{road}: {name}" if name == columns[0] else name for road in curves for name in columns]
     rows = zip(*curves.values(), strict=True)
     return markdown(
@@ -251,22 +214,6 @@ def _points_table(label: str, curves: Curves, columns: Sequence[str], cells: Cal
 def number(value: float, digits: int = 2) -> str:
     """Return a standard error as a text, or a question mark for a single record."""
     return f"{value:.{digits}f}" if np.isfinite(value) else "?"
-
-
-def edge_table(edges: Curves) -> str:
-    """Return a table of slip shares and comfort over the band edge of the roads, `Point.value` [Hz]."""
-    columns = ("slip share, right [%]", "above 1 mm/s", "left", "comfort value [m/s²]")
-    return _points_table(
-        "lower band edge [Hz]",
-        edges,
-        columns,
-        lambda point: (
-            f"{100.0 * point.slip:.2f} ± {number(100.0 * point.slip_error)}",
-            f"{100.0 * point.saturated:.1f}",
-            f"{100.0 * point.slip_left:.1f}",
-            f"{point.comfort:.4f} ± {number(point.comfort_error, 4)}",
-        ),
-    )
 
 
 def plain(curves: Mapping[str, Curves]) -> dict[str, dict[str, list[dict[str, float]]]]:

@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import least_squares
 
+from scenarios.damper_choice.response_features import local_peaks
 from scenarios.lumped.axle import Axle
 from scenarios.lumped.damper_choice import (
     ExponentialRoad,
@@ -134,7 +135,8 @@ def quarter_car_residuals(values: npt.ArrayLike, road: ExponentialRoad, bands: F
     residuals += list(np.minimum(-np.diff(peaks) - 0.02, 0.0) / 0.02)  # lower with more damping
     residuals.append(_outside(float(peaks.max()), 1.0, 1.5) / 0.05)  # axis of figure 3
     residuals.append(_outside(float(unsprung.max()), 1.4, 1.6) / 0.05)  # axis of figure 2
-    residuals.append(_last_peak(lines, unsprung[0]) - 7.0)  # second local maximum at about 7 Hz for low damping
+    peaks_of_wheel = local_peaks(lines, unsprung[0]) or [0.0]
+    residuals.append(peaks_of_wheel[-1] - 7.0)  # second local maximum at about 7 Hz for low damping
     return np.array(residuals)
 
 
@@ -207,10 +209,3 @@ def _valley(measure: Callable[[float], float]) -> float:
 
 def _outside(value: float, low: float, high: float) -> float:
     return min(value - low, 0.0) + max(value - high, 0.0)
-
-
-def _last_peak(lines: Array, magnitude: Array) -> float:
-    """Return the frequency of the local maximum with the highest frequency [Hz]."""
-    inner = magnitude[1:-1]
-    peaks = np.flatnonzero((inner > magnitude[:-2]) & (inner > magnitude[2:])) + 1
-    return float(lines[peaks[-1]]) if peaks.size else 0.0

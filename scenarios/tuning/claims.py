@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
-from scenarios.claims import OWN_CHECK, Claim, markdown
+from scenarios.claims import OWN_CHECK, Claim
 from scenarios.tuning.data import NOISE, SLIDING
+from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.studies.tuning.fit_result import TuningResult
 from vehicle.studies.tuning.full_steps import SMALL, FullSteps
-from vehicle.studies.tuning.identifiability import WIDEST
+from vehicle.studies.tuning.limits_of_data import what_data_leave_open
 from vehicle.studies.tuning.measured_targets import MeasuredTarget
+from vehicle.studies.tuning.tuning_text import source_lines, value_lines
 
 WITHIN = 3.0
 """Standard errors: 99.7 % of the values of a normal distribution; one of nine is beyond in one fit of forty."""
@@ -90,63 +91,18 @@ def frozen_note(damper: TuningResult, true: Mapping[str, float]) -> str:
     )
 
 
-def fit_notes(title: str, result: TuningResult, final: FullSteps | None) -> list[str]:
-    """Return paragraphs on the end of the fit, the values, unidentified parameters and residuals."""
-    notes = [
+def fit_notes(title: str, result: TuningResult, final: FullSteps | None, vehicle: Vehicle) -> list[str]:
+    """Return paragraphs on the end of a fit: values, standard errors, what the data leave open."""
+    moved = {} if final is None else final.moved
+    shifts = ", ".join(f"{path} {shift:+.2f}" for path, shift in moved.items())
+    lines = [*value_lines(result, vehicle), *source_lines(result, vehicle), *what_data_leave_open(result)]
+    return [
         f"## {title}\n\n{result.evaluations} cars computed; {result.message} Root of the mean square of the weighted "
         f"residuals {result.before:.3g} before, {result.after:.3g} after. Condition of the weighted Jacobian (columns "
-        f"in half widths of the bounds) {result.condition:.3g}.",
-        _values(result, final),
+        f"in half widths of the bounds) {result.condition:.3g}."
+        + (f" Moved by the full simulation, in standard errors: {shifts}." if shifts else ""),
+        "\n".join(["```text", *lines, "```"]),
     ]
-    if result.unidentified:
-        sentences = "\n".join(f"- {held.message()}" for held in result.unidentified)
-        notes.append(
-            "Not identified (a direction of the weighted Jacobian with a standard error above "
-            f"{WIDEST:.2g} half widths of the bounds, half of what the bounds alone say):\n\n{sentences}"
-        )
-    if result.at_bound:
-        notes.append(f"At a bound, so without standard error: {', '.join(result.at_bound)}.")
-    notes.append(_rows(result))
-    return notes
-
-
-def _values(result: TuningResult, final: FullSteps | None) -> str:
-    moved = {} if final is None else final.moved
-    rows = []
-    for parameter in result.parameters:
-        value, error = result.values[parameter.path], result.standard_errors[parameter.path]
-        finite = not math.isnan(error)
-        shift = f"{moved[parameter.path]:+.2f}" if parameter.path in moved else ""
-        errors = (f"{error:.2g}", f"{100 * error / value:.2g} %") if finite else ("none", "")
-        fit = (parameter.path, f"{parameter.low:g} to {parameter.high:g}", f"{parameter.start:g}", f"{value:.4g}")
-        rows.append((*fit, *errors, _strongest(result, parameter.path), shift))
-    columns = ("parameter", "bounds", "start", "fitted", "standard error", "relative", "strongest correlation")
-    return markdown((*columns, "moved by the full simulation [standard errors]"), rows)
-
-
-def _strongest(result: TuningResult, path: str) -> str:
-    if path not in result.free or len(result.free) < 2:
-        return ""
-    row = result.correlation[result.free.index(path)]
-    others = [index for index, other in enumerate(result.free) if other != path]
-    best = max(others, key=lambda index: abs(row[index]))
-    return f"{row[best]:+.2f} with {result.free[best]}"
-
-
-def _rows(result: TuningResult) -> str:
-    columns = ("row", "values", "mean", "RMS", "correlation of neighbours", "counted as one independent value")
-    rows = [
-        (
-            *(row.name, str(row.count), f"{row.mean:+.3f}", f"{row.rms:.3g}"),
-            *(f"{row.neighbours:+.2f}", f"{row.inflation:.2g}"),
-        )
-        for row in result.rows
-    ]
-    return (
-        "Residuals over their assumed standard deviation (FRFs: from the coherence; records: the RMS of the record). "
-        "The fit weighs every row with its own RMS, and with the correlation of neighbours where it is beyond three "
-        f"standard errors.\n\n{markdown(columns, rows)}"
-    )
 
 
 def fit_numbers(result: TuningResult) -> dict[str, Any]:

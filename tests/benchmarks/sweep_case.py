@@ -7,6 +7,8 @@ from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import numpy as np
+
 from scenarios.global_sensitivity import RANGES, points_of
 from scenarios.road_measure import RoadInput, RoadMeasure
 from scenarios.signals.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
@@ -30,7 +32,8 @@ def cases(count: int) -> list[Case]:
         lead=LEAD_S,
         lower_band_edge=ROAD_EDGE_HZ,
     )
-    points = points_of(max(24, 2 * count), 2006)[:count].tolist()
+    base = 2 ** int(np.log2(max(24, 2 * count) / (len(RANGES) + 2)))
+    points = points_of(base)[:count].tolist()
     return list(table_cases([one.path for one in RANGES], points, [road], engine="reduced"))
 
 

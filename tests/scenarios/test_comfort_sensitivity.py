@@ -342,7 +342,6 @@ class Answers(ComfortRuns):
 def test_what_goes_beyond_the_source_is_asked_at_once_and_reported(tmp_path, monkeypatch):
     drawn = []
     monkeypatch.setattr(beyond, "draw_variation", lambda path, *_, **__: drawn.append(path.name))
-    monkeypatch.setattr(beyond, "draw_band_edge", lambda path, *_: drawn.append(path.name))
     comfort = Answers(CarRuns(engine="auto"), Records(count=2), tmp_path)
     asked = set(beyond.beyond_cases(comfort))
     linear = {variation.name: comfort.curves(variation) for variation in SOURCE}
@@ -354,7 +353,6 @@ def test_what_goes_beyond_the_source_is_asked_at_once_and_reported(tmp_path, mon
     assert drawn == [
         *(f"{variation.name}_degressive.png" for variation in SOURCE),
         "body_stiffness.png",
-        "band_edge.png",
     ]
     text = "\n".join(notes)
     assert "comfort value 120.0 ± 0.00 % on the smooth road, 120.0 ± 0.00 % on the rough road" in text

@@ -1,14 +1,10 @@
-"""`python -m scenarios.obstacles` as a user runs it: values of a run, table, picture, film."""
+"""`python -m scenarios.obstacles` as a user runs it: values of a run, table, picture."""
 
 import json
-import subprocess
 
-import numpy as np
 import pytest
 
-from scenarios import obstacles
-from scenarios.obstacles import Passage, dose_claims, film_passage, main, passage_table, passage_values
-from vehicle.drawing.rendering.backend import film_available, find_ffmpeg
+from scenarios.obstacles import Passage, dose_claims, main, passage_table, passage_values
 from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.runs.output.run_obstacle import obstacle_values
 
@@ -77,48 +73,8 @@ def test_a_passage_that_failed_is_a_gap(passage):
         (["--speeds", "20,x"], "--speeds 20,x: must be speeds above 0 to 400 km/h"),
         (["--speeds", "-5"], "--speeds -5: must be"),
         (["--obstacle", "kerb"], "'kerb' must be one of cleat"),
-        (["--video", "film.avi"], "must end in .mp4"),
     ],
 )
 def test_refusals(arguments, message, tmp_path, capsys):
     assert main(["--output", str(tmp_path / "out"), "--quick", *arguments]) == 2
     assert message in capsys.readouterr().err
-
-
-def frames_of(path):
-    """Frames of a film; (frames, 360, 640, 3)."""
-    command = [find_ffmpeg(), "-i", str(path), "-vf", "scale=640:-2", "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
-    done = subprocess.run(command, capture_output=True, check=True)
-    return np.frombuffer(done.stdout, dtype=np.uint8).reshape(-1, 360, 640, 3).astype(int)
-
-
-@pytest.mark.render
-def test_the_wheel_turns_in_the_film(passage, tmp_path, monkeypatch):
-    if (reason := film_available()) is not None:
-        pytest.skip(reason)
-    path = tmp_path / "film.mp4"
-    monkeypatch.setattr(obstacles, "SLOW", 1.0)  # a tenth of the frames
-    film_passage(path, passage.run())
-    frames = frames_of(path)
-    # 0.32 s of wheelbase at 30 km/h with 0.47 s around it.
-    assert len(frames) == pytest.approx(24, abs=1)
-    rim, body = (frames[:, *place].mean(axis=3) for place in (np.s_[180:225, 265:305], np.s_[130:160, 170:230]))
-    # Before the cleat nothing moves but rims and stripes.
-    assert np.mean(np.abs(rim[2] - rim[0])) > 4.0  # one that stands: 0
-    assert np.mean(np.abs(body[2] - body[0])) < 0.5
-
-
-@pytest.mark.render
-def test_a_film_of_the_pavement(passage, tmp_path, monkeypatch):
-    if (reason := film_available()) is not None:
-        pytest.skip(reason)
-    for name, value in {"PAVEMENT_M": 12.0, "PAVEMENT_START_S": 0.8, "PAVEMENT_FILM_S": 0.2}.items():
-        monkeypatch.setattr(obstacles, name, value)
-    path = tmp_path / "film.mp4"
-    obstacles.film_pavement(path, obstacles._car(passage.vehicle, ()))
-    frames = frames_of(path)
-    assert len(frames) == pytest.approx(6, abs=1)
-    # The road passes below the car, and the car moves.
-    stripes, body = (frames[:, *place].mean(axis=3) for place in (np.s_[220:270, 290:420], np.s_[130:160, 170:230]))
-    assert np.mean(np.abs(stripes[-1] - stripes[0])) > 2.0
-    assert np.mean(np.abs(body[-1] - body[0])) > 0.5

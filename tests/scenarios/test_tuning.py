@@ -5,7 +5,7 @@ import json
 import pytest
 
 from scenarios.tuning.__main__ import main
-from scenarios.tuning.claims import demonstration_claims, fit_notes, frozen_note
+from scenarios.tuning.claims import demonstration_claims, frozen_note
 from scenarios.tuning.data import AUTHORS, HIDDEN, QUICK
 from tests.studies.tuning.two_masses import TRUE, MeasuredMasses
 from vehicle.model.parameters.ranges import Range
@@ -30,6 +30,9 @@ def test_hidden_values_are_found(results):
         # Three standard errors count for something only where they are small.
         assert abs(rows["values"][path] - HIDDEN[path]) < 0.01 * HIDDEN[path]
     assert content["not_judged"]
+    text = (results / "results.md").read_text(encoding="utf-8")
+    assert "Moved by the full simulation, in standard errors: " in text
+    assert all(f"\n{path} " in text for path in QUICK) and "standard error from" in text
     files = {path.name for path in results.iterdir()}
     assert {"high_frf.csv", "frf_1_high.png", "time_2_bump_7p5mm.png", "parameters.png", "correlation.png"} <= files
 
@@ -66,9 +69,5 @@ def test_rows_say_what_was_missed(masses):
     ]
 
 
-def test_notes_name_everything(masses):
-    text = "\n".join(fit_notes("A fit", masses, finished(masses)))
-    assert "colour: the data do not determine this parameter: " in text and "kept at 2" in text
-    assert "| damping | 166.667 to 13500 | 2100 |" in text and "-0.50" in text
-    assert "body, phase | 60" in text
+def test_a_note_says_how_far_the_frozen_fit_is_off(masses):
     assert "damping 1" in frozen_note(masses, {**TRUE, "colour": 2.0})

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from scenarios.road.runs import one_sided_tyres
 from scenarios.signals.random_road import random_road
 from tests.engines.reduced.test_reduced_quarter_car import CAR, ROAD, damper, matrices
 from tests.validation import foreign, validated
@@ -17,7 +16,7 @@ from vehicle.engines.reduced.pole_model import pole_model
 from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.model.laws.curve import Curve
 from vehicle.runs.car import Car
-from vehicle.runs.car.road import Road
+from vehicle.runs.car.road import Road, lifting_tyres
 from vehicle.signals.excitation.signal import Signal
 
 ROAD_OF_STOPS = Signal(time=ROAD.time[:1201], displacement={"fr": ROAD.displacement["fr"][:1201]})
@@ -195,7 +194,8 @@ def test_a_law_at_a_breakpoint_and_its_slopes():
 
 def test_a_car_over_a_cleat_that_lifts_its_tyres():
     fixed, road = Car.load("focus_road"), Road("cleat:15x50", speed=30)
-    car = fixed.with_([*one_sided_tyres(fixed.vehicle), "solver.timestep=0.00025"])
+    lifting = [f"{path}.one_sided=true" for path in lifting_tyres(fixed.vehicle)]
+    car = fixed.with_([*lifting, "solver.timestep=0.00025"])
     stepped, run = car.run(road), car.run(road, engine="reduced")
     notices = [
         [text for text in each.recording.statistics.notices if "left its plate" in text] for each in (stepped, run)
