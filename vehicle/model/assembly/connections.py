@@ -11,10 +11,8 @@ import numpy.typing as npt
 from vehicle.model.assembly.coupled_attachment import STRUCTURAL_LOSS_TIME, coupled_law, is_coupled
 from vehicle.model.flexbody.superelement import Superelement, attached_nodes
 from vehicle.model.laws.amplitude import behind_spring, friction_elements
+from vehicle.model.laws.elastomer import Kelvin, Maxwell, in_series
 from vehicle.model.laws.jenkins import Jenkins
-from vehicle.model.laws.kelvin import Kelvin
-from vehicle.model.laws.maxwell import Maxwell
-from vehicle.model.laws.series import in_series
 from vehicle.model.parameters.body import TrimmedBody
 from vehicle.model.parameters.composition import PlacedConnection
 from vehicle.model.parameters.force_elements import Bushing, Hydromount, LinearBushing, Tyre

@@ -17,8 +17,7 @@ import scipy
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.beam import FloatArray
-from vehicle.model.laws.maxwell import Maxwell
-from vehicle.model.laws.series import in_series
+from vehicle.model.laws.elastomer import Maxwell, in_series
 from vehicle.model.parameters.composition import PlacedConnection
 from vehicle.model.parameters.force_elements import Hydromount
 from vehicle.names import AXES

@@ -12,6 +12,9 @@ from vehicle.model.parameters.driving import RunUp
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.toml_file import nearest
 
+NONE = (0.0, 0.0, 0.0)
+"""Direction of a force or moment that is absent."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PlacedForce:
@@ -38,12 +41,12 @@ class PlacedForce:
     """
 
     name: str
-    on: str
-    at: Point
-    force: Point
-    moment: Point
-    against: str
-    joint: str
+    on: str = ""
+    at: Point = NONE
+    force: Point = NONE
+    moment: Point = NONE
+    against: str = ""
+    joint: str = ""
     law: AppliedForce
     speed: float
     path: str
