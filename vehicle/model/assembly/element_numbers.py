@@ -12,8 +12,8 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.model.assembly.connections import ElementLaw, element_law, fluid_law
 from vehicle.model.flexbody.rigid_body import rigid_body
 from vehicle.model.flexbody.superelement import Superelement
@@ -34,7 +34,6 @@ from vehicle.model.parameters.placed_force import PlacedForce
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import AXES
 
-Vector = npt.NDArray[np.float64]
 Numbers = dict[str, Vector]
 
 FLUID, DECOUPLER = "fluid/", "decoupler/"

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.core.library import core
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.curve import Curve
@@ -105,7 +106,7 @@ def damper_curve(damper: Damper) -> Curve:
     )
 
 
-def actuator_parameters(record: npt.NDArray[Any]) -> npt.NDArray[np.float64]:
+def actuator_parameters(record: npt.NDArray[Any]) -> Vector:
     """Return the parameters of the actuator of a damper with this record; (n,), n the length of `RECORD`."""
     return np.atleast_1d(record).view(np.float64)
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Complex, Vector
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.law import Numbers
 from vehicle.model.parameters.quantity import Validated, check, quantity
@@ -19,11 +19,11 @@ class Kelvin(Validated):
     stiffness: Numbers = quantity("N/m", "stiffness K", at_least=0.0)
     damping: Numbers = quantity("N s/m", "damping constant B", at_least=0.0)
 
-    def force(self, extension: Numbers, rate: Numbers) -> npt.NDArray[np.float64]:
+    def force(self, extension: Numbers, rate: Numbers) -> Vector:
         """Return the force [N] at an extension [m] and its rate [m/s]."""
         return np.asarray(self.stiffness * np.asarray(extension) + self.damping * np.asarray(rate))
 
-    def complex_stiffness(self, angular_frequency: Numbers) -> npt.NDArray[np.complex128]:
+    def complex_stiffness(self, angular_frequency: Numbers) -> Complex:
         """Return K + j w B [N/m] at angular frequencies w [rad/s]."""
         return np.asarray(self.stiffness + 1j * np.asarray(angular_frequency) * self.damping)
 
@@ -43,22 +43,22 @@ class Maxwell(Validated):
     branch_damping: Numbers = quantity("N s/m", "damper D2 of the Maxwell branch", at_least=0.0)
 
     @property
-    def relaxation_time(self) -> npt.NDArray[np.float64]:
+    def relaxation_time(self) -> Vector:
         """Time constant D2/K2 [s] of the branch; zero if the branch is absent."""
         damping, stiffness = np.broadcast_arrays(self.branch_damping, self.branch_stiffness)
         present = stiffness > 0.0
         return np.where(present, damping / np.where(present, stiffness, 1.0), 0.0)
 
-    def complex_stiffness(self, angular_frequency: Numbers) -> npt.NDArray[np.complex128]:
+    def complex_stiffness(self, angular_frequency: Numbers) -> Complex:
         """Return K(j w) [N/m] at angular frequencies w [rad/s]."""
         turn = 1j * np.asarray(angular_frequency) * self.relaxation_time
         return np.asarray(self.stiffness + self.branch_stiffness * turn / (1.0 + turn))
 
-    def loss_angle(self, angular_frequency: Numbers) -> npt.NDArray[np.float64]:
+    def loss_angle(self, angular_frequency: Numbers) -> Vector:
         """Return the angle of K(j w) [rad] at angular frequencies w [rad/s]."""
         return np.asarray(np.angle(self.complex_stiffness(angular_frequency)))
 
-    def loss_peak(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    def loss_peak(self) -> tuple[Vector, Vector]:
         """Return the angular frequency [rad/s] and the value [rad] of the maximum loss angle.
 
         w = (K2/D2) sqrt(K1/(K1 + K2)) and tan(angle) = K2 / (2 sqrt(K1 (K1 + K2))), from d angle / d w = 0.

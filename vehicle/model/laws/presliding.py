@@ -13,13 +13,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.model.laws.coulomb import Coulomb
 from vehicle.model.laws.jenkins import Jenkins
 from vehicle.model.parameters.force_elements import Damper
-
-Vector = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

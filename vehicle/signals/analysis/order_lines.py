@@ -13,8 +13,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Complex
 from vehicle.errors import DataError
 from vehicle.signals.analysis.samples import Vector
 
@@ -39,7 +39,7 @@ class OrderLines:
 
     orders: Vector
     frequency: Vector
-    amplitude: npt.NDArray[np.complex128]
+    amplitude: Complex
     error: Vector
     segments: int
 
