@@ -1,7 +1,5 @@
 """Force laws of the connections of the car: bushings in series with the local stiffness of the body."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 

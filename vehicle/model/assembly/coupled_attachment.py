@@ -8,8 +8,6 @@ K_s is exact. The damper is to first order in G w B, the share by which its own 
 50 Hz of a mount with 2000 N s/m on 2e7 N/m, which changes the damping by its square.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Builder that adds the elements of a car, with the constants of their laws, to a MuJoCo specification."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import mujoco

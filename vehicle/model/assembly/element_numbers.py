@@ -4,8 +4,6 @@ The model keeps those of laws in custom fields of these names, and `vehicle.engi
 Cars that differ only in these numbers share a model: see `vehicle.engines.linear.variant_matrices`.
 """
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Callable, Sequence
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """MuJoCo specification of the car on its rig, built from parameters and superelement."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Visible shapes on the generated car: meshes without mass and without contact."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 
 import mujoco

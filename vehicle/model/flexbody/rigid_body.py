@@ -1,7 +1,5 @@
 """Rigid-body mass properties of the body in the form required by MuJoCo."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 

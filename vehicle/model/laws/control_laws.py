@@ -24,8 +24,6 @@ and `act` of `vehicle/core/source/laws.h`.
 Source: Karnopp, Crosby, Harwood (1974) for skyhook; Ahmadian (1997) for groundhook and hybrid.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -8,8 +8,6 @@ the remainder. For a law by address (`vehicle.model.laws.law_by_address`), F_c i
 the function for the remainder.
 """
 
-from __future__ import annotations
-
 import ctypes
 import dataclasses
 import importlib

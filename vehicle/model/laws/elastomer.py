@@ -1,7 +1,5 @@
 """Linear bushings and elastomers (a spring parallel to a Maxwell branch), and the series of one with a spring."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -12,8 +12,6 @@ the static functions `limit_at` and `fall_at` of a velocity and of parameters by
 Source: Bommer 2006, equations 2.4 and 3.2.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any

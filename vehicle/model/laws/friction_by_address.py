@@ -9,8 +9,6 @@ cannot be brought in this way: it needs a memory for each damper, which the engi
 step.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 

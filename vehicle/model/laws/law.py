@@ -1,7 +1,5 @@
 """Protocol of force laws, and laws in parallel."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Protocol
 

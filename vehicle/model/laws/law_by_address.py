@@ -16,8 +16,6 @@ Source of the integration: Hairer and Wanner, Solving Ordinary Differential Equa
 implicit methods).
 """
 
-from __future__ import annotations
-
 import ctypes
 import re
 from collections.abc import Iterable

@@ -8,8 +8,6 @@ set-valued Coulomb friction.
 The default curve has s_j = 1 - p_(j-1) in four steps: a polygon of dF/dx = K (1 - F/L) (Dahl 1968).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

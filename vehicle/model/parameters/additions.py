@@ -1,7 +1,5 @@
 """Additions of a vehicle file to its templates: points, connections between any two parts, outputs and loads."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Mapping
 from typing import Any

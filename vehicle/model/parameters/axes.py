@@ -1,7 +1,5 @@
 """Axes of a bushing that is aligned with a line, as at the end of a rod."""
 
-from __future__ import annotations
-
 import math
 
 from vehicle.model.parameters.hardpoints import Point, cross, unit

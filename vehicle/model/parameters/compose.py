@@ -1,7 +1,5 @@
 """Composition of a car from a vehicle file and its templates. Handles types of joints; part names are data."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Mapping
 from pathlib import Path

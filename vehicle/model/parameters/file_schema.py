@@ -4,8 +4,6 @@ A schema checks names, types and ranges, table by table. Relations between param
 and parts, are checked when a car is composed.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import types
 import typing

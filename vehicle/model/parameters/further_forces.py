@@ -1,7 +1,5 @@
 """Forces of a vehicle file on any part, and those of its turning wheels, placed."""
 
-from __future__ import annotations
-
 import cmath
 import math
 import re

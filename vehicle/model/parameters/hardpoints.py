@@ -1,7 +1,5 @@
 """Points of the car in its design position, in the vehicle frame: x to the rear, y to the driver's right, z up [m]."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Mapping

@@ -1,7 +1,5 @@
 """Loads that a vehicle file puts on its parts: passengers, luggage, fuel, a battery."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from vehicle.errors import ConfigurationError

@@ -1,7 +1,5 @@
 """Connections, springs, dampers, wheels and outputs of the templates, placed on each side with their numbers."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 
 from vehicle.errors import ConfigurationError

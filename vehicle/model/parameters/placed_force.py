@@ -1,7 +1,5 @@
 """A force on a part of the car, placed, with its history."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Imbalance, non-uniformity and brake variation of the wheels of a car, placed."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from typing import Any
 

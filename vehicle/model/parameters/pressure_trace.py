@@ -1,7 +1,5 @@
 """Pressure in a cylinder over the crank angle from a measurement file, for the gas torque of an engine."""
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 from pathlib import Path

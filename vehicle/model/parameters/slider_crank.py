@@ -16,8 +16,6 @@ Sources: Taylor, The Internal-Combustion Engine in Theory and Practice, vol. 2, 
 Combustion Engine Fundamentals, 1988, chapter 9.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

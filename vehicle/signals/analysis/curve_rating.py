@@ -3,8 +3,6 @@
 Source: ISO/TS 18571:2024, Road vehicles - Objective rating metric for non-ambiguous signals.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -8,8 +8,6 @@ damage n A^k (Miner's rule, Woehler curve of slope k). One cycle per second at t
 over the time T [s] of the record causes the same damage. The package `rainflow` counts the cycles.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from importlib import import_module
 

@@ -7,8 +7,6 @@ so that the windows are those of a record over the angle. A constant of the reco
 and Vibration Analysis, 2nd ed., 2023, chapter 12.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -7,8 +7,6 @@ that their mean keeps what turns with the part, and their scatter gives its stan
 with another phase. Source: Brandt, Noise and Vibration Analysis, 2nd ed., 2023, chapter 12.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

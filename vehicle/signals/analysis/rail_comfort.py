@@ -5,8 +5,6 @@
 The index 95 is the 95 % quantile of the 60 values of 5 minutes, by linear interpolation.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

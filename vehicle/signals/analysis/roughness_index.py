@@ -9,8 +9,6 @@ Source: Sayers, On the calculation of international roughness index from longitu
 Research Record 1501 (1995); ASTM E1926.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Checks of sampled records: finite values, equal lengths, sampling rate and band."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

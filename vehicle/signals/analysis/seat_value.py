@@ -1,7 +1,5 @@
 """SEAT value: ratio of the weighted vibration on a seat to that of its rail; weighted RMS by axis."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Frequency band of a periodic random signal: spectral lines within the band, and their synthesis."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,7 +1,5 @@
 """Input of a car that drives over a road at constant speed: class of ISO 8608, measured profile, obstacle or level."""
 
-from __future__ import annotations
-
 import math
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace

@@ -1,7 +1,5 @@
 """Contents of a measurement file: channels with names, units, measurement points and axes."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal

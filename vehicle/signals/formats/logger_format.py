@@ -1,7 +1,5 @@
 """Read text files of loggers: free text, header lines, then rows of numbers, dates and times of day."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from dataclasses import replace

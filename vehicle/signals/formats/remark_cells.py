@@ -1,7 +1,5 @@
 """Fill up the rows of a table whose last cells, remarks of single rows, are missing in other rows."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from vehicle.signals.formats.heads import cells_of

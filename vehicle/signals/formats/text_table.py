@@ -1,7 +1,5 @@
 """Find the table in a text file: first line, delimiter, and data types of the columns."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """K and M of CalculiX, written next to the input deck by `*FREQUENCY, SOLVER=MATRIXSTORAGE`."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

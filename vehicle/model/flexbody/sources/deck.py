@@ -1,7 +1,5 @@
 """Nodes and elements of an input deck of Abaqus or CalculiX, or of a table of nodes."""
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import dataclass
 from pathlib import Path

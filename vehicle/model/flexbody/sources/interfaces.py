@@ -1,7 +1,5 @@
 """Interfaces of a car with a finite-element body: a node at an attachment point, or the nodes around the point."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """K and M in separate files: Matrix Market, MATLAB, Abaqus and others, with tables of degrees of freedom and nodes."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import Any

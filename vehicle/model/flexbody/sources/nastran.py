@@ -6,8 +6,6 @@ number may omit the E of its exponent. Source: MSC Nastran Quick Reference Guide
 entries.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass

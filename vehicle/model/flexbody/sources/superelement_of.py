@@ -1,7 +1,5 @@
 """Modal superelement at the points of a car, from the modes of a body at all nodes."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any

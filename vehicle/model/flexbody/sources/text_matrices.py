@@ -1,7 +1,5 @@
 """Matrices and lists of numbers in text files."""
 
-from __future__ import annotations
-
 import io
 import re
 import warnings
