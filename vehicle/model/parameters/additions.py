@@ -5,7 +5,6 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.axes import Axes, axes_along
 from vehicle.model.parameters.composition import PlacedConnection, PlacedOutput, PlacedPart
 from vehicle.model.parameters.force_elements import (
     DECOUPLER,
@@ -16,9 +15,9 @@ from vehicle.model.parameters.force_elements import (
     LinearBushing,
     Tyre,
 )
-from vehicle.model.parameters.hardpoints import Point, require_apart, require_point
-from vehicle.model.parameters.load_mass import Load
+from vehicle.model.parameters.hardpoints import Axes, Point, axes_along, require_apart, require_point
 from vehicle.model.parameters.quantity import NAME_PATTERN
+from vehicle.model.parameters.rigid_part import Load
 from vehicle.model.parameters.toml_file import build, convert, nearest
 
 CONNECTION_KEYS = {"moving", "carrier", "at", "ground", "axes"}
