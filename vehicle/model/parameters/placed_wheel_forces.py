@@ -55,7 +55,7 @@ def _forces(
     angle = f"wheel_{wheel.name}"
     speed = targets.speeds[angle]
 
-    def force(name: str, harmonics: Harmonics, direction: Point, at: Point, **ends: str) -> PlacedForce:
+    def force(name: str, harmonics: Harmonics, direction: Point, at: Point, **ends: Any) -> PlacedForce:
         law = AppliedForce(harmonics=harmonics, angle=angle)
         path = f"{wheel.axle}.{table}"
         unit = ("m" if direction[2] else "m/s") if "tyre" in ends else "N" if any(direction) else "N m"
