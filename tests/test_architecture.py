@@ -15,7 +15,7 @@ from vehicle.commands import OLDER
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "vehicle"
 
-EVERYWHERE = {"digits", "errors", "names", "settings"}
+EVERYWHERE = {"arrays", "digits", "errors", "names", "settings"}
 """May be used by every room."""
 
 WINGS = {
@@ -38,6 +38,7 @@ BELOW = EVERYWHERE | {"handed_down", "machine", "replacement", "threads", "versi
 """Modules that stand below all wings."""
 
 ROOMS: dict[str, set[str]] = {
+    "arrays": set(),
     "digits": set(),
     "errors": set(),
     "handed_down": set(),

@@ -50,7 +50,7 @@ FAULTS = (
     Fault("vehicle/signals/formats/clock.py", "long = multiples > 1.5", "long = multiples > 2.5", "signals/formats/test_stamps.py signals/records/test_resampled.py signals/formats/test_logger.py"),
     # model
     Fault("vehicle/model/laws/control_laws.py", "np.maximum(-wheel * way, 0.0)", "np.maximum(wheel * way, 0.0)", "model/laws"),
-    Fault("vehicle/model/laws/maxwell.py", "self.branch_stiffness / (2.0 * np.sqrt(", "self.branch_stiffness / (2.1 * np.sqrt(", "model/laws/test_maxwell.py"),
+    Fault("vehicle/model/laws/elastomer.py", "self.branch_stiffness / (2.0 * np.sqrt(", "self.branch_stiffness / (2.1 * np.sqrt(", "model/laws/test_maxwell.py"),
     Fault("vehicle/model/laws/friction.py", "steep * (limit + fall)", "steep * limit", "model/laws scenarios/lumped"),
     Fault("vehicle/model/flexbody/mass_properties.py", "np.atleast_2d(self.cog - cog)", "np.atleast_2d(0.0 * cog)", "model/flexbody/test_body_units.py"),
     Fault("vehicle/model/flexbody/sources/body_units.py", "np.sqrt(3.0 * mass *", "np.sqrt(30.0 * mass *", "model/flexbody/test_body_units.py"),

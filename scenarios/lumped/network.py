@@ -18,9 +18,8 @@ import numpy as np
 from vehicle.engines.linear.first_order import FirstOrder, first_order
 from vehicle.engines.linear.system import Array, LinearSystem, Row, Slide, form_row
 from vehicle.errors import ConfigurationError
-from vehicle.model.laws.kelvin import Kelvin
+from vehicle.model.laws.elastomer import Kelvin, Maxwell
 from vehicle.model.laws.law import Numbers, Parallel
-from vehicle.model.laws.maxwell import Maxwell
 
 ROAD = "road"
 """Name of the input of a model with a single road."""

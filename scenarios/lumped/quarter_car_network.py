@@ -14,10 +14,8 @@ from scenarios.lumped.quarter_car_parameters import QuarterCar
 from vehicle.engines.linear.system import Row, Slide
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.damper import FRICTION
-from vehicle.model.laws.kelvin import Kelvin
+from vehicle.model.laws.elastomer import Kelvin, Maxwell, in_series
 from vehicle.model.laws.law import ForceLaw, Numbers
-from vehicle.model.laws.maxwell import Maxwell
-from vehicle.model.laws.series import in_series
 from vehicle.model.parameters.paths import full_path, quantity_of
 from vehicle.model.parameters.quantity import check
 from vehicle.model.parameters.toml_file import as_table

@@ -12,9 +12,7 @@ from scenarios.lumped.quarter_car_parameters import QuarterCar
 from vehicle.errors import ConfigurationError
 from vehicle.model.assembly.element_builder import MIN_FRICTION
 from vehicle.model.laws.damper import RECORD, actuator_parameters
-from vehicle.model.laws.kelvin import Kelvin
-from vehicle.model.laws.maxwell import Maxwell
-from vehicle.model.laws.series import in_series
+from vehicle.model.laws.elastomer import Kelvin, Maxwell, in_series
 
 WHEEL = "fr"
 """Name of the corner; elements have their names of the complete car."""

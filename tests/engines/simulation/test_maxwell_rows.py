@@ -6,7 +6,7 @@ import pytest
 from tests.engines.simulation.row_model import Stepper, add_bushing, add_free_body, element_law, empty_spec
 from tests.validation import validated
 from vehicle.engines.simulation.step_weights import implicit_share
-from vehicle.model.laws.maxwell import Maxwell
+from vehicle.model.laws.elastomer import Maxwell
 
 K1, K2, D2 = 4.0e5, 1.0e5, 2000.0  # the hydromount of appendix F, tau = 20 ms
 STEP = 1e-3

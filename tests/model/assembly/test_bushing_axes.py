@@ -12,7 +12,7 @@ from vehicle.engines.kinematics.axle_statics import AxleStatics
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.rows import Rows
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.axes import axes_along
+from vehicle.model.parameters.hardpoints import axes_along
 from vehicle.model.parameters.shipped import FOCUS_FILE
 from vehicle.model.parameters.template import SHIPPED
 from vehicle.model.parameters.toml_file import read_table

@@ -9,10 +9,10 @@ from tests.validation import validated
 from vehicle.errors import ConfigurationError
 from vehicle.model.assembly.connections import ElementLaw
 from vehicle.model.assembly.coupled_attachment import coupled_law
-from vehicle.model.parameters.axes import axes_along
 from vehicle.model.parameters.composition import PlacedConnection
 from vehicle.model.parameters.force_elements import Bushing, Hydromount
 from vehicle.model.parameters.force_table import ForceTable
+from vehicle.model.parameters.hardpoints import axes_along
 from vehicle.runs.car import Car
 
 SOFT = Bushing(stiffness=(6e5, 3e5, 5e5), damping=(1000.0, 100.0, 2000.0), rotational_stiffness=100.0)

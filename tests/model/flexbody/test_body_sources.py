@@ -272,8 +272,8 @@ def test_one_line_of_names_stands_above_numbers(tmp_path):
     path = tmp_path / "dofs.csv"
     for first in ("node,direction\n", "Node  Dir_1\n", "", "# node,direction\n"):
         path.write_text(f"{first}7,1\n7,3\n")
-        assert rows_of_numbers(path, 1, columns=2).tolist() == [[7.0, 1.0], [7.0, 3.0]]
+        assert rows_of_numbers(path, 2).tolist() == [[7.0, 1.0], [7.0, 3.0]]
     for first in ("node,x [mm]\n", "nan,nan\n", "node,direction\nnode,direction\n"):
         path.write_text(f"{first}7,1\n7,3\n")
         with pytest.raises(DataError, match="number"):
-            rows_of_numbers(path, 1, columns=2)
+            rows_of_numbers(path, 2)

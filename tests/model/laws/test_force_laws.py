@@ -13,10 +13,9 @@ from tests.validation import validated
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.coulomb import Coulomb
 from vehicle.model.laws.damper import damper_law, pack
+from vehicle.model.laws.elastomer import Kelvin, Maxwell
 from vehicle.model.laws.friction import Clamped
-from vehicle.model.laws.kelvin import Kelvin
 from vehicle.model.laws.law import Parallel
-from vehicle.model.laws.maxwell import Maxwell
 from vehicle.model.laws.stribeck import Stribeck
 from vehicle.model.parameters.vehicle import load_vehicle
 

@@ -5,9 +5,7 @@ import pytest
 
 from tests.validation import validated
 from vehicle.errors import ConfigurationError
-from vehicle.model.laws.kelvin import Kelvin
-from vehicle.model.laws.maxwell import Maxwell
-from vehicle.model.laws.series import in_series
+from vehicle.model.laws.elastomer import Kelvin, Maxwell, in_series
 
 ENGINE_MOUNT = Maxwell(stiffness=8e5, branch_stiffness=3.4e5, branch_damping=6057.0)
 HYDROMOUNT = Maxwell(stiffness=4e5, branch_stiffness=1e5, branch_damping=2000.0)

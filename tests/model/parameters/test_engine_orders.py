@@ -9,16 +9,10 @@ import pytest
 
 from tests.validation import validated
 from vehicle import Car, road
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.engine_orders import EngineOrders
-from vehicle.model.parameters.slider_crank import (
-    Vector,
-    block_forces,
-    crank_angles,
-    gas_pressure,
-    gas_torque,
-    piston,
-)
+from vehicle.model.parameters.slider_crank import block_forces, crank_angles, gas_pressure, gas_torque, piston
 
 FOUR: dict[str, Any] = {
     "cylinders": 4, "bore": 0.079, "stroke": 0.0814, "rod": 0.137, "reciprocating_mass": 0.45, "spacing": 0.087,

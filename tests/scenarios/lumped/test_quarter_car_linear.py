@@ -13,7 +13,7 @@ from tests.validation import validated
 from vehicle.engines.linear.natural_modes import natural_modes
 from vehicle.engines.linear.response import frequency_response
 from vehicle.errors import ConfigurationError
-from vehicle.model.laws.kelvin import Kelvin
+from vehicle.model.laws.elastomer import Kelvin
 
 CAR = load_quarter_car()
 

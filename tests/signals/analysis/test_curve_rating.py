@@ -3,10 +3,15 @@
 import numpy as np
 import pytest
 
-from vehicle.signals.analysis.curve_rating import best_shift, rate_curve
+from vehicle.signals.analysis.curve_rating import best_shift, rate_curves
 
 TIME = np.arange(400) * 1e-3
 PULSE = np.sin(2.0 * np.pi * 8.0 * TIME) * np.exp(-6.0 * TIME)
+
+
+def rate_curve(measured, simulated, step=1.0):
+    """The rating of one curve."""
+    return rate_curves([measured], [simulated], step)[0]
 
 
 def test_equal_curves_are_excellent():

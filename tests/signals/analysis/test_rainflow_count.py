@@ -5,7 +5,7 @@ import pytest
 
 from tests.validation import validated
 from vehicle.errors import ConfigurationError, MissingPartError
-from vehicle.signals.analysis.rainflow_count import Cycles, count_cycles
+from vehicle.signals.analysis.load_spectrum import Cycles, count_cycles
 
 
 def test_the_example_of_the_standard():

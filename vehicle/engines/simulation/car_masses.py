@@ -7,7 +7,7 @@ import numpy as np
 
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.model.flexbody.mass_properties import MassProperties
-from vehicle.model.parameters.load_mass import Load
+from vehicle.model.parameters.rigid_part import Load
 
 
 def car_masses(car: CarModel, *, body: bool = True, loads: bool = False) -> MassProperties:

@@ -1,26 +1,20 @@
 """Force laws of the connections of the car: bushings in series with the local stiffness of the body."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.model.assembly.coupled_attachment import STRUCTURAL_LOSS_TIME, coupled_law, is_coupled
 from vehicle.model.flexbody.superelement import Superelement, attached_nodes
 from vehicle.model.laws.amplitude import behind_spring, friction_elements
+from vehicle.model.laws.elastomer import Kelvin, Maxwell, in_series
 from vehicle.model.laws.jenkins import Jenkins
-from vehicle.model.laws.kelvin import Kelvin
-from vehicle.model.laws.maxwell import Maxwell
-from vehicle.model.laws.series import in_series
 from vehicle.model.parameters.body import TrimmedBody
 from vehicle.model.parameters.composition import PlacedConnection
 from vehicle.model.parameters.force_elements import Bushing, Hydromount, LinearBushing, Tyre
 from vehicle.names import AXES
-
-Vector = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -8,8 +8,6 @@ K_s is exact. The damper is to first order in G w B, the share by which its own 
 50 Hz of a mount with 2000 N s/m on 2e7 N/m, which changes the damping by its square.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -17,8 +15,7 @@ import scipy
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.beam import FloatArray
-from vehicle.model.laws.maxwell import Maxwell
-from vehicle.model.laws.series import in_series
+from vehicle.model.laws.elastomer import Maxwell, in_series
 from vehicle.model.parameters.composition import PlacedConnection
 from vehicle.model.parameters.force_elements import Hydromount
 from vehicle.names import AXES

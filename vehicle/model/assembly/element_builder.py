@@ -1,13 +1,12 @@
 """Builder that adds the elements of a car, with the constants of their laws, to a MuJoCo specification."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.model.assembly.element_numbers import (
     TURNING,
@@ -36,8 +35,6 @@ from vehicle.model.parameters.composition import (
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.placed_force import PlacedForce
 from vehicle.model.parameters.vehicle import Vehicle
-
-Vector = npt.NDArray[np.float64]
 
 MODAL_BODY_MASS = 1e-9
 """Mass [kg] of the bodies of modal and fluid coordinates, required by MuJoCo; the armature is the actual mass."""

@@ -4,16 +4,14 @@ The model keeps those of laws in custom fields of these names, and `vehicle.engi
 Cars that differ only in these numbers share a model: see `vehicle.engines.linear.variant_matrices`.
 """
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.model.assembly.connections import ElementLaw, element_law, fluid_law
 from vehicle.model.flexbody.rigid_body import rigid_body
 from vehicle.model.flexbody.superelement import Superelement
@@ -34,7 +32,6 @@ from vehicle.model.parameters.placed_force import PlacedForce
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import AXES
 
-Vector = npt.NDArray[np.float64]
 Numbers = dict[str, Vector]
 
 FLUID, DECOUPLER = "fluid/", "decoupler/"

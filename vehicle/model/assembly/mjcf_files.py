@@ -5,8 +5,6 @@ constraints, and the car would move wrongly. So `car.xml` requires a plugin that
 rejects the file, and its message shows the reason. `scene.xml` has the same bodies without joints, forces and sensors.
 """
 
-from __future__ import annotations
-
 import io
 import textwrap
 from xml.etree import ElementTree

@@ -1,21 +1,16 @@
 """MuJoCo specification of the car on its rig, built from parameters and superelement."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import mujoco
-import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.model.assembly.element_builder import ElementBuilder
 from vehicle.model.flexbody.attached_mass import with_attached_masses
 from vehicle.model.flexbody.superelement import Superelement, attached_nodes
 from vehicle.model.parameters.placed_force import on_parts
 from vehicle.model.parameters.vehicle import Vehicle
-
-Vector = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -1,7 +1,5 @@
 """Lights, floor, background and off-screen buffer for pictures of the car."""
 
-from __future__ import annotations
-
 import mujoco
 
 FARTHEST = 120.0

@@ -1,21 +1,17 @@
 """Visible shapes on the generated car: meshes without mass and without contact."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.model.parameters.composition import Composition, PlacedSpring
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.model.shapes.roles import ROLES, Part
 from vehicle.model.shapes.scene import car_shapes
 from vehicle.model.shapes.shape import Shape
-
-Vector = npt.NDArray[np.float64]
 
 SHELL_GROUP = 1
 """Visual group of everything on the trimmed body."""
@@ -89,7 +85,7 @@ def _reach(car: Composition, name: str, local_points: Mapping[str, Point]) -> di
 def add_shapes(
     spec: mujoco.MjSpec,
     shapes: Mapping[str, Shape],
-    origins: Mapping[str, npt.NDArray[np.float64]],
+    origins: Mapping[str, Vector],
     springs: Iterable[PlacedSpring],
 ) -> None:
     """Add a visible mesh for every shape to a specification; masses, inertias and joints do not change.

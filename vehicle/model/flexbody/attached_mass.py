@@ -1,7 +1,5 @@
 """Modes of a flexible body with attached point masses, by component-mode assembly."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """Stiffness of straight three-dimensional Euler-Bernoulli beams and of a space frame assembled from them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

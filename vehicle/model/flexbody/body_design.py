@@ -4,8 +4,6 @@ Interface and output points are hardpoints, defined in the vehicle file only. A 
 members between all nodes, and data that beams do not provide: estimated masses and local stiffnesses.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path

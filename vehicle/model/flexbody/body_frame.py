@@ -1,7 +1,5 @@
 """Trimmed body as a space frame: modes of a body design with the hardpoints and mass properties of a vehicle."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache

@@ -6,8 +6,6 @@ N maps the node displacements u to displacement and rotation of the load; M + N'
 For a rigid motion of the body, N is exact at every position of the load.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple

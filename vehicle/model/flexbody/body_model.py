@@ -1,7 +1,5 @@
 """Elastic model of a vehicle body: computed from a design on the hardpoints, or imported as a superelement."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from functools import lru_cache

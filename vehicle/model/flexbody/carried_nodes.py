@@ -1,7 +1,5 @@
 """Massless nodes added to a body at attachment points, carried by the surrounding nodes."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Free-free modes of a frame with translational mass at its nodes."""
 
-from __future__ import annotations
-
 import numpy as np
 import scipy
 

@@ -1,7 +1,5 @@
 """Inertia tensors: sign convention of the products, parallel-axis theorem, nearest physical tensor."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

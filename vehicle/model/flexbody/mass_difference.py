@@ -5,8 +5,6 @@ If the masses agree, rigid motions and modes have no inertia coupling. If not, t
 phi' M R, of the order of the relative mass difference and of the CoG distance over the radius of gyration.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Names of body modes, from the modal assurance with global deformation patterns and the kinetic energy by region."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from vehicle.model.flexbody.beam import FloatArray

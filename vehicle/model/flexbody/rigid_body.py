@@ -1,19 +1,15 @@
 """Rigid-body mass properties of the body in the form required by MuJoCo."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.inertia_tensor import about_cog, inertia_tensor, nearest_physical
 from vehicle.model.parameters.body import MOMENTS, BodyInertia, TrimmedBody
 from vehicle.model.parameters.hardpoints import Point
-
-Vector = npt.NDArray[np.float64]
 
 LARGEST_REPAIR = 0.02
 """Maximum change of a tensor component by the repair, over the largest principal moment [1]. Swing tests measure

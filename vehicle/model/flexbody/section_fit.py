@@ -17,8 +17,6 @@ The remaining residuals make the fit unique and have low weights: modes spread o
 above the range, symmetric or antisymmetric modes, no node that moves far more than its surroundings, factors near one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

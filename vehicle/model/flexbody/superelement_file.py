@@ -4,8 +4,6 @@ TOML, with a unit in every key, suits bodies of tens of nodes under version cont
 nodes and hundreds of modes, for which reading text would take longer than the run.
 """
 
-from __future__ import annotations
-
 import tomllib
 from pathlib import Path
 

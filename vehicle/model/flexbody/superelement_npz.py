@@ -1,7 +1,5 @@
 """Modal superelement as npz, for thousands of nodes and hundreds of modes, which are slow to read as text."""
 
-from __future__ import annotations
-
 import difflib
 import io
 import json

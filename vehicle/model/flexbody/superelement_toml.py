@@ -1,7 +1,5 @@
 """Modal superelement as TOML with a unit in every key; unknown or missing keys are errors."""
 
-from __future__ import annotations
-
 import difflib
 import json
 from collections.abc import Iterable

@@ -1,7 +1,5 @@
 """Mirror symmetry about the plane y = 0: opposite nodes, and symmetric or antisymmetric modes."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -24,8 +24,6 @@ loop, Fmax (sqrt(x2^2 + A^2 + 6 x2 A) - x2 - A) / (2 x2), is lower, by at most 1
 Sources: Berg, Vehicle System Dynamics 30 (1998) 197; Masing 1926; `vehicle.model.laws.jenkins`.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from vehicle.model.laws.jenkins import Jenkins

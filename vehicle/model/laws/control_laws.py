@@ -24,13 +24,12 @@ and `act` of `vehicle/core/source/laws.h`.
 Source: Karnopp, Crosby, Harwood (1974) for skyhook; Ahmadian (1997) for groundhook and hybrid.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.model.parameters.semi_active_damper import AT_ONCE, FMU, SemiActiveDamper
 
 SETTING = np.dtype(
@@ -60,7 +59,7 @@ HELD, REACHED, PRESENT, RING = 0, 1, 2, 3
 past steps."""
 
 
-def pack(control: SemiActiveDamper) -> npt.NDArray[np.float64]:
+def pack(control: SemiActiveDamper) -> Vector:
     """Return the parameters of a controlled damper, in the order of `SETTING`, but with times [s] and a rate; (8,).
 
     Without a run, a damper with a controller FMU has its softest setting.
@@ -89,7 +88,7 @@ def in_steps(numbers: npt.ArrayLike, timestep: float) -> npt.NDArray[Any]:
     return records.view(SETTING)[..., 0]
 
 
-def at_rest(numbers: npt.NDArray[Any], *shape: int) -> npt.NDArray[np.float64]:
+def at_rest(numbers: npt.NDArray[Any], *shape: int) -> Vector:
     """Return the memory of dampers before the first step, filled with the softest setting; (3 + lag + 1, ...)."""
     return np.full((RING + int(numbers["lag"]) + 1, *shape), float(numbers["softest"]))
 

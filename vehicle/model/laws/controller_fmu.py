@@ -19,8 +19,6 @@ and freed at its end, so that runs are independent. FMPy reads and loads the FMU
 such a controller.
 """
 
-from __future__ import annotations
-
 import ctypes
 import hashlib
 import io

@@ -3,8 +3,6 @@
 The set-valued form is computed by a switch (`scenarios.lumped.switch`).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -12,11 +12,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.model.laws.law import Numbers
-
-Vector = npt.NDArray[np.float64]
 
 BEYOND = 10.0
 """Extent of an outer segment as a clamped line, [m/s] or [m]: faster than any damper; an infinite limit would cost the

@@ -8,8 +8,6 @@ the remainder. For a law by address (`vehicle.model.laws.law_by_address`), F_c i
 the function for the remainder.
 """
 
-from __future__ import annotations
-
 import ctypes
 import dataclasses
 import importlib
@@ -19,6 +17,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.core.library import core
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.curve import Curve
@@ -105,7 +104,7 @@ def damper_curve(damper: Damper) -> Curve:
     )
 
 
-def actuator_parameters(record: npt.NDArray[Any]) -> npt.NDArray[np.float64]:
+def actuator_parameters(record: npt.NDArray[Any]) -> Vector:
     """Return the parameters of the actuator of a damper with this record; (n,), n the length of `RECORD`."""
     return np.atleast_1d(record).view(np.float64)
 

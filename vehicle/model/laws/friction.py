@@ -12,19 +12,15 @@ the static functions `limit_at` and `fall_at` of a velocity and of parameters by
 Source: Bommer 2006, equations 2.4 and 3.2.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.model.laws.law import Numbers
 from vehicle.model.parameters.quantity import quantity, validate
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -52,15 +48,15 @@ class Friction(ABC):
         value: Numbers = getattr(self, name)
         return value
 
-    def limit(self, velocity: Numbers) -> Array:
+    def limit(self, velocity: Numbers) -> Vector:
         """Return the friction limit L [N] at a velocity [m/s]."""
         return np.asarray(self.limit_at(velocity, self), dtype=float)
 
-    def force(self, velocity: Numbers) -> Array:
+    def force(self, velocity: Numbers) -> Vector:
         """Return the force [N] at a velocity [m/s]."""
         return np.asarray(self.limit(velocity) * (2.0 / np.pi) * np.arctan(self.smoothing * np.asarray(velocity)))
 
-    def slope(self, velocity: Numbers) -> Array:
+    def slope(self, velocity: Numbers) -> Vector:
         """Return dF/dv [N s/m]."""
         v = np.asarray(velocity, dtype=float)
         scaled = self.smoothing * v
@@ -78,12 +74,12 @@ class Clamped:
 
     law: Friction
 
-    def force(self, velocity: Numbers) -> Array:
+    def force(self, velocity: Numbers) -> Vector:
         """Return the force [N] at a velocity [m/s]."""
         limit = self.law.limit(velocity)
         return np.asarray(np.clip(slope_at_rest(limit, self.law.smoothing) * np.asarray(velocity), -limit, limit))
 
-    def slope(self, velocity: Numbers) -> Array:
+    def slope(self, velocity: Numbers) -> Vector:
         """Return dF/dv [N s/m]: of c v if the force is below the limit, otherwise of the limit."""
         v, limit = np.asarray(velocity, dtype=float), self.law.limit(velocity)
         fall, steep = self.law.fall_at(v, self.law), slope_at_rest(1.0, self.law.smoothing)

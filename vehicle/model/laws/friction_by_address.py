@@ -9,14 +9,12 @@ cannot be brought in this way: it needs a memory for each damper, which the engi
 step.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.core.records import Packed, packed
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.friction import Friction
@@ -47,7 +45,7 @@ class FrictionByAddress:
     call: Packed = field(repr=False)
     kept: Any = field(repr=False)
 
-    def limit(self, friction: Numbers, velocity: Numbers) -> npt.NDArray[np.float64]:
+    def limit(self, friction: Numbers, velocity: Numbers) -> Vector:
         """Return the limit L(Fd, v) [N], at least 0.
 
         Args:

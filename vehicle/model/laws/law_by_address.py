@@ -16,8 +16,6 @@ Source of the integration: Hairer and Wanner, Solving Ordinary Differential Equa
 implicit methods).
 """
 
-from __future__ import annotations
-
 import ctypes
 import re
 from collections.abc import Iterable
@@ -25,8 +23,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.law import Numbers
 
@@ -72,7 +70,7 @@ class LawByAddress:
     viscous: float
     kept: Any = field(repr=False)
 
-    def force(self, velocity: Numbers, displacement: Numbers = 0.0) -> npt.NDArray[np.float64]:
+    def force(self, velocity: Numbers, displacement: Numbers = 0.0) -> Vector:
         """Return the force F(x, v) [N].
 
         Args:
@@ -82,7 +80,7 @@ class LawByAddress:
         function, pairs = CALL(self.address), np.broadcast(displacement, velocity)
         return np.array([function(self.memory, float(x), float(v)) for x, v in pairs]).reshape(pairs.shape)
 
-    def slope(self, velocity: Numbers) -> npt.NDArray[np.float64]:
+    def slope(self, velocity: Numbers) -> Vector:
         """Return dF/dv [N s/m] at zero displacement, by a central difference."""
         v = np.asarray(velocity, dtype=float)
         return np.asarray((self.force(v + STEP) - self.force(v - STEP)) / (2.0 * STEP))

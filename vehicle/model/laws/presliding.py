@@ -8,18 +8,14 @@ set-valued Coulomb friction.
 The default curve has s_j = 1 - p_(j-1) in four steps: a polygon of dF/dx = K (1 - F/L) (Dahl 1968).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.model.laws.coulomb import Coulomb
 from vehicle.model.laws.jenkins import Jenkins
 from vehicle.model.parameters.force_elements import Damper
-
-Vector = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

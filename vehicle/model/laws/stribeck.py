@@ -1,7 +1,5 @@
 """Stribeck friction: the static limit falls to the sliding limit as the velocity grows."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

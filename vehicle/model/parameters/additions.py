@@ -1,13 +1,10 @@
 """Additions of a vehicle file to its templates: points, connections between any two parts, outputs and loads."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.axes import Axes, axes_along
 from vehicle.model.parameters.composition import PlacedConnection, PlacedOutput, PlacedPart
 from vehicle.model.parameters.force_elements import (
     DECOUPLER,
@@ -18,9 +15,9 @@ from vehicle.model.parameters.force_elements import (
     LinearBushing,
     Tyre,
 )
-from vehicle.model.parameters.hardpoints import Point, require_apart, require_point
-from vehicle.model.parameters.load_mass import Load
+from vehicle.model.parameters.hardpoints import Axes, Point, axes_along, require_apart, require_point
 from vehicle.model.parameters.quantity import NAME_PATTERN
+from vehicle.model.parameters.rigid_part import Load
 from vehicle.model.parameters.toml_file import build, convert, nearest
 
 CONNECTION_KEYS = {"moving", "carrier", "at", "ground", "axes"}

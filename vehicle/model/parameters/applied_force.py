@@ -1,7 +1,5 @@
 """Forces that a vehicle file applies to parts of the car: numbers of their histories."""
 
-from __future__ import annotations
-
 import cmath
 import math
 from dataclasses import dataclass

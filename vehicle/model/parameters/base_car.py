@@ -1,7 +1,5 @@
 """Reading a vehicle file, which may give only its differences from a base car."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Notices on the changes that follow from a variation of mass or centre of gravity of the body (`whole_body`)."""
 
-from __future__ import annotations
-
 import contextlib
 from collections.abc import Iterable, Mapping
 

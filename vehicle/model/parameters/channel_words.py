@@ -6,8 +6,6 @@
 'knuckle_fl_acc_z'
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 
 from vehicle.errors import ConfigurationError

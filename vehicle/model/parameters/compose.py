@@ -1,7 +1,5 @@
 """Composition of a car from a vehicle file and its templates. Handles types of joints; part names are data."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Mapping
 from pathlib import Path
@@ -15,7 +13,6 @@ from vehicle.model.parameters.driving import Crank, crank_of
 from vehicle.model.parameters.further_forces import engine_forces, force_targets, further_force
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.instance import Instance, instances
-from vehicle.model.parameters.load_mass import Load
 from vehicle.model.parameters.placed_elements import (
     element_kinds,
     placed_connections,
@@ -34,6 +31,7 @@ from vehicle.model.parameters.references import (
     require_sound,
     require_taken,
 )
+from vehicle.model.parameters.rigid_part import Load
 from vehicle.model.parameters.toml_file import convert
 
 NAMED_TABLES = ("hardpoints", "connection", "outputs", "alias", "load", "force")

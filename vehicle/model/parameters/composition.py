@@ -12,7 +12,6 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Self, TypeVar
 
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.axes import Axes
 from vehicle.model.parameters.driving import RunUp
 from vehicle.model.parameters.force_elements import (
     Damper,
@@ -23,12 +22,11 @@ from vehicle.model.parameters.force_elements import (
     Stabilizer,
 )
 from vehicle.model.parameters.force_table import ForceTable
-from vehicle.model.parameters.hardpoints import Point
-from vehicle.model.parameters.load_mass import Load
+from vehicle.model.parameters.hardpoints import Axes, Point
 from vehicle.model.parameters.paths import value_at
 from vehicle.model.parameters.placed_force import PlacedForce
 from vehicle.model.parameters.quantity import type_hints
-from vehicle.model.parameters.rigid_part import Part
+from vehicle.model.parameters.rigid_part import Load, Part
 from vehicle.model.parameters.toml_file import build
 from vehicle.names import AXES
 

@@ -1,7 +1,5 @@
 """Measured speed of a crankshaft over time."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Driving state of a car: speed and hold of the course; templates with rolling or fixed wheels."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Orders of a combustion engine: numbers of its crank drive and of its gas torque."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -4,8 +4,6 @@ A schema checks names, types and ranges, table by table. Relations between param
 and parts, are checked when a car is composed.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import types
 import typing
@@ -32,11 +30,10 @@ from vehicle.model.parameters.force_elements import (
 )
 from vehicle.model.parameters.further_forces import AXES_OF
 from vehicle.model.parameters.hardpoints import LARGEST_M
-from vehicle.model.parameters.load_mass import Load
 from vehicle.model.parameters.optional_keys import WITH_FILES
 from vehicle.model.parameters.placed_elements import spring_kind
 from vehicle.model.parameters.quantity import NAME_PATTERN, type_hints
-from vehicle.model.parameters.rigid_part import Part
+from vehicle.model.parameters.rigid_part import Load, Part
 from vehicle.model.parameters.template import SHIPPED, read_template
 from vehicle.model.parameters.template_file import LISTS, TEMPLATE_KEYS, USE_KEYS, read_template_file
 from vehicle.model.parameters.topology import RolePart, SteeringAxis, Template, Wheel

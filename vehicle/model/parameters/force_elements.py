@@ -1,7 +1,5 @@
 """Force elements: bushings with rubber friction, hydromount, main spring, stabilizer, damper."""
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Forces of a vehicle file on any part, and those of its turning wheels, placed."""
 
-from __future__ import annotations
-
 import cmath
 import math
 import re
@@ -17,7 +15,7 @@ from vehicle.model.parameters.driving import SPIN, Crank, RunUp
 from vehicle.model.parameters.engine_orders import ENGINE, ORDERS, EngineOrders
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.instance import Instance
-from vehicle.model.parameters.placed_force import PlacedForce
+from vehicle.model.parameters.placed_force import NONE, PlacedForce
 from vehicle.model.parameters.quantity import NAME_PATTERN
 from vehicle.model.parameters.toml_file import build, convert, nearest
 
@@ -26,8 +24,6 @@ PLACE_KEYS = ("on", "at", "force", "moment", "axes", "against", "joint")
 
 AXES_OF = ("vehicle", "part")
 """Axes of the direction of a force: those of the vehicle, or of the part that it acts on, which turn with it."""
-
-NONE = (0.0, 0.0, 0.0)
 
 LARGEST_TORQUE = 5000.0
 """Largest moment or torque of a force of the vehicle file [N m]."""
@@ -145,7 +141,6 @@ def further_force(name: str, value: Any, targets: ForceTargets) -> PlacedForce:
         force=direction if directions == ["force"] else NONE,
         moment=direction if directions == ["moment"] else NONE,
         against=against,
-        joint="",
         law=law,
         speed=speed,
         path=path,
@@ -188,11 +183,6 @@ def _torque(path: str, table: Mapping[str, Any], targets: ForceTargets, law: App
         )
     return PlacedForce(
         name=path.partition(".")[2],
-        on="",
-        at=NONE,
-        force=NONE,
-        moment=NONE,
-        against="",
         joint=joint,
         law=law,
         speed=speed,
@@ -273,8 +263,6 @@ def engine_forces(car: Mapping[str, Instance], targets: ForceTargets) -> list[Pl
                         at=engine.at or targets.parts[part],
                         force=force,
                         moment=moment,
-                        against="",
-                        joint="",
                         law=AppliedForce(
                             harmonics=listed, angle=CRANK, reference_frequency=None if name == "torque_gas" else rising
                         ),

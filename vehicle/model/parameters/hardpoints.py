@@ -1,6 +1,7 @@
-"""Points of the car in its design position, in the vehicle frame: x to the rear, y to the driver's right, z up [m]."""
+"""Points of the car in its design position, in the vehicle frame: x to the rear, y to the driver's right, z up [m].
 
-from __future__ import annotations
+And the axes of a bushing that is aligned with a line, as at the end of a rod.
+"""
 
 import itertools
 import math
@@ -9,6 +10,9 @@ from collections.abc import Mapping
 from vehicle.errors import ConfigurationError
 
 Point = tuple[float, float, float]
+
+Axes = tuple[Point, Point, Point]
+"""Directions of x, y and z of an element in the vehicle frame."""
 
 COINCIDENT_M = 1e-3
 """Minimum distance of two hardpoints of one part [m]; closer points count as coincident."""
@@ -34,6 +38,22 @@ def unit(vector: Point) -> Point:
     """Return a vector of length one with this direction."""
     length = math.hypot(*vector)
     return (vector[0] / length, vector[1] / length, vector[2] / length)
+
+
+def axes_along(start: Point, end: Point) -> Axes:
+    """Return axes with x from one point to another, y horizontal and z perpendicular; a vertical line keeps y.
+
+    For the mirrored line the axes are mirrored up to the sign of y, on which K and D do not depend; see
+    `vehicle.model.parameters.composition.PlacedConnection.table` for a table.
+
+    Args:
+        start, end: two different points [m].
+    """
+    x = unit((end[0] - start[0], end[1] - start[1], end[2] - start[2]))
+    level = math.hypot(x[0], x[1])
+    y = (0.0, 1.0, 0.0) if level < 1e-6 else (-x[1] / level, x[0] / level, 0.0)
+    z = unit(cross(x, y))
+    return x, y, z
 
 
 def require_point(path: str, point: Point, *, right: bool) -> None:

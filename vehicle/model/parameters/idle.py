@@ -1,7 +1,5 @@
 """Notices on overrides without effect, because the law of the parameter is switched off."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Iterable
 

@@ -1,7 +1,5 @@
 """Optional keys of a vehicle file: parameters with a default, further laws, and tables of one side."""
 
-from __future__ import annotations
-
 import dataclasses
 import typing
 from collections.abc import Iterator, Mapping

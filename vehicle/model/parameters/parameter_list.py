@@ -1,7 +1,5 @@
 """All parameters of a car by their paths: value, unit, meaning, range and source."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache

@@ -5,8 +5,6 @@ the last name, as in "front.bushings.suspension_mount.stiffness.z". The end of a
 "suspension_mount.stiffness.z". A vehicle file may define further names in the table `alias`.
 """
 
-from __future__ import annotations
-
 import difflib
 import re
 import tomllib

@@ -1,13 +1,10 @@
 """Connections, springs, dampers, wheels and outputs of the templates, placed on each side with their numbers."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters import topology
 from vehicle.model.parameters.additions import law_kind
-from vehicle.model.parameters.axes import axes_along
 from vehicle.model.parameters.composition import (
     JointSpring,
     PlacedConnection,
@@ -26,6 +23,7 @@ from vehicle.model.parameters.force_elements import (
     SlideSpring,
     Stabilizer,
 )
+from vehicle.model.parameters.hardpoints import axes_along
 from vehicle.model.parameters.instance import LEFT, Instance, elements
 from vehicle.model.parameters.rigid_part import Part
 from vehicle.model.parameters.wheel_forces import WHEEL_FORCES

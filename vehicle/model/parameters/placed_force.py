@@ -1,7 +1,5 @@
 """A force on a part of the car, placed, with its history."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -11,6 +9,9 @@ from vehicle.model.parameters.applied_force import AppliedForce
 from vehicle.model.parameters.driving import RunUp
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.toml_file import nearest
+
+NONE = (0.0, 0.0, 0.0)
+"""Direction of a force or moment that is absent."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -38,12 +39,12 @@ class PlacedForce:
     """
 
     name: str
-    on: str
-    at: Point
-    force: Point
-    moment: Point
-    against: str
-    joint: str
+    on: str = ""
+    at: Point = NONE
+    force: Point = NONE
+    moment: Point = NONE
+    against: str = ""
+    joint: str = ""
     law: AppliedForce
     speed: float
     path: str

@@ -1,7 +1,5 @@
 """Parts of the templates with their joints, placed on each side; a parent comes before its children."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterator, Mapping

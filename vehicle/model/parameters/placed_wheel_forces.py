@@ -1,17 +1,15 @@
 """Imbalance, non-uniformity and brake variation of the wheels of a car, placed."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from typing import Any
 
 from vehicle.model.parameters.applied_force import AppliedForce, Harmonics
 from vehicle.model.parameters.composition import PlacedConnection, PlacedPart, PlacedWheel
 from vehicle.model.parameters.driving import SPIN
-from vehicle.model.parameters.further_forces import NONE, ForceTargets
+from vehicle.model.parameters.further_forces import ForceTargets
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.instance import Instance
-from vehicle.model.parameters.placed_force import PlacedForce
+from vehicle.model.parameters.placed_force import NONE, PlacedForce
 from vehicle.model.parameters.wheel_forces import WHEEL_FORCES, BrakeVariation, Imbalance, Nonuniformity
 from vehicle.names import SIDE_SIGN
 
@@ -57,15 +55,11 @@ def _forces(
     angle = f"wheel_{wheel.name}"
     speed = targets.speeds[angle]
 
-    def force(name: str, harmonics: Harmonics, direction: Point, at: Point, **ends: str) -> PlacedForce:
-        on, against, joint, changed = (ends.get(key, "") for key in ("on", "against", "joint", "tyre"))
+    def force(name: str, harmonics: Harmonics, direction: Point, at: Point, **ends: Any) -> PlacedForce:
         law = AppliedForce(harmonics=harmonics, angle=angle)
         path = f"{wheel.axle}.{table}"
-        unit = ("m" if direction[2] else "m/s") if changed else "N" if any(direction) else "N m"
-        return PlacedForce(
-            name=name, on=on, at=at, force=direction, moment=NONE, against=against, joint=joint, law=law, speed=speed,
-            path=path, unit=unit, tyre=changed,
-        )  # fmt: skip
+        unit = ("m" if direction[2] else "m/s") if "tyre" in ends else "N" if any(direction) else "N m"
+        return PlacedForce(name=name, at=at, force=direction, law=law, speed=speed, path=path, unit=unit, **ends)
 
     x, y, z = wheel.center
     if isinstance(values, Imbalance):

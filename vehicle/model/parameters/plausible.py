@@ -14,7 +14,7 @@ from vehicle.model.parameters.composition import PlacedWheel
 from vehicle.model.parameters.driving import ROUND
 from vehicle.model.parameters.force_elements import Tyre
 from vehicle.model.parameters.hardpoints import Point
-from vehicle.model.parameters.load_mass import Load
+from vehicle.model.parameters.rigid_part import Load
 from vehicle.names import AXES
 
 if TYPE_CHECKING:

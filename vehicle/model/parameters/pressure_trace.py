@@ -1,21 +1,17 @@
 """Pressure in a cylinder over the crank angle from a measurement file, for the gas torque of an engine."""
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Measurement
 from vehicle.signals.formats.reader import read_record
 from vehicle.signals.formats.units import allowed_units, find_unit
-
-Vector = npt.NDArray[np.float64]
 
 CYCLE = 720.0
 """Crank angle of a cycle of a four-stroke engine [deg]."""

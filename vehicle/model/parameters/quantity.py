@@ -1,7 +1,5 @@
 """Fields of parameter classes with unit, meaning and range, and their validation."""
 
-from __future__ import annotations
-
 import dataclasses
 import functools
 import math

@@ -1,7 +1,5 @@
 """Range of a parameter: sampled uniformly, or fitted from a start value; and the texts of values and ranges."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Checks of a composition: geometry, names that must exist, and entries that no element uses."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterator, Mapping
 from typing import Any

@@ -1,7 +1,5 @@
 """Damper with a controlled coefficient: limits, gains of the control laws, delay and rate."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from vehicle.errors import ConfigurationError

@@ -1,7 +1,5 @@
 """Cars of the package, by their names."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Iterable
 from importlib import resources

@@ -16,18 +16,14 @@ Sources: Taylor, The Internal-Combustion Engine in Theory and Practice, vol. 2, 
 Combustion Engine Fundamentals, 1988, chapter 9.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.engine_orders import EngineOrders
 from vehicle.model.parameters.pressure_trace import pressure_at
-
-Vector = npt.NDArray[np.float64]
 
 SAMPLES = 1440
 """Points of a cycle of two turns, half a degree each."""

@@ -7,8 +7,6 @@ table `when`. A `mirrored` template describes the right side and exists on both;
 side, and an element with such a name exists once.
 """
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Collection, Iterable, Mapping
 from importlib import resources

@@ -1,7 +1,5 @@
 """Reading one template file, without the templates that it includes: keys and types."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Conversion of TOML files to parameter objects and back, with strict names and types."""
 
-from __future__ import annotations
-
 import dataclasses
 import difflib
 import functools

@@ -1,7 +1,5 @@
 """Elements of a template: parts, joints, connections, springs, dampers, outputs and wheels, without numbers."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 

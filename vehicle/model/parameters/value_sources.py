@@ -1,7 +1,5 @@
 """Sources of the values of a vehicle file: the comments behind them."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

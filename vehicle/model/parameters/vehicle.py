@@ -1,7 +1,5 @@
 """Complete parameters of a car on its rig: a vehicle file and the composition of its templates."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path

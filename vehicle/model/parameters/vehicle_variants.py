@@ -1,7 +1,5 @@
 """Variants of a vehicle that differ in numbers alone, without a new composition where the change is local."""
 
-from __future__ import annotations
-
 import contextlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace

@@ -5,8 +5,6 @@ theta' = V/R. Harmonics are A cos(order theta + phase) with theta = 0 at t = 0. 
 Systems, 2005, chapter 1 (imbalance); Pacejka, Tire and Vehicle Dynamics, 3rd ed., chapter 8.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from vehicle.errors import ConfigurationError

@@ -9,8 +9,6 @@ belongs, also in `vehicle.toml` of a run (`TrimmedBody.model_factor`); a model t
 of the body after it.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any

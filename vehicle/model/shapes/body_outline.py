@@ -5,8 +5,6 @@ H above the road) and are mapped piecewise linearly to the vehicle: the wheel ar
 output point.
 """
 
-from __future__ import annotations
-
 import tomllib
 from dataclasses import dataclass
 from importlib import resources

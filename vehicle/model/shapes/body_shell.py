@@ -1,7 +1,5 @@
 """Sheet metal and glass of the body, built as patches between the curves of the outline."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """Structure and interior inside the shell: floor, front rails, strut towers, subframe, exhaust, seats, dashboard."""
 
-from __future__ import annotations
-
 import numpy as np
 import trimesh
 

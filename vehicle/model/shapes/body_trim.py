@@ -1,7 +1,5 @@
 """Details of the outer body: lamps, grille, bumper strips, door joints, handles, mirrors, roof rails."""
 
-from __future__ import annotations
-
 import numpy as np
 import trimesh
 

@@ -1,7 +1,5 @@
 """Transverse engine with gearbox, belt drive, cans of the side mounts and torque arm."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Colours of the scene: muted, so that springs and dampers stand out."""
 
-from __future__ import annotations
-
 from typing import Final
 
 from vehicle.model.shapes.shape import Colour

@@ -1,7 +1,5 @@
 """Parts of the rig: shaker with its table, pedestal with its plate, stands with rubber blocks, bed plate."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Sequence
 

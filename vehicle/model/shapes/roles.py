@@ -1,7 +1,5 @@
 """Roles of parts: drawing function and required points of each role; other parts are drawn as rods between points."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Final

@@ -1,7 +1,5 @@
 """Car on its rig as parts with roles: wheels on plates, or the body on rubber blocks."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Final
 

@@ -1,7 +1,5 @@
 """Drawn pieces of a part, default drawn sizes, and visible shapes."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final, NamedTuple

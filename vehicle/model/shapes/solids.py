@@ -1,7 +1,5 @@
 """Closed solids (hulls, boxes, bodies of revolution, tubes and bars swept along a path), placed and joined."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """Curves and open surfaces between curves: splines, rounded corners, helices, grids, Coons patches."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Suspension of the right side: MacPherson strut with its spring, lower arm, knuckle, links and stabilizer."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

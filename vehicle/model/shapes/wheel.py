@@ -1,7 +1,5 @@
 """Tyre, rim, brake disc and caliper of the right side."""
 
-from __future__ import annotations
-
 import numpy as np
 import trimesh
 

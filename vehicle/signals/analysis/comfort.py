@@ -1,7 +1,5 @@
 """Comfort value of Bommer 2006, its statistical error, and a check that the vibration is stationary."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

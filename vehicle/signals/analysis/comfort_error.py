@@ -27,8 +27,6 @@ Sources: Bendat and Piersol, Random Data, 4th ed., chapter 8; Heidelberger and W
 (1981): variance of a mean from the spectrum near zero frequency.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -10,8 +10,6 @@ sqrt(M(f2) - M(f1)); bands side by side add up to the whole without gap or overl
 P_k by |H(f_k)|^2.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -3,13 +3,10 @@
 Source: ISO/TS 18571:2024, Road vehicles - Objective rating metric for non-ambiguous signals.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.time_shift import coefficients
@@ -66,8 +63,10 @@ class CurveRating(Ratings):
     shift: int
 
 
-def rate_curve(measured: npt.ArrayLike, simulated: npt.ArrayLike, step: float = 1.0) -> CurveRating:
-    """Rate a simulated curve against a measured curve.
+def rate_curves(
+    measured: Sequence[Vector] | Vector, simulated: Sequence[Vector] | Vector, step: float = 1.0
+) -> list[CurveRating]:
+    """Rate simulated curves against measured ones, each pair by itself.
 
     Corridor: mean of 1 within the inner corridor, 0 outside the outer one, ((outer - d) / (outer - inner))^2 between.
     Phase: 1 - n / (0.2 N), n the shift with the largest correlation. Magnitude, of the shifted curves after dynamic
@@ -75,23 +74,9 @@ def rate_curve(measured: npt.ArrayLike, simulated: npt.ArrayLike, step: float = 
     1 - (|C' - T'|_1 / |T'|_1) / 2. Negative ratings are set to 0.
 
     Args:
-        measured: measured curve T, (n,), uniformly sampled.
-        simulated: simulated curve C, (n,), at the times of T.
+        measured: k measured curves T, (n,) each, uniformly sampled.
+        simulated: k simulated curves C, (n,) each, at the times of T.
         step: sampling interval; it scales both slopes and cancels in the rating.
-    """
-    truth, curve = np.asarray(measured, dtype=float), np.asarray(simulated, dtype=float)
-    return rate_curves([truth], [curve], step)[0]
-
-
-def rate_curves(
-    measured: Sequence[Vector] | Vector, simulated: Sequence[Vector] | Vector, step: float = 1.0
-) -> list[CurveRating]:
-    """Rate several curves in a batch; the ratings are equal to those of `rate_curve`.
-
-    Args:
-        measured: k measured curves T, (n,) each.
-        simulated: k simulated curves C, (n,) each.
-        step: sampling interval.
     """
     pairs = list(zip(measured, simulated, strict=True))
     shifts = [best_shift(truth, curve) for truth, curve in pairs]

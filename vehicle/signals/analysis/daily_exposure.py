@@ -1,7 +1,5 @@
 """Daily exposure A(8) of a hand or a body to vibration, with action value and limit value."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Detect inputs that are copies of other inputs: equal, scaled, inverted, delayed or filtered."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations

@@ -1,7 +1,5 @@
 """Vibration at a point of contact after ISO 2631-1, BS 6841, ISO 5349-1, EN 12299 or Giacomin; effect of an offset."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from types import MappingProxyType

@@ -1,7 +1,5 @@
 """Measures of the vibration exposure to a weighted acceleration: RMS, MTVV, crest factor, VDV, MSDV and vector sums."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Literal
 

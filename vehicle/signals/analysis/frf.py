@@ -1,7 +1,5 @@
 """Estimate FRFs and coherence from one or several excitations to any number of responses (H1 estimator)."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial

@@ -6,8 +6,6 @@ of use and abuse, Sound and Vibration 37 (2003), 14-23; E. Dascotte and J. Strob
 FRF correlation functions, Proc. IMAC XVII 1999, 1169-1174.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -8,8 +8,6 @@ Source: Thomson, Spectrum estimation and harmonic analysis, Proc. IEEE 70 (1982)
 Noise, 2008: rounding to a step q adds white noise of variance q^2 / 12.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from functools import cache, lru_cache
 

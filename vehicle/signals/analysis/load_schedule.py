@@ -6,8 +6,6 @@ A_i is the equivalent amplitude of a run of length T_i, one cycle a second of eq
 curve and n_i the number of repeats. Damages add up after Palmgren and Miner; only their ratios have a meaning here.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

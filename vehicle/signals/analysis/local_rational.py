@@ -13,8 +13,6 @@ Source: McKelvey and Guerin, Non-parametric frequency response estimation using 
 Pintelon and Schoukens, System Identification: A Frequency Domain Approach, 2nd ed. 2012, section 7.2.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterator, Sequence
 

@@ -1,7 +1,5 @@
 """Modal assurance criterion (MAC): correlation of two mode shapes."""
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 

@@ -1,7 +1,5 @@
 """FRFs to several simultaneous inputs; inputs that are scaled copies without a delay count as a single motion."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

@@ -7,14 +7,12 @@ so that the windows are those of a record over the angle. A constant of the reco
 and Vibration Analysis, 2nd ed., 2023, chapter 12.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Complex
 from vehicle.errors import DataError
 from vehicle.signals.analysis.samples import Vector
 
@@ -34,7 +32,7 @@ class OrderCut:
 
     orders: Vector
     turns: Vector
-    amplitude: npt.NDArray[np.complex128]
+    amplitude: Complex
 
 
 def order_cut(

@@ -7,14 +7,12 @@ that their mean keeps what turns with the part, and their scatter gives its stan
 with another phase. Source: Brandt, Noise and Vibration Analysis, 2nd ed., 2023, chapter 12.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Complex
 from vehicle.errors import DataError
 from vehicle.signals.analysis.samples import Vector
 
@@ -39,7 +37,7 @@ class OrderLines:
 
     orders: Vector
     frequency: Vector
-    amplitude: npt.NDArray[np.complex128]
+    amplitude: Complex
     error: Vector
     segments: int
 

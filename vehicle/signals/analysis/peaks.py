@@ -1,7 +1,5 @@
 """Resonance peaks of an FRF magnitude."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -15,8 +15,6 @@ The spread over periods is the noise of a response, and the scatter of the lines
 Source: Pintelon and Schoukens, System Identification: A Frequency Domain Approach, 2nd ed. 2012, sections 2.5 and 2.6.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace

@@ -12,8 +12,6 @@ Source: Pintelon and Schoukens, System Identification: A Frequency Domain Approa
 method).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

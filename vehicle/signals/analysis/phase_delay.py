@@ -1,7 +1,5 @@
 """Delay between two FRFs of one path, from the slope of their phase difference."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Grid of poles for the local rational model, and sums over the lines of a frequency window for all of them."""
 
-from __future__ import annotations
-
 import itertools
 from functools import lru_cache
 from typing import NamedTuple

@@ -5,13 +5,11 @@
 The index 95 is the 95 % quantile of the 60 values of 5 minutes, by linear interpolation.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.analysis.samples import checked_rows, checked_time_step
 from vehicle.signals.analysis.weighting import weighted_record, weighting
@@ -35,13 +33,11 @@ class RailComfort:
         mean: N_MV of each whole zone of 5 minutes, (zones,).
     """
 
-    continuous: NDArray[np.float64]
-    mean: NDArray[np.float64]
+    continuous: Vector
+    mean: Vector
 
 
-def rail_comfort(
-    time_step: float, xyz: NDArray[np.float64], *, skip: float = 0.0, from_rest: bool = False
-) -> RailComfort:
+def rail_comfort(time_step: float, xyz: Vector, *, skip: float = 0.0, from_rest: bool = False) -> RailComfort:
     """Return continuous and mean comfort of accelerations on the floor.
 
     Args:

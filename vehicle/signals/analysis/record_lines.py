@@ -10,8 +10,6 @@ all n samples to 1e-13 of the strongest line.
 Source: Rabiner, Schafer and Rader, The chirp z-transform algorithm, IEEE Trans. Audio Electroacoustics 17 (1969) 86.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -5,8 +5,6 @@ a record of minutes these would be seconds, and any two records of equal level w
 windows of one period of the lowest compared frequency, and each window is rated as a curve.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Name of an FRF, its output and its input, and the row of another set of FRFs with the same name."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Mapping, Sequence

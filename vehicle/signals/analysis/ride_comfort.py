@@ -6,8 +6,6 @@ chapter 4); `weighted` is the RMS after the weightings of a seat, Wd for x and y
 `seat_value` is the SEAT value. Reports, runs in Python, sweeps and searches take their values from `comfort_columns`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass

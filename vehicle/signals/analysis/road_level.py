@@ -3,8 +3,6 @@
 G(n) = v S(f),  n = f / v;    fitted: G(n) = G(n0) (n / n0)^-2,  n0 = 0.1 cycles/m
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -9,14 +9,13 @@ Source: Sayers, On the calculation of international roughness index from longitu
 Research Record 1501 (1995); ASTM E1926.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.analysis.samples import checked_signals, checked_time_step
 
@@ -59,11 +58,11 @@ class RoughnessIndex:
     """
 
     overall: float
-    edges: NDArray[np.float64]
-    segments: NDArray[np.float64]
+    edges: Vector
+    segments: Vector
 
 
-def step_matrices(step: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def step_matrices(step: float) -> tuple[Vector, Vector]:
     """Return S = exp(A h / V), (4, 4), and p = A^-1 (S - 1) B, (4,): the exact step over a constant slope.
 
     Args:

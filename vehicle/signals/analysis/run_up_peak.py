@@ -14,8 +14,6 @@ Source: Lewis, Vibration during acceleration through a critical speed, Trans. AS
 Library of Mathematical Functions, 7.7.2.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import scipy
 

@@ -1,17 +1,13 @@
 """Checks of sampled records: finite values, equal lengths, sampling rate and band."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from vehicle.arrays import Complex as Complex
+from vehicle.arrays import Vector as Vector
 from vehicle.errors import ConfigurationError, DataError
-
-Vector = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-"""Arrays of real and complex numbers, of any shape."""
 
 SAMPLES_PER_PERIOD = 2.5
 """Minimum sampling rate over the highest evaluated frequency; above Nyquist (2.0), because of the anti-alias filter."""

@@ -1,13 +1,11 @@
 """SEAT value: ratio of the weighted vibration on a seat to that of its rail; weighted RMS by axis."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from numpy.typing import ArrayLike
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.evaluation import application
 from vehicle.signals.analysis.exposure import vector_sum, vibration_dose_value, weighted_rms
@@ -65,9 +63,7 @@ def weighted_rms_of(
     return x, y, z, vector_sum((x, y, z), application(contact).comfort_factors)
 
 
-def weighted_axes(
-    time_step: float, xyz: ArrayLike, *, contact: str = "seat", skip: float = 0.0
-) -> npt.NDArray[np.float64]:
+def weighted_axes(time_step: float, xyz: ArrayLike, *, contact: str = "seat", skip: float = 0.0) -> Vector:
     """Return the weighted records of x, y and z [m/s2], (3, n), as in `weighted_rms_of`."""
     records, names = np.asarray(xyz, dtype=np.float64), application(contact).weightings
     rows = (weighted_record(time_step, record, name) for record, name in zip(records, names, strict=True))

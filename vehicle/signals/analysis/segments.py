@@ -1,7 +1,5 @@
 """Segments of a record and their effective averages; largest magnitude in every window; windows of its spectrum."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 

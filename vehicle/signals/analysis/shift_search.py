@@ -1,7 +1,5 @@
 """First estimate of time shift and drift: whitened windows of a record, correlated with a second record."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

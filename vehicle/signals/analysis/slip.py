@@ -5,8 +5,6 @@ sweeps, tables, figures and the lamps of the films all use this velocity. Names 
 friction force, which reaches its limit at 1 mm/s.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

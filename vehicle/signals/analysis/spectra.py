@@ -1,7 +1,5 @@
 """One-sided power spectral densities and the RMS in a band; sum(S df) equals the mean square (Parseval)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Cubic spline through samples, without `scipy.interpolate`, whose import takes longer than the splines of a run."""
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 import scipy

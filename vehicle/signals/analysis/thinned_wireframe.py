@@ -1,7 +1,5 @@
 """Reduction of a mesh to a wireframe for pictures: a subset of its nodes, and lines between them."""
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 import scipy

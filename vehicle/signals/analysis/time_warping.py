@@ -4,8 +4,6 @@ The cumulated distances are computed along the antidiagonals i + j = d; each nee
 last axis of the arrays is the pair.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

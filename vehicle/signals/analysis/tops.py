@@ -1,7 +1,5 @@
 """Local maxima with their prominence (as `scipy.signal.find_peaks`; its import takes half a second)."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from vehicle.signals.analysis.samples import Vector

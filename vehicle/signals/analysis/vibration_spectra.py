@@ -1,7 +1,5 @@
 """Spectra of the accelerations of a run: density, third octaves and cumulative RMS, unweighted and weighted."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

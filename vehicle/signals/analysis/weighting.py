@@ -1,7 +1,5 @@
 """Frequency weightings of ISO 2631-1, BS 6841, ISO 5349-1, EN 12299, of a steering wheel: factors, weighted records."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 from types import MappingProxyType

@@ -1,10 +1,9 @@
 """Frequency band of a periodic random signal: spectral lines within the band, and their synthesis."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 
+from vehicle.arrays import Complex, Vector
 from vehicle.errors import ConfigurationError
 from vehicle.signals.excitation.slip_set import CHOSEN
 
@@ -72,7 +71,7 @@ def positive(name: str, value: float, unit: str) -> None:
         raise ConfigurationError(f"{name} {value!r} {unit}; allowed: positive and finite")
 
 
-def period_of(coefficients: NDArray[np.complex128], lines: NDArray[np.int64], steps: int) -> NDArray[np.float64]:
+def period_of(coefficients: Complex, lines: NDArray[np.int64], steps: int) -> Vector:
     """Return one period x[i] = sum over k of Re(c_k exp(2 pi j k i / N)), i = 0 ... N - 1.
 
     Args:

@@ -1,7 +1,5 @@
 """Read plate displacements from selected channels of a measurement file."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

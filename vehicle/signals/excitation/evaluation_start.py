@@ -1,7 +1,5 @@
 """Start time of the evaluation of a run: comfort, slip shares, densities."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from vehicle.errors import ConfigurationError

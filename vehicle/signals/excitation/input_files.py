@@ -1,7 +1,5 @@
 """Find input files by path or by the name of a shipped input."""
 
-from __future__ import annotations
-
 from difflib import get_close_matches
 from pathlib import Path
 

@@ -19,8 +19,8 @@ from typing import Literal, Protocol
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
 from vehicle.machine import physical_memory
 from vehicle.signals.analysis.road_level import REFERENCE
@@ -43,7 +43,7 @@ RISE_S = 1.0
 Side = Literal["right", "left"]
 
 
-Contact = tuple[NDArray[np.float64], NDArray[np.float64] | None]
+Contact = tuple[Vector, Vector | None]
 """Heights of a track [m] and slopes tan(beta) [-]; None for slopes that are the derivatives of the heights."""
 
 
@@ -66,7 +66,7 @@ class Road(Protocol):
         """Return the road as a tyre takes it at equally spaced positions; arguments see `IsoRoad.height`."""
 
 
-def isotropic_coherence(wavenumber: NDArray[np.float64], track: float) -> NDArray[np.float64]:
+def isotropic_coherence(wavenumber: Vector, track: float) -> Vector:
     """Return the cross spectrum of two tracks over their spectrum, g(n) = y K1(y) with y = 2 pi n b.
 
     The surface is isotropic: its two-dimensional spectrum depends on the length of the wave vector only, and falls
@@ -143,7 +143,7 @@ class IsoRoad:
         """The road itself, with contact at a point."""
         return replace(self, envelope=None, patch=0.0)
 
-    def height(self, start: float, step: float, steps: int, side: Side, highest: float) -> NDArray[np.float64]:
+    def height(self, start: float, step: float, steps: int, side: Side, highest: float) -> Vector:
         """Return the heights of a track at equally spaced positions.
 
         Args:

@@ -14,7 +14,6 @@ from pathlib import Path
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
 from vehicle.errors import DataError, VehicleError
 from vehicle.signals.excitation.iso_road import Contact, Side, contact_words
@@ -74,9 +73,9 @@ class MeasuredRoad:
         corners: True for a road that is straight between its points, whatever their distances.
     """
 
-    distance: NDArray[np.float64]
-    right: NDArray[np.float64]
-    left: NDArray[np.float64]
+    distance: Vector
+    right: Vector
+    left: Vector
     source: str
     notices: tuple[str, ...] = ()
     patch: float = 0.0
@@ -122,7 +121,7 @@ class MeasuredRoad:
         """
         return self.contact_at(uniform_axis(steps, step, start), side)
 
-    def contact_at(self, positions: NDArray[np.float64], side: Side) -> Contact:
+    def contact_at(self, positions: Vector, side: Side) -> Contact:
         """Return heights above the first point, as the tyre takes them, and slopes, (m,); 0 before the road.
 
         For contact patch and cams, the road is level beyond its last point.

@@ -4,8 +4,6 @@ An obstacle is named by a text NAME[:SIZES][:SIDE][@PLACE]: sizes in mm separate
 default), and the distance of its beginning from the start of the foremost wheels in m, as "cleat:20x50:right@40".
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from dataclasses import dataclass

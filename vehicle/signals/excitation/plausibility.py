@@ -1,7 +1,5 @@
 """Check the plausibility of plate displacements: level, acceleration, bandwidth, drift, pauses, clipping."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 

@@ -14,8 +14,6 @@ interpolation of the inverse of s between samples h apart, with an error below h
 3 m/s2 and 1 m/s.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace

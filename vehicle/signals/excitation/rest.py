@@ -1,7 +1,5 @@
 """Make signals begin at rest, without offset and velocity, as the car starts in equilibrium on plates at rest."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Input of a car that drives over a road at constant speed: class of ISO 8608, measured profile, obstacle or level."""
 
-from __future__ import annotations
-
 import math
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
@@ -9,8 +7,8 @@ from pathlib import Path
 from typing import get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.road_level import CLASSES, RoadLevel, road_level
 from vehicle.signals.analysis.roughness_index import RoughnessIndex, roughness_index
@@ -248,7 +246,7 @@ class RoadDrive:
             time=time, displacement=height, source=f"level road; {self.speed:.6g} km/h", profile=height, random=False
         )
 
-    def slopes(self, signal: Signal) -> dict[str, NDArray[np.float64]]:
+    def slopes(self, signal: Signal) -> dict[str, Vector]:
         """Return the slope of the road that each wheel takes, tan(beta) [-], (n,): that of the cams, or w'/V."""
         rates = signal.slope_velocity or signal.plate_motion(signal.time).velocity
         return {wheel: rates[wheel] * 3.6 / self.speed for wheel in signal.wheels}

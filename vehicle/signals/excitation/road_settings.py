@@ -1,7 +1,5 @@
 """Settings of a road beside the speed of the car, each declared once: for Python, its documentation and the options."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from vehicle.settings import Settings, setting

@@ -1,7 +1,5 @@
 """Read plate signals from files, with all checks, and write them."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Mapping, Sequence

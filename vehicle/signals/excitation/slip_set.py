@@ -6,8 +6,6 @@ sides and body by half of the statements of the source (`scenarios.source_choice
 and modes.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 

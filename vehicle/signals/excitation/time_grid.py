@@ -1,7 +1,5 @@
 """Check the sampling rate of plate signals, and fill missing samples on request."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -17,8 +17,6 @@ Source: Schmeitz, A semi-empirical three-dimensional model of the pneumatic tyre
 surfaces, TU Delft 2004; Pacejka, Tire and Vehicle Dynamics, 3rd ed., section 10.1.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType

@@ -5,8 +5,6 @@ file format). The bits are extracted here: asammdf loses the sign of signals tha
 the raw value of a signal with a value table, and pads short frames with 0xFF. canmatrix reads the databases.
 """
 
-from __future__ import annotations
-
 import io
 import logging
 import re

@@ -6,8 +6,6 @@ reads the same formats, but drops unknown lines silently and takes relative time
 Sources: Vector, CAN ASC logging file format; PEAK, CAN TRC file format; can-utils, `candump -L` and `candump -t a`.
 """
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Callable, Sequence

@@ -1,7 +1,5 @@
 """Data frames of CAN buses, grouped by bus, direction and identifier, for every container of frames."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple

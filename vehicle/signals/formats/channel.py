@@ -1,13 +1,10 @@
 """Contents of a measurement file: channels with names, units, measurement points and axes."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.samples import Complex
@@ -16,7 +13,7 @@ from vehicle.signals.formats.geometry import Geometry, ModeShape
 from vehicle.signals.formats.table import Vector
 from vehicle.signals.formats.units import find_ratio
 
-Values = NDArray[np.float64] | Complex
+Values = Vector | Complex
 
 ROAD_PROFILE = "road profile"
 """Function of heights over the distance, and of the distance itself."""

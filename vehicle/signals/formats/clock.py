@@ -1,7 +1,5 @@
 """Check time stamps: increasing, uniform, or rounded from a uniform clock; suggest options for other times."""
 
-from __future__ import annotations
-
 import numpy as np
 import scipy
 

@@ -1,7 +1,5 @@
 """Convert dates, times of day, and counts since 1970 to seconds."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from datetime import UTC, date, datetime

@@ -1,7 +1,5 @@
 """Read OpenCRG road surfaces (ASAM OpenCRG 1.2): heights on a grid along a reference line, as text or binary."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Read ERD files of road profilers (UMTRI): a header of text lines, then one row of numbers per sample."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

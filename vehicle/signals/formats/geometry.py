@@ -1,7 +1,5 @@
 """Geometry of a measurement: points, lines between points, and mode shapes."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 

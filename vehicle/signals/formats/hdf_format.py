@@ -4,8 +4,6 @@ A written file has one array per channel with the attributes name, unit, kind, s
 and uneven frequencies in the group `axes`.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

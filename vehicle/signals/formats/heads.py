@@ -1,7 +1,5 @@
 """Read column headers of logger files: names, units and sources in one or several lines, in any order."""
 
-from __future__ import annotations
-
 import csv
 import re
 from collections.abc import Mapping, Sequence

@@ -6,8 +6,6 @@ number of time columns: none, one for all channels, or one before each channel.
 Source: NI, Specification for the LabVIEW Measurement File.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace

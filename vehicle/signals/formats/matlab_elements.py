@@ -3,8 +3,6 @@
 Source: MathWorks, MAT-File Format, chapter 1.
 """
 
-from __future__ import annotations
-
 import math
 import struct
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Read and write MAT files up to version 7: one structure per channel, as exported by Testlab, or plain arrays."""
 
-from __future__ import annotations
-
 import struct
 import warnings
 import zlib

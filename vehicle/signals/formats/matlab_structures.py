@@ -7,8 +7,6 @@ the names of its w columns separated by commas. ControlDesk: `X(i)` with `Data`,
 Sources: MathWorks, Simulink, "Data Format for Logged Simulation Data"; dSPACE, ControlDesk, "MAT File Format".
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Read MDF files of data loggers, versions 3 and 4, with raw frames of CAN buses, and write MDF 4."""
 
-from __future__ import annotations
-
 import gc
 import sys
 import warnings

@@ -1,7 +1,5 @@
 """Read columns of any measurement file by name, in SI units: road profiles, spring and damper curves."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Read and write tables as `.npz`: the array `time`, one array per channel, and units as texts "name [unit]"."""
 
-from __future__ import annotations
-
 import math
 import zipfile
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Libraries of formats and commands: optional ones are imported at their use, and errors of readers are converted."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib import import_module

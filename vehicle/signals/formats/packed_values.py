@@ -4,8 +4,6 @@ Sources: CF conventions 1.11, sections 2.5.1 and 8.1; NetCDF User Guide, attribu
 `_Unsigned`); NWB, TimeSeries (`conversion`, `offset`).
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -7,8 +7,6 @@ column names as pickled objects, which are not loaded for security.
 Source: pandas, `pandas/io/pytables.py`.
 """
 
-from __future__ import annotations
-
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Read Parquet files: numeric columns, with a column of dates or times as their axis."""
 
-from __future__ import annotations
-
 from importlib import import_module
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Read measurements, tables and time histories from files of any registered format."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Reject recognised but unsupported formats: the error names the format and an alternative for the export."""
 
-from __future__ import annotations
-
 from vehicle.errors import DataError
 from vehicle.signals.formats.signatures import Head
 

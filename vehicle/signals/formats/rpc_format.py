@@ -7,8 +7,6 @@ Integers: value = integer * SCALE.CHAN_n.
 Source: MTS, RPC III File Formats; the tests compare with the reader rpc3-file.
 """
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Read sheets of XLSX files as tables of a logger."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Recognise the format of a file by its first bytes."""
 
-from __future__ import annotations
-
 import re
 import struct
 import zipfile

@@ -1,7 +1,5 @@
 """Combine columns over frequency: real and imaginary part, magnitude and phase, coherence."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from dataclasses import replace

@@ -6,8 +6,6 @@ steps are not those of the samples. The clock of the samples is then known from 
     t_k = t_0 + k / f + e_k,    e_k bounded and repeated, or bounded by the unit of the stamps.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

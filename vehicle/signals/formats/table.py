@@ -1,7 +1,5 @@
 """Tables with named columns, as returned by the readers of table formats, and records over uniform time."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

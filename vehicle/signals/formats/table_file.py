@@ -1,7 +1,5 @@
 """Table in a file: an archive of arrays, or text."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from vehicle.signals.formats import npz_format, text_format

@@ -1,7 +1,5 @@
 """Read TDMS files of LabVIEW."""
 
-from __future__ import annotations
-
 import logging
 import warnings
 from collections.abc import Iterator, Mapping

@@ -15,8 +15,6 @@ Blocks are named in brackets, their parts in parentheses, the columns of a table
 Source: documentation of Adams, "About Adams Tire" (TeimOrbit format).
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 import re

@@ -1,7 +1,5 @@
 """Read text files: check size, encoding and line ends before parsing."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterator
 from pathlib import Path

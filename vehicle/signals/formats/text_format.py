@@ -1,7 +1,5 @@
 """Read and write tables as text: UTF-8, `#` comments, one header line, one row per time or frequency."""
 
-from __future__ import annotations
-
 import csv
 import io
 import re

@@ -1,7 +1,5 @@
 """Parse the datasets of a universal file: begin and end, texts, integers and real numbers."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import NamedTuple, NoReturn

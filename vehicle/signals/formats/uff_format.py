@@ -4,8 +4,6 @@ Source: Universal File Datasets, University of Cincinnati SDRL, datasets 15, 18,
 and 2414.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Read dataset 58 of a universal file: a function at a node, in text or binary."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

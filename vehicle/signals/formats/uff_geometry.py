@@ -3,8 +3,6 @@
 Source: Universal File Datasets, University of Cincinnati SDRL.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path

@@ -3,8 +3,6 @@
 Source: Universal File Datasets, University of Cincinnati SDRL, datasets 55 and 2414.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 

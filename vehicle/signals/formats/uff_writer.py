@@ -1,7 +1,5 @@
 """Write universal files: units, nodes, lines, one dataset 58 per channel, one dataset 55 per mode."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Units of measurement files: quantity and conversion to SI."""
 
-from __future__ import annotations
-
 import math
 import re
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Size of compressed data, checked before it is unpacked: one limit for every container that the program reads."""
 
-from __future__ import annotations
-
 import io
 import zipfile
 from typing import BinaryIO

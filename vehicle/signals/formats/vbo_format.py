@@ -5,8 +5,6 @@ Times are HHMMSS.sss UTC; latitude and longitude are in minutes of arc, longitud
 Source: Racelogic, VBO file format.
 """
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Read WAV files of recorders: integers of 8 to 32 bits or floating point, relative to full scale."""
 
-from __future__ import annotations
-
 import struct
 import warnings
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Read the acceleration of one point in up to three axes from a record, and check its level."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Detect faults of measured channels: clipped sensors, stuck sensors, copied channels."""
 
-from __future__ import annotations
-
 from collections.abc import Container, Mapping
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Words in the names of measured channels: wheel, axis, and the model channel that a name suggests."""
 
-from __future__ import annotations
-
 import re
 import shlex
 from collections.abc import Collection, Iterable, Sequence

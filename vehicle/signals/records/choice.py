@@ -1,7 +1,5 @@
 """Select channels of a measurement and preprocess them: units, excerpt, resampling, trend removal."""
 
-from __future__ import annotations
-
 import fnmatch
 import math
 from collections.abc import Callable, Mapping, Sequence

@@ -5,8 +5,6 @@ of one rate whose samples coincide there are cut; others need resampling, since 
 interpolation.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """Compare measured channels with their simulated counterparts: detect faults of clock, sign and unit."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -9,8 +9,6 @@ channels alike and changes no FRF. Only differences of delays change FRFs: H_fil
 for an output y and an input x.
 """
 
-from __future__ import annotations
-
 import fnmatch
 import math
 import re

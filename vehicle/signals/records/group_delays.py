@@ -1,7 +1,5 @@
 """Delays of the groups of channels of a measurement against its plates, from the lag of each channel against a run."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field

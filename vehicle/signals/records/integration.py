@@ -1,7 +1,5 @@
 """Integrate velocities and accelerations to displacements in the frequency domain, with a high-pass filter."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from vehicle.errors import DataError

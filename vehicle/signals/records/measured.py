@@ -1,7 +1,5 @@
 """Read measured frequency responses and time histories under the channel names of the model."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace

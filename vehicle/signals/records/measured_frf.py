@@ -1,7 +1,5 @@
 """Convert measured frequency responses of any file to acceleration over plate displacement."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Mapping
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Distinguish rare events of the road from a wrong unit, for samples above a plausible level."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from vehicle.signals.formats.table import Vector

@@ -1,7 +1,5 @@
 """Comfort of an acceleration record after ISO 2631-1, BS 6841, ISO 5349-1 or EN 12299: offset, SEAT value."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path

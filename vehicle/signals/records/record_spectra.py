@@ -1,7 +1,5 @@
 """Spectra of the evaluated part of a run or of a file of time histories, with the level of its road."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Resample records: make jittered times uniform, change the rate without aliasing."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 
 import numpy as np

@@ -1,7 +1,5 @@
 """FRFs in the folder of a run, with the motions of its plates from the summary."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from vehicle.signals.analysis.response_name import ResponseName, parsed_name, plates_of

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.load_mass import Load
 from vehicle.model.parameters.quantity import quantity, validate
+from vehicle.model.parameters.rigid_part import Load
 from vehicle.model.parameters.toml_file import build, read_table
 
 AXLES = ("front", "rear")

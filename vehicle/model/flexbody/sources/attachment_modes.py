@@ -9,8 +9,6 @@ Source: S. Rubin, Improved component-mode representation for structural dynamic 
 995-1006; R. R. Craig and C.-J. Chang, On the use of attachment modes in substructure coupling, AIAA 77-405 (1977).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -7,15 +7,13 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.flexbody.mass_properties import MassProperties
+from vehicle.model.flexbody.sources.text_matrices import IntArray
 from vehicle.model.parameters.hardpoints import Point
-
-IntArray = npt.NDArray[np.intp]
 
 _RIGID_MOTION = 1e-3
 """Maximum frequency of a rigid motion over that of the first elastic mode [1]. Matrix entries with seven digits give

@@ -3,8 +3,6 @@
 Newton's law in consistent units: N = t mm/s2 = kg m/s2, lbf = (lbf s2/in) in/s2. K in N/mm requires M in tonnes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

@@ -1,16 +1,19 @@
 """K and M of CalculiX, written next to the input deck by `*FREQUENCY, SOLVER=MATRIXSTORAGE`."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from vehicle.errors import DataError
-from vehicle.model.flexbody.sources.body_matrices import BodyMatrices, IntArray
+from vehicle.model.flexbody.sources.body_matrices import BodyMatrices
 from vehicle.model.flexbody.sources.deck import Deck, read_deck
-from vehicle.model.flexbody.sources.text_matrices import coordinate_matrix, nodes_and_directions, rows_of_numbers
+from vehicle.model.flexbody.sources.text_matrices import (
+    IntArray,
+    coordinate_matrix,
+    nodes_and_directions,
+    rows_of_numbers,
+)
 
 INSIDE = 3
 """Number of nodes that CalculiX adds to a brick C3D8I: their displacements are the amplitudes of its nine incompatible
@@ -35,7 +38,7 @@ def read_calculix(path: Path) -> BodyMatrices:
                 f"{file}: {suffix} is missing. CalculiX writes .sti, .mas and .dof with "
                 "*FREQUENCY,SOLVER=MATRIXSTORAGE; the node positions are in the input deck .inp."
             )
-    numbers = rows_of_numbers(files["dof"], 1, separator=".", columns=2)
+    numbers = rows_of_numbers(files["dof"], 2, separator=".")
     identity, direction = nodes_and_directions(files["dof"], numbers)
     deck = read_deck(files["inp"])
     size = len(identity)

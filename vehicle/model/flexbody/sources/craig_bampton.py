@@ -8,8 +8,6 @@ Source: R. R. Craig and M. C. C. Bampton, Coupling of substructures for dynamic 
 1313-1319.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Nodes and elements of an input deck of Abaqus or CalculiX, or of a table of nodes."""
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.errors import DataError
+from vehicle.model.flexbody.sources.text_matrices import text_of
 from vehicle.model.parameters.hardpoints import Point
 
 _CORNERS = {"C3D20": 8, "C3D20R": 8, "C3D8": 8, "C3D8R": 8, "C3D8I": 8, "C3D10": 4, "C3D4": 4, "C3D15": 6, "C3D6": 6}
@@ -38,10 +37,7 @@ def read_deck(path: Path) -> Deck:
     Raises:
         DataError: the file is unreadable, or a line of nodes or elements is invalid.
     """
-    try:
-        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
-    except OSError as error:
-        raise DataError(f"{path}: cannot be read ({error}).") from error
+    lines = text_of(path, encoding="utf-8", errors="replace").splitlines()
     positions: dict[int, Point] = {}
     edges: set[tuple[int, int]] = set()
     block, corners, element_type, incompatible = "*node" if path.suffix == ".csv" else "", 0, "", 0

@@ -1,7 +1,5 @@
 """Modes from a result file of CalculiX (.frd, text): nodes, elements and displacements of `*FREQUENCY`."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

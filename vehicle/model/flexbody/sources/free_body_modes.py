@@ -1,7 +1,5 @@
 """Free-free modes and residual flexibility of a finite-element body, computed from K and M."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -5,8 +5,6 @@ each column, row of each entry, value of each entry. Source: Duff, Grimes and Le
 Sparse Matrix Collection, 1992.
 """
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import Any

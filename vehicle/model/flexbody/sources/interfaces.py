@@ -1,7 +1,5 @@
 """Interfaces of a car with a finite-element body: a node at an attachment point, or the nodes around the point."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +12,7 @@ from vehicle.errors import DataError
 from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.flexbody.carried_nodes import rigid_fit
 from vehicle.model.flexbody.sources.body_matrices import BodyNodes
+from vehicle.model.flexbody.sources.text_matrices import text_of
 from vehicle.model.parameters.hardpoints import Point
 
 _FLAT = 1e-3
@@ -115,10 +114,7 @@ def read_map(path: Path) -> dict[str, str]:
     Raises:
         DataError: the file is unreadable, a line is invalid, or a point occurs twice.
     """
-    try:
-        lines = [line.split(",") for line in path.read_text(encoding="utf-8").splitlines() if line.strip()]
-    except (OSError, UnicodeDecodeError) as error:
-        raise DataError(f"{path}: cannot be read ({error}).") from error
+    lines = [line.split(",") for line in text_of(path, encoding="utf-8").splitlines() if line.strip()]
     bad = [",".join(fields) for fields in lines if len(fields) != 2]
     if bad:
         raise DataError(f"{path}: {bad[0]!r} is not a line point,node.")

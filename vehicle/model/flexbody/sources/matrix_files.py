@@ -1,7 +1,5 @@
 """K and M in separate files: Matrix Market, MATLAB, Abaqus and others, with tables of degrees of freedom and nodes."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import Any
@@ -10,12 +8,13 @@ import numpy as np
 import scipy
 
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.model.flexbody.sources.body_matrices import BodyMatrices, IntArray
+from vehicle.model.flexbody.sources.body_matrices import BodyMatrices
 from vehicle.model.flexbody.sources.calculix import assembled
 from vehicle.model.flexbody.sources.deck import Deck, read_deck
 from vehicle.model.flexbody.sources.harwell_boeing import is_harwell_boeing, read_harwell_boeing
 from vehicle.model.flexbody.sources.nastran import dmig_pair, is_bulk_data, read_bulk_data
 from vehicle.model.flexbody.sources.text_matrices import (
+    IntArray,
     coordinate_matrix,
     nodes_and_directions,
     rows_of_numbers,
@@ -54,7 +53,7 @@ def read_matrices(stiffness: Path, mass: Path | None, dofs: Path | None, nodes: 
     deck = _nodes(nodes)
     by_node = _is_by_node(stiffness)
     if by_node:
-        table, other = rows_of_numbers(stiffness, 1, columns=5), rows_of_numbers(mass, 1, columns=5)
+        table, other = rows_of_numbers(stiffness, 5), rows_of_numbers(mass, 5)
         named = [whole_numbers(file, rows[:, :4]) for file, rows in ((stiffness, table), (mass, other))]
         pairs = np.unique(np.vstack(named).reshape(-1, 2), axis=0)
         index = {(int(node), int(direction)): i for i, (node, direction) in enumerate(pairs)}
@@ -84,7 +83,7 @@ def read_dofs(path: Path) -> tuple[IntArray, IntArray]:
     table = [line.replace(",", " ").split() for line in text_of(path).splitlines()]
     labelled = [i for i, row in enumerate(table) if len(row) in (2, 3) and row[-1].upper() in _LABELS]
     if not labelled:
-        return nodes_and_directions(path, rows_of_numbers(path, 1, columns=2))
+        return nodes_and_directions(path, rows_of_numbers(path, 2))
     rows = [row for row in table[labelled[0] :] if row]
     try:
         directions = [{label: i for i, label in enumerate(_LABELS)}[row[-1].upper()] for row in rows]

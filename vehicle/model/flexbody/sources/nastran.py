@@ -6,8 +6,6 @@ number may omit the E of its exponent. Source: MSC Nastran Quick Reference Guide
 entries.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -18,8 +16,7 @@ import numpy as np
 import scipy
 
 from vehicle.errors import DataError
-from vehicle.model.flexbody.sources.body_matrices import IntArray
-from vehicle.model.flexbody.sources.text_matrices import whole
+from vehicle.model.flexbody.sources.text_matrices import IntArray, text_of, whole
 from vehicle.model.parameters.hardpoints import Point
 
 _BARE_EXPONENT = re.compile(r"(?<=[\d.])([+-]\d+)$")
@@ -45,10 +42,7 @@ def entries(path: Path) -> Iterator[tuple[int, str, list[str]]]:
     Raises:
         DataError: the file is unreadable.
     """
-    try:
-        lines = path.read_text(encoding="ascii", errors="replace").splitlines()
-    except OSError as error:
-        raise DataError(f"{path}: cannot be read ({error}).") from error
+    lines = text_of(path, errors="replace").splitlines()
     started: tuple[int, str, list[str]] | None = None
     for number, line in enumerate(lines, 1):
         text = line.split("$")[0].rstrip()

@@ -4,8 +4,6 @@ The residual flexibility of an attachment is the static driving-point flexibilit
 the modes of the model, H(0) - sum of phi^2 / w^2 [m/N]; a local stiffness [N/m] is its inverse.
 """
 
-from __future__ import annotations
-
 import csv
 import math
 from collections.abc import Collection

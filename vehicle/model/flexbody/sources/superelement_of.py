@@ -1,7 +1,5 @@
 """Modal superelement at the points of a car, from the modes of a body at all nodes."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -14,10 +12,11 @@ from vehicle.model.flexbody.frame_modes import signs
 from vehicle.model.flexbody.mass_properties import MassProperties
 from vehicle.model.flexbody.sources import METHODS
 from vehicle.model.flexbody.sources.attachment_modes import ReducedModes, attachment_modes
-from vehicle.model.flexbody.sources.body_matrices import BodyMatrices, BodyNodes, IntArray
+from vehicle.model.flexbody.sources.body_matrices import BodyMatrices, BodyNodes
 from vehicle.model.flexbody.sources.craig_bampton import craig_bampton
 from vehicle.model.flexbody.sources.free_body_modes import FreeModes, free_modes, residual_flexibility
 from vehicle.model.flexbody.sources.interfaces import Interface
+from vehicle.model.flexbody.sources.text_matrices import IntArray
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.signals.analysis.thinned_wireframe import neighbours, thinned
 

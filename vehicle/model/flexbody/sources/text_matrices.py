@@ -1,7 +1,5 @@
 """Matrices and lists of numbers in text files."""
 
-from __future__ import annotations
-
 import io
 import re
 import warnings
@@ -22,36 +20,40 @@ _NAMES = re.compile(r"(?!nan|inf)[a-z_]\w*([\s,]+[a-z_]\w*)*", re.IGNORECASE)
 """Header line of column names, as "node,direction". Headers with units in brackets do not match."""
 
 
-def text_of(path: Path, advice: str = "") -> str:
-    """Read an ASCII file.
+def text_of(path: Path, advice: str = "", *, encoding: str = "ascii", errors: str = "strict") -> str:
+    """Read a text file.
+
+    Args:
+        path: text file.
+        advice: end of the message of an error.
+        encoding: encoding of the file.
+        errors: "replace" for a file whose comments may have letters of another encoding.
 
     Raises:
-        DataError: the file is unreadable or not text; the message ends with the advice.
+        DataError: the file is unreadable or not text.
     """
     try:
-        return path.read_text(encoding="ascii")
+        return path.read_text(encoding=encoding, errors=errors)
     except (OSError, UnicodeDecodeError) as error:
         raise DataError(f"{path}: cannot be read as text ({error}){advice}.") from error
 
 
-def rows_of_numbers(
-    path: Path, minimum: int, *, separator: str | None = None, columns: int | None = None
-) -> FloatArray:
+def rows_of_numbers(path: Path, columns: int, *, separator: str = ",") -> FloatArray:
     """Read a text file with rows of numbers of equal length, shape (rows, columns); skip a header line of names.
 
     Args:
         path: text file.
-        minimum: minimum number of rows.
-        separator: separator of the numbers; blanks or commas by default.
         columns: required number of columns.
+        separator: separator of the numbers besides blanks.
 
     Raises:
-        DataError: the file is unreadable or truncated, or has entries other than numbers or rows of unequal length.
+        DataError: the file is unreadable, empty or truncated, or has entries
+            other than numbers or rows of unequal length.
     """
     text = text_of(path)
     if _NAMES.fullmatch(text[: (end := text.find("\n"))].strip()):
         text = text[end + 1 :]
-    text = text.replace(separator or ",", " ").replace("D", "E").replace("d", "e")
+    text = text.replace(separator, " ").replace("D", "E").replace("d", "e")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)  # no rows: raised below
@@ -65,7 +67,7 @@ def rows_of_numbers(
         raise DataError(
             f"{path}: row {int(np.argwhere(~np.isfinite(numbers))[0, 0]) + 1} contains a number that is not finite."
         )
-    if len(numbers) < minimum or (columns is not None and numbers.shape[1] != columns):
+    if not len(numbers) or numbers.shape[1] != columns:
         raise DataError(
             f"{path}: found {numbers.shape[1]} numbers in each of {numbers.shape[0]} rows, must be {columns}."
         )
@@ -82,7 +84,7 @@ def coordinate_matrix(path: Path, size: int) -> Any:
     Raises:
         DataError: an entry is outside the matrix, or the file is invalid; see `rows_of_numbers`.
     """
-    table = rows_of_numbers(path, 1, columns=3)
+    table = rows_of_numbers(path, 3)
     row, column = (whole_numbers(path, table[:, i]) - 1 for i in (0, 1))
     if min(row.min(), column.min()) < 0 or max(row.max(), column.max()) >= size:
         raise DataError(
