@@ -22,7 +22,28 @@ LONGEST = (
 )
 """Modules of tests that take the longest; two workers that begin with them end at about the same time."""
 
-_present = {"test": ""}
+
+class PresentTest:
+    """The test that runs; none while a fixture of the whole session is built, as the test that asks first must not
+    matter."""
+
+    def __init__(self) -> None:
+        self.node = ""
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_runtest_protocol(self, item):
+        """Note the test, also for the fixtures of its module."""
+        self.node = item.nodeid
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_fixture_setup(self, fixturedef):
+        """Build what a session shares as a program of its own would."""
+        asking = self.node
+        self.node = "" if fixturedef.scope == "session" else asking
+        try:
+            return (yield)
+        finally:
+            self.node = asking
 
 
 def pytest_collection_modifyitems(items):
@@ -31,31 +52,13 @@ def pytest_collection_modifyitems(items):
     items.sort(key=lambda item: order.get(item.nodeid.partition("::")[0], len(order)))
 
 
-class SessionFixtures:
-    """Hook for the fixtures of a whole session, which pytest does not offer to the `conftest.py` of a folder."""
-
-    @pytest.hookimpl(wrapper=True)
-    def pytest_fixture_setup(self, fixturedef):
-        """Build them as a program of its own would: the test that asks first must not matter."""
-        asking = _present["test"]
-        _present["test"] = "" if fixturedef.scope == "session" else asking
-        try:
-            return (yield)
-        finally:
-            _present["test"] = asking
-
-
 def pytest_configure(config):
     """Draw figures only where a test looks at them; build equal cars once."""
-    config.pluginmanager.register(SessionFixtures())
-    share_cars(lambda: _present["test"])
-    leave_out_drawings(lambda: _present["test"])
-
-
-@pytest.hookimpl(tryfirst=True)
-def pytest_runtest_protocol(item):
-    """Note the test, also for the fixtures of its module."""
-    _present["test"] = item.nodeid
+    present = PresentTest()
+    # Not as functions of this file: pytest does not ask a conftest about fixtures of the session.
+    config.pluginmanager.register(present, "present test")
+    share_cars(lambda: present.node)
+    leave_out_drawings(lambda: present.node)
 
 
 def pytest_collection_finish():
