@@ -1,6 +1,7 @@
 """Batches of cases: values independent of the other cases of a batch, single failures, and reruns with MuJoCo."""
 
 import math
+import os
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,7 +14,8 @@ from vehicle.runs.car import Car
 from vehicle.signals.analysis.ride_comfort import UNWEIGHTED, WEIGHTED, wave_names
 from vehicle.signals.analysis.seat_value import weighted_rms_of
 from vehicle.signals.excitation.signal import Signal, uniform_time
-from vehicle.studies.sweeps.case import Case
+from vehicle.signals.excitation.signal_file import write_signal
+from vehicle.studies.sweeps.case import Case, SignalFile, signal_of
 from vehicle.studies.sweeps.case_evaluation import evaluate
 from vehicle.studies.sweeps.measure import ComfortMeasure
 
@@ -35,6 +37,17 @@ def cases():
 @pytest.fixture(scope="module")
 def batch_results(cases):
     return evaluate(cases, MEASURE)
+
+
+def test_a_file_that_changes_between_two_sweeps_of_a_process_is_read_again(tmp_path):
+    found = []
+    for number in (1, 2):
+        path = tmp_path / f"{number}.csv"
+        write_signal(path, ShortRoad(seed=number).signal(), plain=True)
+        os.utime(path, (number, number))  # a clock of files may be coarse
+        found.append(signal_of(SignalFile(path=path.replace(tmp_path / "road.csv"), wheel="fr")))
+    assert not np.array_equal(found[0].displacement["fr"], found[1].displacement["fr"])
+    assert signal_of(SignalFile(path=tmp_path / "road.csv", wheel="fr")) is found[1]
 
 
 def test_a_row_is_independent_of_the_batch(cases, batch_results):

@@ -68,10 +68,15 @@ class SignalFile:
         return {"sha256": digest, "wheel": self.wheel, "accept_implausible": self.accept_implausible}
 
 
+def signal_of(source: Input) -> Signal:
+    """Return the signal of an input, cached in the process; a file that has changed is read again."""
+    file = getattr(source, "path", getattr(source, "road", None))
+    return _signal(source, file.stat().st_mtime_ns if isinstance(file, Path) and file.is_file() else 0)
+
+
 # Thousands of cases of a worker share a few inputs.
 @lru_cache(maxsize=8)
-def signal_of(source: Input) -> Signal:
-    """Return the signal of an input, cached in the process."""
+def _signal(source: Input, changed: int) -> Signal:
     return source.signal()
 
 
