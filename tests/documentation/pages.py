@@ -157,15 +157,9 @@ def output_of(line: str, folder: Path, in_process: bool) -> tuple[int, str]:
         "PYTHONPATH": str(here),
     }
     done = subprocess.run(
-        ["bash", "-c", line],
-        cwd=folder,
-        env=environment,
-        text=True,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        timeout=HANG,
-        check=False,
-    )
+        ["bash", "-c", line], cwd=folder, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+        timeout=HANG, check=False,
+    )  # fmt: skip
     return done.returncode, done.stdout
 
 
@@ -287,7 +281,7 @@ def copy_repository(folder: Path) -> None:
     for name in COPIED:
         source = ROOT / name
         if source.is_dir():
-            shutil.copytree(source, folder / name, ignore=shutil.ignore_patterns("*.mp4", "*.png"))
+            shutil.copytree(source, folder / name, ignore=shutil.ignore_patterns("*.mp4", "*.png", "*.pyc.*"))
         else:
             folder.mkdir(exist_ok=True)
             shutil.copy(source, folder / name)

@@ -72,7 +72,7 @@ def test_the_last_of_several_threads_restores_the_number(three):
     def other():
         with one_blas_thread():
             entered.set()
-            leave.wait(10.0)
+            leave.wait(HANG)
             with one_blas_thread():
                 pass
             inside.append(blas_threads())
@@ -80,7 +80,7 @@ def test_the_last_of_several_threads_restores_the_number(three):
     thread = threading.Thread(target=other)
     with one_blas_thread():
         thread.start()
-        assert entered.wait(10.0)
+        assert entered.wait(HANG)
     assert blas_threads() == {1}
     leave.set()
     thread.join()
@@ -182,5 +182,5 @@ def test_a_number_of_each_thread_is_restored_in_its_thread(monkeypatch):
 
     with one_blas_thread():
         threading.Thread(target=other).start()
-        assert leave.wait(10.0) and library.num_threads == 1
+        assert leave.wait(HANG) and library.num_threads == 1
     assert after == [1, 3] and library.num_threads == 3

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from scenarios.signals.random_road import random_road
+from tests.patience import HANG
 from vehicle.commands.shaker import main
 from vehicle.signals.excitation.signal_file import write_signal
 
@@ -74,7 +75,7 @@ def browser(reported, tmp_path_factory) -> Iterator[Any]:
     driver = webdriver.Chrome(service=Service(str(DRIVER)), options=options)
     try:
         driver.get(reported.page.as_uri())
-        WebDriverWait(driver, 60).until(lambda driver: driver.find_element("id", "trial-time-used").text)
+        WebDriverWait(driver, HANG).until(lambda driver: driver.find_element("id", "trial-time-used").text)
         yield driver
     finally:
         driver.quit()

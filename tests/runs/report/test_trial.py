@@ -60,7 +60,7 @@ class Page:
         """Return the message of the worker on settings."""
         values = {name: slider["value"] for name, slider in self.sliders.items()} | settings
         assert set(values) == set(self.sliders)
-        self.browser.set_script_timeout(120)
+        self.browser.set_script_timeout(HANG)
         answer = self.browser.execute_async_script(ASK, self.text if self.fresh else None, task, values)
         self.fresh = False
         return str(answer)
@@ -299,14 +299,9 @@ def test_the_moving_picture(browser):
     result = page.ask("motion", level=2.0)
     loads = displacement_rows(car.matrices, picture_rows(car))
     record = simulate_reduced(
-        car.poles,
-        scaled(drive.at_ratio(), 2.0),
-        dampers=[damper.law for damper in car.vehicle.composition.dampers],
-        record_rate=1000.0,
-        tyre_load=car.static.tyre_load,
-        channels=loads.names,
-        loads=loads,
-    )
+        car.poles, scaled(drive.at_ratio(), 2.0), dampers=[damper.law for damper in car.vehicle.composition.dampers],
+        record_rate=1000.0, tyre_load=car.static.tyre_load, channels=loads.names, loads=loads,
+    )  # fmt: skip
     begin = round(1000 * skip)
     for name, motion in zip(loads.names, result["motions"], strict=True):
         wanted = record[name][begin::10][: len(motion)]

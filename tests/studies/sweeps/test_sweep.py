@@ -250,15 +250,12 @@ def test_a_user_defined_executor():
     assert isinstance(threads(), ThreadPoolExecutor)
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("dusk://host:1", "must be dask://host:port or module:factory"),
-        ("nowhere.at_all:make", "No module named 'nowhere'"),
-        ("tests.studies.sweeps.sweep_samples:missing", "has no attribute 'missing'"),
-        ("threads", "must be dask://host:port or module:factory"),
-    ],
-)
+@pytest.mark.parametrize(("text", "message"), [
+    ("dusk://host:1", "must be dask://host:port or module:factory"),
+    ("nowhere.at_all:make", "No module named 'nowhere'"),
+    ("tests.studies.sweeps.sweep_samples:missing", "has no attribute 'missing'"),
+    ("threads", "must be dask://host:port or module:factory"),
+])  # fmt: skip
 def test_bad_executors(text, message):
     with pytest.raises(ConfigurationError, match=message):
         executor_factory(text)
@@ -326,11 +323,12 @@ def test_a_dask_cluster_makes_the_same_table(cluster):
 def test_a_run_that_hangs_is_a_failed_row(tmp_path):
     hanging = ShortRoad(name="hanging", wait=10.0 * HANG)
     cases = grid({"damper.viscous": [2000.0]}, [ShortRoad(), hanging, ShortRoad(seed=2)], engine="reduced")
-    began = time.monotonic()
-    sweep(cases[:1], Peak(), jobs=1, time_limit=HANG)
-    limit = 4.0 * (time.monotonic() - began)
-    table = sweep(cases, Peak(), jobs=1, time_limit=limit)
-    assert [result.reason for result in table.results] == ["", overdue(limit), ""]
+    limit, reasons = 1.0, ["not yet tried"]
+    while reasons[0] or reasons[-1]:  # a busy machine may take any time for the two that do not hang
+        limit = 4.0 * limit
+        assert limit < HANG
+        reasons = [result.reason for result in sweep(cases, Peak(), jobs=1, time_limit=limit).results]
+    assert reasons == ["", overdue(limit), ""]
 
 
 def test_a_cluster_without_response_is_named(monkeypatch):
