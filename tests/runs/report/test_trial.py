@@ -20,7 +20,8 @@ from vehicle.handover.page.page_input import LONGEST, PageInput, RunRoad, page_i
 from vehicle.handover.page.trial_data import CURVE_SCALES, FRICTION, _sliders, trial_data
 from vehicle.names import AXES
 from vehicle.runs.car import Car, Road
-from vehicle.runs.report.finished_run import read_run, recorded_signal
+from vehicle.runs.output.saved_run import recorded_signal
+from vehicle.runs.report.finished_run import read_run
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.excitation.signal_file import read_signal
@@ -336,13 +337,13 @@ def test_the_section_says_what_the_slider_did(browser, reported):
     words = browser.find_element("id", "trial-words").text
     total = run.summary["comfort"]["seat_rail"]["iso2631"]["vector_sum"]["weighted_rms"]
     assert words.startswith("Move a slider.") and f"{total:.3g} m/s²" in words
-    assert len(trial_data(run.car, recorded_signal(run), wheel="fl")) < 600_000
+    assert len(trial_data(run.car, recorded_signal(run.summary, run.recording), wheel="fl")) < 600_000
     browser.execute_script(
         "const slider = document.getElementById('trial-front-coulomb_friction');"
         "for (let k = 1; k <= 30; k++) { slider.value = 100 - 2 * k; slider.dispatchEvent(new Event('input')); }"
     )
     state = {"front-coulomb_friction": 40.0}
-    signal = page_input(run.car, recorded_signal(run)).at_ratio()
+    signal = page_input(run.car, recorded_signal(run.summary, run.recording)).at_ratio()
     now = car_of(run.car, state).run(signal, engine="reduced").comfort().weighted.overall
     change = 100.0 * (now / total - 1.0)
     effect, rating, sign = ("falls", "better", "−") if now < total else ("rises", "worse", "+")

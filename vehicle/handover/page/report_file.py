@@ -11,7 +11,6 @@ from vehicle.runs.output.folder import check_file, write_text
 from vehicle.runs.output.work_folder import put_in_order
 from vehicle.runs.report.finished_run import read_run
 from vehicle.runs.report.page import report_page
-from vehicle.runs.report.verdict_section import rated_runs
 from vehicle.runs.targets.verdict import missing_runs, read_targets
 
 
@@ -57,7 +56,7 @@ def write_report(
     check_file(path, ending=".html", force=force)
     figures = None if targets is None else read_targets(targets)
     finished = [read_run(folder) for folder in folders]
-    if notice is not None and figures is not None and (text := missing_runs(figures, rated_runs(finished))):
+    if notice is not None and figures is not None and (text := missing_runs(figures, finished)):
         notice(text)
     pair = None if film is None else Path(film)
     page = report_page(finished, progress, trial=trial, targets=figures, pair=pair, author=author, project=project)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from vehicle.errors import ConfigurationError, VehicleError
 from vehicle.handover.page.page_input import LONGEST, RunRoad
 from vehicle.handover.page.trial_data import PAGE, WORKER, scripts, trial_data
-from vehicle.runs.report.finished_run import FinishedRun, recorded_signal
+from vehicle.runs.output.saved_run import recorded_signal
+from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import templates
 from vehicle.runs.report.page import Trial
 
@@ -50,13 +51,12 @@ def _numbers(run: FinishedRun) -> str:
     """
     if run.car.vehicle.composition.forces:
         raise ConfigurationError("the car in the browser has no forces of powertrain and wheels")
-    begin, _ = run.summary.get("evaluated_s") or (0.0, 0.0)
     road = run.summary["input"].get("road") or {}
     if road.get("tyre_contact"):
         raise ConfigurationError(
             "the tyres roll over the obstacle with cams, and the record does not contain the slopes of the cams"
         )
-    signal = recorded_signal(run)
+    signal = recorded_signal(run.summary, run.recording)
     speed = road.get("speed_kmh")
     driven = RunRoad(road_class=road.get("class"), speed=speed, behind=road["behind_m"]) if speed else None
-    return trial_data(run.car, signal, wheel=run.wheel, skip=begin, road=driven)
+    return trial_data(run.car, signal, wheel=run.wheel, skip=run.skip, road=driven)

@@ -16,6 +16,7 @@ from vehicle.runs.output.run_files import write_run
 from vehicle.runs.output.work_folder import put_in_order
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.formats.reader import read_columns
+from vehicle.signals.records.record_spectra import evaluated_from
 from vehicle.signals.records.run_summary import SUMMARY_FILE, RunSummary, read_summary
 
 
@@ -79,24 +80,30 @@ def load_run(folder: Path | str) -> Run:
     put_in_order(folder)
     summary = read_summary(folder)
     car, recording = Car.load(file_of_run(folder, summary, "vehicle")), read_recording(folder, summary)
+    return Run(
+        car=car,
+        signal=recorded_signal(summary, recording),
+        recording=recording,
+        engine_reason=summary["solver"]["engine_reason"],
+        skip=evaluated_from(summary),
+        road=summary["input"]["road"],
+    )
+
+
+def recorded_signal(summary: RunSummary, recording: Recording) -> Signal:
+    """Return the recorded displacements of the plates of a run; zeros under its wheel if no plate moves.
+
+    Raises:
+        ConfigurationError: the run records no displacement of a moving plate.
+    """
     excitation = summary["input"]
-    signal = Signal(
+    moving = recording.excited or (excitation["wheel"],)
+    return Signal(
         time=recording.time,
-        displacement={
-            wheel: recording[f"plate_{wheel}_displacement"] for wheel in recording.excited or (excitation["wheel"],)
-        },
+        displacement={wheel: recording[f"plate_{wheel}_displacement"] for wheel in moving},
         source=excitation["file"],
         sha256=excitation["sha256"],
         highest=excitation["highest_hz"],
-    )
-    begin, _ = summary.get("evaluated_s") or (0.0, 0.0)
-    return Run(
-        car=car,
-        signal=signal,
-        recording=recording,
-        engine_reason=summary["solver"]["engine_reason"],
-        skip=begin,
-        road=excitation["road"],
     )
 
 

@@ -341,7 +341,7 @@ def _numbers(run: FinishedRun) -> dict[str, tuple[float, str, bool]]:
     seat = run.summary.get("seat_value")
     if seat is not None:
         numbers["SEAT value"] = seat["rms"], "", True
-    first = round((run.summary.get("evaluated_s") or [0.0])[0] / run.recording.timestep)
+    first = round(run.skip / run.recording.timestep)
     wheels = run.car.vehicle.wheels
     for wheel in wheels:
         force = run.recording.channels.get(f"tyre_{wheel}_force_z")

@@ -15,7 +15,6 @@ from vehicle.runs.car.main_mode import mode_of, plate_lines
 from vehicle.runs.report.findings import damper_state
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.main_band import POINT, MainBand
-from vehicle.signals.records.record_spectra import evaluated_from
 
 LINES = 400
 """Number of spectral lines of a band that determine the shares of the modes."""
@@ -58,7 +57,7 @@ def strongest(run: FinishedRun, band: MainBand, modes: Sequence[Mode]) -> Mode |
         The mode; None if no plate is recorded, no mode has a positive share, or the one with the largest share cannot
         cause the band (`MainBand.explained_by`): it only passes the vibration on.
     """
-    first = round(evaluated_from(run.summary) / run.recording.timestep)
+    first = round(run.skip / run.recording.timestep)
     system = run.car.matrices.system
     lines = plate_lines(run.recording, system.inputs, first, (band.low, band.high), LINES)
     if lines is None:

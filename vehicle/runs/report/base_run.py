@@ -10,8 +10,9 @@ from vehicle.model.parameters.base_car import base_file
 from vehicle.model.parameters.shipped import CARS
 from vehicle.runs.car import Car
 from vehicle.runs.output.run_files import summarise
+from vehicle.runs.output.saved_run import recorded_signal
 from vehicle.runs.report.differences import changed_parameters, shipped_origin
-from vehicle.runs.report.finished_run import FinishedRun, recorded_signal
+from vehicle.runs.report.finished_run import FinishedRun
 
 LONGEST = 300.0
 """Maximum length of a record [s] that is simulated again for the report: the reduced engine needs some seconds."""
@@ -37,12 +38,10 @@ def base_run(run: FinishedRun) -> FinishedRun | None:
         car = _unchanged(run)
         if car is None or not _same_plates(run, car):
             return None
-        signal = recorded_signal(run)
-        simulated = car.run(signal, engine="reduced")
-    except (VehicleError, KeyError):
+        simulated = car.run(recorded_signal(run.summary, run.recording), engine="reduced")
+    except VehicleError:
         return None
-    begin, _ = run.summary.get("evaluated_s") or (0.0, 0.0)
-    simulated = dataclasses.replace(simulated, skip=begin, road=excitation["road"])
+    simulated = dataclasses.replace(simulated, skip=run.skip, road=excitation["road"])
     return FinishedRun(
         name=f"the unchanged {car.vehicle.name}",
         folder=run.folder,

@@ -15,10 +15,10 @@ from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.names import side_of, wheel_words
 from vehicle.runs.car import Car
 from vehicle.runs.output.saved_run import file_of_run, read_recording
+from vehicle.runs.targets.verdict import RatedRun
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.analysis.motion_response import MotionResponse
 from vehicle.signals.analysis.response_name import PLATE, ResponseName
-from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.records.run_frf import run_frf
 from vehicle.signals.records.run_summary import ComfortSummary, FrfSummary, Peaks, RunSummary, read_summary
 
@@ -36,15 +36,11 @@ class PlateSignal:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class FinishedRun:
-    """Content of the folder of a run."""
+class FinishedRun(RatedRun):
+    """Content of the folder of a run; its recording has no poses, and its name is that in headings and legends."""
 
-    name: str  # short name in headings and legends
     folder: Path  # where its files are read
     place: Path  # final path of the folder, as in commands
-    summary: RunSummary  # content of `summary.json`
-    car: Car  # the car with the parameters as used
-    recording: Recording  # time histories; no poses
     # FRFs of all acceleration channels to each independent motion of the plates; may be empty
     responses: tuple[MotionResponse, ...]
 
@@ -77,8 +73,7 @@ class FinishedRun:
     @property
     def span(self) -> str:
         """Evaluated span in words; empty for the whole record."""
-        begin, end = self.summary.get("evaluated_s") or (0.0, 0.0)
-        return f"{begin:g} to {end:g} s" if begin > 0.0 else ""
+        return f"{self.skip:g} to {self.summary['evaluated_s'][1]:g} s" if self.skip > 0.0 else ""
 
     @cached_property
     def signal(self) -> PlateSignal:
@@ -97,27 +92,6 @@ class FinishedRun:
             f"{excitation['duration_s']:g} s{estimator}; tyres {self.car.vehicle.driving.words}; engine: "
             f"{solver['engine']}"
         )
-
-
-def recorded_signal(run: FinishedRun) -> Signal:
-    """Return the recorded displacements of the plates of a run.
-
-    Raises:
-        KeyError: the run records no displacement of a moving plate.
-    """
-    excitation, recording = run.summary["input"], run.recording
-    displacement = {
-        wheel: np.array(recording[f"plate_{wheel}_displacement"])
-        for wheel, rms in excitation["plate_rms_m"].items()
-        if rms > 0.0
-    }
-    return Signal(
-        time=recording.time,
-        displacement=displacement,
-        source=run.signal.source,
-        sha256=excitation["sha256"],
-        highest=excitation["highest_hz"],
-    )
 
 
 def read_run(

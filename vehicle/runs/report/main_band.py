@@ -10,7 +10,6 @@ from vehicle.names import AXES
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.vibration_spectra import ChannelSpectrum, vibration_spectra
-from vehicle.signals.records.record_spectra import evaluated_from
 
 POINT = "seat_rail"
 
@@ -52,7 +51,7 @@ def weighted_bands(run: FinishedRun) -> dict[str, ChannelSpectrum]:
     names = {f"{POINT}_acc_{axis}": axis for axis in AXES}
     if not all(name in run.recording.channels for name in names):
         return {}
-    first = round(evaluated_from(run.summary) / run.recording.timestep)
+    first = round(run.skip / run.recording.timestep)
     histories = {name: run.recording.channels[name][first:] for name in names}
     spectra = vibration_spectra(run.recording.timestep, histories, run.recording.units)
     return {names[spectrum.name]: spectrum for spectrum in spectra if spectrum.weighting}

@@ -13,10 +13,11 @@ from vehicle.digits import number
 from vehicle.drawing.rendering.film import pair_film
 from vehicle.drawing.rendering.pair_shot import require_one_input
 from vehicle.drawing.rendering.shot import Take
-from vehicle.errors import DataError
+from vehicle.errors import ConfigurationError, DataError
 from vehicle.runs.car import Run
+from vehicle.runs.output.saved_run import recorded_signal
 from vehicle.runs.report.answer import what_changed
-from vehicle.runs.report.finished_run import FinishedRun, read_run, recorded_signal
+from vehicle.runs.report.finished_run import FinishedRun, read_run
 from vehicle.runs.report.page import told_apart
 
 SIMULATED = 0.2
@@ -82,11 +83,10 @@ def _simulated(run: FinishedRun) -> Run:
         DataError: the run has not the displacement of a moving plate.
     """
     try:
-        signal = recorded_signal(run)
-    except KeyError as error:
+        signal = recorded_signal(run.summary, run.recording)
+    except ConfigurationError as error:
         raise DataError(
-            f"{run.place}: the channel {error} is missing, so the run cannot be simulated again for a film; run it "
-            "with all default channels"
+            f"{run.place}: cannot be simulated again for a film ({error}); run it with all default channels"
         ) from None
     return replace(run.car.run(signal, engine="mujoco"), road=run.summary["input"]["road"])
 

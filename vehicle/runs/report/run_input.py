@@ -13,7 +13,6 @@ from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.main_band import POINT
 from vehicle.signals.analysis.comfort_error import WAVES, difference_error
 from vehicle.signals.analysis.ride_comfort import WEIGHTED, comfort_columns, wave_names
-from vehicle.signals.records.record_spectra import evaluated_from
 
 
 def input_text(run: FinishedRun) -> str:
@@ -62,9 +61,7 @@ def change_half_width(first: FinishedRun, run: FinishedRun) -> float | None:
     values = []
     for each in (first, run):
         rail = np.stack([each.recording.channels[name] for name in names])[None]
-        values.append(
-            comfort_columns(each.recording.timestep, rail, skip=evaluated_from(each.summary), names=(WEIGHTED,))
-        )
+        values.append(comfort_columns(each.recording.timestep, rail, skip=each.skip, names=(WEIGHTED,)))
     waves = np.array([[float(columns[name][0]) for name in wave_names(WEIGHTED)] for columns in values])
     error = difference_error(*(waves[:, 0::2] + 1j * waves[:, 1::2]))
     return 100.0 * float(stdtrit(2 * WAVES, 0.975) * error / values[0][WEIGHTED][0])
@@ -74,4 +71,4 @@ def _same_for_both(run: FinishedRun) -> tuple[object, ...]:
     """Return what two runs on one road have in common: road, level, and evaluated span."""
     road = run.summary["input"].get("road") or {}
     parts = (road.get(key) for key in ("class", "profile", "speed_kmh", "seed", "coherence"))
-    return *parts, run.summary["input"]["rms_m"], run.summary["input"]["duration_s"], evaluated_from(run.summary)
+    return *parts, run.summary["input"]["rms_m"], run.summary["input"]["duration_s"], run.skip

@@ -15,7 +15,7 @@ from vehicle.runs.output.spectra_files import picture_columns
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import templates
 from vehicle.runs.report.svg_figure import drawing
-from vehicle.signals.records.record_spectra import RecordSpectra, evaluated_from, recorded_spectra
+from vehicle.signals.records.record_spectra import RecordSpectra, recorded_spectra
 
 fill = templates(__file__)
 
@@ -54,7 +54,7 @@ def _spectra(run: FinishedRun) -> RecordSpectra:
         run.name,
         run.caption,
         recorded,
-        begin=evaluated_from(run.summary),
+        begin=run.skip,
         road=run.summary["input"].get("road"),
     )
 

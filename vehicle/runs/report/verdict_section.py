@@ -10,7 +10,7 @@ from vehicle.digits import number
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import templates
 from vehicle.runs.targets.figure import Figure
-from vehicle.runs.targets.verdict import NOT_RUN, Rated, RatedRun, sentence, verdict
+from vehicle.runs.targets.verdict import NOT_RUN, Rated, sentence, verdict
 
 fill = templates(__file__)
 
@@ -22,7 +22,7 @@ def verdict_section(figures: Mapping[str, Figure], runs: Sequence[FinishedRun]) 
         figures: figures with their limits, see `vehicle.runs.targets.verdict.read_targets`.
         runs: finished runs of one or several cars.
     """
-    rated = verdict(figures, rated_runs(runs))
+    rated = verdict(figures, runs)
     rows = [
         {
             "words": figure.words or name.replace("_", " "),
@@ -42,11 +42,6 @@ def verdict_section(figures: Mapping[str, Figure], runs: Sequence[FinishedRun]) 
         caption="value and its 95 % interval on a random road; undecided if the limit lies inside the interval; the "
         "worst of several runs",
     )
-
-
-def rated_runs(runs: Sequence[FinishedRun]) -> list[RatedRun]:
-    """Return finished runs for the verdict."""
-    return [RatedRun(name=run.name, car=run.car, recording=run.recording, summary=run.summary) for run in runs]
 
 
 def _value(rated: Rated) -> str:

@@ -17,6 +17,7 @@ from vehicle.model.parameters.toml_file import build, read_table
 from vehicle.runs.car import Car
 from vehicle.runs.targets.figure import Figure
 from vehicle.runs.targets.values import Histories, value_of
+from vehicle.signals.records.record_spectra import evaluated_from
 from vehicle.signals.records.run_summary import RunSummary
 
 MET, MISSED, UNDECIDED, NOT_RUN = "met", "missed", "undecided", "no run"
@@ -48,7 +49,7 @@ class Rated:
     runs: int = 0
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class RatedRun:
     """Finished run for the verdict.
 
@@ -63,6 +64,11 @@ class RatedRun:
     car: Car
     recording: Recording
     summary: RunSummary
+
+    @property
+    def skip(self) -> float:
+        """Begin of the evaluated span [s]."""
+        return evaluated_from(self.summary)
 
     @property
     def label(self) -> str:
@@ -85,7 +91,7 @@ class RatedRun:
             of=recording.__getitem__,
             unit=recording.units.__getitem__,
             named=lambda texts: channels_named(texts, tuple(recording.channels)),
-            skip=float((self.summary.get("evaluated_s") or (0.0,))[0]),
+            skip=self.skip,
             tyre_load=dict(self.summary["static"]["tyre_load_n"]),
             dampers=vehicle.damped_wheels,
             slip_velocity=vehicle.damper.slip_velocity if vehicle.damped_wheels else 0.0,
