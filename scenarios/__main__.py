@@ -1,7 +1,5 @@
 """`python -m scenarios`: all studies, a line each."""
 
-from __future__ import annotations
-
 from scenarios.study import STUDIES
 
 

@@ -1,7 +1,5 @@
 """Charts with title, caption and units: FRFs, time histories, lines; written whole or not at all."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -13,11 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.legend_room import make_room
+from vehicle.arrays import Complex, Vector
 from vehicle.drawing.rendering.figure import COLOURS, FADED, fading, frf_axes, saved_figure, wrapped_phase
 from vehicle.runs.output.folder import write_whole
 from vehicle.signals.analysis.frf import FrequencyResponse
-
-Vector = npt.NDArray[np.float64]
 
 LEVEL_COLOURS = (COLOURS[0], COLOURS[3], COLOURS[1])
 """Blue, orange and red for low, mid and high; for two variants the first and the last."""
@@ -29,7 +26,7 @@ class FrfCurve:
 
     label: str  # legend text
     frequency: Vector  # frequencies [Hz], (m,)
-    response: npt.NDArray[np.complex128]  # FRF [m/s2 per m], (m,); NaN at gaps
+    response: Complex  # FRF [m/s2 per m], (m,); NaN at gaps
     colour: str  # colour of the line
     coherence: Vector | None = None  # coherence [-], (m,); None for a linear model
     style: str = "-"  # style of the line

@@ -19,6 +19,7 @@ import numpy.typing as npt
 
 from scenarios.interval_probability import AGREES_ABOVE, interval_probability
 from scenarios.verdict import Verdict, verdict
+from vehicle.arrays import Vector
 from vehicle.runs.output.folder import write_text
 
 Status = Literal["predicted", "fitted", "chosen", "own check", "duplicate", "not testable"]
@@ -155,7 +156,7 @@ def spread_claim(
     return replace(row, ours=text, within=within, why=f"{rule}; {why}", probability=probability)
 
 
-def not_contradicted(values: npt.NDArray[np.float64], interval: Interval, error: float = 0.0) -> Verdict:
+def not_contradicted(values: Vector, interval: Interval, error: float = 0.0) -> Verdict:
     """Return the verdict "probability of the interval above 5 %", undecided within two standard errors of the mean.
 
     Arguments as for `interval_probability`.

@@ -1,7 +1,5 @@
 """Comfort of the car on both roads under variations of its parameters, with statistical errors."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -13,14 +11,13 @@ import numpy.typing as npt
 from scenarios.car_runs import CarRuns, swept
 from scenarios.road_measure import RoadInput, RoadMeasure
 from scenarios.signals.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.paths import value_of
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.signals.analysis.ride_comfort import UNWEIGHTED, WEIGHTED
 from vehicle.studies.sweeps.case import Case
 from vehicle.studies.sweeps.case_evaluation import recordings_of, run_of
-
-Vector = npt.NDArray[np.float64]
 
 SEAT_RAIL_Z = ("seat_rail_acc_z",)
 

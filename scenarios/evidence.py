@@ -4,8 +4,6 @@ The thesis does not print the sides of the car, the minimum velocity of slip, ba
 mode shapes. They are chosen together (`scenarios.source_choice`) on half of these rows; the other half is a prediction.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Rows with published interval, place and status from `scenarios.evidence`."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import replace

@@ -13,12 +13,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from scenarios.charts import figure_file
 from scenarios.claims import OWN_CHECK, Claim, Findings, markdown
 from scenarios.signals.four_post import DURATION_S, MOTIONS, four_post
 from scenarios.study import QUICK_NOTE, Study, study_parser
+from vehicle.arrays import Complex, Vector
 from vehicle.commands.options import setting_options, vehicle_options
 from vehicle.commands.parser import Parser
 from vehicle.drawing.rendering.figure import COLOURS, FRF_TICKS
@@ -33,8 +33,6 @@ from vehicle.runs.car import Car
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.analysis.peaks import Peak, resonance_peaks
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
-
-Vector = npt.NDArray[np.float64]
 
 CARS = ("focus_road", "sedan")
 """Shipped cars on four wheels."""
@@ -112,7 +110,7 @@ class Found:
     """Results of one car on the rig."""
 
     car: Car  # the car
-    exact: Mapping[tuple[str, str], npt.NDArray[np.complex128]]  # (motion, state) to FRFs from the matrices
+    exact: Mapping[tuple[str, str], Complex]  # (motion, state) to FRFs from the matrices
     runs: Sequence[OneRun]  # runs of all motions and levels, the lowest level of a motion first
     # (motion, level) to FRFs of `channels_of` to the common motion [m/s2 per m]; lowest and highest level
     responses: Mapping[tuple[str, float], FrequencyResponse]
@@ -125,19 +123,19 @@ def channels_of(car: Car, motion: str) -> tuple[str, ...]:
     return (RAIL[motion], *(hub for hub in hubs if hub in car.vehicle.acceleration_channels))
 
 
-def matrix_response(car: Car, motion: str, state: str) -> npt.NDArray[np.complex128]:
+def matrix_response(car: Car, motion: str, state: str) -> Complex:
     """Return FRFs of `channels_of` to the common motion from the matrices, over `LINES`; (channels, lines)."""
     form = first_order(car.matrices.system, stuck=state == "stuck")
     driven = [MOTIONS[motion].get(wheel, 0.0) for wheel in car.vehicle.wheels]
     return frequency_response(form, LINES, channels_of(car, motion), "acceleration", driven=driven)
 
 
-def transmissibility(frequency: Vector, response: npt.NDArray[np.complex128]) -> Vector:
+def transmissibility(frequency: Vector, response: Complex) -> Vector:
     """Return |displacement of the point over that of the plates| = |H| / (2 pi f)^2 [-]."""
     return np.asarray(np.abs(response) / (2.0 * np.pi * frequency) ** 2)
 
 
-def distance_db(response: FrequencyResponse, exact: npt.NDArray[np.complex128]) -> float:
+def distance_db(response: FrequencyResponse, exact: Complex) -> float:
     """Return the RMS over lines and channels of 20 lg of |H| of a run over |H| of the matrices [dB]."""
     frequency = response.frequency
     finite = np.isfinite(response.response).all(axis=0) & (frequency <= HIGHEST_PEAK_HZ)
@@ -184,7 +182,7 @@ def examine(car: Car, *, quick: bool, engine: str) -> Found:
 
 
 def matched_peaks(
-    car: Car, motion: str, response: FrequencyResponse, exact: npt.NDArray[np.complex128], modes: Sequence[Mode]
+    car: Car, motion: str, response: FrequencyResponse, exact: Complex, modes: Sequence[Mode]
 ) -> list[Matched]:
     """Match the peaks of the transmissibility from the matrices with peaks of a run and with modes, by channel."""
     size = (2.0 * np.pi * response.frequency) ** 2
@@ -360,10 +358,10 @@ def response_figure(path: Path, examined: Found, caption: str) -> None:
                 for state, (colour, style) in STATES.items():
                     size = transmissibility(LINES, examined.exact[motion, state][row])
                     axis.plot(LINES, size, color=colour, linestyle=style, label=f"matrices, dampers {state}")
-                for (level, response), colour, style in zip(shown.items(), COLOURS, STYLES, strict=False):
+                for (level, response), colour, dashes in zip(shown.items(), COLOURS, STYLES, strict=False):
                     size = transmissibility(response.frequency, response.response[row])
-                    look = {"color": colour, "linestyle": style, "linewidth": 1.0, "label": level_words(level)}
-                    axis.plot(response.frequency, size, **look)
+                    label = level_words(level)
+                    axis.plot(response.frequency, size, color=colour, linestyle=dashes, linewidth=1.0, label=label)
                 axis.set(xscale="log", yscale="log", xlim=(1.0, 40.0))
                 axis.set_title(f"{motion}: {channel.replace('_acc_', ', ').replace('_', ' ')}")
         axes[0, 0].legend(loc="lower left")

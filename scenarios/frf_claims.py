@@ -1,17 +1,13 @@
 """Statements of chapter 3 about all FRFs at once: their size against the axes, and their coherence."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from operator import itemgetter
 
 import numpy as np
-import numpy.typing as npt
 
 from scenarios.claims import PREDICTED, Claim, interval_claim
+from vehicle.arrays import Vector
 from vehicle.signals.analysis.frf import FrequencyResponse
-
-Vector = npt.NDArray[np.float64]
 
 FRF_AXIS = (1e1, 1e5)
 """Ends of the axes of the FRFs [(m/s2)/m]."""

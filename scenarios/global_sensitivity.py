@@ -5,8 +5,6 @@ python -m scenarios.global_sensitivity [--road smooth|rough] [--jobs N] [--quick
 `python -m vehicle sweep --sobol N` gives the indices of any car and parameters.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Probability that a further value of a random signal is in a published interval, from few own values."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

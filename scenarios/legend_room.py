@@ -1,11 +1,10 @@
 """Space for the legend of a panel above its curves."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
+
+from vehicle.arrays import Vector
 
 GAP = 0.03
 """Space between legend and curves, as a share of the height of the panel."""
@@ -36,7 +35,7 @@ def make_room(panel: Any) -> None:
 
 def _highest(line: Any, left: float, right: float) -> float:
     """Return the highest point of a line between two horizontal positions [dots]; -inf without one."""
-    points: npt.NDArray[np.float64] = line.get_transform().transform(np.asarray(line.get_xydata(), dtype=float))
+    points: Vector = line.get_transform().transform(np.asarray(line.get_xydata(), dtype=float))
     points = points[np.isfinite(points).all(axis=1)]
     if not points.size:
         return -np.inf

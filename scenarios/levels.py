@@ -3,8 +3,6 @@
 python -m scenarios.levels [--output DIR] [--quick] [--jobs N] [--engine mujoco|reduced|auto] [--vehicle FILE.toml]
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections.abc import Mapping, Sequence
@@ -12,7 +10,6 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from scenarios.car_runs import CarRuns
 from scenarios.charts import LEVEL_COLOURS, FrfCurve, draw_frf, measured_curve
@@ -22,6 +19,7 @@ from scenarios.frf_claims import axis_claims, coherence_claim
 from scenarios.inputs.make_inputs import LEVELS, QUICK_DURATION, level_signal
 from scenarios.slip_shares import slip_claims, slip_shares, slip_table
 from scenarios.study import car_study, computed_by, estimator_text, setting
+from vehicle.arrays import Vector
 from vehicle.names import across
 from vehicle.runs.car import Run
 from vehicle.signals.analysis.frf import FrequencyResponse
@@ -62,8 +60,6 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
 
 main = car_study("levels", study)
 
-
-Vector = npt.NDArray[np.float64]
 
 WHEEL_HZ = 28.0
 """Vertical wheel mode, dampers stuck [Hz] (section 3.2.1)."""

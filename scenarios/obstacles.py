@@ -7,8 +7,6 @@ Rolling tyres that envelop the obstacle by two elliptical cams, and lift off. `p
 `--road cleat:20x50 --speed 30 --video` films one passage.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections.abc import Mapping, Sequence

@@ -1,7 +1,5 @@
 """Periodic road records as inputs of a sweep, and the measure of runs on them."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -9,6 +7,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from scenarios.signals.exact_road import RATE_HZ, road
+from vehicle.arrays import Vector
 from vehicle.names import across
 from vehicle.runs.car import SATURATED_VELOCITY, Run
 from vehicle.signals.analysis.comfort import comfort_values
@@ -17,7 +16,7 @@ from vehicle.signals.analysis.seat_value import weighted_rms_of
 from vehicle.signals.analysis.slip import slip_shares
 from vehicle.signals.excitation.signal import Signal
 from vehicle.studies.sweeps.measure import of_one
-from vehicle.studies.sweeps.run_batch import Runs, Vector
+from vehicle.studies.sweeps.run_batch import Runs
 
 SEAT_RAIL = ("seat_rail_acc_x", "seat_rail_acc_y", "seat_rail_acc_z")
 

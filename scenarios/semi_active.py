@@ -4,8 +4,6 @@ python -m scenarios.semi_active [--output DIR] [--quick] [--jobs N] [--engine mu
     [--set PATH=VALUE]...
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections.abc import Iterable, Mapping
@@ -20,6 +18,7 @@ from scenarios.charts import chart
 from scenarios.claims import OWN_CHECK, Claim, Findings, markdown
 from scenarios.comfort_runs import chosen_engine
 from scenarios.study import QUICK_NOTE, car_study
+from vehicle.arrays import Vector
 from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.semi_active_damper import LAWS, PASSIVE
@@ -32,7 +31,7 @@ from vehicle.studies.optimisation.ride import RideMeasure, ride_measure
 from vehicle.studies.sweeps.case import Case, all_tyre_words
 from vehicle.studies.sweeps.case_table import Cases
 from vehicle.studies.sweeps.measure import of_one
-from vehicle.studies.sweeps.run_batch import Runs, Vector
+from vehicle.studies.sweeps.run_batch import Runs
 from vehicle.studies.sweeps.sweep_inputs import inputs_of
 
 CAR = "focus_road"

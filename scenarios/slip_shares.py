@@ -4,23 +4,19 @@ The velocity that counts as slip and the record are not printed. The rows use th
 reasons contain the shares at other velocities.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-import numpy.typing as npt
 
 from scenarios.car_runs import CarRuns
 from scenarios.claims import Claim, markdown
 from scenarios.evidence_claims import evidence_claim
 from scenarios.inputs.make_inputs import LEVELS, QUICK_DURATION
 from scenarios.signals.random_road import random_road
+from vehicle.arrays import Vector
 from vehicle.names import across
 from vehicle.runs.car import SATURATED_VELOCITY
 from vehicle.signals.excitation.band import SHAKER_EDGE_HZ, SHAKER_ROLL_OFF_ORDER
-
-Vector = npt.NDArray[np.float64]
 
 Shares = Mapping[str, Mapping[float, Vector]]
 """Level to velocity that counts as slip [m/s] to the shares of the right and the left damper [-], (records, 2)."""

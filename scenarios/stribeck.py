@@ -3,8 +3,6 @@
 python -m scenarios.stribeck [--output DIR] [--quick] [--jobs N] [--engine mujoco|reduced|auto] [--vehicle FILE.toml]
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections.abc import Mapping, Sequence
@@ -22,6 +20,7 @@ from scenarios.claims import OWN_CHECK, PREDICTED, Claim, Findings, interval_cla
 from scenarios.interval_probability import AGREES_ABOVE
 from scenarios.signals.bump import BUMP_DURATION_S, BUMP_START_S, bump
 from scenarios.study import car_study, computed_by, setting
+from vehicle.arrays import Vector
 from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.model.laws.damper import damper_law
 from vehicle.model.parameters.force_elements import Damper
@@ -105,7 +104,7 @@ FORCE_TOLERANCE = 0.012
 arctangent (0.6 % of 125 N at 1 mm/s) and a Stribeck limit that is one step of 0.125 ms old (2600 N s/m at 5 m/s2)."""
 
 
-def law_force(damper: Damper, velocity: npt.ArrayLike) -> npt.NDArray[np.float64]:
+def law_force(damper: Damper, velocity: npt.ArrayLike) -> Vector:
     """Return the damper force [N] of equations 3.1 and 3.2, or with C.1 for D v, at velocities [m/s]."""
     return damper_law(damper).force(np.asarray(velocity, dtype=float))
 

@@ -1,7 +1,5 @@
 """Common parts of all studies: list, options, run as a command, and notes on the conditions."""
 
-from __future__ import annotations
-
 import argparse
 import importlib
 import time as clock

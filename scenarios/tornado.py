@@ -4,8 +4,6 @@ python -m scenarios.tornado [--output DIR] [--quick] [--jobs N] [--engine auto|r
     [--vehicle FILE.toml] [--set PATH=VALUE]
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 import time as clock

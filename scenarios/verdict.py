@@ -1,7 +1,5 @@
 """Verdict of a row: agrees, disagrees, or undecided where the uncertainty of our value decides it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 
 Verdict = bool | None

@@ -6,8 +6,6 @@ python -m scenarios.wheel_shake [--output DIR] [--quick] [--jobs N] [--engine re
 Order 1 of the vertical acceleration by the difference of two runs on the same road, with and without the imbalance.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections.abc import Mapping, Sequence

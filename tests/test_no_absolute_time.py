@@ -20,7 +20,8 @@ def fixed_times(tree: ast.AST) -> list[int]:
             lines.append(node.value.lineno)
         if isinstance(node, ast.Call) and getattr(node.func, "attr", getattr(node.func, "id", "")) in WAITING:
             last = node.args[-1] if node.args else None
-            lines += [node.lineno] if isinstance(last, ast.Constant) and last.value >= 1 else []
+            number = last.value if isinstance(last, ast.Constant) else None
+            lines += [node.lineno] if isinstance(number, int | float) and number >= 1 else []
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add) and _is_clock(node.left):
             lines += [node.lineno] if isinstance(node.right, ast.Constant) else []
         if isinstance(node, ast.Compare) and any(isinstance(side, ast.Constant) for side in node.comparators):

@@ -1,7 +1,5 @@
 """`python -m vehicle` lists the commands; `python -m vehicle modes --damper sliding` runs one of them."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Sequence
 from difflib import get_close_matches

@@ -1,10 +1,10 @@
-"""Types of arrays of numbers, of any shape."""
+"""Types of arrays of any shape, for annotations."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 Vector = NDArray[np.float64]
-"""Real numbers."""
-
 Complex = NDArray[np.complex128]
-"""Complex numbers."""
+Indices = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+"""Real and complex numbers, indices, truth values."""

@@ -1,7 +1,5 @@
 """Numbers for people, with a number of significant digits and no exponent; times; tables of texts."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 

@@ -3,8 +3,6 @@
 `run.save` writes files, `run.report` a page. Both are made in packages that import the car, which imports none of them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

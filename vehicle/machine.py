@@ -1,7 +1,5 @@
 """The machine that the program runs on: its memory."""
 
-from __future__ import annotations
-
 import os
 
 

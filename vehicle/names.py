@@ -1,7 +1,5 @@
 """Names of the whole package: corners, sides, axes, engines, channels with their units."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Sequence
 

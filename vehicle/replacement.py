@@ -4,8 +4,6 @@ Whatever ends the process, the old content keeps its name until the new content 
 different: a name is moved to new content only after this content is on the disk.
 """
 
-from __future__ import annotations
-
 import errno
 import os
 import sys

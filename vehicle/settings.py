@@ -4,8 +4,6 @@ From the declarations come the options of the command (`vehicle.commands.options
 values, and the arguments of the function in Python with their documentation (`with_settings`).
 """
 
-from __future__ import annotations
-
 import inspect
 from argparse import Namespace
 from collections.abc import Callable, Mapping

@@ -4,8 +4,6 @@ The matrices of a car have about 135 rows. With two threads, `Car.modes` of `foc
 processor time of one thread, because waiting threads of OpenBLAS spin. Sums are also rounded equally on every machine.
 """
 
-from __future__ import annotations
-
 import os
 from collections import Counter
 from collections.abc import Iterator, Mapping

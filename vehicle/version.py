@@ -1,7 +1,5 @@
 """Version of the package: from `pyproject.toml` in a clone, else from the metadata of the installed package."""
 
-from __future__ import annotations
-
 import tomllib
 from importlib import metadata
 from pathlib import Path

@@ -3,8 +3,6 @@
 python -m scenarios.bump [--output DIR] [--reading height|literal] [--video [FILE.mp4]] [--quick] [--jobs N] ...
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from pathlib import Path

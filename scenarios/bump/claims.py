@@ -1,12 +1,9 @@
 """Rows of published statements about the bumps: end of sticking, extremes over noise seeds, ring-down."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from scenarios.bump.runs import (
     FIRST_SLIP,
@@ -23,9 +20,8 @@ from scenarios.claims import OWN_CHECK, PREDICTED, Claim
 from scenarios.evidence import HIGH_PANELS, LOW_PANELS, evidence_of
 from scenarios.evidence_claims import evidence_claim, reason
 from scenarios.verdict import common
+from vehicle.arrays import Vector
 from vehicle.runs.car import SATURATED_VELOCITY, Run
-
-Vector = npt.NDArray[np.float64]
 
 RATIO = 2.0
 """'Much more time' to ring down: at least this ratio."""

@@ -1,7 +1,5 @@
 """Figures of the bumps, as 3.12 to 3.20 of the source, and the film of both side by side, in step."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -26,6 +24,7 @@ from scenarios.charts import figure_file, rows_of
 from scenarios.evidence import evidence_of
 from scenarios.signals.bump import BUMP_START_S
 from scenarios.study import computed_by
+from vehicle.arrays import Vector
 from vehicle.drawing.rendering.backend import choose_backend
 from vehicle.drawing.rendering.figure import COLOURS, LINES
 from vehicle.drawing.rendering.film import write_film
@@ -33,8 +32,6 @@ from vehicle.drawing.rendering.layout import Layout, font
 from vehicle.drawing.rendering.shot import Shot, Take
 from vehicle.runs.car import SATURATED_VELOCITY, Run
 from vehicle.runs.output.folder import write_whole
-
-Vector = npt.NDArray[np.float64]
 
 VERTICAL = {
     "seat rail (3.13)": ("seat_rail_acc_z", "seat_rail_z"),

@@ -1,7 +1,5 @@
 """The nonlinear car against the two linear cars that its damper switches between (section 3.5 of Bommer 2006)."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

@@ -1,22 +1,18 @@
 """Runs of the bumps and what is read off them: first slip, extremes, ring-down."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from scenarios.car_runs import CarRuns
 from scenarios.evidence import INSTANT_READING, SLIP_INSTANT
 from scenarios.signals.bump import BUMP_DURATION_S, BUMP_START_S, NOISE_RMS, Reading, bump
+from vehicle.arrays import Vector
 from vehicle.names import AXES
 from vehicle.runs.car import SATURATED_VELOCITY, Run
 from vehicle.signals.excitation.signal import Signal
-
-Vector = npt.NDArray[np.float64]
 
 
 def relative_acceleration(run: Run) -> Vector:

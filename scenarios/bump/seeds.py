@@ -1,24 +1,20 @@
 """The bumps with many seeds of their noise, which is not published, and the same with a part of the model changed."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from scenarios.bump.runs import SHOWN_S, SIZES, Record, damper_velocity, relative_acceleration
 from scenarios.car_runs import CarRuns
 from scenarios.comfort_runs import changes
 from scenarios.signals.bump import BUMP_START_S, NOISE_RMS, Reading, bump
+from vehicle.arrays import Vector
 from vehicle.names import AXES
 from vehicle.runs.car import SATURATED_VELOCITY, Car
 from vehicle.signals.excitation.band import SHAKER_EDGE_HZ
 from vehicle.signals.excitation.signal import Signal
-
-Vector = npt.NDArray[np.float64]
 
 SEEDS = 8
 """Seeds of the noise of each row: the standard deviation is known to a quarter."""

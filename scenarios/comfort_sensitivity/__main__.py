@@ -4,8 +4,6 @@ python -m scenarios.comfort_sensitivity [--output DIR] [--quick] [--jobs N] [--e
     [--records N] [--source-only] [--vehicle FILE.toml] [--set PATH=VALUE]
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 import time as clock

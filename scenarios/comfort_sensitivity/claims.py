@@ -1,7 +1,5 @@
 """Rows of published statements about comfort on the smooth and the rough road with our values."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """Figures of the comfort study, histories, spectra, relative comfort (4.1 to 4.12 of Bommer 2006), and its tables."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -11,11 +9,12 @@ import numpy as np
 
 from scenarios.charts import figure_file
 from scenarios.claims import markdown
-from scenarios.comfort_runs import Changes, ComfortRuns, Curves, Point, Variation, Vector, chosen_engine
+from scenarios.comfort_runs import Changes, ComfortRuns, Curves, Point, Variation, chosen_engine
 from scenarios.comfort_sensitivity.claims import PUBLISHED
 from scenarios.comfort_sensitivity.histories import MEASURED_PEAKS, SPECTRUM_WINDOW_S, RoadLevels
 from scenarios.signals.exact_road import RATE_HZ, ROAD_EDGE_HZ, ROAD_RMS, velocity_density
 from scenarios.study import car_text
+from vehicle.arrays import Vector
 from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.drawing.rendering.placed_axes import Margins, placed_axes
 from vehicle.model.parameters.paths import value_of

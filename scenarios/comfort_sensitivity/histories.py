@@ -1,12 +1,9 @@
 """Rows of chapter 4 on time histories: levels, cars with less motion, and wheel motion."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from scenarios.claims import NOT_TESTABLE, PREDICTED, Claim
 from scenarios.comfort_runs import Changes, ComfortRuns, Point, Variation
@@ -14,13 +11,12 @@ from scenarios.comfort_sensitivity.claims import MOUNT_STIFFNESS, SOURCE, TITLES
 from scenarios.evidence import LEVELS, evidence_of
 from scenarios.evidence_claims import evidence_claim, reason
 from scenarios.signals.exact_road import RATE_HZ, ROAD_RMS
+from vehicle.arrays import Vector
 from vehicle.signals.analysis.peaks import phase_resonance
 from vehicle.signals.analysis.segments import window_extremes
 from vehicle.signals.analysis.spectra import power_spectral_density
 from vehicle.studies.sweeps.case import signal_of
 from vehicle.studies.sweeps.case_evaluation import recordings_of
-
-Vector = npt.NDArray[np.float64]
 
 WINDOW_S = 0.5
 """The figures show 27 to 27.5 s."""

@@ -1,7 +1,5 @@
 """Effect of model parts and unprinted inputs on the ends of the comfort curves."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Check a solution of an exercise of the course (docs/course): `python -m scenarios.course.check 1.1 "12 mm"`."""
 
-from __future__ import annotations
-
 import argparse
 from functools import partial
 

@@ -1,7 +1,5 @@
 """Exercise of the course: solution by a closed form, and the wrong results of known mistakes."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 

@@ -3,8 +3,6 @@
 The pages compute with the program and with small scripts; here no part of the program computes.
 """
 
-from __future__ import annotations
-
 import math
 
 from scenarios.course.exercise import Exercise, Slip

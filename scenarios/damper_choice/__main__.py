@@ -3,8 +3,6 @@
 python -m scenarios.damper_choice [--output DIR] [--parameters FILE.toml] [--quick] [--force] [--refit]
 """
 
-from __future__ import annotations
-
 import argparse
 import math
 import sys

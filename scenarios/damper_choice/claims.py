@@ -1,11 +1,8 @@
 """Rows of printed statements about the choice of dampers with the results of the equations."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
 from scenarios.claims import CHOSEN, COMPARED, FITTED, PREDICTED, Claim, placed
 from scenarios.damper_choice.experiments import rear_experiment, wheel_experiments
@@ -18,8 +15,7 @@ from scenarios.lumped.damper_choice import DamperChoiceParameters
 from scenarios.lumped.half_car_rider_model import ENDS
 from scenarios.lumped.road_holding import half_car_model, printed_load_fluctuation, quarter_car_model
 from scenarios.verdict import common
-
-Array = npt.NDArray[np.float64]
+from vehicle.arrays import Vector
 
 READING = 125.0
 """Half of the 250 N s/m to which the source reads its optima [N s/m]."""
@@ -55,7 +51,7 @@ def ratio_claims(parameters: DamperChoiceParameters) -> list[Claim]:
 
 
 def quarter_response_claims(
-    parameters: DamperChoiceParameters, lines: Array, responses: dict[float, Array]
+    parameters: DamperChoiceParameters, lines: Vector, responses: dict[float, Vector]
 ) -> list[Claim]:
     """Return the rows on figures 2 and 3: damping [N s/m] to |response| of wheel and body over lines [Hz], (2, m)."""
     wheel = np.array([responses[c][0] for c in QUARTER_DAMPING])
@@ -99,7 +95,7 @@ def quarter_response_claims(
     return placed(rows, "figure 3", PICTURES[2])
 
 
-def _second_maximum(parameters: DamperChoiceParameters, lines: Array) -> Claim:
+def _second_maximum(parameters: DamperChoiceParameters, lines: Vector) -> Claim:
     """Return the row on the height of the second maximum of the wheel."""
     dampings, maxima = (4000.0, 3000.0, 2500.0), []
     for c in dampings:
@@ -116,8 +112,8 @@ def _second_maximum(parameters: DamperChoiceParameters, lines: Array) -> Claim:
 
 def half_response_claims(
     parameters: DamperChoiceParameters,
-    lines: Array,
-    responses: dict[float, Array],
+    lines: Vector,
+    responses: dict[float, Vector],
     other: Refit | None = None,
 ) -> list[Claim]:
     """Return the rows on figures 5 to 8: damping [N s/m] to |response| over lines [Hz], (4, m).
@@ -205,7 +201,7 @@ def quarter_optimum_claims(parameters: DamperChoiceParameters, road_holding: Roa
     return placed(rows, "figure 9", PICTURES[9])
 
 
-def _steeper(name: str, measure: str, best: Optimum, damping: Array, curve: Array) -> Claim:
+def _steeper(name: str, measure: str, best: Optimum, damping: Vector, curve: Vector) -> Claim:
     """Return the row on the flanks of a curve of R, undecided where the distance from the optimum turns it."""
     rises = {
         distance: [float(np.interp(best.damping + side * distance, damping, curve)) - best.value for side in (-1, 1)]
@@ -278,7 +274,7 @@ def half_optimum_claims(road_holding: RoadHolding, measure: str) -> list[Claim]:
 
 
 def rate_claims(
-    parameters: DamperChoiceParameters, road_holding: RoadHolding, at_front: Array, at_rear: Array
+    parameters: DamperChoiceParameters, road_holding: RoadHolding, at_front: Vector, at_rear: Vector
 ) -> list[Claim]:
     """Return the rows on the values of R of the printed measure.
 
@@ -320,8 +316,8 @@ def rate_claims(
 
 def _regions(
     name: str,
-    lines: Array,
-    curves: Array,
+    lines: Vector,
+    curves: Vector,
     low_edge: float,
     printed_edge: str,
     why: Sequence[str] = ("", ""),
@@ -357,5 +353,5 @@ def _hz(values: list[float]) -> str:
     return " and ".join(f"{value:.1f}" for value in values)
 
 
-def _values(values: Array) -> str:
+def _values(values: Vector) -> str:
     return ", ".join(f"{value:.3g}" for value in values)

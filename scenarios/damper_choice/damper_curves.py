@@ -5,8 +5,6 @@ coefficient for each damper. The experiment runs the fitted quarter car on the p
 equal work.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,10 +18,9 @@ from scenarios.lumped.fixed_step_solution import fixed_step_solution
 from scenarios.lumped.half_car_rider_model import axle_links
 from scenarios.lumped.network import ROAD, Network, masses_of
 from scenarios.lumped.road_holding import exponential_density, quarter_car_model
+from vehicle.arrays import Vector
 from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.engines.linear.system import Slide
-
-Array = npt.NDArray[np.float64]
 
 RATIO = 2.0
 """Of the coefficients at low and high velocity, and in rebound and bump [-]."""
@@ -45,25 +42,25 @@ class FourSlopes:
     Arrays of one shape [N s/m], the knee [m/s]; continuous.
     """
 
-    low_bump: Array
-    high_bump: Array
-    low_rebound: Array
-    high_rebound: Array
+    low_bump: Vector
+    high_bump: Vector
+    low_rebound: Vector
+    high_rebound: Vector
     knee: float
 
-    def force(self, velocity: npt.ArrayLike) -> Array:
+    def force(self, velocity: npt.ArrayLike) -> Vector:
         """Return the force [N] at a velocity [m/s]."""
         v = np.asarray(velocity, dtype=float)
         inner = np.clip(v, -self.knee, self.knee)
         return np.asarray(np.where(v < 0.0, self.low_bump, self.low_rebound) * inner + self._high(v) * (v - inner))
 
-    def slope(self, velocity: npt.ArrayLike) -> Array:
+    def slope(self, velocity: npt.ArrayLike) -> Vector:
         """Return the derivative d F / d v [N s/m]."""
         v = np.asarray(velocity, dtype=float)
         low = np.where(v < 0.0, self.low_bump, self.low_rebound)
         return np.asarray(np.where(np.abs(v) < self.knee, low, self._high(v)))
 
-    def _high(self, v: Array) -> Array:
+    def _high(self, v: Vector) -> Vector:
         return np.where(v < 0.0, self.high_bump, self.high_rebound)
 
 
@@ -73,11 +70,11 @@ class Compared:
 
     velocity: float  # RMS of the damper with one coefficient [m/s]; the knee of the second damper
     slow_share: float  # share of its square below 3 Hz, where the body moves [-]
-    curves: tuple[Array, Array]  # velocity [m/s], (m,), and force of each damper [N], (3, m)
-    tyre_load: Array  # RMS tyre force over static load [-], (3, seeds)
-    height: Array  # mean height of the body over its static one [m], (3, seeds)
-    time: Array  # of the first road [s], (n,)
-    body: Array  # height of the body on it [m], (3, n)
+    curves: tuple[Vector, Vector]  # velocity [m/s], (m,), and force of each damper [N], (3, m)
+    tyre_load: Vector  # RMS tyre force over static load [-], (3, seeds)
+    height: Vector  # mean height of the body over its static one [m], (3, seeds)
+    time: Vector  # of the first road [s], (n,)
+    body: Vector  # height of the body on it [m], (3, n)
 
 
 def compare_curves(parameters: DamperChoiceParameters, duration: float) -> Compared:
@@ -90,7 +87,7 @@ def compare_curves(parameters: DamperChoiceParameters, duration: float) -> Compa
     car, wheel = parameters.quarter_car, parameters.quarter_car.wheel
     c = wheel.suspension_damping
     line = 1.0 / duration
-    frequency: Array = line * np.arange(1, round(parameters.bands.highest / line) + 1, dtype=np.float64)
+    frequency: Vector = line * np.arange(1, round(parameters.bands.highest / line) + 1, dtype=np.float64)
     density = exponential_density(parameters.highway, frequency)
     response = quarter_car_model(car).response(frequency)
     speed = np.abs(2.0 * np.pi * frequency * (response[1] - response[0])) ** 2 * density * line
@@ -99,7 +96,7 @@ def compare_curves(parameters: DamperChoiceParameters, duration: float) -> Compa
     bump = 2.0 * c / (1.0 + RATIO)
     each = np.array([[c, c, c, c], [RATIO * high, high, RATIO * high, high], [bump, bump, RATIO * bump, RATIO * bump]])
 
-    def law(coefficients: Array) -> FourSlopes:
+    def law(coefficients: Vector) -> FourSlopes:
         low_bump, high_bump, low_rebound, high_rebound = coefficients.T
         return FourSlopes(
             low_bump=low_bump, high_bump=high_bump, low_rebound=low_rebound, high_rebound=high_rebound, knee=knee
@@ -135,7 +132,7 @@ def compare_curves(parameters: DamperChoiceParameters, duration: float) -> Compa
     )
 
 
-def _road(frequency: Array, power: Array, seed: int, duration: float) -> Array:
+def _road(frequency: Vector, power: Vector, seed: int, duration: float) -> Vector:
     """Return a Gaussian road [m] with a mean square for each line [m2], from 0 to the duration at `STEP`."""
     generator = np.random.default_rng(seed)
     count = round(duration / STEP)

@@ -1,18 +1,14 @@
 """Experiments that show why rows on the half car disagree: one number changed, the row computed again."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from scenarios.damper_choice.fit import FRONT_RATIOS, QUARTER_RATIOS, REAR_RATIOS
 from scenarios.damper_choice.response_features import crossing, spread_of
 from scenarios.damper_choice.runs import HALF_DAMPING, START_REAR, half_car_measure, half_responses
 from scenarios.lumped.damper_choice import DamperChoiceParameters
-
-Array = npt.NDArray[np.float64]
+from vehicle.arrays import Vector
 
 STIFFER = 1.1
 """Stiffer front tyre for the row on the crossing at the front [-]."""
@@ -34,7 +30,7 @@ def rear_experiment(parameters: DamperChoiceParameters) -> str:
     )
 
 
-def wheel_experiments(parameters: DamperChoiceParameters, lines: Array, end: int) -> tuple[str, str]:
+def wheel_experiments(parameters: DamperChoiceParameters, lines: Vector, end: int) -> tuple[str, str]:
     """Return the texts of the experiments for the two rows on the front (0) or rear (1) wheel of the half car."""
     ratios = (FRONT_RATIOS, REAR_RATIOS)[end]
     scale = np.mean([c / ratio for c, ratio in ratios.items()])

@@ -1,28 +1,24 @@
 """Figures of the damper study: frequency responses, load fluctuation over damping, iteration."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from scenarios.charts import chart, lines
 from scenarios.damper_choice.optimum import Fluctuation
 from scenarios.damper_choice.runs import READ_OFF, SPEED, START_REAR, RoadHolding, TradeOff
 from scenarios.lumped.half_car_rider_model import ENDS
+from vehicle.arrays import Vector
 from vehicle.drawing.rendering.figure import COLOURS
 
-Array = npt.NDArray[np.float64]
-
-Responses = dict[float, Array]
+Responses = dict[float, Vector]
 
 STYLES = ("-", "--", "-.", ":")
 
 FITTED = "Vehicle parameters fitted to the printed results."
 
 
-def response_figures(folder: Path, narrow: Array, quarter: Responses, wide: Array, half: Responses) -> None:
+def response_figures(folder: Path, narrow: Vector, quarter: Responses, wide: Vector, half: Responses) -> None:
     """Draw figures 2, 3 and 5 to 8: responses over frequency [Hz]; damping to |response|, (coordinates, lines)."""
     for name, caption, titles, frequency, responses in (
         (

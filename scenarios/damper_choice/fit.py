@@ -7,8 +7,6 @@ number or as a direction; its scale is the width within which the print can be r
 Source: "Dynamic Modeling of Vehicles and Damper" (2014), figures 2 to 13 and the text on them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np
@@ -24,8 +22,7 @@ from scenarios.lumped.damper_choice import (
     RoadHoldingQuarterCar,
 )
 from scenarios.lumped.road_holding import half_car_model, printed_load_fluctuation, quarter_car_model
-
-Array = npt.NDArray[np.float64]
+from vehicle.arrays import Vector
 
 QUARTER_RATIOS = {4000.0: 0.62, 5000.0: 0.78, 6000.0: 0.94, 7000.0: 1.09}
 """Damping [N s/m] -> printed damping ratio (figures 2 and 3)."""
@@ -63,14 +60,14 @@ def root_stiffness_mass(ratios: dict[float, float]) -> float:
     return float(np.mean([damping / (2.0 * ratio) for damping, ratio in ratios.items()]))
 
 
-def fit_quarter_car(start: npt.ArrayLike, road: ExponentialRoad, bands: FrequencyBands) -> tuple[Array, Array]:
+def fit_quarter_car(start: npt.ArrayLike, road: ExponentialRoad, bands: FrequencyBands) -> tuple[Vector, Vector]:
     """Fit the quarter car from a first guess in the order of `QUARTER_FREE`; otherwise as `fit_half_car`."""
     return _fit(quarter_car_residuals, start, road, bands, _QUARTER_SCALE, _QUARTER_BOUNDS)
 
 
 def fit_half_car(
     start: npt.ArrayLike, road: ExponentialRoad, bands: FrequencyBands, *, least_index: float = 0.2
-) -> tuple[Array, Array]:
+) -> tuple[Vector, Vector]:
     """Fit the half car.
 
     Args:
@@ -109,12 +106,12 @@ def half_car_of(values: npt.ArrayLike) -> RoadHoldingHalfCar:
     )
 
 
-def quarter_car_values(car: RoadHoldingQuarterCar) -> Array:
+def quarter_car_values(car: RoadHoldingQuarterCar) -> Vector:
     """Return the values of a quarter car in the order of `QUARTER_FREE`."""
     return np.array([car.sprung_mass, car.wheel.unsprung_mass, car.wheel.tyre_stiffness])
 
 
-def half_car_values(car: RoadHoldingHalfCar) -> Array:
+def half_car_values(car: RoadHoldingHalfCar) -> Vector:
     """Return the values of a half car in the order of `HALF_FREE`."""
     base = car.front_arm + car.rear_arm
     ends = [getattr(axle, name) for name in ("unsprung_mass", "tyre_stiffness") for axle in (car.front, car.rear)]
@@ -122,7 +119,7 @@ def half_car_values(car: RoadHoldingHalfCar) -> Array:
     return np.array([car.sprung_mass, index, base, car.front_arm / base, *ends])
 
 
-def quarter_car_residuals(values: npt.ArrayLike, road: ExponentialRoad, bands: FrequencyBands) -> Array:
+def quarter_car_residuals(values: npt.ArrayLike, road: ExponentialRoad, bands: FrequencyBands) -> Vector:
     """Return the deviations of a quarter car from printed values, over their scales, in the order of the comments."""
     car = quarter_car_of(values)
     best = _valley(lambda c: float(printed_load_fluctuation(quarter_car_model(car, c), road, bands)[0]))
@@ -140,11 +137,11 @@ def quarter_car_residuals(values: npt.ArrayLike, road: ExponentialRoad, bands: F
     return np.array(residuals)
 
 
-def half_car_residuals(values: npt.ArrayLike, road: ExponentialRoad, bands: FrequencyBands) -> Array:
+def half_car_residuals(values: npt.ArrayLike, road: ExponentialRoad, bands: FrequencyBands) -> Vector:
     """Return the deviations of a half car from printed values, over their scales, in the order of the comments."""
     car = half_car_of(values)
 
-    def rate(front: float, rear: float) -> Array:
+    def rate(front: float, rear: float) -> Vector:
         return printed_load_fluctuation(half_car_model(car, front, rear), road, bands)
 
     optima = [
@@ -171,13 +168,13 @@ def half_car_residuals(values: npt.ArrayLike, road: ExponentialRoad, bands: Freq
 
 
 def _fit(
-    residuals: Callable[[npt.ArrayLike, ExponentialRoad, FrequencyBands], Array],
+    residuals: Callable[[npt.ArrayLike, ExponentialRoad, FrequencyBands], Vector],
     start: npt.ArrayLike,
     road: ExponentialRoad,
     bands: FrequencyBands,
-    scale: Array,
-    bounds: tuple[Array, Array],
-) -> tuple[Array, Array]:
+    scale: Vector,
+    bounds: tuple[Vector, Vector],
+) -> tuple[Vector, Vector]:
     solution = least_squares(
         lambda scaled: residuals(scaled * scale, road, bands),
         np.asarray(start, dtype=float) / scale,

@@ -1,7 +1,5 @@
 """Damper coefficients of least tyre-load fluctuation: one damper, front and rear in turn, and both at once."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Callable
@@ -12,11 +10,10 @@ import numpy.typing as npt
 from scipy.optimize import minimize, minimize_scalar
 
 from scenarios.lumped.half_car_rider_model import ENDS
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError, SimulationError
 
-Array = npt.NDArray[np.float64]
-
-Fluctuation = Callable[[float, float], Array]
+Fluctuation = Callable[[float, float], Vector]
 """(front damping, rear damping) [N s/m] -> measure of the front and the rear tyre [-], shape (2,)."""
 
 SEARCHED = (500.0, 12000.0)
@@ -102,7 +99,7 @@ def iterate(measure: Fluctuation, *, rear: float, grid: npt.ArrayLike | None = N
     raise SimulationError(f"front/rear iteration: still changing after {limit} steps; give a coarser grid")
 
 
-def joint_optimum(measure: Fluctuation, *, start: tuple[float, float]) -> tuple[float, float, Array]:
+def joint_optimum(measure: Fluctuation, *, start: tuple[float, float]) -> tuple[float, float, Vector]:
     """Return the front and rear coefficient of the minimum sum of both measures.
 
     Args:

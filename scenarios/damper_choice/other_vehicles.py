@@ -4,12 +4,9 @@ The repeated fit separates rows that depend on the unprinted vehicle from contra
 fit misses together with the remaining printed numbers.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import least_squares
 
 from scenarios.damper_choice.fit import HALF_BOUNDS, HALF_SCALE, half_car_of, half_car_residuals, half_car_values
@@ -17,8 +14,7 @@ from scenarios.damper_choice.response_features import crossing, spread_of
 from scenarios.damper_choice.runs import HALF_DAMPING, half_responses
 from scenarios.lumped.damper_choice import DamperChoiceParameters
 from scenarios.lumped.road_holding import half_car_model
-
-Array = npt.NDArray[np.float64]
+from vehicle.arrays import Vector
 
 SAME = 0.15
 """"No effect of damping": the curves differ by less than this share of the road amplitude [-]."""
@@ -59,7 +55,7 @@ class Refit:
         )
 
 
-def region_verdicts(lines: Array, curves: Array, low_edge: float) -> tuple[bool, bool]:
+def region_verdicts(lines: Vector, curves: Vector, low_edge: float) -> tuple[bool, bool]:
     """Return whether the curves of a wheel show no effect of damping below an edge [Hz], and change order at 6 Hz.
 
     Curves are magnitudes over rising damping, (n, m), at lines [Hz], (m,).
@@ -76,7 +72,7 @@ def fitted_to_wheels(parameters: DamperChoiceParameters) -> Refit:
     """Repeat the fit of the half car with the rows on its wheels, from the shipped vehicle."""
     road, bands, start = parameters.highway, parameters.bands, half_car_values(parameters.half_car)
 
-    def others(values: Array) -> Array:
+    def others(values: Vector) -> Vector:
         return half_car_residuals(values, road, bands)
 
     solution = least_squares(
@@ -105,7 +101,7 @@ def fitted_to_wheels(parameters: DamperChoiceParameters) -> Refit:
     )
 
 
-def _rows(values: Array) -> Array:
+def _rows(values: Vector) -> Vector:
     """Return the deviations of both wheels from their rows, over `SCALE`; smooth in the values."""
     car = half_car_of(values)
     curves = np.array([np.abs(half_car_model(car, c, c).response(LINES))[:2] for c in HALF_DAMPING])

@@ -1,7 +1,5 @@
 """Numbers of the damper study: frequency responses, load fluctuation over damping, iteration and joint optimum."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -25,12 +23,11 @@ from scenarios.lumped.road_holding import (
     ride_measures,
     tyre_load_ratio,
 )
+from vehicle.arrays import Vector
 from vehicle.model.parameters.paths import value_of
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.signals.analysis.road_level import CLASSES, REFERENCE
 from vehicle.signals.analysis.weighting import weighting
-
-Array = npt.NDArray[np.float64]
 
 QUARTER_DAMPING = (4000.0, 5000.0, 6000.0, 7000.0)
 """Damping of figures 2 and 3 [N s/m]."""
@@ -44,7 +41,7 @@ READ_OFF = np.arange(1000.0, 8001.0, 250.0)
 START_REAR = 3250.0
 """Rear damping with which the source starts its iteration [N s/m]."""
 
-MEASURES: dict[str, Callable[[RoadHoldingModel, ExponentialRoad, FrequencyBands], Array]] = {
+MEASURES: dict[str, Callable[[RoadHoldingModel, ExponentialRoad, FrequencyBands], Vector]] = {
     "printed": printed_load_fluctuation,
     "physical": tyre_load_ratio,
 }
@@ -55,25 +52,25 @@ MEASURES: dict[str, Callable[[RoadHoldingModel, ExponentialRoad, FrequencyBands]
 class RoadHolding:
     """Curves and optima of a measure on a road."""
 
-    damping: Array  # Abscissa of the curves [N s/m], shape (m,)
-    quarter: Array  # Quarter car over damping [-], shape (m,)
-    equal: Array  # Front and rear tyre of the half car with equal dampers [-], shape (2, m)
+    damping: Vector  # Abscissa of the curves [N s/m], shape (m,)
+    quarter: Vector  # Quarter car over damping [-], shape (m,)
+    equal: Vector  # Front and rear tyre of the half car with equal dampers [-], shape (2, m)
     quarter_optimum: Optimum
     equal_optima: tuple[Optimum, Optimum]
     read_off: list[Step]  # Iteration among the values of `READ_OFF`, as in the source
     continuous: list[Step]  # Iteration over all coefficients
-    joint: tuple[float, float, Array]
+    joint: tuple[float, float, Vector]
     """Front and rear coefficient of the least sum of both tyres [N s/m], measures there."""
 
 
-def quarter_responses(parameters: DamperChoiceParameters, lines: Array) -> dict[float, Array]:
+def quarter_responses(parameters: DamperChoiceParameters, lines: Vector) -> dict[float, Vector]:
     """Return damping of figures 2 and 3 to |response| of wheel and body, (2, m)."""
     return {c: np.abs(quarter_car_model(parameters.quarter_car, c).response(lines)) for c in QUARTER_DAMPING}
 
 
 def half_responses(
-    parameters: DamperChoiceParameters, lines: Array, dampings: Sequence[float] = HALF_DAMPING
-) -> dict[float, Array]:
+    parameters: DamperChoiceParameters, lines: Vector, dampings: Sequence[float] = HALF_DAMPING
+) -> dict[float, Vector]:
     """Return damping [N s/m] to |response| of front wheel, rear wheel, heave, pitch with equal dampers, (4, m)."""
     return {c: np.abs(half_car_model(parameters.half_car, c, c).response(lines)) for c in dampings}
 
@@ -155,7 +152,7 @@ EDGES = np.geomspace(0.1, 50.0, 801)
 class TradeOff:
     """Measures of one car over damping for every road class."""
 
-    damping: Array  # [N s/m], shape (m,)
+    damping: Vector  # [N s/m], shape (m,)
     measures: dict[str, list[RideMeasures]]  # Road class -> one for each damping
     own: float  # Damping of the car itself [N s/m]
 

@@ -3,8 +3,6 @@
 python -m scenarios.half_car_rider [--output DIR] [--parameters FILE.toml] [--quick] [--force]
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections.abc import Mapping, Sequence

@@ -1,7 +1,5 @@
 """Rows of printed statements about the half car with rider with the results of the equations."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
@@ -23,7 +21,8 @@ from scenarios.half_car_rider.runs import (
 from scenarios.half_car_rider.settling_claims import settling_claims
 from scenarios.lumped.half_car_rider_model import half_car_rider
 from scenarios.lumped.half_car_rider_parameters import HalfCarRiderParameters
-from scenarios.lumped.history import Array, History
+from scenarios.lumped.history import History
+from vehicle.arrays import Vector
 
 Study = Mapping[str, list[list[Outcome]]]
 """Varied parameter -> speed -> factor -> outcome."""
@@ -197,10 +196,10 @@ def travel_claims(car: HalfCarRiderParameters, studied: Study, factors: Sequence
 def _direction(
     name: str,
     direction: str,
-    change: Array,
+    change: Vector,
     factors: Sequence[float],
     why: str,
-    little: Array | float = 0.0,
+    little: Vector | float = 0.0,
     *,
     row_maker: Kind = PREDICTED,
 ) -> Claim:
@@ -213,15 +212,15 @@ def _direction(
     return row_maker.statement(name, direction, ours, bool(np.all(agrees)), why)
 
 
-def _percent(change: Array) -> str:
+def _percent(change: Vector) -> str:
     return ", ".join(f"{100.0 * value:+.1f}" for value in change)
 
 
-def _changes(table: Sequence[Sequence[Outcome]], name: str) -> Array:
+def _changes(table: Sequence[Sequence[Outcome]], name: str) -> Vector:
     return relative_changes([[getattr(outcome, name) for outcome in row] for row in table])
 
 
-def relative_changes(values: Sequence[Sequence[float]]) -> Array:
+def relative_changes(values: Sequence[Sequence[float]]) -> Vector:
     """Return the change from the first to the last factor over the middle of the range, one for each speed [-]."""
     table = np.asarray(values, dtype=float)
     return np.asarray((table[:, -1] - table[:, 0]) / table.mean(axis=1))
@@ -252,7 +251,7 @@ def _why_dose(car: HalfCarRiderParameters) -> dict[str, str]:
     }
 
 
-def _upper_changes(car: HalfCarRiderParameters, parameter: str, speeds: Sequence[float]) -> Array:
+def _upper_changes(car: HalfCarRiderParameters, parameter: str, speeds: Sequence[float]) -> Vector:
     """Return the change of the dose value of the upper body from 80 to 120 % of a parameter at each speed [km/h]."""
     cars = [varied(car, parameter, factor) for factor in (0.8, 1.0, 1.2)]
     return relative_changes(

@@ -1,7 +1,5 @@
 """Figures of the half car with rider: base case, parameter studies, speed, lift-off."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any

@@ -3,8 +3,6 @@
 Source: "Parametric study of rider's comfort ...", matrices below equation 16.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

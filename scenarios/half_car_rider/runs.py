@@ -1,7 +1,5 @@
 """Runs of the half car with rider: base case, parameter studies, speeds, semi-active laws."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
@@ -13,8 +11,9 @@ from scenarios.lumped.axle import Axle
 from scenarios.lumped.bump_response import bump_passage, bump_response
 from scenarios.lumped.half_car_rider_model import ENDS, half_car_rider, lift_off, linear_tyre_load, output_points
 from scenarios.lumped.half_car_rider_parameters import HalfCarRiderParameters
-from scenarios.lumped.history import Array, History
+from scenarios.lumped.history import History
 from scenarios.lumped.semi_active_half_car import simulate_bump
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.semi_active_damper import PASSIVE
 from vehicle.signals.analysis.exposure import vibration_dose_value
@@ -69,7 +68,7 @@ def passive(car: HalfCarRiderParameters, speed: float) -> History:
 
 
 def outcome(
-    car: HalfCarRiderParameters, history: History, measure: Callable[[float, Array], float] = vibration_dose_value
+    car: HalfCarRiderParameters, history: History, measure: Callable[[float, Vector], float] = vibration_dose_value
 ) -> Outcome:
     """Return dose values, travel and lift-off of a passage over the bump.
 
@@ -105,7 +104,7 @@ def parameter_study(
     car: HalfCarRiderParameters,
     factors: Sequence[float],
     law: str = PASSIVE,
-    measure: Callable[[float, Array], float] = vibration_dose_value,
+    measure: Callable[[float, Vector], float] = vibration_dose_value,
 ) -> Mapping[str, list[list[Outcome]]]:
     """Return the outcomes over every varied parameter, speed and factor: parameter -> speed -> factor -> outcome.
 
@@ -140,7 +139,7 @@ def driven(car: HalfCarRiderParameters, speeds: Sequence[float], law: str, *, on
     )
 
 
-def peak(signal: Array) -> float:
+def peak(signal: Vector) -> float:
     """Return the largest magnitude."""
     return float(np.abs(signal).max())
 
@@ -176,7 +175,7 @@ def base_case_table(car: HalfCarRiderParameters, history: History) -> dict[str, 
     """Return peaks [m, m/s2; rad, rad/s2] and settling times [s] for each band: output point -> quantity -> values."""
     quantities: tuple[Motion, ...] = ("displacement", "acceleration")
 
-    def row(signal: Array) -> dict[str, Any]:
+    def row(signal: Vector) -> dict[str, Any]:
         settling = {f"{band:g}": settling_time(history.time, signal, band) for band in BANDS}
         return {"peak": peak(signal), "settling_s": settling}
 

@@ -4,8 +4,6 @@ A row that disagrees for all plausible seats and usual measures is a contradicti
 and parameters do not give the printed figure.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import product
@@ -14,7 +12,7 @@ import numpy as np
 
 from scenarios.claims import Claim
 from scenarios.lumped.half_car_rider_parameters import HalfCarRiderParameters
-from scenarios.lumped.history import Array
+from vehicle.arrays import Vector
 
 STIFFNESS = (5e3, 15e3, 50e3, 150e3)
 """Stiffness of the seat [N/m]: from a soft cushion on springs to a bare frame."""
@@ -28,7 +26,7 @@ MASSES = (15.0, 35.0)
 FACTORS = (0.8, 1.0, 1.2)
 """Ends and middle of the varied parameters."""
 
-Measure = Callable[[float, Array], float]
+Measure = Callable[[float, Vector], float]
 """(time step [s], acceleration [m/s2]) -> size of the vibration."""
 
 MEASURES: Mapping[str, Measure] = {

@@ -1,13 +1,12 @@
 """Printed settling times of the base case, figures 5 to 10, and their order."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from scenarios.claims import CHOSEN, PREDICTED, Claim
 from scenarios.half_car_rider.runs import BANDS, KMH, SETTLING_BAND, SPEEDS, Motion, settling_time
 from scenarios.lumped.half_car_rider_parameters import HalfCarRiderParameters
-from scenarios.lumped.history import Array, History
+from scenarios.lumped.history import History
+from vehicle.arrays import Vector
 
 READING = 0.3
 """The printed times are read from figures, most of them with the word "about" [s]."""
@@ -61,7 +60,7 @@ def _time(history: History, point: str, quantity: Motion, printed: float, limit:
     return CHOSEN.number(name, printed, ours, READING, why).at(where, picture)
 
 
-def _needed(time: Array, motion: Array, printed: float) -> str:
+def _needed(time: Vector, motion: Vector, printed: float) -> str:
     """Return the band in which the motion has settled at a time: largest later magnitude over the peak."""
     magnitude = np.abs(motion)
     return f"{100.0 * float(magnitude[time >= printed].max() / magnitude.max()):.2g} %"

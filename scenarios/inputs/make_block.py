@@ -9,14 +9,12 @@ the lines of a band share its mean square equally; m_j is uniform between -n_j a
 car are unrelated above one wave in their distance.
 """
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vehicle.arrays import Vector
 from vehicle.runs.output.folder import write_text
 
 EDGES = (0.15, 0.35, 0.45, 0.55, 0.75, 1.05, 1.65, 3.25, 6.45, 12.85, 25.65)
@@ -56,7 +54,7 @@ $$$$$$$$
 """
 
 
-def block_heights(length: float, seed: int) -> NDArray[np.float64]:
+def block_heights(length: float, seed: int) -> Vector:
     """Return heights over the base [m], (rows, SECTIONS), from right to left.
 
     Args:

@@ -1,7 +1,5 @@
 """Write the shipped inputs: `python -m scenarios.inputs.make_inputs [--output DIR]`."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """One axle of a half car: unsprung mass between suspension and tyre."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from vehicle.model.parameters.quantity import Validated, quantity

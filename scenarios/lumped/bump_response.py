@@ -6,8 +6,6 @@ leaves the bump; there only (z_i, z_i') jumps, while x and x' are continuous. s(
 no time-step error.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
@@ -16,7 +14,8 @@ import numpy.typing as npt
 import scipy
 
 from scenarios.lumped.half_car_rider_parameters import BumpShape
-from scenarios.lumped.history import Array, History
+from scenarios.lumped.history import History
+from vehicle.arrays import Mask, Vector
 from vehicle.engines.linear.first_order import FirstOrder, first_order
 from vehicle.engines.linear.system import LinearSystem
 from vehicle.errors import ConfigurationError
@@ -35,18 +34,18 @@ class BumpPassage:
         """Return the time wb / v of a wheel on the bump [s]."""
         return math.pi / self.omega
 
-    def heights(self, time: npt.ArrayLike) -> Array:
+    def heights(self, time: npt.ArrayLike) -> Vector:
         """Return the road height under each wheel [m], shape (wheels, *time.shape)."""
         return np.stack(
             [self.height * np.sin(self.omega * elapsed) * on_bump for elapsed, on_bump in self._phases(time)]
         )
 
-    def rates(self, time: npt.ArrayLike) -> Array:
+    def rates(self, time: npt.ArrayLike) -> Vector:
         """Return the rate of the road height under each wheel [m/s], shape (wheels, *time.shape)."""
         peak_rate = self.height * self.omega
         return np.stack([peak_rate * np.cos(self.omega * elapsed) * on_bump for elapsed, on_bump in self._phases(time)])
 
-    def _phases(self, time: npt.ArrayLike) -> list[tuple[Array, npt.NDArray[np.bool_]]]:
+    def _phases(self, time: npt.ArrayLike) -> list[tuple[Vector, Mask]]:
         instants = np.asarray(time, dtype=float)
         elapsed = [instants - arrival for arrival in self.arrivals]
         return [(phase, (phase >= 0.0) & (phase < self.contact)) for phase in elapsed]
@@ -124,7 +123,7 @@ def bump_response(model: LinearSystem, passage: BumpPassage, *, time_step: float
     )
 
 
-def _autonomous(form: FirstOrder, omega: float) -> Array:
+def _autonomous(form: FirstOrder, omega: float) -> Vector:
     """Return the matrix A of s = (states, z, z'), shape (s + 2w, s + 2w)."""
     w = len(form.system.inputs)
     return np.block(
@@ -143,7 +142,7 @@ def _events(passage: BumpPassage) -> list[tuple[float, int, float]]:
     return sorted(entering + leaving)
 
 
-def _steps(first: Array, powers: list[Array], count: int) -> Array:
+def _steps(first: Vector, powers: list[Vector], count: int) -> Vector:
     """Compute states P^0 s, P^1 s, ... of a uniform grid by doubling, (len(s), count); appends P^(2^k) to `powers`."""
     states = first[:, None]
     level = 0

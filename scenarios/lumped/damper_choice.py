@@ -1,7 +1,5 @@
 """Parameters of the choice of dampers for road holding: quarter car, half car, roads and frequency bands."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 

@@ -1,12 +1,10 @@
 """Degressive damper: steep at low velocities, flatter above the velocity at which its valve opens."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.model.laws.law import Numbers
 from vehicle.model.parameters.quantity import quantity, validate
 
@@ -25,12 +23,12 @@ class Degressive:
     def __post_init__(self) -> None:
         validate(self)
 
-    def force(self, velocity: Numbers) -> npt.NDArray[np.float64]:
+    def force(self, velocity: Numbers) -> Vector:
         """Return the force [N] at a velocity [m/s]."""
         v = np.asarray(velocity)
         inner = np.clip(v, -np.asarray(self.knee_velocity), self.knee_velocity)
         return np.asarray(self.high_damping * v + (self.low_damping - self.high_damping) * inner)
 
-    def slope(self, velocity: Numbers) -> npt.NDArray[np.float64]:
+    def slope(self, velocity: Numbers) -> Vector:
         """Return dF/dv [N s/m]: Ddeg below the knee, D at and above the knee."""
         return np.where(np.abs(velocity) < self.knee_velocity, self.low_damping, self.high_damping)

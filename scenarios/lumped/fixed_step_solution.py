@@ -1,7 +1,5 @@
 """Time stepping of a stack of lumped models with friction: exact linear part, implicit friction force."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 
@@ -9,7 +7,8 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from scenarios.lumped.history import Array, History
+from scenarios.lumped.history import History
+from vehicle.arrays import Vector
 from vehicle.engines.linear.first_order import FirstOrder
 from vehicle.engines.linear.system import Slide
 from vehicle.errors import ConfigurationError, SimulationError
@@ -115,7 +114,7 @@ def fixed_step_solution(
     )
 
 
-def _propagators(model: FirstOrder, step: float) -> tuple[Array, Array, Array, Array]:
+def _propagators(model: FirstOrder, step: float) -> tuple[Vector, Vector, Vector, Vector]:
     """Return P, R0, R1 and S of a step, exact for a linear road displacement and a constant sliding force."""
     size = model.state.shape[-1]
     # One matrix exponential of (x, w, w', f), with w' and f constant over the step, gives all factors.
@@ -134,24 +133,24 @@ def _propagators(model: FirstOrder, step: float) -> tuple[Array, Array, Array, A
     )
 
 
-def _at_once(pair: Slide, velocity: Array) -> Array:
+def _at_once(pair: Slide, velocity: Vector) -> Vector:
     """Return the sum of the forces of both laws at a velocity."""
     return pair.friction.force(velocity) + (pair.viscous.force(velocity) if pair.viscous else 0.0)
 
 
-def _end_share(steepness: Array) -> Array:
+def _end_share(steepness: Vector) -> Vector:
     """Return theta(z) = 1 / (1 - exp(-z)) - 1 / z: 1/2 + z/12 for small z, 1 for large z."""
     z = np.maximum(steepness, 1e-4)  # for smaller z, the difference of two large numbers is round-off, and theta is 1/2
     return np.asarray(-1.0 / np.expm1(-z) - 1.0 / z)
 
 
 def _balance(
-    pair: Slide, gain: Array, arriving: Array, last_speed: Array, share: Array | float
-) -> Callable[[Array], tuple[Array, Array]]:
+    pair: Slide, gain: Vector, arriving: Vector, last_speed: Vector, share: Vector | float
+) -> Callable[[Vector], tuple[Vector, Vector]]:
     """Return the function v - v_free + G f(v) with its derivative; its root is the velocity at the end of the step."""
     explicit_force = (1.0 - share) * pair.friction.force(last_speed)
 
-    def balance(velocity: Array) -> tuple[Array, Array]:
+    def balance(velocity: Vector) -> tuple[Vector, Vector]:
         force, slope = explicit_force + share * pair.friction.force(velocity), share * pair.friction.slope(velocity)
         if pair.viscous is not None:
             middle = 0.5 * (velocity + last_speed)
@@ -162,8 +161,11 @@ def _balance(
 
 
 def _root(
-    balance: Callable[[Array], tuple[Array, Array]], arriving: Array, last_speed: Array, guess: Array | None = None
-) -> Array:
+    balance: Callable[[Vector], tuple[Vector, Vector]],
+    arriving: Vector,
+    last_speed: Vector,
+    guess: Vector | None = None,
+) -> Vector:
     """Find the root of an increasing function for each model by Newton's method, safeguarded by bisection."""
     # Friction opposes the velocity: the root for theta = 1 is between zero, the free velocity and the last velocity,
     # and half of the last friction shifts it by no more than the whole of that friction.

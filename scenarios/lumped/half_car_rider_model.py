@@ -7,8 +7,6 @@ Source: "Parametric study of rider's comfort in a vehicle with semi-active suspe
 conditions", equations 8 to 10; its equations of motion and matrices contain misprints and are not used here.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from types import MappingProxyType
 
@@ -17,8 +15,9 @@ import numpy.typing as npt
 
 from scenarios.lumped.axle import Axle
 from scenarios.lumped.half_car_rider_parameters import HalfCarRiderParameters, Limb
-from scenarios.lumped.history import Array, History
+from scenarios.lumped.history import History
 from scenarios.lumped.network import Link, Network, masses_of, spring_damper
+from vehicle.arrays import Vector
 from vehicle.engines.linear.system import LinearSystem, Row
 
 GRAVITY = 9.81
@@ -84,7 +83,7 @@ def half_car_rider(parameters: HalfCarRiderParameters) -> LinearSystem:
     return Network(coordinates=coordinates, masses=masses_of(masses), links=links, outputs=extra, inputs=ROADS).system()
 
 
-def static_tyre_load(parameters: HalfCarRiderParameters) -> Array:
+def static_tyre_load(parameters: HalfCarRiderParameters) -> Vector:
     """Return the load of the front and rear tyre at rest [N], shape (2,).
 
     K x = -M g e with e = 1 for every displacement and 0 for pitch; the load is the force of the compressed tyre.
@@ -97,7 +96,7 @@ def static_tyre_load(parameters: HalfCarRiderParameters) -> Array:
     return np.asarray(-stiffness * static_position[wheels])
 
 
-def linear_tyre_load(parameters: HalfCarRiderParameters, history: History) -> Array:
+def linear_tyre_load(parameters: HalfCarRiderParameters, history: History) -> Vector:
     """Return the load of a linear tyre that cannot lift off [N]: static load + k (z - x) + c (z' - x').
 
     Returns:

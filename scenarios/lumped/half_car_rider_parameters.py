@@ -1,7 +1,5 @@
 """Parameters of the half car with seat and rider, its bump and its semi-active dampers."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Input signals of a lumped model: road displacement and applied force as functions of time."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Protocol

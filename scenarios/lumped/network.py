@@ -6,8 +6,6 @@ Lagrange's equations d/dt(dT/dx') + dD/dx' + dV/dx = 0 give K = sum k e' e and B
 that a wrong sign cannot break the symmetry.
 """
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -15,8 +13,9 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.engines.linear.first_order import FirstOrder, first_order
-from vehicle.engines.linear.system import Array, LinearSystem, Row, Slide, form_row
+from vehicle.engines.linear.system import LinearSystem, Row, Slide, form_row
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.elastomer import Kelvin, Maxwell
 from vehicle.model.laws.law import Numbers, Parallel
@@ -72,7 +71,7 @@ class Network:
         if not (np.linalg.matrix_rank(mass) == n).all():
             raise ConfigurationError(f"network: a coordinate of {', '.join(self.coordinates)} carries no mass")
         joint_stiffness, joint_damping = np.zeros((2, *shape, n + w, n + w))  # Hessians of V and D over (x, z)
-        branches: list[tuple[Array, Maxwell]] = []
+        branches: list[tuple[Vector, Maxwell]] = []
         for link in self.links:
             row = self._row(link.row, shape)
             square = row[..., :, None] * row[..., None, :]
@@ -87,7 +86,7 @@ class Network:
             branches.append((row, link.law))
         branch_rows = _stacked([row for row, _ in branches], (*shape, 0, n + w), axis=-2)
 
-        def stacked_values(values: Sequence[Numbers]) -> Array:
+        def stacked_values(values: Sequence[Numbers]) -> Vector:
             return _stacked([np.broadcast_to(value, shape) for value in values], (*shape, 0), axis=-1)
 
         coordinate_outputs = ((name, {name: 1.0}) for name in self.coordinates)
@@ -117,7 +116,7 @@ class Network:
         """Return the first-order form of the model with free sliding pairs; raises the errors of `system`."""
         return first_order(self.system())
 
-    def _row(self, form: Row, shape: tuple[int, ...]) -> Array:
+    def _row(self, form: Row, shape: tuple[int, ...]) -> Vector:
         return form_row(form, (*self.coordinates, *self.inputs), shape)
 
     def _stack(self) -> tuple[int, ...]:
@@ -154,11 +153,11 @@ def _law_shapes(law: Any) -> list[tuple[int, ...]]:
     return [np.shape(getattr(law, entry.name)) for entry in dataclasses.fields(law)]
 
 
-def _each(value: Numbers, axes: int) -> Array:
+def _each(value: Numbers, axes: int) -> Vector:
     """Return a parameter with further axes of length one, as a factor of vectors or matrices."""
     array = np.asarray(value, dtype=float)
     return array.reshape(array.shape + (1,) * axes)
 
 
-def _stacked(rows: Sequence[Array], empty: tuple[int, ...], axis: int) -> Array:
+def _stacked(rows: Sequence[Vector], empty: tuple[int, ...], axis: int) -> Vector:
     return np.stack(rows, axis=axis) if rows else np.zeros(empty)

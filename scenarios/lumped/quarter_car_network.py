@@ -1,7 +1,5 @@
 """Quarter-car models of Bommer 2006, composed from one set of parts."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from typing import Literal

@@ -1,7 +1,5 @@
 """Parameters of the quarter-car family: one set of parts for all models of the family."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Quarter car with the elements of the complete car: bushing rows, main spring, damper with friction row, plate."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 import mujoco

@@ -1,7 +1,5 @@
 """Quarter and half car on a random road: fluctuation of the tyre loads, comfort and suspension travel."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,11 +14,10 @@ from scenarios.lumped.damper_choice import (
 )
 from scenarios.lumped.half_car_rider_model import ENDS, GRAVITY, ROADS, axle_links
 from scenarios.lumped.network import ROAD, Network, masses_of
+from vehicle.arrays import Complex, Vector
 from vehicle.engines.linear.first_order import first_order
 from vehicle.engines.linear.response import frequency_response
 from vehicle.engines.linear.system import LinearSystem
-
-Array = npt.NDArray[np.float64]
 
 LINES_PER_BAND = 10
 """Number of midpoints for the mean over a band; twice as many change R by less than 0.1 %."""
@@ -50,7 +47,7 @@ class RoadHoldingModel:
     model: LinearSystem
     tyres: tuple[Tyre, ...]
 
-    def response(self, frequency: npt.ArrayLike, *coordinates: str) -> npt.NDArray[np.complex128]:
+    def response(self, frequency: npt.ArrayLike, *coordinates: str) -> Complex:
         """Return the motion per road height, with the same road under every wheel at the same time.
 
         Args:
@@ -106,7 +103,7 @@ def half_car_model(
     return RoadHoldingModel(model=network.system(), tyres=tuple(tyres))
 
 
-def exponential_density(road: ExponentialRoad, frequency: npt.ArrayLike) -> npt.NDArray[np.float64]:
+def exponential_density(road: ExponentialRoad, frequency: npt.ArrayLike) -> Vector:
     """Return G(f) = a exp(-b f) [m2/Hz] at lines [Hz] of any shape.
 
     Source: Tamboli and Joshi (1999), as cited in "Dynamic Modeling of Vehicles and Damper" (2014).
@@ -114,7 +111,7 @@ def exponential_density(road: ExponentialRoad, frequency: npt.ArrayLike) -> npt.
     return np.asarray(road.roughness * np.exp(-road.decay * np.asarray(frequency, dtype=float)))
 
 
-def band_amplitudes(road: ExponentialRoad, edges: npt.ArrayLike) -> npt.NDArray[np.float64]:
+def band_amplitudes(road: ExponentialRoad, edges: npt.ArrayLike) -> Vector:
     """Return the root mean square displacement in bands between rising edges [Hz], (m + 1,), in closed form [m], (m,).
 
     Source: "Dynamic Modeling of Vehicles and Damper" (2014), equation 8.
@@ -124,7 +121,7 @@ def band_amplitudes(road: ExponentialRoad, edges: npt.ArrayLike) -> npt.NDArray[
 
 def printed_load_fluctuation(
     car: RoadHoldingModel, road: ExponentialRoad, bands: FrequencyBands, *, signed: bool = False
-) -> Array:
+) -> Vector:
     """Return the load fluctuation rate R of each tyre as printed: a plain sum of band amplitudes.
 
     R = kt sum_n |x_r,n - x_u,n| / (m g),  x_u,n = x_r,n mean_n |H_u|
@@ -155,7 +152,7 @@ def printed_load_fluctuation(
     return np.array(rates)
 
 
-def tyre_load_ratio(car: RoadHoldingModel, road: ExponentialRoad, bands: FrequencyBands) -> Array:
+def tyre_load_ratio(car: RoadHoldingModel, road: ExponentialRoad, bands: FrequencyBands) -> Vector:
     """Return the physical measure: RMS of the dynamic tyre force over the static load, up to the end of the bands.
 
     Returns:
@@ -166,7 +163,7 @@ def tyre_load_ratio(car: RoadHoldingModel, road: ExponentialRoad, bands: Frequen
     return tyre_load_ratio_of_density(car, lines, exponential_density(road, lines), width)
 
 
-def tyre_load_ratio_of_density(car: RoadHoldingModel, lines: Array, density: Array, width: Array | float) -> Array:
+def tyre_load_ratio_of_density(car: RoadHoldingModel, lines: Vector, density: Vector, width: Vector | float) -> Vector:
     """Return RMS tyre force over static load on a road given by its density at midpoints.
 
     Args:
@@ -197,7 +194,12 @@ class RideMeasures:
 
 
 def ride_measures(
-    car: RoadHoldingQuarterCar, damping: float, lines: Array, density: Array, width: Array, weight: npt.ArrayLike = 1.0
+    car: RoadHoldingQuarterCar,
+    damping: float,
+    lines: Vector,
+    density: Vector,
+    width: Vector,
+    weight: npt.ArrayLike = 1.0,
 ) -> RideMeasures:
     """Return the ride measures from spectra: y_rms^2 = int |H_y|^2 G df by the midpoint rule.
 

@@ -8,8 +8,6 @@ jumps. The
 method has order 2.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -19,7 +17,8 @@ import numpy as np
 from scenarios.lumped.bump_response import bump_passage
 from scenarios.lumped.half_car_rider_model import ENDS, half_car_rider, static_tyre_load
 from scenarios.lumped.half_car_rider_parameters import HalfCarRiderParameters
-from scenarios.lumped.history import Array, History
+from scenarios.lumped.history import History
+from vehicle.arrays import Vector
 from vehicle.engines.linear.first_order import FirstOrder, first_order
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.laws.control_laws import PRESENT, act, at_rest, in_steps, pack
@@ -144,12 +143,12 @@ class _Cars:
         self.stiffness = np.array([[car.front.tyre_stiffness, car.rear.tyre_stiffness] for car in cars])
         self.damping = np.array([[car.front.tyre_damping, car.rear.tyre_damping] for car in cars])
 
-    def velocities(self, state: Array) -> tuple[Array, Array]:
+    def velocities(self, state: Vector) -> tuple[Vector, Vector]:
         """Return the velocities of the body above each wheel and of the wheel, (r, w)."""
         free = self.body.shape[-1]
         return _times(self.body, state[:, free : 2 * free]), state[:, free:][:, self.wheel]
 
-    def slope(self, state: Array, road: Array, rate: Array, coefficient: Array) -> tuple[Array, Array]:
+    def slope(self, state: Vector, road: Vector, rate: Vector, coefficient: Vector) -> tuple[Vector, Vector]:
         """Return the time derivatives of the states and the forces of dampers and tyres, for a batch of runs.
 
         Args:
@@ -172,6 +171,6 @@ class _Cars:
         return slope - _times(self.grip, force), force
 
 
-def _times(matrix: Array, vector: Array) -> Array:
+def _times(matrix: Vector, vector: Vector) -> Vector:
     """Return the matrix-vector product of every run."""
     return np.asarray((matrix @ vector[..., None])[..., 0])

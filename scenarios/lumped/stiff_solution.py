@@ -1,7 +1,5 @@
 """Adaptive solvers for lumped models with friction: smooth laws (stiff, analytic Jacobian) and the switch model."""
 
-from __future__ import annotations
-
 import itertools
 import math
 import warnings
@@ -13,9 +11,10 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from scenarios.lumped.history import Array, History
+from scenarios.lumped.history import History
 from scenarios.lumped.input_signals import InputSignal, ZeroSignal
 from scenarios.lumped.switch import Switch
+from vehicle.arrays import Vector
 from vehicle.engines.linear.first_order import FirstOrder
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.laws.law import ForceLaw, Parallel
@@ -40,7 +39,7 @@ class Tolerances:
             if not (math.isfinite(tolerance) and tolerance > 0.0):
                 raise ConfigurationError(f"Tolerances.{name}: found {tolerance!r}, must be finite and greater than 0.0")
 
-    def absolute(self, model: FirstOrder) -> Array:
+    def absolute(self, model: FirstOrder) -> Vector:
         """Return the absolute tolerance of each state by its type, (s,)."""
         free = model.basis.shape[1]
         branches = model.state.shape[-1] - 2 * free
@@ -85,7 +84,7 @@ class Driven:
         self._by_rate, self._by_force = bool(model.input_rate.any()), bool(model.load.any())
         self._by_slip = bool(model.slide_rate.any())
 
-    def bare(self, t: float, x: Array) -> tuple[Array, Array]:
+    def bare(self, t: float, x: Vector) -> tuple[Vector, Vector]:
         """Return the rate of the state without sliding forces, and the contribution d z' to the sliding velocities."""
         rate, slip = self.model.state @ x, np.zeros(len(self.model.slide))
         for road, (by_height, by_rate, slide_rate) in zip(self.roads, self._effects, strict=True):
@@ -100,7 +99,7 @@ class Driven:
         return rate, slip
 
     def solved(
-        self, slope: Callable[[float, Array], Array], sliding: Callable[[float, Array], Array], **options: Any
+        self, slope: Callable[[float, Vector], Vector], sliding: Callable[[float, Vector], Vector], **options: Any
     ) -> History:
         """Integrate from the first to the last sample time.
 
@@ -176,20 +175,20 @@ def stiff_solution(
     ]
     grip, rows = model.friction, model.slide
 
-    def slope(t: float, x: Array) -> Array:
+    def slope(t: float, x: Vector) -> Vector:
         rate, slip = case.bare(t, x)
         for i, law in enumerate(laws):
             rate -= grip[:, i] * law.force(rows[i] @ x + slip[i])
         return rate
 
-    def jacobian(t: float, x: Array) -> Array:
+    def jacobian(t: float, x: Vector) -> Vector:
         _, slip = case.bare(t, x)
         result = model.state.copy()
         for i, law in enumerate(laws):
             result -= np.outer(grip[:, i] * law.slope(rows[i] @ x + slip[i]), rows[i])
         return result
 
-    def sliding(t: float, x: Array) -> Array:
+    def sliding(t: float, x: Vector) -> Vector:
         _, slip = case.bare(t, x)
         return np.array([law.force(rows[i] @ x + slip[i]) for i, law in enumerate(laws)])
 
@@ -241,7 +240,7 @@ def switch_solution(
     case = Driven(model, time, road=road, force=force, initial=initial)
     row, effect, limit, band = model.slide[0], model.friction[:, 0], float(law.limit), float(law.band)
 
-    def friction(t: float, x: Array) -> tuple[Array, float]:
+    def friction(t: float, x: Vector) -> tuple[Vector, float]:
         """Return the rate of the state without friction, and the friction force [N]."""
         bare, _ = case.bare(t, x)
         held, brake = float(row @ bare), float(row @ effect) * limit
@@ -249,7 +248,7 @@ def switch_solution(
 
     remaining = itertools.count(max_evaluations, -1)
 
-    def slope(t: float, x: Array) -> Array:
+    def slope(t: float, x: Vector) -> Vector:
         if next(remaining) <= 0:
             raise SimulationError(
                 f"switch model: stopped at t = {t:g} s of {case.time[-1]:g} s after max_evaluations = "

@@ -1,12 +1,10 @@
 """Switch model of set-valued Coulomb friction: a stick band in which two vector fields are mixed."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Mask, Vector
 from vehicle.model.laws.law import Numbers
 from vehicle.model.parameters.quantity import quantity, validate
 
@@ -31,7 +29,7 @@ class Switch:
     def __post_init__(self) -> None:
         validate(self)
 
-    def mixing(self, velocity: Numbers, rate_plus: Numbers, rate_minus: Numbers) -> npt.NDArray[np.float64]:
+    def mixing(self, velocity: Numbers, rate_plus: Numbers, rate_minus: Numbers) -> Vector:
         """Return the share alpha of the field with positive friction.
 
         Args:
@@ -50,11 +48,11 @@ class Switch:
         slip = np.where(np.abs(h) > self.band, h > 0.0, ~((plus < 0.0) & (minus < 0.0)))
         return np.where(sticking, mixed, slip.astype(float))
 
-    def sticks(self, velocity: Numbers, rate_plus: Numbers, rate_minus: Numbers) -> npt.NDArray[np.bool_]:
+    def sticks(self, velocity: Numbers, rate_plus: Numbers, rate_minus: Numbers) -> Mask:
         """Return True at elements in the attractive sliding mode (stick); arguments: see `mixing`."""
         h, plus, minus = np.broadcast_arrays(velocity, rate_plus, rate_minus)
         return np.asarray((np.abs(h) <= self.band) & (plus < 0.0) & (minus > 0.0))
 
-    def force(self, velocity: Numbers, rate_plus: Numbers, rate_minus: Numbers) -> npt.NDArray[np.float64]:
+    def force(self, velocity: Numbers, rate_plus: Numbers, rate_minus: Numbers) -> Vector:
         """Return the friction force [N] against a positive velocity; arguments: see `mixing`."""
         return np.asarray((2.0 * self.mixing(velocity, rate_plus, rate_minus) - 1.0) * self.limit)

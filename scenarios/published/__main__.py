@@ -3,8 +3,6 @@
 python -m scenarios.published [--output DIR] [--quick] [--jobs N] [--reuse]
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import sys

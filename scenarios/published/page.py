@@ -1,7 +1,5 @@
 """Page `published-results.md`: for each figure the published statement, our picture, our value, verdict and reason."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby

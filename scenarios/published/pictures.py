@@ -1,7 +1,5 @@
 """Small copies of the studies' figures for the page."""
 
-from __future__ import annotations
-
 import io
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The publications (thesis of Bommer and two papers): title, studies, sections, and the places of rows."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """Statements of the publications with their rows; the page lists statements without a row."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from fnmatch import fnmatchcase
 from typing import Any

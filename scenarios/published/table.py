@@ -1,7 +1,5 @@
 """Rows of all studies in one table: the source of each, and how many agree."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

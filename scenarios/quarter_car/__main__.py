@@ -3,8 +3,6 @@
 python -m scenarios.quarter_car [--output DIR] [--parameters FILE.toml] [--figure NAME] [--quick] [--force]
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from pathlib import Path

@@ -4,16 +4,15 @@ An axis that was scaled automatically ends at the tick beyond the data: the extr
 labels are readable, otherwise between the readable label and 0. An axis contains all curves of its panel.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from scenarios.claims import Claim, Interval, interval_claim
-from scenarios.lumped.history import Array, History
+from scenarios.lumped.history import History
 from scenarios.quarter_car.runs import HIGH, LOW, NO_FRICTION, Runs
 from scenarios.quarter_car.sine_claims import START, late
+from vehicle.arrays import Vector
 
 START_OPEN = (
     "a stuck strut damps nothing, so the size of its vibration is that of the start, which is not printed: ours starts "
@@ -32,7 +31,7 @@ def axis_claims(runs: Runs) -> list[Claim]:
         for amplitude in (LOW, HIGH)
     }
 
-    def both(pair: Sequence[Mapping[float, History]], amplitude: float, mass: str) -> Array:
+    def both(pair: Sequence[Mapping[float, History]], amplitude: float, mass: str) -> Vector:
         return np.concatenate([late(histories[amplitude], mass) for histories in pair])
 
     first, second = (friction, free), (friction, engine)
@@ -61,7 +60,7 @@ def axis_claims(runs: Runs) -> list[Claim]:
     return rows
 
 
-def _end(figure: str, name: str, values: Array, interval: Interval, why: str = "") -> Claim:
+def _end(figure: str, name: str, values: Vector, interval: Interval, why: str = "") -> Claim:
     """Return the row of the highest value, or of the lowest one where the interval is negative; from 3 to 5 s."""
     extreme = float(np.min(values) if interval[0] < 0.0 else np.max(values))
     reason = "labels of the axis, 3 to 5 s" + (f"; {why}" if why else "")

@@ -1,7 +1,5 @@
 """Findings of the quarter-car study: published statements with our values."""
 
-from __future__ import annotations
-
 from scenarios.claims import Claim, Findings
 from scenarios.quarter_car.axis_claims import axis_claims
 from scenarios.quarter_car.damper_claims import degressive_claims, strut_claims

@@ -1,13 +1,12 @@
 """Statements about the degressive damper and the inclined strut: appendices C and D."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from scenarios.claims import PREDICTED, Claim, placed, spread_claim
 from scenarios.quarter_car.road_claims import FIRST, response
-from scenarios.quarter_car.runs import CONSTANT, DEGRESSIVE, HIGH, LOW, STEEP, Array, Runs, peak, rms
+from scenarios.quarter_car.runs import CONSTANT, DEGRESSIVE, HIGH, LOW, STEEP, Runs, peak, rms
 from scenarios.verdict import common
+from vehicle.arrays import Vector
 
 SLIPS = 100.0 / STEEP["friction.steepness"]
 """A damper slips above this velocity, where the smooth law has 99.4 % of its friction [m/s]."""
@@ -187,7 +186,7 @@ def strut_claims(runs: Runs) -> list[Claim]:
     return claims
 
 
-def _change(density: Array, against: Array, frequency: Array, band: tuple[float, float]) -> float:
+def _change(density: Vector, against: Vector, frequency: Vector, band: tuple[float, float]) -> float:
     """Return the change of the RMS in a band [%]."""
     inside = (frequency >= band[0]) & (frequency <= band[1])
     return 100.0 * (float(np.sqrt(density[inside].sum() / against[inside].sum())) - 1.0)

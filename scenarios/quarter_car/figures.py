@@ -1,7 +1,5 @@
 """The figures of chapter 2 and appendices B to D of the thesis (Bommer 2006), under the numbers they have there."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -20,15 +18,15 @@ from scenarios.quarter_car.runs import (
     LOW,
     NO_FRICTION,
     STEP,
-    Array,
     Runs,
 )
+from vehicle.arrays import Vector
 from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.engines.linear.response import frequency_response
 from vehicle.model.laws.coulomb import Coulomb
 from vehicle.signals.analysis.spectra import power_spectral_density
 
-Quantity = Callable[[History], Array]
+Quantity = Callable[[History], Vector]
 Run = Callable[[Runs, float], History]
 """From the amplitude of a sine, or the RMS of a road [m]."""
 

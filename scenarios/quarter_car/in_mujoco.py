@@ -1,7 +1,5 @@
 """Quarter car in MuJoCo with the element rows of the complete car, compared with the lumped model."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,13 +7,13 @@ from typing import Literal
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
 from scenarios.claims import OWN_CHECK, Claim
 from scenarios.lumped.quarter_car_network import quarter_car
 from scenarios.lumped.quarter_car_parameters import QuarterCar
 from scenarios.lumped.quarter_car_spec import WHEEL, quarter_car_spec
 from scenarios.quarter_car.runs import STEP, Runs, rms
+from vehicle.arrays import Vector
 from vehicle.engines.linear.first_order import FirstOrder
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.plate_arrays import PlateArrays
@@ -25,8 +23,6 @@ from vehicle.model.laws.friction import Clamped
 from vehicle.signals.analysis.slip import slip_share
 from vehicle.signals.excitation.signal import Signal
 
-Array = npt.NDArray[np.float64]
-
 DEFAULT_STEP = 5e-4
 """Step of the complete car [s]."""
 
@@ -35,10 +31,10 @@ DEFAULT_STEP = 5e-4
 class Motion:
     """Sampled motion at every step, by place: `body`, `wheel` and, with friction, `damper`."""
 
-    time: Array  # [s], shape (T,)
-    displacement: Mapping[str, Array]  # [m], shape (T,)
-    acceleration: Mapping[str, Array]  # [m/s2], shape (T,)
-    sliding_velocity: Array  # Velocity of the damper [m/s], shape (T,); zero where the damper slips or sticks for good
+    time: Vector  # [s], shape (T,)
+    displacement: Mapping[str, Vector]  # [m], shape (T,)
+    acceleration: Mapping[str, Vector]  # [m/s2], shape (T,)
+    sliding_velocity: Vector  # Velocity of the damper [m/s], shape (T,); zero where the damper slips or sticks for good
 
 
 def in_mujoco(
@@ -67,7 +63,7 @@ def in_mujoco(
     prepare_model(model)
     data = mujoco.MjData(model)
     rows = Rows(model)
-    times: Array = timestep * np.arange(int(np.floor(signal.duration / timestep + 1e-6)) + 1, dtype=np.float64)
+    times: Vector = timestep * np.arange(int(np.floor(signal.duration / timestep + 1e-6)) + 1, dtype=np.float64)
     plate = PlateArrays.of(signal, timestep, times.size - 1, (WHEEL,))
     position, velocity = np.zeros((times.size, model.nv)), np.zeros((times.size, model.nv))
     sensors = np.zeros((times.size, model.nsensordata))

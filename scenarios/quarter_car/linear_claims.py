@@ -1,7 +1,5 @@
 """Statements about the linear models and single elements: tables 2.1 and 2.3, figures 2.5, 2.9, 2.10 and 2.20."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from scenarios.claims import INFERRED, PREDICTED, Claim, placed

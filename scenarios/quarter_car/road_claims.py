@@ -1,14 +1,13 @@
 """Statements about random roads: figures 2.6, 2.14 and 2.21, and table B.1."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np
 
 from scenarios.claims import NOT_TESTABLE, PREDICTED, Claim, placed, spread_claim
 from scenarios.quarter_car.linear_claims import ABOUT
-from scenarios.quarter_car.runs import HIGH, LEVELS, LOW, SEED, STEEP, Array, Runs, peak, rms, rough_road
+from scenarios.quarter_car.runs import HIGH, LEVELS, LOW, SEED, STEEP, Runs, peak, rms, rough_road
+from vehicle.arrays import Vector
 from vehicle.engines.linear.response import frequency_response
 
 FIRST, SECOND = (1.0, 8.0), (8.0, 35.0)
@@ -67,7 +66,7 @@ def _inside(frequency: float) -> str:
     return f"{frequency:.1f}" if SECOND[0] < frequency < SECOND[1] else "-"
 
 
-def response(runs: Runs, family: str, variant: int, level: float) -> tuple[Array, Array]:
+def response(runs: Runs, family: str, variant: int, level: float) -> tuple[Vector, Vector]:
     """Return the spectrum per road velocity for the search of resonances."""
     return runs.spectrum(family, level, variant, resolution=runs.resolution, per_road=True)
 

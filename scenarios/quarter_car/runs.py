@@ -1,14 +1,11 @@
 """Runs of the quarter-car family: sines, random roads and the mass on a damper, each computed once."""
 
-from __future__ import annotations
-
 import time as clock
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
 import numpy as np
-import numpy.typing as npt
 
 from scenarios.lumped.fixed_step_solution import fixed_step_solution
 from scenarios.lumped.history import History
@@ -19,12 +16,11 @@ from scenarios.lumped.quarter_car_spec import WHEEL
 from scenarios.lumped.stiff_solution import Tolerances, stiff_solution, switch_solution
 from scenarios.lumped.switch import Switch
 from scenarios.signals.random_road import random_road
+from vehicle.arrays import Vector
 from vehicle.engines.linear.first_order import FirstOrder
 from vehicle.model.laws.coulomb import Coulomb
 from vehicle.signals.analysis.spectra import power_spectral_density
 from vehicle.signals.excitation.signal import Signal
-
-Array = npt.NDArray[np.float64]
 
 Found = TypeVar("Found")
 
@@ -66,9 +62,9 @@ class Family:
 class Marched:
     """Motion on every road of a level with a variant, (roads, samples) each."""
 
-    displacement: Array  # [m]
-    acceleration: Array  # [m/s2]
-    sliding_velocity: Array  # Of the damper [m/s]
+    displacement: Vector  # [m]
+    acceleration: Vector  # [m/s2]
+    sliding_velocity: Vector  # Of the damper [m/s]
 
 
 FAMILIES = {
@@ -147,7 +143,7 @@ class Runs:
             upper_band_edge=UPPER_EDGE_HZ,
         )
 
-    def road_profile(self, rms: float, *, seed: int = SEED, step: float = STEP) -> Array:
+    def road_profile(self, rms: float, *, seed: int = SEED, step: float = STEP) -> Vector:
         """Return the displacement of the road of a level [m]."""
         return np.asarray(self.road_signal(rms, seed=seed, step=step).displacement[WHEEL])
 
@@ -179,7 +175,7 @@ class Runs:
 
     def spectrum(
         self, family: str, level: float, variant: int = 0, *, resolution: float = 0.25, per_road: bool = False
-    ) -> tuple[Array, Array]:
+    ) -> tuple[Vector, Vector]:
         """Return the mean PSD of the body acceleration over all roads, 1 to 50 Hz.
 
         Args:
@@ -228,7 +224,7 @@ class Runs:
             every=round(STEP / self.march_step),
         )
 
-        def split(values: Array) -> Array:
+        def split(values: Vector) -> Vector:
             return values.T.reshape(len(cases), self.roads, -1)
 
         moved, accelerated = split(history.displacement(family.output)), split(history.acceleration(family.output))
@@ -264,7 +260,7 @@ class Runs:
         law = Switch(limit=p.friction_limit, band=p.stick_band, return_time=p.return_time)
         return self._once("mass switch", lambda: switch_solution(model, law, times, force=drive))
 
-    def starts(self) -> tuple[Array, Array]:
+    def starts(self) -> tuple[Vector, Vector]:
         """Run a sine of 1 mm from 64 starts: eight phases of the road, eight body velocities up to 0.1 m/s.
 
         With the steep smoothing of appendix C: a damper that creeps below the limit of the friction is no stuck one.
@@ -273,8 +269,8 @@ class Runs:
             Time [s], shape (m,), and body acceleration [m/s2], shape (m, 64).
         """
 
-        def solve() -> tuple[Array, Array]:
-            time: Array = self.march_step * np.arange(round(5.0 / self.march_step) + 1, dtype=np.float64)
+        def solve() -> tuple[Vector, Vector]:
+            time: Vector = self.march_step * np.arange(round(5.0 / self.march_step) + 1, dtype=np.float64)
             phase, speed = (grid.ravel() for grid in np.meshgrid(np.pi * np.arange(8) / 4.0, np.linspace(0.0, 0.1, 8)))
             model = self.model({**STEEP, "body.mass": np.full(phase.size, self.car.body.mass)}, damper="friction")
             initial = np.zeros((phase.size, model.state.shape[-1]))
@@ -283,7 +279,7 @@ class Runs:
             history = fixed_step_solution(model, self.march_step, road, initial=initial)
             return time, history.acceleration("body")
 
-        motion: tuple[Array, Array] = self._once("starts", solve)
+        motion: tuple[Vector, Vector] = self._once("starts", solve)
         return motion
 
     def _once(self, key: str, solve: Callable[[], Found]) -> Found:
@@ -295,7 +291,7 @@ class Runs:
         return result
 
 
-def rough_road(seed: int) -> Array:
+def rough_road(seed: int) -> Vector:
     """Return the displacement [m] of the whole high road, as in figure 2.6."""
     road = random_road(
         rms=HIGH,
@@ -309,13 +305,13 @@ def rough_road(seed: int) -> Array:
     return np.asarray(road.displacement[WHEEL])
 
 
-def peak(frequency: Array, density: Array, band: tuple[float, float]) -> tuple[float, float]:
+def peak(frequency: Vector, density: Vector, band: tuple[float, float]) -> tuple[float, float]:
     """Return frequency [Hz] and height of the largest line in a band."""
     inside = (frequency >= band[0]) & (frequency <= band[1])
     index = int(np.argmax(np.where(inside, density, -np.inf)))
     return float(frequency[index]), float(density[index])
 
 
-def rms(values: Array) -> float:
+def rms(values: Vector) -> float:
     """Return the root mean square about zero."""
     return float(np.sqrt(np.mean(values**2)))

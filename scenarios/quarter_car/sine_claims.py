@@ -1,13 +1,12 @@
 """Statements about sine roads of 1 and 50 mm at 1 Hz, without and with the engine: figures 2.12, 2.13, 2.17, 2.18."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from scenarios.claims import OWN_CHECK, PREDICTED, Claim, placed
 from scenarios.lumped.history import History
 from scenarios.lumped.quarter_car_parameters import QuarterCar
-from scenarios.quarter_car.runs import HIGH, LOW, NO_FRICTION, Array, Runs, rms
+from scenarios.quarter_car.runs import HIGH, LOW, NO_FRICTION, Runs, rms
+from vehicle.arrays import Vector
 from vehicle.engines.linear.response import frequency_response
 
 NEARLY = 0.1
@@ -174,12 +173,12 @@ def engine_sine_claims(runs: Runs) -> list[Claim]:
 _PLACES = ("body", "wheel")
 
 
-def late(history: History, output: str = "body") -> Array:
+def late(history: History, output: str = "body") -> Vector:
     """Return the acceleration from 3 s to the end [m/s2]."""
     return history.during(START).acceleration(output)
 
 
-def _largest(values: Array) -> float:
+def _largest(values: Vector) -> float:
     return float(np.abs(values).max())
 
 
@@ -188,12 +187,12 @@ def _hertz(line: int) -> float:
     return 0.5 * line
 
 
-def _dominant(values: Array) -> float:
+def _dominant(values: Vector) -> float:
     """Return the frequency of the largest line [Hz]."""
     return _hertz(int(np.argmax(np.abs(np.fft.rfft(values - values.mean())))))
 
 
-def _beside_the_sine(values: Array) -> Array:
+def _beside_the_sine(values: Vector) -> Vector:
     """Return a signal without its mean and its line of 1 Hz; sampled over whole periods, ends included."""
     spectrum = np.fft.rfft(values[:-1])
     spectrum[[0, 2]] = 0.0

@@ -1,13 +1,12 @@
 """Generate the bump of Bommer 2006: one period of a raised cosine, with random noise before and after."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from scenarios.signals.random_road import random_road
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
 from vehicle.signals.excitation.band import SHAKER_EDGE_HZ, SHAKER_ROLL_OFF_ORDER, positive, samples_of
 from vehicle.signals.excitation.signal import Signal, uniform_time
@@ -29,7 +28,7 @@ Reading = Literal["height", "literal"]
 
 def bump_shape(
     time: ArrayLike, *, amplitude: float, start: float = BUMP_START_S, reading: Reading = "height"
-) -> NDArray[np.float64]:
+) -> Vector:
     """Return one period of a raised cosine, zero before and after.
 
     height: x = A/2 (1 - cos(6 pi (t - start))), peak A; literal: x = A (1 - cos(6 pi (t - start))), peak 2 A.

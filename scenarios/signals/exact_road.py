@@ -4,8 +4,6 @@ Both are the same road at two levels: constant velocity PSD G_v = (2 pi RMS)^2 /
 lower edge f1 determines the share of the printed RMS that excites the suspension.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np

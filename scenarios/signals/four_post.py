@@ -1,7 +1,5 @@
 """Generate inputs of a four-post rig: band-limited noise in modal combinations, or independent for each plate."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from scenarios.signals.random_road import random_road

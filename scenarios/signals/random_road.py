@@ -1,12 +1,10 @@
 """Generate random plate displacements with constant velocity PSD: the standard road of Bommer 2006."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vehicle.arrays import Complex
 from vehicle.errors import ConfigurationError
 from vehicle.signals.excitation.band import (
     LOWER_BAND_EDGE_HZ,
@@ -111,8 +109,8 @@ def random_road(
     )
 
 
-def _gaussian(seed: int, count: int) -> NDArray[np.complex128]:
+def _gaussian(seed: int, count: int) -> Complex:
     """Return complex Gaussian numbers R exp(j phi), (count,), by Box and Muller: R^2 = -2 ln(1 - u), phi = 2 pi v."""
     uniform = np.random.Generator(np.random.PCG64(seed)).random((count, 2))
-    values: NDArray[np.complex128] = np.sqrt(-2.0 * np.log1p(-uniform[:, 0])) * np.exp(2j * np.pi * uniform[:, 1])
+    values: Complex = np.sqrt(-2.0 * np.log1p(-uniform[:, 0])) * np.exp(2j * np.pi * uniform[:, 1])
     return values

@@ -3,8 +3,6 @@
 python -m scenarios.source_choice [--output DIR] [--quick] [--jobs N]
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections.abc import Mapping, Sequence
@@ -32,8 +30,9 @@ from scenarios.source_choice.likelihood import (
     table,
     values_of,
 )
-from scenarios.source_choice.runs import Plan, Readings, Vector, readings
+from scenarios.source_choice.runs import Plan, Readings, readings
 from scenarios.study import QUICK_NOTE, Study, study_parser
+from vehicle.arrays import Vector
 from vehicle.studies.sweeps.executors import process_pool
 
 EVERY = frozenset(row.key for row in EVIDENCE)

@@ -4,8 +4,6 @@ A mirror image of the whole rig gives the same numbers. So the seat keeps its si
 hydromount, the roof point and the sign of the products of inertia take either: 2^4 rigs, no two of them alike.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass, replace

@@ -1,19 +1,15 @@
 """Picture of the joint choice: log-likelihoods of both halves by side."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from scenarios.charts import figure_file
 from scenarios.source_choice.candidates import Rig
 from scenarios.source_choice.likelihood import Candidate, best
+from vehicle.arrays import Vector
 from vehicle.drawing.rendering.figure import COLOURS
-
-Vector = npt.NDArray[np.float64]
 
 
 def side_figure(path: Path, used: Mapping[Rig, Vector], held: Mapping[Rig, Vector], winner: Candidate) -> None:

@@ -1,7 +1,5 @@
 """Likelihood of candidates: probability of each statement of the thesis, and the most likely candidate of a half."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache, partial
@@ -14,8 +12,7 @@ from scenarios.interval_probability import AGREES_ABOVE, interval_probability
 from scenarios.signals.exact_road import ROAD_RMS
 from scenarios.source_choice.candidates import NOISE_LEVELS, SLIP_VELOCITIES, Rig
 from scenarios.source_choice.runs import BUMPS, ENDS, POINTS, Plan, Readings, swings
-
-Vector = npt.NDArray[np.float64]
+from vehicle.arrays import Vector
 
 MISREADING = 0.01
 """Probability that a row is misread: labels come from a damaged scan, and an axis may be set by hand. It bounds

@@ -8,7 +8,6 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from scenarios.evidence import COMFORT_ENDS, LEVELS
 from scenarios.inertia import led_by, roll_mode
@@ -26,6 +25,7 @@ from scenarios.source_choice.candidates import (
     Rig,
     vehicle_file,
 )
+from vehicle.arrays import Vector
 from vehicle.engines.reduced.batch_simulation import COARSE_STEP, simulate_batch
 from vehicle.names import AXES
 from vehicle.runs.car import Car
@@ -33,8 +33,6 @@ from vehicle.signals.analysis.comfort import comfort_values
 from vehicle.signals.analysis.peaks import phase_resonance
 from vehicle.signals.excitation.band import SHAKER_ROLL_OFF_ORDER
 from vehicle.signals.excitation.signal import Signal
-
-Vector = npt.NDArray[np.float64]
 
 FINE_STEP = 1.25e-4
 """Step of the bumps [s]: the instant of breaking away, and what the damper top does then."""

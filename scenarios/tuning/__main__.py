@@ -5,8 +5,6 @@ python -m scenarios.tuning [--output DIR] [--quick] [--jobs N] [--vehicle FILE.t
 Data of a hidden car with 3 % noise, from the authors' starting values. `python -m vehicle tune` fits measured files.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections.abc import Mapping, Sequence

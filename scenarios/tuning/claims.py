@@ -1,7 +1,5 @@
 """Rows of fitted against hidden values, and paragraphs on the reliability of a fit."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any

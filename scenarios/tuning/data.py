@@ -1,7 +1,5 @@
 """Made measurements: runs of a hidden car with 3 % noise, written and read back as a measurement would be."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Sequence
 from functools import partial

@@ -1,14 +1,12 @@
 """Figure of fitted against hidden values."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from scenarios.charts import figure_file
+from vehicle.arrays import Vector
 from vehicle.drawing.rendering.figure import COLOURS, INK
 from vehicle.studies.tuning.fit_result import TuningResult
 from vehicle.studies.tuning.tuning_figures import short_name
@@ -47,7 +45,7 @@ def parameter_figure(path: Path, results: Mapping[str, TuningResult], true: Mapp
 
 
 def _relative(
-    result: TuningResult, paths: Sequence[str], reference: Mapping[str, float], positions: npt.NDArray[np.float64]
+    result: TuningResult, paths: Sequence[str], reference: Mapping[str, float], positions: Vector
 ) -> tuple[list[float], list[float], list[float]]:
     """Return deviation, three standard errors [%] and positions on the axis of the parameters of a fit."""
     columns: tuple[list[float], list[float], list[float]] = ([], [], [])

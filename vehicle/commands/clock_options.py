@@ -1,7 +1,5 @@
 """Options --delay and --drift: the clock of a measurement, and the delays of groups of its channels."""
 
-from __future__ import annotations
-
 import argparse
 
 DELAY = (

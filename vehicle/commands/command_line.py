@@ -1,7 +1,5 @@
 """Frame of every command: one message for each error, exit codes, interruption, a progress line."""
 
-from __future__ import annotations
-
 import argparse
 import atexit
 import gc

@@ -1,7 +1,5 @@
 """Shell completion of all commands: a script for bash or zsh, made from their parsers."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Iterator
 from importlib import import_module

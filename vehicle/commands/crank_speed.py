@@ -1,7 +1,5 @@
 """Speed of the crankshaft of the shaker: --rpm with a speed, a run-up or steady points, or a channel of --input."""
 
-from __future__ import annotations
-
 import argparse
 
 from vehicle.commands.destination import is_named

@@ -1,7 +1,5 @@
 """Destination of the results from --output and --force; chosen and locked before anything is computed."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Options of films of runs, and their checks."""
 
-from __future__ import annotations
-
 import argparse
 import math
 from collections.abc import Mapping

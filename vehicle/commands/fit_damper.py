@@ -1,7 +1,5 @@
 """`python -m vehicle fit-damper`: the law of a damper from records of a test machine."""
 
-from __future__ import annotations
-
 import argparse
 import shlex
 from functools import partial

@@ -1,7 +1,5 @@
 """`python -m vehicle mjcf`: write the generated MJCF files of a vehicle."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """`python -m vehicle optimise`: search for Pareto-optimal parameters within bounds and limits."""
 
-from __future__ import annotations
-
 import argparse
 import shlex
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Options of several commands, each defined once."""
 
-from __future__ import annotations
-
 import argparse
 import math
 from pathlib import Path

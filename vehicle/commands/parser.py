@@ -1,7 +1,5 @@
 """Argument parser of all commands: negative values, options of earlier versions, options without effect."""
 
-from __future__ import annotations
-
 import argparse
 import re
 from collections.abc import Callable, Sequence

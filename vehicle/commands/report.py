@@ -1,7 +1,5 @@
 """`python -m vehicle report`: write the report of one run, or of several runs compared, as an HTML file."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """`python -m vehicle --schema`: JSON Schema of vehicle files and templates, for editors that check TOML files."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 

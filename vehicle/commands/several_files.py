@@ -1,7 +1,5 @@
 """Commands with several input files: names, folders, results and errors of each file."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """`python -m vehicle show CAR`: masses, loads, stiffnesses, frequencies, geometry and parameters of a car."""
 
-from __future__ import annotations
-
 import argparse
 import dataclasses
 import sys

@@ -5,8 +5,6 @@ double precision only, all others once. Products and sums are rounded one by one
 processors give equal bits.
 """
 
-from __future__ import annotations
-
 import hashlib
 import subprocess
 from collections.abc import Sequence

@@ -3,8 +3,6 @@
 The next process executes the code in it, so folders writable by others are not used.
 """
 
-from __future__ import annotations
-
 import os
 import stat
 import tempfile

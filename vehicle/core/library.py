@@ -5,8 +5,6 @@ A library belongs to the sources whose digest it returns as its stamp. Where no 
 sources, it is compiled once into a private cache folder (`cache_folder`), from which the next process loads it.
 """
 
-from __future__ import annotations
-
 import ctypes
 import os
 import platform

@@ -5,8 +5,6 @@ array is passed by its address and shape, without a copy, so it must have the ty
 layout.h states; `Packed` keeps it alive.
 """
 
-from __future__ import annotations
-
 import ctypes
 import re
 import struct

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from scenarios.signals.random_road import random_road
-from vehicle.model.flexbody.beam import FloatArray
+from vehicle.arrays import Vector
 from vehicle.model.flexbody.carried_nodes import carried_by, with_carried_nodes
 from vehicle.model.flexbody.frame_modes import rigid_shapes
 from vehicle.model.parameters.paths import value_of
@@ -43,7 +43,7 @@ def braced(tmp_path_factory):
     return Car.load(written(tmp_path_factory.mktemp("braced"), TEXT + ADDED))
 
 
-def rows_at(model: mujoco.MjModel, shapes: FloatArray) -> FloatArray:
+def rows_at(model: mujoco.MjModel, shapes: Vector) -> Vector:
     """Displacement of the engine less that of the body at the new point, by plain jacobians; (3, nv)."""
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
@@ -155,6 +155,6 @@ def test_full_tensors_and_crooked_axes_are_mirrored(tmp_path):
     np.testing.assert_allclose(left, mirror @ right @ mirror, atol=1e-12)
 
 
-def tensor(model: mujoco.MjModel, data: mujoco.MjData, name: str) -> FloatArray:
+def tensor(model: mujoco.MjModel, data: mujoco.MjData, name: str) -> Vector:
     frame = data.ximat[model.body(name).id].reshape(3, 3)
     return np.asarray(frame @ np.diag(model.body_inertia[model.body(name).id]) @ frame.T)

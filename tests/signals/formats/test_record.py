@@ -5,13 +5,14 @@ import json
 import numpy as np
 import pytest
 
+from vehicle.arrays import Vector
 from vehicle.commands.comfort import main
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.excitation.signal_file import read_signal
 from vehicle.signals.formats import text, text_format
 from vehicle.signals.formats.formats import TABLES, write_record
 from vehicle.signals.formats.reader import read_columns
-from vehicle.signals.formats.table import Record, Vector, Wanted, key_column
+from vehicle.signals.formats.table import Record, Wanted, key_column
 
 TIME: Vector = np.linspace(2.0, 5.999, 4000)
 SINE: Vector = np.sin(2 * np.pi * 8.0 * TIME)

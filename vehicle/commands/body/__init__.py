@@ -1,7 +1,5 @@
 """`python -m vehicle body import | build | show | compare | participation`: body models for a car, a file for each."""
 
-from __future__ import annotations
-
 import argparse
 
 from vehicle.commands.body import build_body, compare_bodies, import_body, participation, show_body

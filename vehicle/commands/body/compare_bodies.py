@@ -7,14 +7,12 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from vehicle.arrays import Vector
 from vehicle.commands.body.model_file import model_of
 from vehicle.commands.destination import output_folder_of
 from vehicle.commands.options import extra_output_options, message_options, vehicle_options
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-
     from vehicle.model.flexbody.superelement import Superelement
     from vehicle.model.parameters.vehicle import Vehicle
 
@@ -66,9 +64,7 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
         print(f"{i + 1:>4} {frequency:>8.3f}   {j + 1:>4} {other:>8.3f} {change:>+7.2f}% {row[j]:>6.3f}")
 
 
-def _write_files(
-    options: argparse.Namespace, models: list[Superelement], likeness: npt.NDArray[np.float64], title: str
-) -> None:
+def _write_files(options: argparse.Namespace, models: list[Superelement], likeness: Vector, title: str) -> None:
     """Write the MAC matrix as a table, and a picture of its first modes."""
     from vehicle.runs.comparison.pictures import plot_mac
     from vehicle.runs.output.folder import output_folder, write_files

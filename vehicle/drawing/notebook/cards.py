@@ -1,7 +1,5 @@
 """Display of a car and of a run in a notebook."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Tables of pandas and data sets of xarray with time histories and FRFs; a MissingPartError without the library."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Sequence
 from importlib import import_module

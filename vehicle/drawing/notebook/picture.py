@@ -1,13 +1,11 @@
 """Tables of a notebook with a small drawing on their right."""
 
-from __future__ import annotations
-
 import html
 from collections.abc import Mapping
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Indices
 from vehicle.signals.analysis.samples import Vector
 
 WIDTH, HEIGHT = 330, 110
@@ -44,7 +42,7 @@ def line_drawing(along: Vector, values: Vector, label: str) -> str:
     return _svg(f'<polyline points="{points}" fill="none" stroke="#1f5fa8"/>', label)
 
 
-def frame_drawing(points: Vector, lines: npt.NDArray[np.intp], label: str) -> str:
+def frame_drawing(points: Vector, lines: Indices, label: str) -> str:
     """Draw lines between points as SVG, seen from the right with the front on the left.
 
     Args:

@@ -1,7 +1,5 @@
 """Amplitudes of a run at orders of a turning part, with the names of their channels."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, fields
 from typing import Any
 

@@ -1,7 +1,5 @@
 """FRFs of a run with the names of their channels, and their display in a notebook."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Spectra of a run with their display in a notebook."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, fields
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Shapes that are not in the model and are appended to a scene during drawing."""
 
-from __future__ import annotations
-
 import mujoco
 import numpy as np
 import numpy.typing as npt

@@ -1,7 +1,5 @@
 """Pictures on the first screen of a report: changes of comfort and loads, and bands of the weighted acceleration."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path

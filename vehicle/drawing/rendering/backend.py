@@ -5,8 +5,6 @@ until the process ends. `python -m vehicle.drawing.rendering.backend` exits with
 the reason.
 """
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """Picture of a body model: its first modes as wireframes, at rest and at the end of a swing."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -9,6 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Indices
 from vehicle.drawing.rendering.colour_scale import colours
 from vehicle.drawing.rendering.figure import COLOURS, saved_figure
 from vehicle.signals.analysis.samples import Vector
@@ -33,7 +32,7 @@ def plot_body(
     edges: npt.NDArray[Any],
     shapes: Vector,
     titles: Sequence[str],
-    attachments: npt.NDArray[np.intp],
+    attachments: Indices,
     title: str,
     caption: str,
 ) -> None:

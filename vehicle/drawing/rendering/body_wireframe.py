@@ -13,6 +13,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Indices
 from vehicle.drawing.rendering.added_geom import add_geom
 from vehicle.drawing.rendering.motion import Motion, State
 from vehicle.signals.analysis.samples import Vector
@@ -32,7 +33,7 @@ EMISSION = 0.35
 """Emission of the members: share of their colour without light."""
 
 
-def members_of(car: CarModel) -> tuple[npt.NDArray[np.intp], float]:
+def members_of(car: CarModel) -> tuple[Indices, float]:
     """Return the lines of the flexible body as pairs of nodes (n, 2), and a factor on their thickness."""
     element = car.superelement
     lines = thinned(element.positions, np.asarray(element.edges, dtype=int))

@@ -1,7 +1,5 @@
 """Cameras of a film."""
 
-from __future__ import annotations
-
 import mujoco
 import numpy as np
 

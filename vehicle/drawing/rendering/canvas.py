@@ -1,7 +1,5 @@
 """Off-screen rendering of a scene."""
 
-from __future__ import annotations
-
 from importlib import import_module
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Text on a picture of the car: a heading and a colour bar."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property

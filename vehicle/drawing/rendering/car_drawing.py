@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Mask
 from vehicle.drawing.rendering.figure import COLOURS, INK, saved_figure, wrapped
 from vehicle.drawing.rendering.wireframe import GROUPS, CarWireframe
 from vehicle.signals.analysis.samples import Vector
@@ -55,7 +55,7 @@ def _ground(data: Any) -> float:
     return float(data.cog_m[2] - data.cog_height_m)
 
 
-def _lines(axes: Axes, wire: CarWireframe, across: tuple[int, int], chosen: npt.NDArray[np.bool_], left: float) -> None:
+def _lines(axes: Axes, wire: CarWireframe, across: tuple[int, int], chosen: Mask, left: float) -> None:
     """Draw the chosen lines of a wireframe over two coordinates, the first with the factor `left`."""
     from matplotlib.collections import LineCollection
 

@@ -1,7 +1,5 @@
 """Colours of a displacement."""
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 

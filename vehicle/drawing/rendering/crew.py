@@ -1,7 +1,5 @@
 """Drawing of the frames of a film by several processes, each with a separate canvas."""
 
-from __future__ import annotations
-
 import os
 import signal
 from collections.abc import Iterator

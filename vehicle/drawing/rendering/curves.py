@@ -1,7 +1,5 @@
 """Drawing of FRFs and of time histories over the curves in the same axes."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from itertools import cycle, islice
 

@@ -1,7 +1,5 @@
 """Picture of a fitted damper: force over velocity and over displacement, measured and fitted, for each test."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple

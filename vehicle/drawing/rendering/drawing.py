@@ -1,7 +1,5 @@
 """Drawing of the car in a state of motion on a canvas, for several cameras."""
 
-from __future__ import annotations
-
 import mujoco
 
 from vehicle.drawing.rendering.body_wireframe import Wireframe

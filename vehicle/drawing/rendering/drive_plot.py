@@ -1,14 +1,12 @@
 """Pictures of a replicated drive signal: target and response, the drive signal, and the convergence of the error."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from itertools import cycle
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Mask
 from vehicle.drawing.rendering.figure import COLOURS, LINES, looks, saved_figure
 from vehicle.drawing.rendering.recorded_run import liveliest
 from vehicle.signals.analysis.samples import Vector
@@ -23,7 +21,7 @@ LEGEND_FACTOR = 200.0
 ERROR, OUTSIDE = "#555555", "#ececec"
 
 
-def _between(values: Vector, low: float, high: float) -> npt.NDArray[np.bool_]:
+def _between(values: Vector, low: float, high: float) -> Mask:
     return np.asarray((values >= low) & (values <= high))
 
 
@@ -90,7 +88,7 @@ def _amplitude(step: float, values: Vector) -> tuple[Vector, Vector]:
     return density.frequency[1:], np.sqrt(density.density[0, 1:])
 
 
-def plot_convergence(path: Path, errors: Mapping[str, Vector], kept: npt.NDArray[np.bool_], caption: str) -> None:
+def plot_convergence(path: Path, errors: Mapping[str, Vector], kept: Mask, caption: str) -> None:
     """Plot the error of each channel over the runs.
 
     Args:

@@ -5,8 +5,6 @@ motion is that of the part that carries the wheel: its kinetic energy over the f
 acceleration divided by w^2.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

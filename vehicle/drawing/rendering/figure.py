@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Mask
 from vehicle.drawing.rendering.grid_lines import bared, draw_grid
 from vehicle.signals.analysis.samples import Complex, Vector
 
@@ -236,9 +237,7 @@ def error_band(
     axis.fill_between(frequency, low, values + half, where=where, alpha=0.25, linewidth=0.0, color=colour)
 
 
-def shade(
-    axis: Axes, along: npt.ArrayLike, where: npt.NDArray[np.bool_], colour: str, label: str | None = None
-) -> None:
+def shade(axis: Axes, along: npt.ArrayLike, where: Mask, colour: str, label: str | None = None) -> None:
     """Colour the whole height of an axis where something holds.
 
     Args:

@@ -1,7 +1,5 @@
 """Film of a run: replay of the recording with exaggerated motion, without simulation."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 

@@ -4,8 +4,6 @@ An arrow is the force on the car, F / F_top * LENGTH long, with one scale for al
 mean over its time, as for the motion. The tyre pushes the wheel up; a damper in extension pulls the body down.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import mujoco

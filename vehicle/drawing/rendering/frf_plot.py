@@ -1,7 +1,5 @@
 """The FRF picture of a run: many channels to one motion of the plates, or few channels to each of several plates."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 

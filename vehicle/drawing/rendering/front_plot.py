@@ -1,7 +1,5 @@
 """Picture of the Pareto front of a search: pairs of objectives, and parameters relative to their bounds."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Picture of axle kinematics: camber, toe, paths and load over the wheel travel."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Positions and font sizes in a frame of a film."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path

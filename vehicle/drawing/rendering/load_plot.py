@@ -1,7 +1,5 @@
 """Picture of load spectra: number of cycles over the range, for the largest loads of each type."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Film of a mode: a few cycles that repeat without a jump."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from pathlib import Path

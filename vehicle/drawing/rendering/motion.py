@@ -7,8 +7,6 @@ Every body has a design pose (p0, R0) and, in a state of motion, a displacement 
 With k = 1 this is MuJoCo's own kinematics.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import mujoco

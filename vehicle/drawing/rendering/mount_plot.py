@@ -1,7 +1,5 @@
 """Picture of a fitted mount: dynamic stiffness and loss angle over frequency, measured points and curves."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Axes of a figure that a user of Python edits: a new figure in the style of the program, or the axes of the user."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

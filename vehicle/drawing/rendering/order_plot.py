@@ -1,16 +1,12 @@
 """Pictures of orders over speed: order cuts with their limits, and a Campbell map with the modes by name."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.drawing.rendering.figure import COLOURS, INK, saved_figure
-
-Vector = npt.NDArray[np.float64]
 
 DEEPEST = 60.0
 """Range of the colours of a map below its largest amplitude [dB]."""

@@ -1,7 +1,5 @@
 """Text on a frame of a run: input, time, lamps, colour bar, traces."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

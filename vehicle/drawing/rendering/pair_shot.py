@@ -1,7 +1,5 @@
 """Two runs of one input side by side: the same times, exaggeration, colours and lengths of arrows in both halves."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace

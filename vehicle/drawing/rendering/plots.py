@@ -1,7 +1,5 @@
 """The two pictures of a run: FRFs of the main vertical channels, and the main time histories."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Picture of a road: its heights, and height and slope as a tyre takes them, over the distance."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Mapping
 from pathlib import Path

@@ -8,8 +8,6 @@ t + (x0 - x) / V, so
 and every following wheel has the same road. Outside the record the road is level.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import mujoco

@@ -1,7 +1,5 @@
 """Rolling wheels: the rim rotates by -V t / r about y for a car that drives towards -x; the tyre keeps its flat."""
 
-from __future__ import annotations
-
 import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation

@@ -1,7 +1,5 @@
 """Round numbers for ends of scales and for factors."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

@@ -1,7 +1,5 @@
 """Comparison of the FRFs of several runs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Excerpt of a run, drawn frame by frame: the car, a close-up, and text."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Pictures of spectra of one or several runs over each other: accelerations, and roads against ISO 8608."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from itertools import islice
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Scene of a film: the car with its shapes, translucent shell, lights and floor."""
 
-from __future__ import annotations
-
 import mujoco
 import numpy as np
 

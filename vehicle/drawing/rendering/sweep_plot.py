@@ -1,7 +1,5 @@
 """Picture of a sweep: comfort over a parameter, a map over two, or parallel axes over more."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any

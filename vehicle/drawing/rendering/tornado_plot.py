@@ -1,7 +1,5 @@
 """Tornado chart: the changes of a value by single parameters, the largest on top."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any

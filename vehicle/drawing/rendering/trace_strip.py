@@ -1,7 +1,5 @@
 """Scrolling traces below the picture of a film, with the current time in the middle."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,14 +1,12 @@
 """Car as points and lines, with the displacement of each point over the velocity coordinates, to show modes."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Indices
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.model.parameters.composition import Composition, PlacedPart, PlacedWheel
 from vehicle.signals.analysis.samples import Complex, Vector
@@ -42,8 +40,8 @@ class CarWireframe:
     """
 
     points: Vector
-    lines: npt.NDArray[np.intp]
-    groups: npt.NDArray[np.intp]
+    lines: Indices
+    groups: Indices
     motion: Vector
 
     def displacement(self, shape: Complex) -> Complex:

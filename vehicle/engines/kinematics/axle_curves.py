@@ -1,7 +1,5 @@
 """Curves, slopes and geometry of an axle on a kinematics rig: over wheel travel, in the design position, under load."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import fields, replace
@@ -9,7 +7,8 @@ from dataclasses import fields, replace
 import mujoco
 import numpy as np
 
-from vehicle.engines.kinematics.axle_statics import AxlePosition, AxleStatics, Vector, WheelPose
+from vehicle.arrays import Vector
+from vehicle.engines.kinematics.axle_statics import AxlePosition, AxleStatics, WheelPose
 from vehicle.engines.kinematics.wheel_geometry import WheelGeometry, WheelMotion, wheel_geometry
 from vehicle.errors import SimulationError
 from vehicle.model.parameters.composition import PlacedWheel

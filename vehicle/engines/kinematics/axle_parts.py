@@ -1,15 +1,13 @@
 """Parts of an axle: the bodies connected to its wheels, with their connections, springs and dampers."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Indices, Vector
 from vehicle.engines.simulation.law_arrays import model_numbers
 from vehicle.engines.simulation.row_layout import equality_rows
 from vehicle.errors import ConfigurationError
@@ -17,8 +15,6 @@ from vehicle.model.assembly.element_numbers import FLUID, TURNING
 from vehicle.model.laws.curve import Curve
 from vehicle.model.laws.damper import unpack
 from vehicle.names import AXES
-
-Vector = npt.NDArray[np.float64]
 
 HELD = ("world", "body")
 """Fixed bodies on the rig; an axle contains the bodies connected to its wheels by paths that avoid these."""
@@ -51,8 +47,8 @@ class Ties:
         bent: row, axis and nonlinear law.
     """
 
-    sites: npt.NDArray[np.intp]
-    bodies: npt.NDArray[np.intp]
+    sites: Indices
+    bodies: Indices
     ways: Vector
     stiffness: Vector
     preload: Vector
@@ -120,7 +116,7 @@ class AxleParts:
 
     wheels: tuple[int, ...]
     bodies: frozenset[int]
-    columns: npt.NDArray[np.intp]
+    columns: Indices
     soft: Ties
     hard: Ties
     springs: tuple[Spring, ...]

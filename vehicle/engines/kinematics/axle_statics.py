@@ -14,8 +14,6 @@ connections all connections are joints, and the solution is the minimum-norm mot
 independent of forces.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -24,11 +22,10 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from vehicle.arrays import Indices, Vector
 from vehicle.engines.kinematics.axle_parts import Spring, Ties, axle_parts
 from vehicle.errors import SimulationError
 from vehicle.model.parameters.composition import PlacedWheel
-
-Vector = npt.NDArray[np.float64]
 
 ITERATIONS = 100
 """Maximum number of Newton steps for a position."""
@@ -210,7 +207,7 @@ class AxleStatics:
         moved, turned = self._jacobians(np.array([body]), point[None])
         return moved[0], turned[0]
 
-    def _jacobians(self, bodies: npt.NDArray[np.intp], points: Vector) -> tuple[Vector, Vector]:
+    def _jacobians(self, bodies: Indices, points: Vector) -> tuple[Vector, Vector]:
         """Return the Jacobians of displacement and rotation at a point of each body, (k, 3, columns) each."""
         both = np.empty((len(bodies), 2, 3, self.model.nv))
         for (moved, turned), body, point in zip(both, bodies.tolist(), points, strict=True):

@@ -28,8 +28,6 @@ here without their coupling; wheel hop) and chapter 6 (roll stiffness less the w
 axis).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

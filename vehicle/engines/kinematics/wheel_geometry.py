@@ -5,16 +5,13 @@ per unit of wheel travel, so a point at r from the wheel centre moves by v + w x
 SAE J670; formulas of Milliken and Milliken, Race Car Vehicle Dynamics, chapter 17.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-Vector = npt.NDArray[np.float64]
+from vehicle.arrays import Vector
 
 FARTHEST = 1e3
 """Maximum length of a swing arm [m]; a longer one is a translation without a swing centre."""

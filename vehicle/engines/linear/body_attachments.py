@@ -5,20 +5,16 @@ motion and the amplitudes of its modes. J has a row for each load channel of the
 position.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.row_layout import numeric
 from vehicle.names import AXES
-
-Vector = npt.NDArray[np.float64]
 
 BODY = "body"
 RIGID = 6

@@ -12,8 +12,6 @@ stiffness of preloads differs by the rigid part of the modes: by 5e-11 of the la
 of the `focus` car with 2 % more mass, by 5e-10 and 4e-7 with 16 %. Without parts fixed to the body it does not differ.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -21,6 +19,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.engines.linear.part_motions import cross_matrix
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.row_layout import read_layout
@@ -29,8 +28,6 @@ from vehicle.model.flexbody.attached_mass import attached
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.parameters.body import MOMENTS, TrimmedBody
 from vehicle.model.parameters.vehicle import Vehicle
-
-Vector = npt.NDArray[np.float64]
 
 SAME = 1e-12
 """Maximum relative difference of moments of inertia that counts as round-off of a factor."""

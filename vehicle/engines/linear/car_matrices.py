@@ -12,8 +12,8 @@ from typing import Any
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Indices, Vector
 from vehicle.engines.linear.damper_elements import (
     SideRows,
     SliderElements,
@@ -36,8 +36,6 @@ from vehicle.model.assembly.element_numbers import DECOUPLER, FLUID
 from vehicle.model.parameters.placed_force import PlacedForce
 from vehicle.names import AXES
 from vehicle.signals.excitation.force_lines import ForceLines
-
-Vector = npt.NDArray[np.float64]
 
 COORDINATES = ("mode_", FLUID, DECOUPLER)
 """Beginnings of the names of coordinates that are not parts: modes of the body, fluids of hydromounts, decouplers."""
@@ -77,7 +75,7 @@ class CarMatrices:
     """
 
     system: LinearSystem
-    dampers: npt.NDArray[np.intp]
+    dampers: Indices
     damper_names: tuple[str, ...]
     viscous: Vector
     sensors: Vector = field(default_factory=lambda: np.zeros((0, 0)))

@@ -1,13 +1,11 @@
 """Modes of the assembled car with names of the moving parts; rejection of unstable cars."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Complex
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.first_order import first_order
 from vehicle.engines.linear.modal_scale import modal_a
@@ -39,7 +37,7 @@ class Mode:
     damping_ratio: float
     growth: float
     grows: bool
-    shape: npt.NDArray[np.complex128]
+    shape: Complex
     energy: dict[str, float]
     motions: dict[str, float]
     description: str
@@ -91,7 +89,7 @@ def car_modes(matrices: CarMatrices, *, stuck: bool, highest: float = 60.0, name
     return car_mode_list
 
 
-def _energy(matrices: CarMatrices, shape: npt.NDArray[np.complex128]) -> tuple[dict[str, float], float]:
+def _energy(matrices: CarMatrices, shape: Complex) -> tuple[dict[str, float], float]:
     """Return the share of each group in the kinetic energy v^H M v, and the root of the total."""
     energy: dict[str, float] = {}
     for body, rows in matrices.body_rows.items():
@@ -106,7 +104,7 @@ def _energy(matrices: CarMatrices, shape: npt.NDArray[np.complex128]) -> tuple[d
     return {name: value / total for name, value in energy.items()}, float(np.sqrt(total))
 
 
-def require_stable(car: CarModel, matrices: CarMatrices, poles: npt.NDArray[np.complex128]) -> None:
+def require_stable(car: CarModel, matrices: CarMatrices, poles: Complex) -> None:
     """Raise an error if the car has an unstable pole.
 
     The poles with sliding dampers are sufficient: a car that buckles while friction holds the dampers also buckles

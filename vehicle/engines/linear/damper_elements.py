@@ -1,17 +1,14 @@
 """Jenkins elements of dampers, and side forces of dampers, as rows over the coordinates of the car."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.engines.linear.displacement_laws import BUSHING, DisplacementLaw
 from vehicle.engines.simulation.rows import Rows
-
-Vector = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

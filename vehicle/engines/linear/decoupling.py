@@ -14,22 +14,18 @@ excites one mode alone if K s = W^2 M s with K of the mounts over the six motion
 |M^-1 K s - W^2 s| / |W^2 s|. Source: Jeong and Singh, J. Sound Vib. 234 (2000), 85-114.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from vehicle.arrays import Vector
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.first_order import first_order
 from vehicle.engines.linear.natural_modes import natural_modes
 from vehicle.engines.linear.part_motions import cross_matrix
 from vehicle.engines.linear.system import LinearSystem
 from vehicle.errors import ConfigurationError
-
-Vector = npt.NDArray[np.float64]
 
 MOTIONS = ("x", "y", "z", "about x", "about y", "about z")
 """Motions of a part: translations, and rotations about its centre of gravity."""

@@ -18,20 +18,17 @@ force k_i (d - q_i): d moves q_i when it is farther than x_i from it,
 On first loading from rest, q_i = 0, this is a law with the breakpoints +-x_i and the slope changes -+k_i.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.engines.simulation.force_curves import curve_of
 from vehicle.engines.simulation.row_layout import wheels_of
 from vehicle.engines.simulation.rows import Rows
 from vehicle.names import AXES
-
-Vector = npt.NDArray[np.float64]
 
 BUSHING, SPRING, STOP, DECOUPLER = range(4)
 """Types of elements, see `vehicle.engines.simulation.element_records.Tables`."""

@@ -7,17 +7,14 @@ the same for a few outputs by partial fractions; this module returns all coordin
 pairs.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Complex
 from vehicle.engines.linear.first_order import first_order, free_basis
 from vehicle.engines.linear.system import LinearSystem
-
-Complex = npt.NDArray[np.complex128]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

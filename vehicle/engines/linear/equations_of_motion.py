@@ -5,14 +5,12 @@ vectors, forces f_b of the Maxwell branches and l of the ideal joints. MuJoCo su
 core the laws; neither its solver nor its integrator takes part.
 """
 
-from __future__ import annotations
-
 import copy
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.displacement_laws import BUSHING, SPRING
 from vehicle.engines.linear.first_order import free_basis
@@ -20,8 +18,6 @@ from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.element_records import RubberFriction
 from vehicle.engines.simulation.row_layout import numeric, places_of
 from vehicle.engines.simulation.rows import Rows
-
-Vector = npt.NDArray[np.float64]
 
 SHORT = 1e-7
 """Time step of the laws [s], so short that all forces of the rows are explicit."""

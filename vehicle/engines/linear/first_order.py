@@ -4,8 +4,6 @@ The states are (y, y', f_b): the free motions y of the joints with u = N y, thei
 Maxwell branches. Cyclic coordinates are the last of the free motions, and their positions are not states.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -14,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from vehicle.engines.linear.system import Array, LinearSystem
+from vehicle.arrays import Vector
+from vehicle.engines.linear.system import LinearSystem
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -32,14 +31,14 @@ class FirstOrder:
     """
 
     system: LinearSystem
-    basis: Array
-    state: Array
-    input: Array
-    input_rate: Array
-    load: Array
-    friction: Array
-    slide: Array
-    slide_rate: Array
+    basis: Vector
+    state: Vector
+    input: Vector
+    input_rate: Vector
+    load: Vector
+    friction: Vector
+    slide: Vector
+    slide_rate: Vector
 
     @property
     def placed(self) -> int:
@@ -74,13 +73,13 @@ class FirstOrder:
             )
         return displacements
 
-    def output(self, name: str) -> tuple[Array, Array]:
+    def output(self, name: str) -> tuple[Vector, Vector]:
         """Return the coefficients of an output on the non-cyclic free motions (..., m) and on the inputs (..., w)."""
         row, inputs = self.system.output(name)
         return row @ self.basis[:, : self.placed], inputs
 
 
-def free_basis(system: LinearSystem, *, stuck: bool = False) -> Array:
+def free_basis(system: LinearSystem, *, stuck: bool = False) -> Vector:
     """Return an orthonormal basis of the motions that joints, and stuck sliding pairs, allow; (n, m).
 
     Joints do not constrain cyclic coordinates: each is a separate free motion, after the others.
@@ -98,14 +97,14 @@ def free_basis(system: LinearSystem, *, stuck: bool = False) -> Array:
     return _null_space(rows)
 
 
-def _null_space(rows: Array) -> Array:
+def _null_space(rows: Vector) -> Vector:
     """Return an orthonormal basis of the solutions of rows u = 0; (n, m), not writeable."""
     return _null_space_of(rows.tobytes(), *rows.shape)
 
 
 # The cars of a sweep have the same joints.
 @lru_cache(maxsize=8)
-def _null_space_of(entries: bytes, count: int, size: int) -> Array:
+def _null_space_of(entries: bytes, count: int, size: int) -> Vector:
     rows = np.frombuffer(entries).reshape(count, size)
     basis = np.asarray(scipy.linalg.null_space(rows)) if count else np.eye(size)
     basis.flags.writeable = False
@@ -167,7 +166,7 @@ def first_order(system: LinearSystem, *, stuck: bool = False) -> FirstOrder:
     )
 
 
-def _padded(speeds: Array, before: int, after: int) -> Array:
+def _padded(speeds: Vector, before: int, after: int) -> Vector:
     """Extend effects on the velocities by zeros to effects on all states."""
     shape = (*speeds.shape[:-2],)
     return np.concatenate(

@@ -8,14 +8,12 @@ Without friction the dampers have the slope of their curve at rest: the softest 
 at the velocities where it lies.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Complex, Indices
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.first_order import free_basis
 from vehicle.model.laws.damper import damper_curve
@@ -24,7 +22,7 @@ from vehicle.model.parameters.force_elements import Damper
 
 def forced_response(
     matrices: CarMatrices, channels: Sequence[str], dampers: Sequence[Damper], *, stuck: bool
-) -> npt.NDArray[np.complex128]:
+) -> Complex:
     """Return the complex amplitudes of acceleration channels by each applied force alone, at all constant frequencies.
 
     Args:
@@ -47,7 +45,7 @@ def forced_response(
     return np.asarray(unit * amplitudes[:, None, :])
 
 
-def force_amplitudes(matrices: CarMatrices) -> npt.NDArray[np.complex128]:
+def force_amplitudes(matrices: CarMatrices) -> Complex:
     """Return the complex amplitudes Z of Re(Z exp(jWt)) of the applied forces, (forces, constant frequencies)."""
     constant = matrices.coefficients[:, : 2 * len(matrices.lines.frequencies)]
     return np.asarray(constant[:, ::2] - 1j * constant[:, 1::2])
@@ -57,10 +55,10 @@ def unit_response(
     matrices: CarMatrices,
     channels: Sequence[str],
     frequencies: Sequence[float],
-    forces: npt.NDArray[np.intp],
+    forces: Indices,
     *,
     stuck: bool,
-) -> npt.NDArray[np.complex128]:
+) -> Complex:
     """Return Z of Re(Z exp(jWt)) of acceleration channels per unit of applied forces; (forces, channels, frequencies).
 
     Args:

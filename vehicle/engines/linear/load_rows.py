@@ -19,8 +19,8 @@ from dataclasses import dataclass, replace
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.displacement_laws import BUSHING, DIFFERENCE_STEP, SPRING, STOP, law_rows
 from vehicle.engines.linear.part_motions import cross_matrix
@@ -30,8 +30,6 @@ from vehicle.engines.simulation.load_channels import LoadPlaces, spring_coordina
 from vehicle.engines.simulation.rows import Rows
 from vehicle.model.laws.curve import Curve
 from vehicle.model.parameters.force_elements import Damper
-
-Vector = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -1,14 +1,12 @@
 """Scale of a complex mode: Modal A, which determines its share in every response."""
 
-from __future__ import annotations
-
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Complex
 from vehicle.engines.linear.system import LinearSystem
 
 
-def modal_a(system: LinearSystem, pole: complex, shape: npt.NDArray[np.complex128]) -> complex:
+def modal_a(system: LinearSystem, pole: complex, shape: Complex) -> complex:
     """Return Modal A [kg/s] of a mode with pole s and shape u: u^T D'(s) u with the dynamic stiffness D.
 
     D(s) = s^2 M + s C + K + sum_b h_b^T K2 tau / (1 + s tau) (s e_b + g_b), so near s the receptance is

@@ -16,13 +16,12 @@ Source: Ewins, Modal Testing, 2nd ed., section 2.8, for the superposition of mod
 transfer path analysis uses for its contributions.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Complex, Vector
 from vehicle.engines.linear.body_attachments import body_attachments, body_coordinates
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.dynamic_stiffness import SteadyMotion, steady_motion
@@ -31,9 +30,6 @@ from vehicle.engines.linear.motion_names import RIGID_WORDS, mode_words
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.errors import ConfigurationError
 from vehicle.names import AXES
-
-Complex = npt.NDArray[np.complex128]
-Vector = npt.NDArray[np.float64]
 
 RIGID = tuple(f"body {word}" for word in RIGID_WORDS)
 """Rigid motions of the trimmed body: translations of its centre of gravity and rotations about it."""

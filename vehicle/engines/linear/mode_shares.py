@@ -12,19 +12,15 @@ All shares, with those of the real poles and of the direct term g, add up to 1. 
 the states by f (`vehicle.engines.linear.forced_response`), and a_k = (jw)^2 c V_k (V^-1 f)_k / (jw - s_k).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Complex, Vector
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.first_order import FirstOrder, first_order
 from vehicle.engines.linear.system import LinearSystem
-
-Vector = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -8,16 +8,12 @@ If there is none, front and rear axle are combined in the same way. Otherwise th
 with their shares.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Complex
 from vehicle.names import axle_and_side
-
-Complex = npt.NDArray[np.complex128]
 
 RIGID_WORDS = ("fore-aft (x)", "lateral (y)", "heave (z)", "roll (Rx)", "pitch (Ry)", "yaw (Rz)")
 """Names of the rigid motions of a part: along x, y, z and about them."""

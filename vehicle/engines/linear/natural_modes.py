@@ -1,12 +1,10 @@
 """Natural frequencies, damping ratios and shapes of a linear system, and the test for unstable poles."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Complex, Mask, Vector
 from vehicle.engines.linear.first_order import FirstOrder
 from vehicle.errors import ConfigurationError
 
@@ -17,7 +15,7 @@ ROUND_OFF = 1e-6
 """Growth rate over |s| below which it is round-off of the matrices, whose differences are accurate to 1e-8."""
 
 
-def grows(poles: npt.NDArray[np.complex128]) -> npt.NDArray[np.bool_]:
+def grows(poles: Complex) -> Mask:
     """Return True for each unstable pole [rad/s], whose growth rate is above round-off."""
     return np.asarray(poles.real > GROWTH_FLOOR + ROUND_OFF * np.abs(poles))
 
@@ -31,26 +29,26 @@ class NaturalModes:
         motion: complex displacements of the coordinates in the scale of the eigenvector of the states, (m, n).
     """
 
-    pole: npt.NDArray[np.complex128]
-    motion: npt.NDArray[np.complex128]
+    pole: Complex
+    motion: Complex
 
     @property
-    def frequency(self) -> npt.NDArray[np.float64]:
+    def frequency(self) -> Vector:
         """Return the undamped natural frequency |s| / (2 pi) [Hz], (m,)."""
         return np.abs(self.pole) / (2.0 * np.pi)
 
     @property
-    def damped_frequency(self) -> npt.NDArray[np.float64]:
+    def damped_frequency(self) -> Vector:
         """Return the frequency Im(s) / (2 pi) of the free decay [Hz], (m,)."""
         return np.asarray(self.pole.imag / (2.0 * np.pi))
 
     @property
-    def damping_ratio(self) -> npt.NDArray[np.float64]:
+    def damping_ratio(self) -> Vector:
         """Return the damping ratio -Re(s) / |s| [-], (m,)."""
         return np.asarray(-self.pole.real / np.abs(self.pole))
 
     @property
-    def shape(self) -> npt.NDArray[np.complex128]:
+    def shape(self) -> Complex:
         """Return the motion of the coordinates scaled to a largest entry of 1, (m, n)."""
         return np.array([motion / motion[np.argmax(np.abs(motion))] for motion in self.motion])
 

@@ -19,12 +19,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
+
+from vehicle.arrays import Vector
 
 if TYPE_CHECKING:
     from vehicle.engines.linear.car_matrices import CarMatrices
 
-Vector = npt.NDArray[np.float64]
 
 _NO_INERTIA = 1e-12
 """Maximum ratio of a principal moment of inertia to the largest that counts as zero: point mass, masses on a line."""

@@ -18,22 +18,17 @@ Source: Plunt, Finding and fixing vehicle NVH problems with transfer path analys
 paths by the matrix method, with forces and transfer functions of the model instead of measured ones.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Complex, Vector
 from vehicle.engines.linear.body_attachments import RIGID, body_attachments, body_coordinates
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.dynamic_stiffness import free_motion
 from vehicle.engines.linear.load_rows import LoadRows
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.errors import ConfigurationError
-
-Vector = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
 
 REST = "moments and rotating preloads"
 """Name of the rest, in addition to the forces of the attachments."""

@@ -1,13 +1,12 @@
 """Exact frequency responses of linear systems to their driven displacements, for one system or a stack."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Complex, Vector
 from vehicle.engines.linear.first_order import FirstOrder
 from vehicle.errors import ConfigurationError
 
@@ -27,7 +26,7 @@ def frequency_response(
     quantity: Quantity = "displacement",
     *,
     driven: npt.ArrayLike | None = None,
-) -> npt.NDArray[np.complex128]:
+) -> Complex:
     """Return the exact response per driven displacement; (..., m) for one output, (..., outputs, m) for several.
 
     H(jw) = (jw)^p (C (jw I - A)^-1 (b0 + jw b1) + g), by the poles of A: C V diag(1/(jw - s)) V^-1 b. Systems whose
@@ -81,9 +80,7 @@ def frequency_response(
     return response[..., 0, :] if isinstance(outputs, str) else response
 
 
-def _partial_fractions(
-    omega: npt.NDArray[np.float64], poles: npt.NDArray[np.complex128], residues: npt.NDArray[np.complex128]
-) -> npt.NDArray[np.complex128]:
+def _partial_fractions(omega: Vector, poles: Complex, residues: Complex) -> Complex:
     """Sum residue/(j omega - pole) over the poles (..., s) of residues (..., o, s) at omega (m,); (..., o, m).
 
     Uses real arithmetic, since a complex division takes several times as long, and blocks of systems.
@@ -110,11 +107,11 @@ def _partial_fractions(
 
 def _solved(
     form: FirstOrder,
-    s: npt.NDArray[np.complex128],
-    rows: npt.NDArray[np.float64],
-    by_displacement: npt.NDArray[np.float64],
-    by_rate: npt.NDArray[np.float64],
-) -> npt.NDArray[np.complex128]:
+    s: Complex,
+    rows: Vector,
+    by_displacement: Vector,
+    by_rate: Vector,
+) -> Complex:
     """Return the frequency response by solving a linear system at each line, shape (..., o, m)."""
     matrices = s[:, None, None] * np.eye(form.state.shape[-1]) - form.state[..., None, :, :]
     right_side = by_displacement[..., None, :] + s[:, None] * by_rate[..., None, :]

@@ -6,17 +6,13 @@ of the wheel, H = -I V/R, is -C u' with C = -H t' [e_y]x t, skew. The slope of t
 centre along x, proportional to the static load.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.engines.simulation.rows import Rows
-
-Vector = npt.NDArray[np.float64]
 
 ACROSS = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 0.0], [-1.0, 0.0, 0.0]])
 """Matrix of the cross product e_y x a."""

@@ -14,8 +14,6 @@ the laws over displacement a fourth:
   becomes 2 asin(w h/2)/h (leapfrog), with the stability limit w h = 2.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -24,6 +22,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from vehicle.arrays import Complex, Vector
 from vehicle.digits import number
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.car_modes import require_stable
@@ -33,9 +32,6 @@ from vehicle.engines.linear.step_map import StepMap, StepRows, step_map, step_ro
 from vehicle.engines.linear.strained_part import Strained, moving_part, parameter_text, strained_elements
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.errors import ConfigurationError
-
-Vector = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
 
 HIGHEST_POLE = 2.0 * np.pi * 100.0
 """Maximum |s| [rad/s] of the poles that are checked: the comfort band ends at 50 Hz, the weightings at 80."""

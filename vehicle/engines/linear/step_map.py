@@ -13,22 +13,18 @@ d (v + a h/2) h in a step. Gyroscopic forces are evaluated in the middle of two 
 run.
 """
 
-from __future__ import annotations
-
 import copy
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.first_order import FirstOrder
 from vehicle.engines.simulation.callbacks import standing_data
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.rows import Rows, damping_factors, joint_dampers, joint_weights
-
-Vector = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

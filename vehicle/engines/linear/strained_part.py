@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Complex, Vector
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.displacement_laws import DIFFERENCE_STEP, STOP
 from vehicle.engines.simulation.callbacks import standing_data
@@ -18,9 +19,6 @@ from vehicle.engines.simulation.standing import element_parameter
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.paths import value_of
 from vehicle.names import AXES
-
-Vector = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
 
 
 def moving_part(matrices: CarMatrices, shape: Complex) -> str:

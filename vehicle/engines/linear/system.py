@@ -16,12 +16,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.law import ForceLaw, Numbers
 
-Array = npt.NDArray[np.float64]
 Row = Mapping[str, Numbers]
 """Linear form: name of a coordinate or an input -> coefficient [-]; arrays for a stack of systems."""
 
@@ -57,23 +56,23 @@ class LinearSystem:
 
     coordinates: tuple[str, ...]
     inputs: tuple[str, ...]
-    mass: Array
-    damping: Array
-    stiffness: Array
-    input_damping: Array
-    input_stiffness: Array
-    branch_rows: Array
-    branch_inputs: Array
-    branch_stiffness: Array
-    branch_time: Array
-    slide_rows: Array
-    slide_inputs: Array
-    constraints: Array
-    load: Array
-    outputs: Mapping[str, Array]
+    mass: Vector
+    damping: Vector
+    stiffness: Vector
+    input_damping: Vector
+    input_stiffness: Vector
+    branch_rows: Vector
+    branch_inputs: Vector
+    branch_stiffness: Vector
+    branch_time: Vector
+    slide_rows: Vector
+    slide_inputs: Vector
+    constraints: Vector
+    load: Vector
+    outputs: Mapping[str, Vector]
     slides: tuple[Slide, ...] = ()
-    branch_drifts: Array | None = None
-    branch_effects: Array | None = None
+    branch_drifts: Vector | None = None
+    branch_effects: Vector | None = None
     cyclic: tuple[int, ...] = ()
 
     @property
@@ -82,11 +81,11 @@ class LinearSystem:
         return int(self.mass.shape[-1])
 
     @property
-    def effects(self) -> Array:
+    def effects(self) -> Vector:
         """Return h_b; (..., b, n)."""
         return self.branch_rows if self.branch_effects is None else self.branch_effects
 
-    def output(self, name: str) -> tuple[Array, Array]:
+    def output(self, name: str) -> tuple[Vector, Vector]:
         """Return the coefficients of an output on the coordinates (..., n) and on the inputs (..., w).
 
         Raises:
@@ -107,12 +106,12 @@ class LinearSystem:
             slides=(*self.slides, slide),
         )
 
-    def row(self, form: Row) -> Array:
+    def row(self, form: Row) -> Vector:
         """Return the coefficients of a linear form, (..., n + w); raises the errors of `form_row`."""
         return form_row(form, (*self.coordinates, *self.inputs), self.mass.shape[:-2])
 
 
-def form_row(form: Row, names: tuple[str, ...], shape: tuple[int, ...] = ()) -> Array:
+def form_row(form: Row, names: tuple[str, ...], shape: tuple[int, ...] = ()) -> Vector:
     """Convert a linear form to an array of coefficients; (*shape, len(names)).
 
     Args:

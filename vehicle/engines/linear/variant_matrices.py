@@ -12,8 +12,6 @@ the stiffness matrix of the reference car, so that no missing term stays hidden.
 has other modal coordinates and another origin; see `vehicle.engines.linear.body_change` for the transformation.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -21,9 +19,9 @@ from typing import Any
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from vehicle.arrays import Vector
 from vehicle.engines.linear.body_change import BodyChange, body_change, same_body
 from vehicle.engines.linear.car_matrices import CarMatrices, differences, law_matrices
 from vehicle.engines.linear.displacement_laws import DIFFERENCE_STEP
@@ -36,8 +34,6 @@ from vehicle.engines.simulation.static_trim import AtRest, StaticTrim, at_rest, 
 from vehicle.model.assembly.element_numbers import TURNING, Numbers, element_numbers
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.parameters.vehicle import Vehicle
-
-Vector = npt.NDArray[np.float64]
 
 AGREEMENT = 1e-9
 """Maximum difference between the sum of terms and the stiffness matrix of the same car, over its largest entry: both

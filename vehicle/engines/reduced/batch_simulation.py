@@ -6,16 +6,14 @@ slip shares within 0.1 points; instants of the first slip and peaks of damper to
 `vehicle.engines.reduced.reduced_run.LONGEST_STEP`.
 """
 
-from __future__ import annotations
-
 import time as clock
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.engines.linear.displacement_laws import STOP
 from vehicle.engines.linear.load_rows import LoadRows, stop_rows
 from vehicle.engines.reduced.group_run import GroupRun, time_steps
@@ -30,8 +28,6 @@ from vehicle.model.parameters.force_elements import Damper
 from vehicle.names import channel_units
 from vehicle.signals.excitation.signal import Signal, uniform_time
 from vehicle.threads import one_blas_thread
-
-Vector = npt.NDArray[np.float64]
 
 COARSE_STEP = 5e-4
 """Maximum time step [s] for comfort values and slip shares."""

@@ -4,8 +4,6 @@ The law of a damper, v + g (friction + curve) = a, is piecewise linear with node
 (x + g F, F), so the force is a sum over the segments of their rises times shares between 0 and 1.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
@@ -13,6 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.engines.linear.displacement_laws import DisplacementLaw, forces_at_start
 from vehicle.engines.reduced.pole_model import Outputs
 from vehicle.engines.reduced.step_factors import CarFactors
@@ -22,7 +21,6 @@ from vehicle.model.laws.curve import BEYOND
 from vehicle.model.laws.damper import RECORD, damper_curve, pack
 from vehicle.model.parameters.force_elements import Damper
 
-Vector = npt.NDArray[np.float64]
 Table = npt.NDArray[Any]
 
 

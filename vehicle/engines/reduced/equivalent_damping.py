@@ -15,19 +15,14 @@ Sources: Caughey, J. Acoust. Soc. Am. 35 (1963) 1706; Roberts and Spanos, Random
 Linearization, 1990, chapter 2.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Complex, Vector
 from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.model.laws.damper import damper_law
 from vehicle.model.parameters.force_elements import Damper
-
-Vector = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
 
 
 def equivalent_damping(law: Damper, velocity: Vector, force: Vector) -> float:

@@ -16,21 +16,18 @@ Tyre loads and the velocities that controlled dampers measure are sums over the 
 law has branches and a memory: it runs for one car, in double precision.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 from vehicle.engines.reduced.validity import tyre_outputs
 from vehicle.model.laws.control_laws import NUMBERS, RING, in_steps, pack
 from vehicle.model.laws.law_by_address import RECORD, law_by_address
 from vehicle.model.parameters.force_elements import Damper
-
-Vector = npt.NDArray[np.float64]
 
 
 class Feedback(NamedTuple):

@@ -1,14 +1,12 @@
 """Run of a group block by block: up to eight cars in single precision, or one in double precision."""
 
-from __future__ import annotations
-
 import ctypes
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.core.library import core
 from vehicle.core.records import checked, packed
 from vehicle.engines.linear.displacement_laws import forces_at_start
@@ -35,8 +33,6 @@ from vehicle.model.laws.controller_fmu import controllers
 from vehicle.model.laws.damper import require_friction_laws
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.signals.excitation.signal import Signal
-
-Vector = npt.NDArray[np.float64]
 
 SAMPLES = 64 * INNER_BLOCK
 """Samples in a block of plate displacements."""

@@ -7,21 +7,16 @@ accelerations, forces of the Maxwell branches and of ideal joints. The record is
 that it is periodic.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Complex, Vector
 from vehicle.engines.linear.displacement_laws import law_rows
 from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.signals.analysis.fast_length import fast_length
 from vehicle.signals.excitation.signal import Signal
-
-Vector = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
 
 BAND = 90.0
 """Highest frequency of the linear motion [Hz]: products of two motions have frequencies up to twice this."""

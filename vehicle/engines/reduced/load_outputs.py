@@ -6,18 +6,14 @@ xi' = s xi + b_z z + b_c z' + e f + b_F F: plates, forces f, forces on slopes an
 and hence on u'', and on no other part of a load.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.engines.linear.load_rows import LoadRows
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 from vehicle.signals.excitation.signal import Signal
-
-Vector = npt.NDArray[np.float64]
 
 
 def load_outputs(model: PoleModel, loads: LoadRows) -> Outputs:

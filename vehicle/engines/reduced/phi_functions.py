@@ -1,13 +1,10 @@
 """The phi functions of exponential integrators (Hochbruck and Ostermann, Acta Numerica 2010, eq. 2.10)."""
 
-from __future__ import annotations
-
 from math import factorial
 
 import numpy as np
-import numpy.typing as npt
 
-Complex = npt.NDArray[np.complex128]
+from vehicle.arrays import Complex
 
 SERIES_BELOW = 2.0
 """|x| below which the recursion is inaccurate and the series of phi is summed."""

@@ -9,19 +9,14 @@ A road whose slope is not the derivative of its height exerts the force of V tan
 over a step: d - delta2(d)/24 with d in the middle of the step, so that the error of a held value, (w h)^2/24, cancels.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.engines.simulation.recorded_acceleration import continued
 from vehicle.signals.excitation.force_lines import ForceLines
 from vehicle.signals.excitation.signal import Signal
-
-Vector = npt.NDArray[np.float64]
-
 
 LARGEST_TABLE = 64_000_000
 """Maximum size of a cached table [byte]: 80 s of both plates at 8 kHz. Longer tables are computed in slices, so

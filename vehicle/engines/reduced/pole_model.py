@@ -19,14 +19,11 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Complex, Vector
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.displacement_laws import DisplacementLaw, law_rows
 from vehicle.engines.linear.first_order import first_order
-
-Vector = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

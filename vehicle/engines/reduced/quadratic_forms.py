@@ -11,20 +11,17 @@ with independent velocities of equal level at all frequencies, as on roads and o
 of dampers and laws. Each pattern is a motion with its forces, in equilibrium.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.engines.linear.equations_of_motion import Equations
 from vehicle.engines.reduced.linear_motion import BAND, RATE, input_effects, motion_rows, state_spectra
 from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.row_layout import places_of
-
-Vector = npt.NDArray[np.float64]
 
 PATTERNS = 88
 """Number of patterns. What is stated of 319 channels over obstacles and on classes C and D differs from that with all

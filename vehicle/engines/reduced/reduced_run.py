@@ -1,7 +1,5 @@
 """Run of a single car with the reduced engine, which gives the same recording as MuJoCo in much shorter time."""
 
-from __future__ import annotations
-
 import time as clock
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

@@ -11,13 +11,12 @@ order, RMS(y_1)/RMS(y_1 + y_2) - 1: the products need not be independent of y_1,
 perturbation, Nayfeh and Mook, Nonlinear Oscillations, 1979, chapter 2. Against MuJoCo: `docs/theory/reduced-engine.md`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.engines.linear.first_order import free_basis
 from vehicle.engines.reduced.equivalent_damping import equivalent_damping
 from vehicle.engines.reduced.linear_motion import (
@@ -35,7 +34,6 @@ from vehicle.engines.reduced.validity import REMEDY
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.signals.excitation.signal import Signal
 
-Vector = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex64]
 
 NAMED_ERROR = 0.02

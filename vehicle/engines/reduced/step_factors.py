@@ -17,22 +17,17 @@ chosen so that their total delay is at most `DELAY` of any response of a damper 
 of the band that the step resolves. The criterion uses the total, because poles occur in clusters whose residues cancel.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import factorial
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Complex, Indices, Mask, Vector
 from vehicle.engines.linear.damper_elements import SliderElements, no_sliders
 from vehicle.engines.linear.displacement_laws import DisplacementLaw
 from vehicle.engines.reduced.phi_functions import phi_functions
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
-
-Vector = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
 
 DELAY = 5e-4
 """Maximum error of a response at the end of the band, over its RMS in the band, due to all quasi-static poles.
@@ -97,7 +92,7 @@ class CarFactors:
 
     columns: list[int]
     lines: int
-    integrated: npt.NDArray[np.intp]
+    integrated: Indices
     pairs: int
     plate_inputs: int
     step: Complex
@@ -326,7 +321,7 @@ class _Inputs:
             self.integrated = np.flatnonzero(_integrated(model, self.both, timestep))
 
 
-def _integrated(model: PoleModel, inputs: Complex, timestep: float) -> npt.NDArray[np.bool_]:
+def _integrated(model: PoleModel, inputs: Complex, timestep: float) -> Mask:
     """Return a mask of the poles that are integrated, True for an integrated pole.
 
     `inputs` are the residues of z' of the driven plates and of the forces; (n, m + d + g).

@@ -4,8 +4,6 @@ In single precision a row has a number of each of eight cars. In double precisio
 of one car: each part contains a quarter of the poles, and sums over poles are added over the parts.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -4,18 +4,13 @@ The matrices belong to the design position. A part that rotates by an angle a ch
 and lengths by a^2/2. A linear tyre that lifts off would pull. Both are monitored during a run and reported as warnings.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
-
-Vector = npt.NDArray[np.float64]
 
 LARGEST_ANGLE = 0.05
 """Maximum rotation of a part [rad]. Measured against MuJoCo on roads of increasing level: up to this rotation the

@@ -1,13 +1,11 @@
 """Applied forces of a car: their records for the core, their rows over the velocity coordinates, their histories."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.engines.simulation.element_records import Applied, Index, Layout
 from vehicle.engines.simulation.step_weights import FOURTH_ORDER
 from vehicle.errors import ConfigurationError
@@ -18,8 +16,6 @@ from vehicle.model.parameters.driving import RunUp
 from vehicle.model.parameters.placed_force import PlacedForce, on_parts
 from vehicle.signals.excitation.force_lines import ForceLines, History, SweptLine
 from vehicle.signals.excitation.force_record import ForceRecord
-
-Vector = npt.NDArray[np.float64]
 
 MINOR = 0.01
 """Share of the largest amplitude of a force below which a harmonic does not choose the time step."""

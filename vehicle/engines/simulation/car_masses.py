@@ -1,7 +1,5 @@
 """Mass properties of the parts of a compiled car in its design position."""
 
-from __future__ import annotations
-
 import mujoco
 import numpy as np
 

@@ -1,14 +1,11 @@
 """Compiled model of a car in static equilibrium."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import mujoco
-import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.engines.simulation.rows import Rows
 from vehicle.engines.simulation.standing import require_body_modes, require_standing
 from vehicle.engines.simulation.static_trim import StaticTrim, trim
@@ -16,8 +13,6 @@ from vehicle.errors import SimulationError
 from vehicle.model.assembly.spec import assemble
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.parameters.vehicle import Vehicle
-
-Vector = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -1,7 +1,5 @@
 """Callbacks of the core on the records of a simulation, and its stepping loop."""
 
-from __future__ import annotations
-
 import ctypes
 from typing import Any
 

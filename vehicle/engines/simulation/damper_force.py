@@ -12,21 +12,20 @@ from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.engines.simulation.element_records import Layout
 from vehicle.engines.simulation.force_curves import curve_of
 
 if TYPE_CHECKING:
     from vehicle.engines.simulation.rows import Rows
 
-Array = npt.NDArray[np.float64]
 
 STOP = 2
 """Kind of a bump and rebound stop, see `vehicle.engines.simulation.element_records.Tables`."""
 
 
-def damper_forces(actuator: Array, rows: Array, layout: Layout) -> Array:
+def damper_forces(actuator: Vector, rows: Vector, layout: Layout) -> Vector:
     """Return the force of each damper without its stop [N], positive in extension; (..., dampers).
 
     Args:
@@ -49,7 +48,7 @@ def has_stops(layout: Layout) -> bool:
     return STOP in layout.tables.kinds
 
 
-def stop_forces(positions: Array, layout: Layout) -> Array:
+def stop_forces(positions: Vector, layout: Layout) -> Vector:
     """Return the force of the stop of each damper [N], positive in extension; (..., dampers).
 
     Args:

@@ -3,8 +3,6 @@
 Friction rows follow the equality rows: those of joints in their order, then those of tendons.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 

@@ -4,16 +4,14 @@ Arrays are contiguous, of 64 bits. The types name their dimensions: `Vector` and
 `Tables3` three.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-Vector = npt.NDArray[np.float64]
+from vehicle.arrays import Vector
+
 Table = npt.NDArray[np.float64]
-Tables3 = npt.NDArray[np.float64]
 Index = npt.NDArray[np.int64]
 Indices = npt.NDArray[np.int64]
 Records = npt.NDArray[Any]

@@ -1,12 +1,11 @@
 """Nonlinear laws over displacement and their operating points."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
 
-from vehicle.engines.simulation.element_records import Layout, Table, Tables, Vector
+from vehicle.arrays import Vector
+from vehicle.engines.simulation.element_records import Layout, Table, Tables
 from vehicle.model.laws.curve import Curve
 
 

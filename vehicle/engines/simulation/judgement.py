@@ -1,7 +1,5 @@
 """Checks of a run: size of the recording before it, finite values and energy balance after it."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from vehicle.digits import number

@@ -1,7 +1,5 @@
 """Conversion of law parameters, named as in `vehicle.model.assembly.element_numbers`, to records of the elements."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -9,7 +7,8 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.simulation.element_records import Index, Layout, Tables, Vector
+from vehicle.arrays import Vector
+from vehicle.engines.simulation.element_records import Index, Layout, Tables
 from vehicle.engines.simulation.force_curves import tables_through
 from vehicle.model.assembly.element_numbers import AVERAGED, DECOUPLER, FLUID, TURNING
 from vehicle.model.laws.control_laws import NUMBERS, in_steps

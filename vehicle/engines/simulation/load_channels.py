@@ -8,21 +8,17 @@ The force along x of a rolling tyre is that of the slip, by the row, and that of
 with the load of the row (`vehicle.engines.simulation.rolling_tyres`); `tyre_<wheel>_force_x` is their sum.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.element_records import Index, Indices, Layout
 from vehicle.engines.simulation.row_layout import equality_rows
 from vehicle.engines.simulation.rows import Rows, joint_dampers, joint_springs
 from vehicle.names import AXES
-
-Vector = npt.NDArray[np.float64]
 
 
 class LoadPlaces:

@@ -9,15 +9,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.engines.simulation.recorded_acceleration import continued
 from vehicle.engines.simulation.step_weights import FOURTH_ORDER
 from vehicle.engines.simulation.tyre_variation import tread_motion
 from vehicle.model.parameters.placed_force import PlacedForce
 from vehicle.signals.excitation.signal import Signal
-
-Vector = npt.NDArray[np.float64]
 
 BLOCK = 2**18
 """Maximum number of rows in memory: two minutes at 0.5 ms."""

@@ -15,12 +15,9 @@ end, with constant acceleration of the plates. Positions on the body include the
 their differences include the second-order terms 2 w x d' and w x (w x d), which a sum of accelerations would omit.
 """
 
-from __future__ import annotations
-
 import numpy as np
-import numpy.typing as npt
 
-Vector = npt.NDArray[np.float64]
+from vehicle.arrays import Vector
 
 SERIES = (1.0, 1.0 / 12.0, 1.0 / 90.0, 1.0 / 560.0)
 """Coefficients of the powers of u."""

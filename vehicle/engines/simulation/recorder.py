@@ -1,13 +1,11 @@
 """Recorder of a run: stores the state of every recorded step and computes channels and energies chunk by chunk."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.compiled import SteppingLoop
 from vehicle.engines.simulation.damper_force import damper_forces, has_stops, stop_forces
@@ -22,8 +20,6 @@ from vehicle.engines.simulation.sampling import Samples, empty_samples
 from vehicle.engines.simulation.structures import offsets
 from vehicle.names import AXES, channel_units
 from vehicle.signals.excitation.signal import Signal, uniform_time
-
-Vector = npt.NDArray[np.float64]
 
 CHUNK = 512
 """Number of samples between two flushes of the buffers, state checks and progress calls."""

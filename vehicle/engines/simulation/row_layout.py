@@ -1,15 +1,13 @@
 """Layout of a compiled car: constraint rows and coordinates of its elements, and the constants of their laws."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Callable, Sequence
 from typing import Any
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Mask, Vector
 from vehicle.engines.simulation.applied_forces import applied_record
 from vehicle.engines.simulation.damper_rows import damper_rows, presliding_rows, side_forces
 from vehicle.engines.simulation.element_records import (
@@ -29,7 +27,6 @@ from vehicle.engines.simulation.element_records import (
     Springs,
     Table,
     Tables,
-    Vector,
 )
 from vehicle.engines.simulation.law_arrays import (
     fluid_coordinates,
@@ -246,7 +243,7 @@ def _node_rotations(
     }
 
 
-def _turns(model: mujoco.MjModel) -> npt.NDArray[np.bool_]:
+def _turns(model: mujoco.MjModel) -> Mask:
     """Return a mask of the rotational velocity coordinates: no slides, no translations of free bodies; (nv,)."""
     rotational = np.ones(model.nv, dtype=np.bool_)
     kinds = mujoco.mjtJoint

@@ -6,8 +6,8 @@ import copy
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.core.records import Packed
 from vehicle.engines.simulation.element_records import Layout, ModalSpace
 from vehicle.engines.simulation.force_curves import standing_on
@@ -18,8 +18,6 @@ from vehicle.engines.simulation.step_records import State, Weights
 from vehicle.engines.simulation.step_weights import FITTED_PHASE, FOURTH_ORDER, average, implicit_share
 from vehicle.errors import SimulationError
 from vehicle.model.laws.control_laws import RING
-
-Vector = npt.NDArray[np.float64]
 
 EMPTY_ROW = 1e-9
 """Impedance [kg] of a row without damping and stiffness: nonzero, and small against every mass."""

@@ -1,11 +1,9 @@
 """Model of a run: prepared for its step, with only the modal coordinates that move the attachments."""
 
-from __future__ import annotations
-
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.element_records import ModalSpace
 from vehicle.engines.simulation.law_arrays import model_numbers
@@ -13,8 +11,6 @@ from vehicle.engines.simulation.row_layout import read_layout
 from vehicle.engines.simulation.rows import joint_dampers, joint_springs, prepare_model
 from vehicle.model.assembly.spec import assemble_on
 from vehicle.model.flexbody.superelement import attached_nodes
-
-Vector = npt.NDArray[np.float64]
 
 SEEN = 1e-10
 """Relative singular value below which a combination of modes does not move the attachments: round-off."""

@@ -1,13 +1,12 @@
 """Buffers of the stepping loop (`vehicle/core/source/stepping.h`) for the samples of a run."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from vehicle.engines.simulation.element_records import Table, Tables3, Vector
+from vehicle.arrays import Vector
+from vehicle.engines.simulation.element_records import Table
 
 
 class Samples(NamedTuple):
@@ -26,8 +25,8 @@ class Samples(NamedTuple):
     actuator: Table
     solved: Table
     explicit: Table
-    rate: Tables3
-    branch: Tables3
+    rate: Vector
+    branch: Vector
     poses: Table
     spring_rates: Table
     load_frames: Table

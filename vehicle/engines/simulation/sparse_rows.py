@@ -18,10 +18,9 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Mask
 from vehicle.engines.simulation.element_records import Layout
 from vehicle.engines.simulation.structures import SPARSE, Offsets
-
-Mask = npt.NDArray[np.bool_]
 
 TILE = 4
 """Rows and columns of a tile, as in `vehicle/core/source/prediction.h`."""

@@ -1,7 +1,5 @@
 """Checks of the static equilibrium of a car: loads of all supports, spring sag, first mode of the body."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from vehicle.engines.simulation.rows import Rows

@@ -7,24 +7,19 @@ forces and gravity are in exact equilibrium, distributed over the elements by st
 while the car settles, so that they carry no horizontal force; wheels do not rotate meanwhile.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from vehicle.arrays import Indices, Vector
 from vehicle.engines.simulation.callbacks import standing_data
 from vehicle.engines.simulation.element_records import Layout
 from vehicle.engines.simulation.force_curves import curve_of, standing_on
 from vehicle.engines.simulation.row_layout import wheels_of
 from vehicle.engines.simulation.rows import Rows, joint_springs
 from vehicle.errors import ConfigurationError, SimulationError
-
-Vector = npt.NDArray[np.float64]
-
 
 SLIDING_SHARE = 1e-5
 """Factor of the horizontal stiffness of the ground contacts while the car settles; with zero it would drift.
@@ -222,7 +217,7 @@ def unsolved(layout: Layout, weight: Vector) -> Vector:
     return force
 
 
-def ground_contacts(rows: Rows) -> npt.NDArray[np.intp]:
+def ground_contacts(rows: Rows) -> Indices:
     """Return the indices of the ground contacts among the bushings; (k,)."""
     model, carriers = rows.model, rows.layout.bushings.carriers
     return np.flatnonzero((carriers == 0) | (model.body_mocapid[carriers] >= 0))

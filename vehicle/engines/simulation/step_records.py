@@ -1,10 +1,9 @@
 """Records of a time step: weights of the rows, state of the laws."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
-from vehicle.engines.simulation.element_records import Table, Vector
+from vehicle.arrays import Vector
+from vehicle.engines.simulation.element_records import Table
 
 
 class Weights(NamedTuple):

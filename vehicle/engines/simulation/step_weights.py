@@ -1,11 +1,8 @@
 """Time integration weights for stiffness and damping of a row: high order, stability, no ringing."""
 
-from __future__ import annotations
-
 import numpy as np
-import numpy.typing as npt
 
-Vector = npt.NDArray[np.float64]
+from vehicle.arrays import Vector
 
 FOURTH_ORDER = 1.0 / 12.0
 """Weight beta of the average over three steps, (beta, 1 - 2 beta, beta), with errors of fourth order (Numerov)."""

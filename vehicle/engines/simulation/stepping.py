@@ -1,14 +1,11 @@
 """Stepping loop of a run, with checks for states and warnings that MuJoCo ignores."""
 
-from __future__ import annotations
-
 import time as clock
 from collections.abc import Callable, Sequence
 from functools import partial
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.engines.simulation.applied_forces import averaged_forces, force_lines
 from vehicle.engines.simulation.callbacks import installed
@@ -27,7 +24,6 @@ from vehicle.model.laws.controller_fmu import controllers
 from vehicle.model.laws.damper import require_friction_laws
 from vehicle.signals.excitation.signal import Signal
 
-Vector = npt.NDArray[np.float64]
 Progress = Callable[[float], None]
 
 POSE_RATE = 100.0

@@ -1,7 +1,5 @@
 """Byte offsets of fields in MuJoCo's C structures, from its published declarations, checked by address."""
 
-from __future__ import annotations
-
 import ctypes
 import functools
 from collections.abc import Iterable

@@ -4,21 +4,18 @@ A run-out r(t) lifts one wheel like a plate, z + r, in series with the tyre; the
 z'/V without it. A rolling radius R + d gives the tread the velocity V d/R, as if the road moved back by it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.placed_force import PlacedForce
 from vehicle.signals.excitation.force_lines import ForceLines
 from vehicle.signals.excitation.signal import Signal
 
-Vector = npt.NDArray[np.float64]
 RunOut = tuple[tuple[str, tuple[float, ...], tuple[float, ...]], ...]
 """Wheels, each with the angular frequencies [rad/s] of its run-out and its coefficients on their histories [m]."""
 

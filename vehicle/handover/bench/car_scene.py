@@ -1,7 +1,5 @@
 """Car on a viser server: shapes of its parts, springs between their seats, and the wireframe of its body."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Curves of the plots of the bench: the present car B over the reference A on the same axes."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.special import stdtrit
 

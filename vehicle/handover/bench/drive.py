@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Car, Road
 from vehicle.runs.car.road import Drive
@@ -173,12 +173,12 @@ def excerpt(signal: Signal, begin: float, seconds: float) -> tuple[Signal, float
     first = max(begin - RISE, 0.0)
     span = slice(round(first / step), round(last / step) + 1)
     time = uniform_time(samples=len(signal.time[span]), timestep=step)
-    rise: npt.NDArray[np.float64] | float = 1.0
+    rise: Vector | float = 1.0
     if begin > 0.0:
         share = np.clip(time / (begin - first), 0.0, 1.0)
         rise = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
 
-    def part(values: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def part(values: Vector) -> Vector:
         middle = float(values[span].mean()) if begin > 0.0 else 0.0
         return np.asarray(rise * (values[span] - middle))
 

@@ -8,8 +8,6 @@ is checked before it is answered, and a websocket before it is accepted:
 - `Origin` is the page itself. A websocket without it is rejected; browsers always send it.
 """
 
-from __future__ import annotations
-
 import hmac
 import secrets
 from collections.abc import Callable, Mapping

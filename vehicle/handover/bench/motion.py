@@ -1,7 +1,5 @@
 """Motions of a car for moving pictures, over its velocity coordinates: a run of the reduced engine, or a mode."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 

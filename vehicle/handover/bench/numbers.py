@@ -1,7 +1,5 @@
 """Values of a car on a short input, from two runs of the reduced engine, for the bench and for tests."""
 
-from __future__ import annotations
-
 import math
 import time as clock
 from collections.abc import Mapping

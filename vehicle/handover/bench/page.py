@@ -1,7 +1,5 @@
 """Page of the bench: sliders, search, plots, table of A and B, and buttons around the moving car."""
 
-from __future__ import annotations
-
 import math
 import threading
 import time as clock

@@ -1,7 +1,5 @@
 """Files that the bench writes on a click: vehicle file, run and report of what is shown."""
 
-from __future__ import annotations
-
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path

@@ -8,8 +8,6 @@ the road, which moves by V t to the rear, the road is at rest,
 with the height h below the wheel at the time tau of the record, as in `vehicle.drawing.rendering.road_strip`.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Web server of the bench: viser on 127.0.0.1 with the checks of the guard."""
 
-from __future__ import annotations
-
 import io
 import logging
 import sys

@@ -1,7 +1,5 @@
 """Parameters of a car that a slider can change, with their ranges."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

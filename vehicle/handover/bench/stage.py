@@ -1,7 +1,5 @@
 """Moving picture of the bench: a car on its rig or its road in a run, or in a mode."""
 
-from __future__ import annotations
-
 import threading
 import time as clock
 from typing import Any

@@ -1,7 +1,5 @@
 """State of the bench: base car, changed parameters, and the numbers of the reference A and of the present car B."""
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Callable
 

@@ -1,14 +1,12 @@
 """Choice of the moving picture on the page: the run, or a mode with the dampers stuck or sliding."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Complex
 from vehicle.engines.linear.car_modes import Mode
 from vehicle.errors import ConfigurationError
 from vehicle.handover.bench.drive import BenchDrive
@@ -41,7 +39,7 @@ class View:
         self.stage, self.drive = stage, drive
         self.modes: list[Mode] = []
         self._car: Car | None = None
-        self._chosen: npt.NDArray[np.complex128] | None = None
+        self._chosen: Complex | None = None
         self._enlarged: float | None = None
         self.kind = gui.add_dropdown("picture of", (RUN, *STATES))
         self.mode = gui.add_dropdown("mode", ("none",), visible=False, hint="natural frequency, damping ratio, motion")
@@ -98,11 +96,11 @@ class View:
         self.mode.value = self.mode.options[index]
         self._animate(index)
 
-    def _displacement(self, mode: Mode) -> npt.NDArray[np.complex128]:
+    def _displacement(self, mode: Mode) -> Complex:
         """Return the displacement of the points of the car in a mode; (n, 3)."""
         return self.stage.car_scene.wire.displacement(self._shape(mode))
 
-    def _shape(self, mode: Mode) -> npt.NDArray[np.complex128]:
+    def _shape(self, mode: Mode) -> Complex:
         assert self._car is not None
         return self._car.geometry_motion(mode.shape)
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.core.records import dtype, stored
 from vehicle.engines.reduced.car_table import CarTable, damper_nodes
 from vehicle.engines.reduced.feedback import Feedback, sensor_outputs
@@ -36,7 +37,6 @@ from vehicle.model.parameters.semi_active_damper import FMU
 if TYPE_CHECKING:
     from vehicle.runs.car import Car
 
-Vector = npt.NDArray[np.float64]
 
 MAGIC, TOKEN, NAME, NOTICE = b"VEHFMU05", 40, 64, 160
 """First bytes of the file; sizes of texts. The first two as in runtime/car.h and car_data.c."""

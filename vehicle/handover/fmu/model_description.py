@@ -1,7 +1,5 @@
 """modelDescription.xml of an FMU, FMI 2.0 and 3.0."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from xml.sax.saxutils import quoteattr
 

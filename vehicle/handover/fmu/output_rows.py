@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.engines.linear.load_rows import LoadRows, load_rows, stop_rows
 from vehicle.engines.reduced.load_outputs import direct_applied, direct_forces, direct_laws, direct_slopes, load_outputs
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
@@ -22,8 +23,6 @@ from vehicle.names import channel_units, point_words
 
 if TYPE_CHECKING:
     from vehicle.runs.car import Car
-
-Vector = npt.NDArray[np.float64]
 
 
 LINEAR, VELOCITY, FORCE, COEFFICIENT = range(4)

@@ -3,8 +3,6 @@
 Value references are those of runtime/instance.c.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Further cars of a page: a few stiffnesses and speeds, each a set of poles, for sliders with fixed positions."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import Any
 

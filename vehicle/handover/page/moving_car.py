@@ -9,8 +9,6 @@ joints permit, S = Z' (K + w^2 M) Z and T = R Z,
 The small w lets a car on rolling tyres be held in place. Source: R. J. Guyan, AIAA Journal 3 (1965) 380.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

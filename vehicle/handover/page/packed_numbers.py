@@ -5,8 +5,6 @@ The file of a car consists of words of 8 bytes. A run of words is stored with it
 significance are stored together, so that signs and exponents compress.
 """
 
-from __future__ import annotations
-
 import base64
 import zlib
 from collections.abc import Sequence

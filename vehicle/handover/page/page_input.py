@@ -9,8 +9,6 @@ plate at sample k is
 with the cubic spline s through the heights (not-a-knot). Plates that follow no common road have a track each.
 """
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass

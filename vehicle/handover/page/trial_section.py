@@ -1,7 +1,5 @@
 """Section of the report in which the reader changes the car of the run, which then runs in the page."""
 
-from __future__ import annotations
-
 from vehicle.errors import ConfigurationError, VehicleError
 from vehicle.handover.page.page_input import LONGEST, RunRoad
 from vehicle.handover.page.trial_data import PAGE, WORKER, scripts, trial_data

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 import scipy
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
-from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.laws.elastomer import Maxwell, in_series
 from vehicle.model.parameters.composition import PlacedConnection
 from vehicle.model.parameters.force_elements import Hydromount
@@ -31,14 +31,14 @@ _STIFFEST = 1e-11
 """Minimum flexibility of an attachment [m/N]: stiffer than any sheet metal, but finite."""
 
 
-def is_coupled(flexibility: FloatArray) -> bool:
+def is_coupled(flexibility: Vector) -> bool:
     """Return True if a flexibility couples the axes, or is zero along an axis."""
     diagonal = np.diag(flexibility)
     coupling = np.abs(flexibility - np.diag(diagonal)).max()
     return bool(coupling > _COUPLED * diagonal.max() or diagonal.min() < _STIFFEST)
 
 
-def coupled_law(connection: PlacedConnection, flexibility: FloatArray) -> dict[str, Any]:
+def coupled_law(connection: PlacedConnection, flexibility: Vector) -> dict[str, Any]:
     """Return the rows of a connection in series with an attachment.
 
     Args:
@@ -94,9 +94,7 @@ def coupled_law(connection: PlacedConnection, flexibility: FloatArray) -> dict[s
     }
 
 
-def _diagonalised(
-    stiffness: FloatArray, damping: FloatArray, basis: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _diagonalised(stiffness: Vector, damping: Vector, basis: Vector) -> tuple[Vector, Vector, Vector]:
     """Return k, b and directions (k, 3) that diagonalise two symmetric matrices in the space of a basis (3, k)."""
     inner, drag = basis.T @ stiffness @ basis, basis.T @ damping @ basis
     scale = np.trace(inner) / max(float(np.trace(drag)), 1e-12)

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
-from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.flexbody.frame_modes import signs
 from vehicle.model.flexbody.mass_properties import MassProperties
 from vehicle.model.flexbody.superelement import Superelement
@@ -24,8 +24,8 @@ class Attached:
     """
 
     body: Superelement
-    elastic: FloatArray
-    rigid: FloatArray
+    elastic: Vector
+    rigid: Vector
 
 
 def with_attached_masses(superelement: Superelement, masses: Mapping[str, float]) -> Superelement:
@@ -74,7 +74,7 @@ def attached(superelement: Superelement, masses: Mapping[str, float]) -> Attache
     return replace(loaded, body=replace(loaded.body, node_mass=node_mass, mass_properties=None))
 
 
-def with_added_mass(superelement: Superelement, added: FloatArray, properties: MassProperties) -> Attached:
+def with_added_mass(superelement: Superelement, added: Vector, properties: MassProperties) -> Attached:
     """Solve for the modes of a body with an additional mass matrix; see `attached` for the equations.
 
     Args:

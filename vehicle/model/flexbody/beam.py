@@ -3,11 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
-
-FloatArray = NDArray[np.float64]
 
 _PARALLEL = 1e-6  # sine of the angle below which a reference direction counts as parallel to the beam
 
@@ -34,7 +33,7 @@ class BeamSection:
                 )
 
 
-def local_stiffness(length: float, section: BeamSection) -> FloatArray:
+def local_stiffness(length: float, section: BeamSection) -> Vector:
     """Return the stiffness of a beam in its local axes [N/m, N, N m], (12, 12): (ux, uy, uz, rx, ry, rz) of both nodes.
 
     Axial E A / L, torsion G J / L, and in each bending plane the cubic-interpolation terms 12, 6 L, 4 L^2, 2 L^2
@@ -66,7 +65,7 @@ def local_stiffness(length: float, section: BeamSection) -> FloatArray:
     return k
 
 
-def local_axes(start: ArrayLike, end: ArrayLike, reference: ArrayLike = (0.0, 0.0, 1.0)) -> FloatArray:
+def local_axes(start: ArrayLike, end: ArrayLike, reference: ArrayLike = (0.0, 0.0, 1.0)) -> Vector:
     """Return the local axes of a beam: x along the beam, z the reference direction made perpendicular to x.
 
     Args:
@@ -95,13 +94,13 @@ def local_axes(start: ArrayLike, end: ArrayLike, reference: ArrayLike = (0.0, 0.
     return np.stack([x, y, _cross(x, y)])  # (3, 3)
 
 
-def _cross(first: FloatArray, second: FloatArray) -> FloatArray:
+def _cross(first: Vector, second: Vector) -> Vector:
     """Return the vector product; takes a tenth of the time of `np.cross`, for the hundreds of beams of a body."""
     (a, b, c), (x, y, z) = first.tolist(), second.tolist()
     return np.array([b * z - c * y, c * x - a * z, a * y - b * x])
 
 
-def beam_stiffness(start: ArrayLike, end: ArrayLike, section: BeamSection) -> FloatArray:
+def beam_stiffness(start: ArrayLike, end: ArrayLike, section: BeamSection) -> Vector:
     """Return the stiffness of a beam in global axes [N/m, N, N m], (12, 12): T^T k T with T = diag(R, R, R, R).
 
     Args:
@@ -117,7 +116,7 @@ def beam_stiffness(start: ArrayLike, end: ArrayLike, section: BeamSection) -> Fl
     return np.asarray(rotation.T @ local_stiffness(length, section) @ rotation)
 
 
-def frame_stiffness(positions: FloatArray, beams: list[tuple[int, int, BeamSection]]) -> FloatArray:
+def frame_stiffness(positions: Vector, beams: list[tuple[int, int, BeamSection]]) -> Vector:
     """Assemble the stiffness matrix of a space frame [N/m, N, N m], (6 n, 6 n): (ux, uy, uz, rx, ry, rz) node by node.
 
     Args:

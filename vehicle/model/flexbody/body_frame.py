@@ -6,8 +6,9 @@ from functools import lru_cache
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
-from vehicle.model.flexbody.beam import FloatArray, frame_stiffness
+from vehicle.model.flexbody.beam import frame_stiffness
 from vehicle.model.flexbody.body_design import BodyDesign
 from vehicle.model.flexbody.body_loads import BodyLoad, load_mass, loaded_properties
 from vehicle.model.flexbody.carried_nodes import with_carried_nodes
@@ -27,20 +28,20 @@ class BodyFrame:
     """body design from which the frame was built"""
     skeleton: Superelement
     """nodes, masses and lines of the frame, without modes"""
-    fixed_stiffness: FloatArray
+    fixed_stiffness: Vector
     """stiffness independent of the factors [N/m, N, N m], shape (6 n, 6 n)"""
-    group_stiffness: Mapping[str, FloatArray]
+    group_stiffness: Mapping[str, Vector]
     """member group -> stiffness at factor 1 [N/m, N, N m], shape (6 n, 6 n)"""
     loads: tuple[BodyLoad, ...] = ()
     """loads on the body"""
 
     @property
-    def node_mass(self) -> FloatArray:
+    def node_mass(self) -> Vector:
         """Lumped masses [kg], shape (n,)."""
         assert self.skeleton.node_mass is not None
         return self.skeleton.node_mass
 
-    def modes(self, factors: Mapping[str, float], count: int) -> tuple[FloatArray, FloatArray]:
+    def modes(self, factors: Mapping[str, float], count: int) -> tuple[Vector, Vector]:
         """Compute the lowest free modes: frequencies [Hz], (count,), mass-normalised shapes [kg^-1/2], (count, n, 3).
 
         Args:
@@ -52,7 +53,7 @@ class BodyFrame:
         added = load_mass(skeleton.positions, self.loads, skeleton.hardpoint_tolerance) if self.loads else None
         return free_free_modes(condensed, self.node_mass, skeleton.positions, count, added)
 
-    def _stiffness(self, factors: Mapping[str, float]) -> FloatArray:
+    def _stiffness(self, factors: Mapping[str, float]) -> Vector:
         """Return the stiffness of all members [N/m, N, N m], shape (6 n, 6 n)."""
         stiffness = self.fixed_stiffness.copy()
         for group, matrix in self.group_stiffness.items():
@@ -147,7 +148,7 @@ def body_frame(design: BodyDesign, points: Mapping[str, Point], properties: Node
             f"nodes: {', '.join(loose)} could turn freely, because no tube ends there; add members with width and wall"
         )
     fixed = np.zeros((6 * count, 6 * count))
-    groups: dict[str, FloatArray] = {}
+    groups: dict[str, Vector] = {}
     for group, members in design.members.items():
         ends = [(base.node_index(a), base.node_index(b)) for a, b in design.member_ends(group, placed)]
         for a, b in ends:

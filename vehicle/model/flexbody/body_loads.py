@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.model.flexbody.attached_mass import with_added_mass
-from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.flexbody.carried_nodes import carried_by
 from vehicle.model.flexbody.inertia_tensor import inertia_tensor
 from vehicle.model.flexbody.mass_properties import MassProperties
@@ -31,7 +31,7 @@ class BodyLoad(NamedTuple):
     products: Point
 
     @property
-    def matrix(self) -> FloatArray:
+    def matrix(self) -> Vector:
         """Mass and inertia tensor, diag(m 1, I) [kg, kg m2], shape (6, 6)."""
         (xx, yy, zz), (xy, zx, yz) = self.moments, self.products
         matrix = np.zeros((6, 6))
@@ -49,7 +49,7 @@ def body_loads(vehicle: Vehicle) -> tuple[BodyLoad, ...]:
     )
 
 
-def followed(positions: FloatArray, load: BodyLoad, tolerance: float) -> FloatArray:
+def followed(positions: Vector, load: BodyLoad, tolerance: float) -> Vector:
     """Return N, which maps node displacements to displacement and rotation of a load; shape (6, n, 3).
 
     Args:
@@ -72,7 +72,7 @@ def followed(positions: FloatArray, load: BodyLoad, tolerance: float) -> FloatAr
     return motion
 
 
-def load_mass(positions: FloatArray, loads: Sequence[BodyLoad], tolerance: float) -> FloatArray:
+def load_mass(positions: Vector, loads: Sequence[BodyLoad], tolerance: float) -> Vector:
     """Return the mass matrix of loads on the displacements of the nodes [kg], shape (3 n, 3 n); see `followed`."""
     mass = np.zeros((positions.size, positions.size))
     for load in loads:

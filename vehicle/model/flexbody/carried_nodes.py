@@ -4,9 +4,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from vehicle.model.flexbody.beam import FloatArray
+from vehicle.arrays import Indices, Vector
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.parameters.hardpoints import Point
 
@@ -46,7 +45,7 @@ def with_carried_nodes(body: Superelement, points: Mapping[str, Point]) -> Super
     return body
 
 
-def carried_by(positions: FloatArray, point: FloatArray) -> tuple[NDArray[np.intp], FloatArray]:
+def carried_by(positions: Vector, point: Vector) -> tuple[Indices, Vector]:
     """Select the nodes that carry a point; the point's displacement and rotation are sum over k of N[:, k] u_k.
 
     Args:
@@ -61,7 +60,7 @@ def carried_by(positions: FloatArray, point: FloatArray) -> tuple[NDArray[np.int
     return nearest, rigid_fit(positions[nearest], 1.0 / gap[nearest] ** 2, point)
 
 
-def rigid_fit(positions: FloatArray, weight: FloatArray, point: FloatArray) -> FloatArray:
+def rigid_fit(positions: Vector, weight: Vector, point: Vector) -> Vector:
     """Return the motion of a point in the rigid motion t + theta x (r - c) with the weighted best fit to nodes.
 
     Args:
@@ -81,7 +80,7 @@ def rigid_fit(positions: FloatArray, weight: FloatArray, point: FloatArray) -> F
     return np.asarray(np.vstack([moved, fitted[3:]]).reshape(6, len(positions), 3))
 
 
-def _motion(arm: FloatArray) -> FloatArray:
+def _motion(arm: Vector) -> Vector:
     """Return the matrix of t + theta x arm, acting on (t, theta), shape (3, 6)."""
     x, y, z = arm
     return np.array([[1.0, 0.0, 0.0, 0.0, z, -y], [0.0, 1.0, 0.0, -z, 0.0, x], [0.0, 0.0, 1.0, y, -x, 0.0]])

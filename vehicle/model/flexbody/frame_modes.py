@@ -3,14 +3,14 @@
 import numpy as np
 import scipy
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.model.flexbody.beam import FloatArray
 
 ROUNDING = 4.0 * float(np.finfo(np.float64).eps)
 """Error of the eigenvalues over the largest one [-]."""
 
 
-def condense_rotations(stiffness: FloatArray) -> tuple[FloatArray, FloatArray]:
+def condense_rotations(stiffness: Vector) -> tuple[Vector, Vector]:
     """Eliminate the node rotations; exact, because the rotations have no inertia.
 
     K = K_tt - K_tr K_rr^-1 K_rt, and the rotations are -K_rr^-1 K_rt u.
@@ -42,7 +42,7 @@ def condense_rotations(stiffness: FloatArray) -> tuple[FloatArray, FloatArray]:
     return 0.5 * (condensed + condensed.T), recovery  # removes the asymmetry of round-off
 
 
-def rigid_shapes(positions: FloatArray, center: FloatArray) -> FloatArray:
+def rigid_shapes(positions: Vector, center: Vector) -> Vector:
     """Return unit translations and unit rotations about a centre at every node [1 and m], shape (6, n, 3).
 
     Args:
@@ -57,8 +57,8 @@ def rigid_shapes(positions: FloatArray, center: FloatArray) -> FloatArray:
 
 
 def free_free_modes(
-    stiffness: FloatArray, node_mass: FloatArray, positions: FloatArray, count: int, added: FloatArray | None = None
-) -> tuple[FloatArray, FloatArray]:
+    stiffness: Vector, node_mass: Vector, positions: Vector, count: int, added: Vector | None = None
+) -> tuple[Vector, Vector]:
     """Compute the lowest elastic modes of the free structure, mass-normalised and orthogonal to the rigid-body modes.
 
     (K - w^2 M) phi = 0 with phi_i^T M phi_j = delta_ij. The rigid-body modes are shifted above the spectrum, so that
@@ -101,7 +101,7 @@ def free_free_modes(
     return np.sqrt(values) / (2.0 * np.pi), signs(shapes)[:, None, None] * shapes
 
 
-def signs(shapes: FloatArray) -> FloatArray:
+def signs(shapes: Vector) -> Vector:
     """Return 1 or -1 for each mode (modes, n, 3), which makes its largest component positive, so reproducible."""
     flat = shapes.reshape(len(shapes), -1)
     largest = flat[np.arange(len(flat)), np.argmax(np.abs(flat), axis=1)]

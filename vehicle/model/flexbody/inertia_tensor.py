@@ -5,14 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
-from vehicle.model.flexbody.beam import FloatArray
 
 _FLOOR = 1e-6
 """Minimum principal second moment of a repaired tensor over their sum, so that round-off keeps the inequality."""
 
 
-def inertia_tensor(*, ixx: float, iyy: float, izz: float, ixy: float, izx: float, iyz: float) -> FloatArray:
+def inertia_tensor(*, ixx: float, iyy: float, izz: float, ixy: float, izx: float, iyz: float) -> Vector:
     """Return the inertia tensor from moments and from products as integrals: off-diagonal terms are -int x y dm.
 
     Args:
@@ -31,7 +31,7 @@ def inertia_tensor(*, ixx: float, iyy: float, izz: float, ixy: float, izx: float
     return np.array([[ixx, -ixy, -izx], [-ixy, iyy, -iyz], [-izx, -iyz, izz]])
 
 
-def about_cog(inertia_about_origin: ArrayLike, mass: float, cog: ArrayLike) -> FloatArray:
+def about_cog(inertia_about_origin: ArrayLike, mass: float, cog: ArrayLike) -> Vector:
     """Return the tensor about the CoG [kg m2], (3, 3), by the parallel-axis theorem: I_c = I_0 - m (|c|^2 1 - c c^T).
 
     Args:
@@ -44,7 +44,7 @@ def about_cog(inertia_about_origin: ArrayLike, mass: float, cog: ArrayLike) -> F
     return np.asarray(np.asarray(inertia_about_origin) - mass * (square * np.eye(3) - np.outer(c, c)))
 
 
-def second_moments(inertia: ArrayLike) -> FloatArray:
+def second_moments(inertia: ArrayLike) -> Vector:
     """Return the second moments int r r^T dm = tr(I)/2 1 - I [kg m2], shape (3, 3); positive definite if physical."""
     tensor = np.asarray(inertia, dtype=float)
     return np.asarray(np.trace(tensor) / 2.0 * np.eye(3) - tensor)
@@ -60,9 +60,9 @@ def triangle_shortfall(inertia: ArrayLike) -> float:
 class PhysicalInertia:
     """Physical inertia tensor nearest to a given tensor, and the difference."""
 
-    inertia: FloatArray
+    inertia: Vector
     """physical tensor about the CoG [kg m2], shape (3, 3)"""
-    change: FloatArray
+    change: Vector
     """repaired minus given tensor [kg m2], shape (3, 3); zero if the given tensor is physical"""
     shortfall: float
     """triangle shortfall of the given tensor [kg m2]"""

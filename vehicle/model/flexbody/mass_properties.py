@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from vehicle.model.flexbody.beam import FloatArray
+from vehicle.arrays import Vector
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -21,11 +21,11 @@ class MassProperties:
     """
 
     mass: float
-    cog: FloatArray
-    inertia: FloatArray
+    cog: Vector
+    inertia: Vector
 
     @classmethod
-    def of_points(cls, masses: FloatArray, positions: FloatArray) -> MassProperties:
+    def of_points(cls, masses: Vector, positions: Vector) -> MassProperties:
         """Return the mass properties of point masses: M = sum m, c = sum m r / M, sum m (|d|^2 1 - d d').
 
         Args:
@@ -36,7 +36,7 @@ class MassProperties:
         cog = np.asarray(masses @ positions / mass)
         return cls(mass=mass, cog=cog, inertia=_steiner(masses, positions - cog))
 
-    def with_points(self, masses: FloatArray, positions: FloatArray) -> MassProperties:
+    def with_points(self, masses: Vector, positions: Vector) -> MassProperties:
         """Return the mass properties with additional point masses [kg], (n,), at positions [m], (n, 3)."""
         total = self.mass + float(masses.sum())
         cog = (self.mass * self.cog + masses @ positions) / total
@@ -58,7 +58,7 @@ class MassProperties:
         )
         return MassProperties(mass=mass, cog=np.asarray(cog), inertia=whole - part)
 
-    def rigid_motions(self, positions: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def rigid_motions(self, positions: Vector) -> tuple[Vector, Vector]:
         """Return the six mass-normalised rigid motions, R' M R = 1: translations, then rotations about the CoG.
 
         Args:
@@ -75,7 +75,7 @@ class MassProperties:
         return shapes, turns
 
 
-def _steiner(masses: FloatArray, arms: ArrayLike) -> FloatArray:
+def _steiner(masses: Vector, arms: ArrayLike) -> Vector:
     """Return the sum of m (|r|^2 1 - r r') [kg m2], shape (3, 3)."""
     r = np.asarray(arms)
     moments = (r.T * masses) @ r

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vehicle.model.flexbody.beam import FloatArray
+from vehicle.arrays import Vector
 from vehicle.model.flexbody.frame_modes import rigid_shapes
 from vehicle.model.flexbody.symmetry import parity
 
@@ -15,7 +15,7 @@ _SYMMETRY = 0.80
 _DIRECTION = ("fore-aft", "lateral", "vertical")
 
 
-def global_patterns(positions: FloatArray, node_mass: FloatArray) -> dict[str, FloatArray]:
+def global_patterns(positions: Vector, node_mass: Vector) -> dict[str, Vector]:
     """Return global deformation patterns, mass-normalised, orthogonal to rigid motions [kg^-1/2], (n, 3) by name.
 
     Torsion is a twist about x that grows with x, bending a parabola over x with plane sections, lozenging a uniform
@@ -48,12 +48,12 @@ def global_patterns(positions: FloatArray, node_mass: FloatArray) -> dict[str, F
     return patterns
 
 
-def modal_assurance(shapes: FloatArray, pattern: FloatArray, node_mass: FloatArray) -> FloatArray:
+def modal_assurance(shapes: Vector, pattern: Vector, node_mass: Vector) -> Vector:
     """Return the modal assurance (phi^T M p)^2 of mass-normalised shapes with one pattern [1], shape (modes,)."""
     return np.asarray(np.einsum("mni,ni,n->m", shapes, pattern, node_mass) ** 2)
 
 
-def _region(position: FloatArray) -> str:
+def _region(position: Vector) -> str:
     x, _, z = position
     if z > 1.7:
         return "roof"
@@ -64,9 +64,7 @@ def _region(position: FloatArray) -> str:
     return "belt" if z > 1.0 else "floor"
 
 
-def mode_names(
-    shapes: FloatArray, nodes: tuple[str, ...], positions: FloatArray, node_mass: FloatArray
-) -> tuple[str, ...]:
+def mode_names(shapes: Vector, nodes: tuple[str, ...], positions: Vector, node_mass: Vector) -> tuple[str, ...]:
     """Return a name for every mode; equal names get a number.
 
     A mode is named after the global pattern with the highest modal assurance, if at least 0.3; else after a node with

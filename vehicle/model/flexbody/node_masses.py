@@ -21,8 +21,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
-from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.flexbody.inertia_tensor import inertia_tensor, second_moments
 from vehicle.model.flexbody.rigid_body import cog_inertia
 from vehicle.model.parameters.body import TrimmedBody
@@ -33,14 +33,14 @@ _MAX_STEPS = 50
 
 
 def matched_masses(
-    guess: FloatArray,
-    freedom: FloatArray,
-    positions: FloatArray,
+    guess: Vector,
+    freedom: Vector,
+    positions: Vector,
     *,
     mass: float,
-    cog: FloatArray,
-    inertia_about_cog: FloatArray,
-) -> FloatArray:
+    cog: Vector,
+    inertia_about_cog: Vector,
+) -> Vector:
     """Return the positive masses [kg], (n,), nearest to an estimate that have a given mass, CoG and inertia.
 
     Minimise sum (m ln(m/g) - m + g) / r subject to A m = b (ten rows: mass, first and second moments about the CoG).
@@ -64,7 +64,7 @@ def matched_masses(
     )  # (10, n)
     required = np.concatenate([[mass, 0.0, 0.0, 0.0], second_moments(inertia_about_cog)[upper]])
 
-    def dual(multiplier: FloatArray) -> float:
+    def dual(multiplier: Vector) -> float:
         with np.errstate(over="ignore"):  # an overflow is an infinite dual, rejected by the line search
             return float((guess / freedom * np.exp(freedom * (multiplier @ rows))).sum() - required @ multiplier)
 
@@ -118,7 +118,7 @@ class NodeProperties(NamedTuple):
         xx, yy, zz, zx = (float(tensor[component]) for component in ((0, 0), (1, 1), (2, 2), (2, 0)))
         return cls(mass=model.mass, cog=model.cog, ixx=max(xx, least_ixx), iyy=yy, izz=zz, izx=-zx)
 
-    def masses(self, guess: FloatArray, freedom: FloatArray, positions: FloatArray) -> FloatArray:
+    def masses(self, guess: Vector, freedom: Vector, positions: Vector) -> Vector:
         """Return the node masses nearest to an estimate that have these mass properties [kg], shape (n,).
 
         Args:

@@ -22,8 +22,8 @@ from collections.abc import Mapping
 import numpy as np
 import scipy
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
-from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.flexbody.body_frame import BodyFrame
 from vehicle.model.flexbody.mode_names import global_patterns, modal_assurance
 from vehicle.model.flexbody.superelement import Superelement
@@ -55,7 +55,7 @@ _MOUNTS = ("hydromount", "linear_mount", "bottom_")
 _INTERFACES = ("arm_", "strut_top", "tie_", "stab_", "rear_support", "seat", *_MOUNTS)
 
 
-def residuals(frame: BodyFrame, factors: Mapping[str, float], weight: float) -> FloatArray:
+def residuals(frame: BodyFrame, factors: Mapping[str, float], weight: float) -> Vector:
     """Return the residuals of the fit as a vector [1]: first, last and torsion frequency, then the other residuals.
 
     Args:
@@ -88,7 +88,7 @@ def residuals(frame: BodyFrame, factors: Mapping[str, float], weight: float) -> 
     )
 
 
-def _excess_motion(body: Superelement, node_mass: FloatArray, shapes: FloatArray) -> FloatArray:
+def _excess_motion(body: Superelement, node_mass: Vector, shapes: Vector) -> Vector:
     """Return penalties [1] for large motion of the seat rail or of single nodes, and for asymmetric pairs of nodes."""
     amplitude = np.linalg.norm(shapes, axis=2)  # (modes, n)
     facing = mirror_nodes(body.positions)
@@ -126,7 +126,7 @@ def fit_factors(frame: BodyFrame, start: Mapping[str, float], weights: tuple[flo
     """
     groups = frame.design.fitted_groups
 
-    def factors(logarithms: FloatArray) -> dict[str, float]:
+    def factors(logarithms: Vector) -> dict[str, float]:
         return {**start, **dict(zip(groups, np.exp(logarithms).tolist(), strict=True))}
 
     point = np.log([start[group] for group in groups])

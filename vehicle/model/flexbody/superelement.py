@@ -13,10 +13,9 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Indices, Vector
 from vehicle.errors import DataError
-from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.flexbody.mass_properties import MassProperties
 from vehicle.model.flexbody.superelement_checks import LARGEST_TOLERANCE, check_superelement
 from vehicle.model.parameters.hardpoints import Point
@@ -24,8 +23,8 @@ from vehicle.model.parameters.hardpoints import Point
 ARRAYS = ("positions", "node_mass", "frequencies", "damping_ratio", "shapes")
 
 
-def _frozen(array: object, dtype: type = float) -> FloatArray:
-    copy: FloatArray = np.array(array, dtype=dtype)
+def _frozen(array: object, dtype: type = float) -> Vector:
+    copy: Vector = np.array(array, dtype=dtype)
     copy.setflags(write=False)
     return copy
 
@@ -42,23 +41,23 @@ class Superelement:
     """name of the body"""
     nodes: tuple[str, ...]
     """node names, unique"""
-    positions: FloatArray
+    positions: Vector
     """node positions in the vehicle frame [m], shape (n, 3)"""
-    edges: npt.NDArray[np.intp] | FloatArray
+    edges: Indices | Vector
     """wireframe lines as pairs of node indices, shape (m, 2), integers"""
-    node_mass: FloatArray | None = None
+    node_mass: Vector | None = None
     """lumped translational masses if these are the whole mass [kg], shape (n,); they allow exact checks of the modes"""
     mass_properties: MassProperties | None = None
     """mass, CoG and inertia if `node_mass` is unknown"""
-    frequencies: FloatArray
+    frequencies: Vector
     """natural frequencies of the free body, ascending [Hz], shape (modes,); empty for a rigid body"""
-    damping_ratio: FloatArray
+    damping_ratio: Vector
     """modal damping ratio [1], shape (modes,)"""
-    shapes: FloatArray
+    shapes: Vector
     """mass-normalised mode shapes, translations in the vehicle frame [kg^-1/2], shape (modes, n, 3)"""
-    rotations: Mapping[str, FloatArray] = field(default_factory=dict)
+    rotations: Mapping[str, Vector] = field(default_factory=dict)
     """node name -> rotation of the node in each mode, if known [rad m^-1 kg^-1/2], shape (modes, 3)"""
-    residual: Mapping[str, FloatArray] = field(default_factory=dict)
+    residual: Mapping[str, Vector] = field(default_factory=dict)
     """node name -> residual flexibility, symmetric [m/N], shape (3, 3)"""
     mode_names: tuple[str, ...]
     """name of each mode"""
@@ -109,12 +108,12 @@ class Superelement:
         return self.rigid.mass
 
     @property
-    def cog(self) -> FloatArray:
+    def cog(self) -> Vector:
         """Centre of gravity [m], shape (3,)."""
         return self.rigid.cog
 
     @property
-    def inertia(self) -> FloatArray:
+    def inertia(self) -> Vector:
         """Inertia tensor about the CoG [kg m2], shape (3, 3)."""
         return self.rigid.inertia
 
@@ -131,7 +130,7 @@ class Superelement:
                 f"superelement {self.name!r} has no node {name!r}. Its nodes are: {', '.join(self.nodes)}."
             ) from None
 
-    def shape_at(self, node: str) -> FloatArray:
+    def shape_at(self, node: str) -> Vector:
         """Return the mode shapes at a node [kg^-1/2], shape (3, modes): elastic displacement = shape @ q."""
         return np.asarray(self.shapes[:, self.node_index(node), :].T)
 
@@ -200,7 +199,7 @@ class Superelement:
             derived=True,
         )
 
-    def combined(self, spread: FloatArray, kept: Collection[str]) -> Superelement:
+    def combined(self, spread: Vector, kept: Collection[str]) -> Superelement:
         """Return the body with linear combinations of its modes as shapes, without modal stiffness, at some nodes.
 
         Args:

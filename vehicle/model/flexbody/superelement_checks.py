@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.analysis.modal_assurance import mac
 
 if TYPE_CHECKING:
-    from vehicle.model.flexbody.beam import FloatArray
     from vehicle.model.flexbody.superelement import Superelement
 
 NORMALISATION = 1e-6
@@ -90,7 +90,7 @@ def _counts(body: Superelement) -> Iterator[str]:
         yield from _residual(node, flexibility)
 
 
-def _residual(node: str, flexibility: FloatArray) -> Iterator[str]:
+def _residual(node: str, flexibility: Vector) -> Iterator[str]:
     if not np.all(np.isfinite(flexibility)):
         yield (
             f"residual flexibility of node {node!r}: found {flexibility.tolist()} m/N, every number must be "
@@ -242,7 +242,7 @@ def _modes(body: Superelement) -> Iterator[str]:
         )
 
 
-def _normalised(body: Superelement, node_mass: FloatArray) -> Iterator[str]:
+def _normalised(body: Superelement, node_mass: Vector) -> Iterator[str]:
     gram = np.einsum("ank,bnk,n->ab", body.shapes, body.shapes, node_mass)
     scale = np.diag(gram)
     for factor, unit in ((1e6, "probably mm: divide the shapes by 1000"), (1e-6, "probably km: multiply by 1000")):

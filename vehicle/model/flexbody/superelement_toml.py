@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
-from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.flexbody.mass_properties import MassProperties
 from vehicle.model.flexbody.superelement import Superelement
 
@@ -94,7 +94,7 @@ def of_tables(content: dict[str, Any]) -> Superelement:
     )
 
 
-def _of_stiffness(stiffness: FloatArray) -> FloatArray:
+def _of_stiffness(stiffness: Vector) -> Vector:
     """Return the flexibility of three springs along the axes [m/N], shape (3, 3)."""
     if stiffness.shape != (3,) or not np.all(np.isfinite(stiffness) & (stiffness > 0.0)):
         raise DataError(
@@ -147,7 +147,7 @@ def _tables(content: dict[str, Any], table_type: str, older: bool) -> list[dict[
     return tables
 
 
-def numbers(value: Any, where: str) -> FloatArray:
+def numbers(value: Any, where: str) -> Vector:
     """Convert a value to a regular array of numbers.
 
     Args:
@@ -166,7 +166,7 @@ def numbers(value: Any, where: str) -> FloatArray:
     return array.astype(float)
 
 
-def _column(tables: list[dict[str, Any]], table_type: str, key: str) -> FloatArray:
+def _column(tables: list[dict[str, Any]], table_type: str, key: str) -> Vector:
     rows = [numbers(table[key], f"{table_type} {i + 1}, {key}") for i, table in enumerate(tables)]
     for i, row in enumerate(rows):
         if row.shape != rows[0].shape:

@@ -1,15 +1,14 @@
 """Mirror symmetry about the plane y = 0: opposite nodes, and symmetric or antisymmetric modes."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-from vehicle.model.flexbody.beam import FloatArray
+from vehicle.arrays import Indices, Vector
 
 _FACING = 0.10
 """Maximum distance of a node from the mirror image of its counterpart [m]: the two engine mounts differ by 82 mm."""
 
 
-def mirror_nodes(positions: FloatArray) -> NDArray[np.intp]:
+def mirror_nodes(positions: Vector) -> Indices:
     """Return the counterpart of every node on the other side of the car.
 
     Args:
@@ -26,7 +25,7 @@ def mirror_nodes(positions: FloatArray) -> NDArray[np.intp]:
     return np.where(has_counterpart, nearest, -1)
 
 
-def parity(shapes: FloatArray, positions: FloatArray, node_mass: FloatArray) -> FloatArray:
+def parity(shapes: Vector, positions: Vector, node_mass: Vector) -> Vector:
     """Return the similarity of mass-normalised shapes to their mirror images.
 
     Sum of m phi . S phi' over the nodes with a counterpart, S = diag(1, -1, 1), phi' at the counterpart.

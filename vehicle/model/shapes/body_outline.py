@@ -11,7 +11,8 @@ from importlib import resources
 
 import numpy as np
 
-from vehicle.model.shapes.shape import Array, Points, Sizes
+from vehicle.arrays import Vector
+from vehicle.model.shapes.shape import Points, Sizes
 from vehicle.model.shapes.surface import spline
 
 DRAWING = tomllib.loads((resources.files(__package__) / "estate.toml").read_text(encoding="utf-8"))
@@ -35,26 +36,26 @@ THIRD = len(PLAN) // 3
 class Outline:
     """Mapping of the reference drawing to a vehicle."""
 
-    x_knots: Array
+    x_knots: Vector
     """vehicle x of the four reference stations [m]"""
-    z_knots: Array
+    z_knots: Vector
     """vehicle z of the three reference heights [m]"""
     widen: float
     """vehicle width over reference width"""
     arch_radius: float
     """radius of both wheel arches [m]"""
 
-    def place(self, reference: Array) -> Array:
+    def place(self, reference: Vector) -> Vector:
         """Convert reference points (X, Y, H), shape (..., 3), to vehicle points; extrapolate linearly."""
         X, Y, H = np.moveaxis(np.asarray(reference, dtype=float), -1, 0)
         x, z = _linear(X, DRAWING["reference_x"], self.x_knots), _linear(H, DRAWING["reference_h"], self.z_knots)
         return np.stack([x, Y * self.widen, z], axis=-1)
 
-    def height(self, z: float | Array) -> Array:
+    def height(self, z: float | Vector) -> Vector:
         """Return the reference height H [m] of a vehicle height z."""
         return _linear(np.asarray(z, dtype=float), self.z_knots, DRAWING["reference_h"])
 
-    def along(self, x: float | Array) -> Array:
+    def along(self, x: float | Vector) -> Vector:
         """Return the reference X [m] of a vehicle x."""
         return _linear(np.asarray(x, dtype=float), self.x_knots, DRAWING["reference_x"])
 
@@ -62,7 +63,7 @@ class Outline:
         """Return vehicle x and z [m] of the centre of the front (0) or rear (1) arch."""
         return float(self.x_knots[1 + axle]), float(self.z_knots[1])
 
-    def side(self, station: Array, height: Array, lift: float = 0.0) -> Array:
+    def side(self, station: Vector, height: Vector, lift: float = 0.0) -> Vector:
         """Return vehicle points of the right lower body surface, shape (..., 3).
 
         The plan curve is moved inward by inset(H), which blends between side and ends by the direction of the normal,
@@ -86,23 +87,23 @@ class Outline:
             points[..., 1] += 0.010 * ny**2 * np.exp(-((np.maximum(gap, 0) / 0.045) ** 2))
         return points
 
-    def waist(self, station: Array) -> Array:
+    def waist(self, station: Vector) -> Vector:
         """Return the reference height [m] of the upper edge of the lower body at stations of the plan curve."""
-        height: Array = np.interp(np.interp(station, STATION, PLAN[:, 0]), *WAIST.T)
+        height: Vector = np.interp(np.interp(station, STATION, PLAN[:, 0]), *WAIST.T)
         return height
 
 
-def station_at(X: float | Array) -> Array:
+def station_at(X: float | Vector) -> Vector:
     """Return the station of the plan curve at a reference X [m]."""
     return np.asarray(np.interp(X, PLAN[:, 0], STATION))
 
 
-def station_front(Y: float | Array) -> Array:
+def station_front(Y: float | Vector) -> Vector:
     """Return the station of the plan curve at a reference Y [m] on the front."""
     return np.asarray(np.interp(Y, PLAN[:THIRD, 1], STATION[:THIRD]))
 
 
-def station_rear(Y: float | Array) -> Array:
+def station_rear(Y: float | Vector) -> Vector:
     """Return the station of the plan curve at a reference Y [m] on the rear."""
     return np.asarray(np.interp(Y, PLAN[: -THIRD - 1 : -1, 1], STATION[: -THIRD - 1 : -1]))
 
@@ -121,8 +122,8 @@ def outline(points: Points, size: Sizes) -> Outline:
     )
 
 
-def _linear(values: Array, knots: tuple[float, ...] | Array, targets: tuple[float, ...] | Array) -> Array:
+def _linear(values: Vector, knots: tuple[float, ...] | Vector, targets: tuple[float, ...] | Vector) -> Vector:
     a, b = np.asarray(knots, dtype=float), np.asarray(targets, dtype=float)
     i = np.clip(np.searchsorted(a, values) - 1, 0, len(a) - 2)
-    result: Array = b[i] + (values - a[i]) * (b[i + 1] - b[i]) / (a[i + 1] - a[i])
+    result: Vector = b[i] + (values - a[i]) * (b[i + 1] - b[i]) / (a[i + 1] - a[i])
     return result

@@ -6,8 +6,8 @@ from itertools import pairwise
 import numpy as np
 import trimesh
 
+from vehicle.arrays import Vector
 from vehicle.model.shapes.body_outline import CANT_RAIL, DRAWING, SILL, Outline, station_at, station_front, station_rear
-from vehicle.model.shapes.shape import Array
 from vehicle.model.shapes.solids import both, inverted, joined
 from vehicle.model.shapes.surface import bezier, coons, grid, spline
 
@@ -30,7 +30,7 @@ _ROUNDING = 1 - 0.13 * np.linspace(0, 1, CANT_STEPS)
 SHARES = np.concatenate([_ROUNDING[:-1], np.linspace(_ROUNDING[-1], -_ROUNDING[-1], ACROSS), -_ROUNDING[::-1][1:]])
 
 
-def lower_loops(body: Outline) -> tuple[Array, Array, Array, Array]:
+def lower_loops(body: Outline) -> tuple[Vector, Vector, Vector, Vector]:
     """Return stations and heights of the lower and upper edge of the right lower body, from front to rear middle.
 
     The lower edge follows bumper, front arch, sill, rear arch, bumper; both edges have the same number of points.
@@ -49,14 +49,14 @@ def lower_loops(body: Outline) -> tuple[Array, Array, Array, Array]:
     low = np.concatenate([front, front_side, station_at(fx), middle, station_at(rx), rear_side, rear])
     top = np.concatenate([front, front_side_top, station_at(fan[0]), middle, station_at(fan[1]), rear_side_top, rear])
 
-    def sill(station: Array) -> Array:
+    def sill(station: Vector) -> Vector:
         return np.asarray(np.interp(station, station_at(SILL[:, 0]), SILL[:, 1]))
 
     low_heights = np.concatenate([sill(front), sill(front_side), fh, sill(middle), rh, sill(rear_side), sill(rear)])
     return low, low_heights, top, body.waist(top)
 
 
-def arch_edge(body: Outline, axle: int) -> tuple[Array, Array]:
+def arch_edge(body: Outline, axle: int) -> tuple[Vector, Vector]:
     """Return reference X and H [m] of the edge of a wheel arch: vertical, half circle, vertical to the sill."""
     cx, cz = body.arch_centre(axle)
     phi = np.linspace(np.pi, 0, ARCH_POINTS)
@@ -66,27 +66,27 @@ def arch_edge(body: Outline, axle: int) -> tuple[Array, Array]:
     return np.concatenate([X[:1], X, X[-1:]]), np.concatenate([feet[:1], H, feet[1:]])
 
 
-def lower_grid(body: Outline, lift: float = 0.0) -> Array:
+def lower_grid(body: Outline, lift: float = 0.0) -> Vector:
     """Return points of the right lower body from the lower edge to the waist, shape (levels, n, 3)."""
     low, low_h, top, top_h = lower_loops(body)
     share = np.linspace(0, 1, LEVELS)[:, None]
     return body.side((1 - share) * low + share * top, (1 - share) * low_h + share * top_h, lift)
 
 
-def waist_curve(body: Outline, X: Array) -> Array:
+def waist_curve(body: Outline, X: Vector) -> Vector:
     """Return vehicle points of the waist at reference X [m] of the plan curve, shape (n, 3)."""
     station = station_at(X)
     return body.side(station, body.waist(station))
 
 
-def cant_rail(body: Outline, X: Array) -> tuple[Array, Array, Array]:
+def cant_rail(body: Outline, X: Vector) -> tuple[Vector, Vector, Vector]:
     """Return lower edge, corner and upper edge of the roof rounding at reference X [m], each of shape (n, 3)."""
     rail = spline(CANT_RAIL, 200)
     low = np.column_stack([X, *(np.interp(X, rail[:, 0], rail[:, k]) for k in (1, 2))])
     return body.place(low), body.place(low + DRAWING["roof_corner_step"]), body.place(low + DRAWING["roof_edge_step"])
 
 
-def header(body: Outline, X: float, bow: float) -> Array:
+def header(body: Outline, X: float, bow: float) -> Vector:
     """Return the edge of the roof over the windscreen or the tailgate, from the right rail to the left rail.
 
     Args:
@@ -105,7 +105,7 @@ def header(body: Outline, X: float, bow: float) -> Array:
     return np.vstack([rounding[:-1], roof, (rounding * MIRROR_Y)[::-1][1:]])
 
 
-def roof(body: Outline) -> Array:
+def roof(body: Outline) -> Vector:
     """Return points of the roof with both rounded rails, from the windscreen to the tailgate, right to left."""
     rows = []
     for share, X in zip(np.linspace(0, 1, ROOF_STATIONS), np.linspace(*ROOF_X, ROOF_STATIONS), strict=True):
@@ -114,20 +114,20 @@ def roof(body: Outline) -> Array:
     return np.array(rows)
 
 
-def windscreen_grid(body: Outline) -> Array:
+def windscreen_grid(body: Outline) -> Vector:
     """Return points of the windscreen plane with the pillars, from cowl to header, shape (6, n, 3)."""
     bottom, top = cowl(body), header(body, ROOF_X[0], BOW_FRONT)
     left, right = (bottom[k] + np.linspace(0, 1, 6)[:, None] * (top[k] - bottom[k]) for k in (0, -1))
     return coons(bottom, top, left, right)
 
 
-def cowl(body: Outline) -> Array:
+def cowl(body: Outline) -> Vector:
     """Return the foot of the windscreen, bowed forward, from right to left, spaced like the header above."""
     x, y, z = waist_curve(body, np.array([COWL_X]))[0]
     return np.column_stack([x - 0.215 * (1 - SHARES**2), y * SHARES, z + 0.060 * (1 - SHARES**2)])
 
 
-def bonnet(body: Outline) -> Array:
+def bonnet(body: Outline) -> Vector:
     """Return points of the bonnet between the front edge, both wing edges and the cowl, with additional crown."""
     edge = lower_loops(body)[2]  # shared points with the lower body avoid a gap
     ahead = edge[edge <= station_front(CORNER_Y) + 1e-9]
@@ -145,7 +145,7 @@ def bonnet(body: Outline) -> Array:
     return surface
 
 
-def tailgate_grid(body: Outline) -> Array:
+def tailgate_grid(body: Outline) -> Vector:
     """Return points of the tailgate from the waist to the header, shape (7, n, 3)."""
     top, steps = header(body, ROOF_X[1], BOW_REAR), np.linspace(0, 1, 7)[:, None]
     station = 1 - (1 - station_at(TAIL_X)) * np.abs(SHARES)
@@ -157,12 +157,12 @@ def tailgate_grid(body: Outline) -> Array:
     return surface
 
 
-def side_columns(body: Outline) -> tuple[list[Array], list[Array]]:
+def side_columns(body: Outline) -> tuple[list[Vector], list[Vector]]:
     """Return patches of the right side above the waist, sheet metal and glass, each of shape (m, n, 3)."""
     edges = [edge for window in WINDOWS for edge in (window[:2], window[2:])]
     lines = [(COWL_X, ROOF_X[0]), *edges, (TAIL_X, ROOF_X[1])]
-    metal: list[Array] = []
-    glass: list[Array] = []
+    metal: list[Vector] = []
+    glass: list[Vector] = []
     for k, (first, last) in enumerate(pairwise(lines)):
         # the bulge fades in the outermost pillars, whose edges are shared with windscreen and tailgate
         fade = (float(k > 0), float(k < len(lines) - 2))
@@ -177,8 +177,8 @@ def side_columns(body: Outline) -> tuple[list[Array], list[Array]]:
 
 
 def side_patch(
-    body: Outline, first: Sequence[float], last: Sequence[float], levels: Array, count: int, fade: Sequence[float]
-) -> Array:
+    body: Outline, first: Sequence[float], last: Sequence[float], levels: Vector, count: int, fade: Sequence[float]
+) -> Vector:
     """Return points between two slanted lines on the right side above the waist, with the bulge of the side glass.
 
     Args:
@@ -193,12 +193,12 @@ def side_patch(
     bottom = waist_curve(body, first[0] + share * (last[0] - first[0]))
     top = cant_rail(body, first[1] + share * (last[1] - first[1]))[0]
     v = levels[:, None, None]
-    surface: Array = (1 - v) * bottom + v * top
+    surface: Vector = (1 - v) * bottom + v * top
     surface[..., 1] += 0.018 * np.sin(np.pi * levels)[:, None] * (fade[0] + share * (fade[1] - fade[0]))
     return surface
 
 
-def split_pane(surface: Array, rows: tuple[int, int], flip: bool) -> tuple[list[trimesh.Trimesh], trimesh.Trimesh]:
+def split_pane(surface: Vector, rows: tuple[int, int], flip: bool) -> tuple[list[trimesh.Trimesh], trimesh.Trimesh]:
     """Cut a pane from a grid, between two rows and two columns from either side; return frame and pane."""
     low, high = rows
     inside = surface[low : high + 1]

@@ -3,9 +3,10 @@
 import numpy as np
 import trimesh
 
+from vehicle.arrays import Vector
 from vehicle.model.shapes import palette
 from vehicle.model.shapes.body_outline import outline
-from vehicle.model.shapes.shape import Array, Piece, Points, Sizes
+from vehicle.model.shapes.shape import Piece, Points, Sizes
 from vehicle.model.shapes.solids import (
     block,
     both,
@@ -147,7 +148,7 @@ def cabin(points: Points, size: Sizes) -> list[Piece]:
     ]
 
 
-def seat(cushion: Array, half_width: float, headrests: tuple[float, ...]) -> trimesh.Trimesh:
+def seat(cushion: Vector, half_width: float, headrests: tuple[float, ...]) -> trimesh.Trimesh:
     """Draw a seat: cushion, inclined backrest and headrests.
 
     Args:
@@ -169,7 +170,7 @@ def seat(cushion: Array, half_width: float, headrests: tuple[float, ...]) -> tri
     return joined(parts)
 
 
-def dashboard(driver: Array) -> trimesh.Trimesh:
+def dashboard(driver: Vector) -> trimesh.Trimesh:
     """Draw the dashboard with its cowl, and the steering wheel in front of the driver."""
     x, z = driver[0] - 0.66, driver[2] + 0.36
     half = 0.70

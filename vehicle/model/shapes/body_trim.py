@@ -3,10 +3,11 @@
 import numpy as np
 import trimesh
 
+from vehicle.arrays import Vector
 from vehicle.model.shapes import body_shell, palette
 from vehicle.model.shapes.body_outline import DRAWING, Outline, outline, station_at, station_front, station_rear
 from vehicle.model.shapes.body_shell import COWL_X, WINDOWS, arch_edge, bonnet, cant_rail, side_patch, waist_curve
-from vehicle.model.shapes.shape import Array, Piece, Points, Sizes
+from vehicle.model.shapes.shape import Piece, Points, Sizes
 from vehicle.model.shapes.solids import block, both, hull, rod, shifted, tube
 from vehicle.model.shapes.surface import grid, spline
 
@@ -32,7 +33,7 @@ def estate_body(points: Points, size: Sizes) -> list[Piece]:
     ]
 
 
-def field(body: Outline, stations: Array, low: float | Array, high: float | Array, rows: int = 3) -> trimesh.Trimesh:
+def field(body: Outline, stations: Vector, low: float | Vector, high: float | Vector, rows: int = 3) -> trimesh.Trimesh:
     """Draw a patch on the right lower body.
 
     Args:
@@ -89,9 +90,9 @@ def dark_trim(body: Outline) -> trimesh.Trimesh:
     return both(*parts)
 
 
-def mirror_place(body: Outline) -> Array:
+def mirror_place(body: Outline) -> Vector:
     """Return the root of the right door mirror on the waist [m], shape (3,)."""
-    root: Array = waist_curve(body, np.array([1.70]))[0]
+    root: Vector = waist_curve(body, np.array([1.70]))[0]
     return root
 
 

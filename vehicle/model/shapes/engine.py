@@ -5,8 +5,9 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 import trimesh
 
+from vehicle.arrays import Vector
 from vehicle.model.shapes import palette
-from vehicle.model.shapes.shape import Array, Piece, Points, Sizes
+from vehicle.model.shapes.shape import Piece, Points, Sizes
 from vehicle.model.shapes.solids import block, box, drum, hull, joined, lathe, placed, ring, rod, shifted, tube
 from vehicle.model.shapes.surface import bezier
 
@@ -30,9 +31,9 @@ class EngineFrame:
         self.origin = np.array(points["engine_cog"], dtype=float)
         self.stretch = float(points["hydromount"][1] - points["linear_mount"][1]) / MOUNT_SPAN
 
-    def at(self, x: float, y: float, z: float) -> Array:
+    def at(self, x: float, y: float, z: float) -> Vector:
         """Convert drawing coordinates [m] to a point of the vehicle [m], shape (3,)."""
-        point: Array = self.origin + np.array([x, y * self.stretch, z])
+        point: Vector = self.origin + np.array([x, y * self.stretch, z])
         return point
 
     def box(self, low: Sequence[float], high: Sequence[float], bevel: float = 0.0) -> trimesh.Trimesh:
@@ -44,7 +45,7 @@ class EngineFrame:
         return hull([self.at(*point) for point in points])
 
     def arm(
-        self, start: Sequence[float], corner: Sequence[float], end: Array, half: float, width: Array
+        self, start: Sequence[float], corner: Sequence[float], end: Vector, half: float, width: Vector
     ) -> trimesh.Trimesh:
         """Build a bracket from the engine up to the point of a mount."""
         path = bezier(self.at(*start), self.at(*corner), end, 6)

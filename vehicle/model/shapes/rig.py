@@ -6,8 +6,9 @@ from collections.abc import Sequence
 import numpy as np
 import trimesh
 
+from vehicle.arrays import Vector
 from vehicle.model.shapes import palette
-from vehicle.model.shapes.shape import Array, Piece, Points, Sizes
+from vehicle.model.shapes.shape import Piece, Points, Sizes
 from vehicle.model.shapes.solids import block, box, drum, hull, joined, lathe, placed, plate, ring, shifted
 
 BED_TOP = 0.04  # [m] top of the bed plate above the ground
@@ -17,24 +18,24 @@ RUBBER = 0.060  # [m] height of the rear blocks
 PLANKS = 9
 
 
-def foot(point: Array) -> Array:
+def foot(point: Vector) -> Vector:
     """Return the point on the bed plate below a point."""
     return np.array([point[0], point[1], BED_TOP])
 
 
-def screws(centre: Array, half: float, radius: float = 0.009) -> list[trimesh.Trimesh]:
+def screws(centre: Vector, half: float, radius: float = 0.009) -> list[trimesh.Trimesh]:
     """Build four square screw heads at the corners (+-half, +-half) [m] of a square on a surface."""
     centres = centre + half * np.array([(-1, -1, 0), (-1, 1, 0), (1, -1, 0), (1, 1, 0)])
     return [block(corner, (-radius, -radius, -0.002), (radius, radius, 0.008)) for corner in centres]
 
 
-def square(centre: Array, half: float, low: float, high: float, bevel: float = 0.0) -> trimesh.Trimesh:
+def square(centre: Vector, half: float, low: float, high: float, bevel: float = 0.0) -> trimesh.Trimesh:
     """Build a square plate or column [m] about a vertical axis through a point."""
     return block(centre, (-half, -half, low), (half, half, high), bevel)
 
 
 def _ribs(
-    base: Array, turns: Array, corners: Sequence[tuple[float, float]], half: float, beside: Sequence[float]
+    base: Vector, turns: Vector, corners: Sequence[tuple[float, float]], half: float, beside: Sequence[float]
 ) -> list[trimesh.Trimesh]:
     """Build vertical sheets around a column.
 
@@ -71,7 +72,7 @@ def shaker_table(points: Points, size: Sizes) -> list[Piece]:
     ]
 
 
-def shaker_top(patch: Array) -> float:
+def shaker_top(patch: Vector) -> float:
     """Return the height z of the upper face of the shaker [m], below a contact patch at (x, y, z) [m]."""
     return float(patch[2]) - TABLE - AIR
 
@@ -92,7 +93,7 @@ def shaker(points: Points, size: Sizes) -> list[Piece]:
     return [Piece("", body, palette.SHAKER, held=True), Piece("_frame", frame, palette.STAND, held=True)]
 
 
-def shaker_frame(patch: Array, top: float) -> trimesh.Trimesh:
+def shaker_frame(patch: Vector, top: float) -> trimesh.Trimesh:
     """Build trunnions, bearing pedestals and base frame of a shaker with its upper face at a height `top` [m]."""
     middle = 0.5 * (BED_TOP + 0.035 + top)
     base = foot(patch)
@@ -140,7 +141,7 @@ def rear_block(points: Points, size: Sizes) -> list[Piece]:
 
 
 def _stand(
-    base: Array, height: float, column: trimesh.Trimesh, plates: Sequence[float], sheets: Sequence[trimesh.Trimesh]
+    base: Vector, height: float, column: trimesh.Trimesh, plates: Sequence[float], sheets: Sequence[trimesh.Trimesh]
 ) -> trimesh.Trimesh:
     """Build column and sheets on a screwed foot plate.
 

@@ -4,13 +4,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
-import numpy as np
 import trimesh
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from vehicle.arrays import Vector
+
 Colour = tuple[float, float, float, float]
-Points = Mapping[str, Array]
+Points = Mapping[str, Vector]
 Sizes = Mapping[str, float]
 
 SIZES: Final[dict[str, float]] = {

@@ -7,7 +7,7 @@ import numpy as np
 import trimesh
 from numpy.typing import ArrayLike
 
-from vehicle.model.shapes.shape import Array
+from vehicle.arrays import Vector
 
 ON_AXIS = 1e-9  # [m] minimum radius of a circle; smaller radii are points on the axis
 
@@ -59,7 +59,7 @@ def lathe(profile: ArrayLike, *, sections: int = 24, closed: bool = False) -> tr
         closed: join the last point to the first (a ring that does not touch the axis)
     """
     phi = 2 * np.pi * np.arange(sections) / sections
-    vertices: list[Array] = []
+    vertices: list[Vector] = []
     rings: list[np.ndarray] = []
     count = 0
     for r, z in np.asarray(profile, dtype=float):
@@ -95,7 +95,7 @@ def ball(radius: float, *, sections: int = 14) -> trimesh.Trimesh:
     return lathe(profile, sections=sections)
 
 
-def frames(path: Array, up: ArrayLike | None, *, closed: bool) -> tuple[Array, Array]:
+def frames(path: Vector, up: ArrayLike | None, *, closed: bool) -> tuple[Vector, Vector]:
     """Return two unit normals at each point of a path, (n, 3) each, transported without twist by double reflection.
 
     The frame is mirrored at the middle plane of each chord, then at the plane that maps its tangent to the next.
@@ -124,7 +124,7 @@ def frames(path: Array, up: ArrayLike | None, *, closed: bool) -> tuple[Array, A
     return first, np.cross(tangents, first)
 
 
-def _reflected(vector: Array, normal: Array) -> Array:
+def _reflected(vector: Vector, normal: Vector) -> Vector:
     square = float(normal @ normal)
     if square < 1e-24:  # both tangents agree
         return vector
@@ -169,7 +169,7 @@ def tube(
     )
 
 
-def swept(rings: Array, *, closed: bool = False) -> trimesh.Trimesh:
+def swept(rings: Vector, *, closed: bool = False) -> trimesh.Trimesh:
     """Build a body from its sections: with flat ends, or closed to a ring, with outward normals.
 
     Args:
@@ -197,7 +197,7 @@ def rod(start: ArrayLike, end: ArrayLike, radius: float, *, sides: int = 8) -> t
     return tube(np.array([start, end], dtype=float), radius, sides=sides)
 
 
-def axis_rotation(direction: ArrayLike) -> Array:
+def axis_rotation(direction: ArrayLike) -> Vector:
     """Return the rotation by the smallest angle that maps z to a direction, shape (3, 3).
 
     R = 1 + [v] + [v]^2 / (1 + c), v = z x d, c = z . d (Rodrigues)
@@ -211,7 +211,7 @@ def axis_rotation(direction: ArrayLike) -> Array:
         return np.diag([1.0, -1.0, -1.0])
     v = np.array([-d[1], d[0], 0.0])
     cross = np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
-    rotation: Array = np.eye(3) + cross + cross @ cross / (1 + d[2])
+    rotation: Vector = np.eye(3) + cross + cross @ cross / (1 + d[2])
     return rotation
 
 
@@ -221,9 +221,9 @@ def placed(mesh: trimesh.Trimesh, origin: ArrayLike, direction: ArrayLike = (0.0
     return trimesh.Trimesh(vertices, mesh.faces, process=False)
 
 
-def shifted(points: ArrayLike, dx: float, dy: float, dz: float) -> Array:
+def shifted(points: ArrayLike, dx: float, dy: float, dz: float) -> Vector:
     """Return points moved by (dx, dy, dz) [m], shape (..., 3)."""
-    moved: Array = np.asarray(points, dtype=float) + np.array([dx, dy, dz])
+    moved: Vector = np.asarray(points, dtype=float) + np.array([dx, dy, dz])
     return moved
 
 

@@ -6,11 +6,11 @@ import numpy as np
 import trimesh
 from numpy.typing import ArrayLike
 
-from vehicle.model.shapes.shape import Array
+from vehicle.arrays import Vector
 from vehicle.model.shapes.solids import quads
 
 
-def spline(points: ArrayLike, count: int) -> Array:
+def spline(points: ArrayLike, count: int) -> Vector:
     """Interpolate points by a smooth curve (centripetal Catmull-Rom), even in its parameter; shape (count, d).
 
     Cubic Hermite segments; the tangent at a point is the slope of the parabola through the point and its neighbours.
@@ -30,7 +30,7 @@ def spline(points: ArrayLike, count: int) -> Array:
     i = np.clip(np.searchsorted(knots, s, side="right") - 1, 0, len(p) - 2)
     h = np.diff(knots)[i][:, None]
     u = (s[:, None] - knots[i][:, None]) / h
-    curve: Array = (
+    curve: Vector = (
         (2 * u**3 - 3 * u**2 + 1) * p[i]
         + (u**3 - 2 * u**2 + u) * h * tangents[i]
         + (3 * u**2 - 2 * u**3) * p[i + 1]
@@ -39,15 +39,15 @@ def spline(points: ArrayLike, count: int) -> Array:
     return curve
 
 
-def bezier(start: ArrayLike, corner: ArrayLike, end: ArrayLike, count: int) -> Array:
+def bezier(start: ArrayLike, corner: ArrayLike, end: ArrayLike, count: int) -> Vector:
     """Return a quadratic Bezier curve: (1-u)^2 start + 2 u (1-u) corner + u^2 end, shape (count, d)."""
     u = np.linspace(0, 1, count)[:, None]
     a, b, c = (np.asarray(point, dtype=float) for point in (start, corner, end))
-    curve: Array = (1 - u) ** 2 * a + 2 * u * (1 - u) * b + u**2 * c
+    curve: Vector = (1 - u) ** 2 * a + 2 * u * (1 - u) * b + u**2 * c
     return curve
 
 
-def rounded(points: ArrayLike, radius: float, *, steps: int = 5) -> Array:
+def rounded(points: ArrayLike, radius: float, *, steps: int = 5) -> Vector:
     """Round each inner corner of a polyline by a curve that begins `radius` [m] before the corner."""
     p = np.asarray(points, dtype=float)
     pieces = [p[:1]]
@@ -58,7 +58,9 @@ def rounded(points: ArrayLike, radius: float, *, steps: int = 5) -> Array:
     return np.vstack([*pieces, p[-1:]])
 
 
-def helix(radius: float | Callable[[Array], Array], low: float, high: float, turns: float, *, steps: int = 20) -> Array:
+def helix(
+    radius: float | Callable[[Vector], Vector], low: float, high: float, turns: float, *, steps: int = 20
+) -> Vector:
     """Return a helix about z, (n, 3) [m]: (r cos(phi), r sin(phi), z), phi from 0 to 2 pi turns, z linear.
 
     With a constant radius the length is sqrt((2 pi r turns)^2 + (high - low)^2).
@@ -76,7 +78,7 @@ def helix(radius: float | Callable[[Array], Array], low: float, high: float, tur
     return np.column_stack([r * np.cos(phi), r * np.sin(phi), low + (high - low) * share])
 
 
-def grid(points: Array, *, flip: bool = False) -> trimesh.Trimesh:
+def grid(points: Vector, *, flip: bool = False) -> trimesh.Trimesh:
     """Triangulate a grid of points; the normal is (second index direction) x (first), reversed by `flip`.
 
     Args:
@@ -96,7 +98,7 @@ def grid(points: Array, *, flip: bool = False) -> trimesh.Trimesh:
     return trimesh.Trimesh(vertices, faces[:, ::-1] if flip else faces, process=True)
 
 
-def coons(bottom: Array, top: Array, left: Array, right: Array) -> Array:
+def coons(bottom: Vector, top: Vector, left: Vector, right: Vector) -> Vector:
     """Return the bilinearly blended surface between four boundary curves; (m, n, 3), v along the first index.
 
     S(u, v) = (1-v) bottom(u) + v top(u) + (1-u) left(v) + u right(v) - bilinear blend of the four corners
@@ -112,5 +114,5 @@ def coons(bottom: Array, top: Array, left: Array, right: Array) -> Array:
     u = np.linspace(0, 1, len(bottom))[None, :, None]
     v = np.linspace(0, 1, len(left))[:, None, None]
     corners = (1 - u) * (1 - v) * bottom[0] + u * (1 - v) * bottom[-1] + (1 - u) * v * top[0] + u * v * top[-1]
-    surface: Array = (1 - v) * bottom + v * top + (1 - u) * left[:, None] + u * right[:, None] - corners
+    surface: Vector = (1 - v) * bottom + v * top + (1 - u) * left[:, None] + u * right[:, None] - corners
     return surface

@@ -7,8 +7,9 @@ import numpy as np
 import trimesh
 from numpy.typing import ArrayLike
 
+from vehicle.arrays import Vector
 from vehicle.model.shapes import palette
-from vehicle.model.shapes.shape import Array, Piece, Points, Sizes
+from vehicle.model.shapes.shape import Piece, Points, Sizes
 from vehicle.model.shapes.solids import ball, drum, hull, joined, lathe, placed, ring, rod, shifted, swept, tube
 from vehicle.model.shapes.surface import bezier, helix, rounded
 
@@ -30,9 +31,9 @@ BUSHINGS = (  # point, axis of the sleeve, inner radius, outer radius, half leng
 class StrutAxis(NamedTuple):
     """Axis of the strut with positions along the axis."""
 
-    origin: Array
+    origin: Vector
     """damper bottom, shape (3,) [m]"""
-    axis: Array
+    axis: Vector
     """unit vector to the strut top, shape (3,)"""
     seat: float
     """distance of the lower spring seat [m]"""
@@ -119,7 +120,7 @@ def coil_spring(points: Points, size: Sizes) -> list[Piece]:
     strut = strut_axis(points)
     wire, r, low = (size["spring_wire_radius"], size["spring_coil_radius"], LOWEST_TURN * size["spring_coil_radius"])
 
-    def radius(share: Array) -> Array:
+    def radius(share: Vector) -> Vector:
         q = np.minimum(share / 0.28, 1.0)
         return np.asarray(low + (r - low) * (3 * q**2 - 2 * q**3))
 
@@ -151,7 +152,7 @@ def piston(points: Points, size: Sizes) -> list[Piece]:
     return [Piece("", joined(shaft, placed(ball(0.018, sections=8), points[EYES[1]], along)), palette.ROD)]
 
 
-def _between(points: Points, ends: tuple[str, str]) -> tuple[Array, Array, float]:
+def _between(points: Points, ends: tuple[str, str]) -> tuple[Vector, Vector, float]:
     """Return the lower end [m], the unit vector and the distance [m] to the upper end."""
     lower, upper = (points[end] for end in ends)
     length = float(np.linalg.norm(upper - lower))
@@ -228,7 +229,7 @@ def knuckle(points: Points, size: Sizes) -> list[Piece]:
     return [Piece("", mesh, palette.STEEL)]
 
 
-def rods(points: Sequence[Array], radius: float = 0.009, end: float = 0.015, nut: float | None = None) -> list[Piece]:
+def rods(points: Sequence[Vector], radius: float = 0.009, end: float = 0.015, nut: float | None = None) -> list[Piece]:
     """Draw a part as a rod between two points, rods from the mean of more points, or a ball at a single point.
 
     Args:
@@ -279,6 +280,6 @@ def stabilizer_clamp(points: Points) -> trimesh.Trimesh:
     """Build the steel strap over the rubber block."""
     phi = np.linspace(-0.25 * np.pi, 1.25 * np.pi, 6)
     arc = np.column_stack([0.026 * np.cos(phi), np.zeros(6), 0.026 * np.sin(phi)])
-    foot: Array = np.array([[0.046, 0, -0.022]])
+    foot: Vector = np.array([[0.046, 0, -0.022]])
     path = np.vstack([foot, arc, foot * (-1, 1, 1)])
     return placed(tube(path, 0.014, sides=4, width=0.002, up=ACROSS), points["stab_body"])

@@ -3,8 +3,9 @@
 import numpy as np
 import trimesh
 
+from vehicle.arrays import Vector
 from vehicle.model.shapes import palette
-from vehicle.model.shapes.shape import Array, Piece, Points, Sizes
+from vehicle.model.shapes.shape import Piece, Points, Sizes
 from vehicle.model.shapes.solids import box, drum, hull, joined, lathe, placed
 
 OUTWARD = np.array([0.0, 1.0, 0.0])  # spin axis of the right wheel, to the outside
@@ -99,6 +100,6 @@ def caliper(points: Points, size: Sizes) -> list[Piece]:
     mesh = joined(blocks, piston, bracket, pins)
     tilt = np.deg2rad(18.0)  # above the horizontal, ahead of the axle
     to_rim = np.array([-np.cos(tilt), 0.0, np.sin(tilt)])
-    frame: Array = np.column_stack([to_rim, np.cross(OUTWARD, to_rim), OUTWARD])
+    frame: Vector = np.column_stack([to_rim, np.cross(OUTWARD, to_rim), OUTWARD])
     vertices = np.asarray(mesh.vertices) @ frame.T + points["wheel_center"]
     return [Piece("", trimesh.Trimesh(vertices, mesh.faces, process=False), palette.CALIPER)]

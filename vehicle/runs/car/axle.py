@@ -1,12 +1,10 @@
 """Kinematics rig of an axle of a car, and its position in the car."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.engines.kinematics.axle_statics import AxleStatics
 from vehicle.errors import ConfigurationError
 
@@ -42,7 +40,7 @@ def axle_statics(car: Any, name: str, *, ideal: bool, standing: bool = False) ->
     return AxleStatics(car.model.model, car.model.static.preload, wheels=wheels, ideal=ideal, standing=standing)
 
 
-def mass_and_cog(car: Any) -> tuple[float, npt.NDArray[np.float64]]:
+def mass_and_cog(car: Any) -> tuple[float, Vector]:
     """Return the mass of the whole car [kg] and its centre of gravity [m], (3,), in the frame of the hardpoints."""
     matrices = car.matrices
     masses = np.array([matrices.body_masses[body][0, 0] for body in matrices.body_centres])

@@ -5,8 +5,6 @@ the roll stiffness of the tyres is K_t t_p^2 / 2, with the track t_p of the patc
 those of ideal joints.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypedDict
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Complex
 from vehicle.drawing.notebook.cards import car_card
 from vehicle.engines.linear.car_matrices import CarMatrices, car_matrices
 from vehicle.engines.linear.car_modes import Mode, car_modes, require_stable
@@ -318,7 +319,7 @@ class Car:
     @one_blas_thread()
     def matrix_frf(
         self, channels: Sequence[str], frequency: npt.ArrayLike, *, damper: str = "stuck", wheel: str | None = None
-    ) -> npt.NDArray[np.complex128]:
+    ) -> Complex:
         """Return linear FRFs [m/s2 per m] at given frequencies, shape (channels, frequencies).
 
         Args:
@@ -332,7 +333,7 @@ class Car:
     @one_blas_thread()
     def force_frf(
         self, channels: Sequence[str], frequency: npt.ArrayLike, *, force: str, damper: str = "stuck"
-    ) -> npt.NDArray[np.complex128]:
+    ) -> Complex:
         """Return linear FRFs to an applied force [m/s2 per N or N m], shape (channels, frequencies).
 
         H(jw) of (s^2 M + s C + K) u = l, s = jw, with the row l of the force; its history plays no part.

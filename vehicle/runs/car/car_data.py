@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.model.parameters.parameter_list import Parameter, parameter_list
 from vehicle.model.parameters.shipped import FOCUS_FILE
 from vehicle.names import point_words
@@ -203,7 +203,7 @@ def _loads(table: Mapping[str, Any]) -> dict[str, float]:
     return loads
 
 
-def _inertia(car: Any, cog: npt.NDArray[np.float64]) -> tuple[float, float, float, float]:
+def _inertia(car: Any, cog: Vector) -> tuple[float, float, float, float]:
     """Return Ixx, Iyy, Izz and the integral of z x of the whole car about its centre of gravity [kg m2]."""
     total = np.zeros((3, 3))
     for body, centre in car.matrices.body_centres.items():

@@ -1,7 +1,5 @@
 """Data of a car as tables of text, for the console and for the report."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Decoupling of a part on its mounts as a table and as JSON."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Histories of applied forces that a run gets from Python; they take the way of those of files."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any

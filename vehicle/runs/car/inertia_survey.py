@@ -9,8 +9,6 @@ parameter database (Heydinger et al., SAE 1999-01-1336), evaluated in "Estimatin
 height using the NHTSA light vehicle inertial parameter database" (kktse.github.io, October 2020).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,13 +1,12 @@
 """Linear FRFs of a car to its plates and to its applied forces, from its matrices."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Complex
 from vehicle.engines.linear.first_order import first_order
 from vehicle.engines.linear.forced_response import unit_response
 from vehicle.engines.linear.response import frequency_response
@@ -22,9 +21,7 @@ def is_stuck(damper: str) -> bool:
     return damper == "stuck"
 
 
-def plate_frf(
-    car: Any, channels: Sequence[str], frequency: npt.ArrayLike, stuck: bool, wheel: str
-) -> npt.NDArray[np.complex128]:
+def plate_frf(car: Any, channels: Sequence[str], frequency: npt.ArrayLike, stuck: bool, wheel: str) -> Complex:
     """Return the FRFs to the plate of a wheel [m/s2 per m]; see `Car.matrix_frf`."""
     car.vehicle.require_wheels((wheel,))
     car.vehicle.require_channels(channels, car.vehicle.acceleration_channels)
@@ -33,9 +30,7 @@ def plate_frf(
     return np.asarray(frequency_response(form, frequency, channels, "acceleration", driven=driven))
 
 
-def force_frf(
-    car: Any, channels: Sequence[str], frequency: npt.ArrayLike, stuck: bool, force: str
-) -> npt.NDArray[np.complex128]:
+def force_frf(car: Any, channels: Sequence[str], frequency: npt.ArrayLike, stuck: bool, force: str) -> Complex:
     """Return the FRFs to an applied force [m/s2 per N or N m]; see `Car.force_frf`."""
     car.vehicle.require_channels(channels, car.vehicle.acceleration_channels)
     lines = np.atleast_1d(np.asarray(frequency, dtype=float))

@@ -1,13 +1,11 @@
 """Mode of the car with the largest part in the motion of a run."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Complex, Vector
 from vehicle.drawing.rendering.mode_inset import BesideMode
 from vehicle.engines.linear.car_modes import Mode
 from vehicle.engines.linear.mode_shares import ModeShares, mode_shares
@@ -26,8 +24,8 @@ WORKS = 0.25
 class Lines:
     """Plates of a run at spectral lines."""
 
-    frequency: npt.NDArray[np.float64]  # [Hz]; (m,)
-    plates: npt.NDArray[np.complex128]  # complex amplitudes of the plate displacements [m]; (w, m)
+    frequency: Vector  # [Hz]; (m,)
+    plates: Complex  # complex amplitudes of the plate displacements [m]; (w, m)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

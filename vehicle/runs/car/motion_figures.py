@@ -5,8 +5,6 @@ its mass and its rates. A mode contains several motions, so a mode is never the 
 each with its share of this motion in its kinetic energy (`vehicle.engines.linear.motion_names`).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Complex, Indices
 from vehicle.drawing.notebook.frames import plain_frame
 from vehicle.engines.linear.car_modes import Mode
 from vehicle.engines.linear.forced_response import force_amplitudes, forced_response
@@ -89,7 +89,7 @@ class OrderPoints:
     orders: Vector
     channel: str
     unit: str
-    amplitude: npt.NDArray[np.complex128]
+    amplitude: Complex
     error: Vector
     stuck: Vector
     free: Vector
@@ -249,7 +249,7 @@ class _Point:
 
     angle: str
     turns: float
-    amplitude: npt.NDArray[np.complex128]
+    amplitude: Complex
     error: Vector
     stuck: Vector
     free: Vector
@@ -321,7 +321,7 @@ def _point(run: Run, channel: str, angle: str | None, orders: Sequence[float]) -
     )
 
 
-def _line(car: Car, frequency: float) -> npt.NDArray[np.intp]:
+def _line(car: Car, frequency: float) -> Indices:
     """Return the position of a frequency [rad/s] among those of the applied forces; empty if none has it."""
     forced = np.array(car.matrices.lines.frequencies)
     return np.flatnonzero(np.abs(forced - frequency) < 1e-9 * forced)

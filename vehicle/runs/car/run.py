@@ -9,8 +9,8 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.drawing.notebook.cards import run_card
 from vehicle.drawing.notebook.frames import recording_dataset, recording_frame
 from vehicle.drawing.notebook.run_orders import RunOrderCut, RunOrders, named_cut, named_orders
@@ -114,7 +114,7 @@ class Run:
         """Return all channels as an xarray dataset over the time, with units."""
         return recording_dataset(self.recording)
 
-    def __getitem__(self, channel: str) -> npt.NDArray[np.float64]:
+    def __getitem__(self, channel: str) -> Vector:
         """Return the time history of a channel; its unit is in `recording.units`.
 
         Args:
@@ -126,7 +126,7 @@ class Run:
         return self.recording[self._named(channel)[0]]
 
     @property
-    def time(self) -> npt.NDArray[np.float64]:
+    def time(self) -> Vector:
         """Sample times [s]."""
         return self.recording.time
 
@@ -195,7 +195,7 @@ class Run:
             point: output point of the car, as "seat_rail".
         """
 
-        def at(name: str) -> npt.NDArray[np.float64]:
+        def at(name: str) -> Vector:
             return np.stack([self.recording[f"{name}_acc_{axis}"] for axis in AXES])
 
         recorded = all(f"seat_acc_{axis}" in self.recording.channels for axis in AXES)
@@ -353,7 +353,7 @@ class Run:
             pair_film(both, caption or " and ".join(names), Path(file), take or driven, progress=progress)
         return Path(file)
 
-    def at(self, point: str) -> list[npt.NDArray[np.float64]]:
+    def at(self, point: str) -> list[Vector]:
         """Return the accelerations of an output point in x, y, z [m/s2] over the evaluated span."""
         return [self.recording[f"{point}_acc_{axis}"][self.evaluated] for axis in AXES]
 
@@ -382,7 +382,7 @@ class Run:
         recorded = tuple(name for name in main if name in self.recording.channels)
         return recorded or tuple(self.recording.channels)[:1]
 
-    def _damper(self, wheel: str, velocity: float | None) -> tuple[npt.NDArray[np.float64], float]:
+    def _damper(self, wheel: str, velocity: float | None) -> tuple[Vector, float]:
         """Return the velocity of a damper, and the limit of slip [m/s]."""
         self.car.vehicle.require_wheels((wheel,))
         limit = self.car.vehicle.damper.slip_velocity if velocity is None else velocity

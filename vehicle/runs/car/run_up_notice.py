@@ -1,7 +1,5 @@
 """Notice on the mode whose peak is lowered most by the speed of a run-up of the crankshaft."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

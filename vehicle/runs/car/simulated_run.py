@@ -1,7 +1,5 @@
 """Simulation of a car on a signal with the engine that is asked for, or that the motion needs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any

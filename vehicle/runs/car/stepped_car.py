@@ -1,7 +1,5 @@
 """A car with a time step that is small enough for it and for its forces."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -3,8 +3,6 @@
 Ranges and their sources are data: `usual_ranges.toml`, and the survey of measured cars for the moments of inertia.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import functools
 import math

@@ -1,7 +1,5 @@
 """Agreement of measured and simulated frequency responses on the lines of the measurement."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise

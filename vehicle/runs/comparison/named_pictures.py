@@ -1,7 +1,5 @@
 """Pictures of a comparison by their names: responses and time histories of each output point, signatures."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """Pictures of a comparison: responses and time histories of an output point, signatures, MAC."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -9,6 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.drawing.rendering.figure import (
     COLOURS,
     FRF_BAND,
@@ -95,7 +94,7 @@ def draw_signatures(axes: npt.NDArray[Any], signatures: Signatures) -> None:
 
 def plot_mac(
     path: Path,
-    tables: Sequence[tuple[str, npt.NDArray[np.float64], Sequence[float], Sequence[float]]],
+    tables: Sequence[tuple[str, Vector, Sequence[float], Sequence[float]]],
     caption: str,
 ) -> None:
     """Write a picture of several MAC matrices.

@@ -1,7 +1,5 @@
 """Measured and simulated time histories at common times, and how they agree."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Time histories and frequency responses of a run for a comparison, from a `Run` or the folder of a run."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Files of a car: its drawing, its data and its parameters."""
 
-from __future__ import annotations
-
 import csv
 import io
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Results of a command, a folder or files: checked before the computation, made whole, put in place in one step."""
 
-from __future__ import annotations
-
 import json
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence

@@ -3,8 +3,6 @@
 `held` is the exit stack that holds the lock until then. Errors: see `check_output`, `check_file` and `folder_lock`.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Sequence
 from contextlib import ExitStack

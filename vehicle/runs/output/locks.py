@@ -1,7 +1,5 @@
 """Locks of folders and files against writing by other processes."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress

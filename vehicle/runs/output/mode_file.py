@@ -1,7 +1,5 @@
 """The modes of a car as a universal file: places, lines between them, and a mode shape for each mode."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Generated MJCF files in a folder, which may hold files of others in addition."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path

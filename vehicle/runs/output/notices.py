@@ -1,7 +1,5 @@
 """Notices about what earlier commands left, on standard error; the logger `vehicle.results` of `logging`."""
 
-from __future__ import annotations
-
 import logging
 import sys
 

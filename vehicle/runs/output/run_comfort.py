@@ -1,7 +1,5 @@
 """Comfort of a run at the seat rail, on the seat and at the steering wheel: values, SEAT value and notices."""
 
-from __future__ import annotations
-
 from dataclasses import asdict
 from typing import TypedDict
 

@@ -1,7 +1,5 @@
 """Files of a run: summary, parameters as used, time histories, FRFs, plots, film."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TypedDict

@@ -1,13 +1,11 @@
 """Applied forces of a run, and what the car does at their frequencies, for its summary."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import TypedDict
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Complex
 from vehicle.engines.linear.forced_response import forced_response
 from vehicle.errors import DataError
 from vehicle.model.parameters.applied_force import CRANK
@@ -142,7 +140,7 @@ def _orders(run: Run) -> list[OrderSummary]:
 
 def phase_ranges(
     forces: Sequence[PlacedForce],
-    amplitudes: npt.NDArray[np.complex128],
+    amplitudes: Complex,
     frequencies: Sequence[float],
     order: float,
 ) -> list[tuple[float, float]]:
@@ -159,7 +157,7 @@ def phase_ranges(
     Returns:
         Pairs for the channels; empty if fewer than two wheels have this order.
     """
-    by_wheel: dict[str, npt.NDArray[np.complex128]] = {}
+    by_wheel: dict[str, Complex] = {}
     for force, of_force in zip(forces, amplitudes, strict=True):
         angle, frequency = force.law.angle, float(round(order)) * force.speed
         if angle not in (None, CRANK) and frequency in force.harmonics:

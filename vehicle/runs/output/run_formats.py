@@ -1,7 +1,5 @@
 """A run in the formats of other programs: its channels with places and directions, its FRFs, its geometry."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Sequence
 from itertools import product

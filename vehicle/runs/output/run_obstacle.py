@@ -1,12 +1,10 @@
 """Values of a run over an obstacle: peak-to-peak acceleration, dose, settling time, peaks of the knuckles."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.names import AXES
 from vehicle.runs.car import Run
 from vehicle.signals.analysis.evaluation import evaluate
@@ -60,9 +58,7 @@ def obstacle_values(run: Run) -> ObstacleSummary | None:
     }
 
 
-def settling_time(
-    time: npt.NDArray[np.float64], values: npt.NDArray[np.float64], after: float, share: float = SETTLED
-) -> float | None:
+def settling_time(time: Vector, values: Vector, after: float, share: float = SETTLED) -> float | None:
     """Return the time after which |values| stays within a share of its peak [s]; None if the last quarter exceeds it.
 
     Args:

@@ -1,7 +1,5 @@
 """Tables of spectra as CSV text, the pictures that belong to them, and the densities of a run on a road."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 

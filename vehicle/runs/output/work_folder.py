@@ -8,8 +8,6 @@ The next command that reads or writes there finishes or removes the results of a
 - complete, in the folder of the results: they are in place, and the old results are removed.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

@@ -10,8 +10,6 @@ model: never a file that another command wrote below, which has a list of its ow
 /tmp, concerns nothing in the folders there.
 """
 
-from __future__ import annotations
-
 import errno
 import json
 import os

@@ -1,14 +1,12 @@
 """First screen of a report: comfort of a run as a statement, or effect of a change with a picture."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import partial
 
 import numpy as np
-import numpy.typing as npt
 from markupsafe import Markup
 
+from vehicle.arrays import Vector
 from vehicle.digits import number
 from vehicle.drawing.rendering.answer_plot import Change, plot_bands, plot_changes
 from vehicle.engines.linear.car_modes import Mode
@@ -298,7 +296,7 @@ def _moved(mode: Mode, other: Mode | None) -> str:
     return f"of {_motion(mode)}, {' and '.join(parts)}" if parts else f"of {mode_words(mode)}"
 
 
-def counterpart(mode: Mode, modes: Sequence[Mode], mass: npt.NDArray[np.float64]) -> Mode | None:
+def counterpart(mode: Mode, modes: Sequence[Mode], mass: Vector) -> Mode | None:
     """Return the mode of another car with the most similar shape (MAC with the mass matrix above 0.5), or None.
 
     The coordinates are displacements [m], angles [rad] and modal coordinates; without the mass matrix the angles of

@@ -1,7 +1,5 @@
 """Mode that causes the weighted vibration of a run in a band, and the path of this mode into the body."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

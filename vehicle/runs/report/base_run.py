@@ -1,7 +1,5 @@
 """Run of the car from which the car of a run was made, on the same plates: what the changes of the car do."""
 
-from __future__ import annotations
-
 import dataclasses
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Sentences on the contributions of the body modes to the acceleration of the seat rail, from the car matrices."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from vehicle.engines.linear.mode_participation import participation

@@ -1,7 +1,5 @@
 """Section of a report about the car: drawing, masses, stiffnesses, geometry and parameters."""
 
-from __future__ import annotations
-
 from markupsafe import Markup
 
 from vehicle.drawing.rendering.car_drawing import plot_car

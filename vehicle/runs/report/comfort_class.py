@@ -1,7 +1,5 @@
 """Likely reactions to a frequency-weighted acceleration, from ISO 2631-1."""
 
-from __future__ import annotations
-
 import math
 
 REACTIONS = (

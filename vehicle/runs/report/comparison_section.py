@@ -1,7 +1,5 @@
 """Comparison sections of the report: inputs, key figures, parameters, notices, FRFs and spectra of several runs."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Differences of a car from the shipped car, and between several runs."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from vehicle.errors import ConfigurationError

@@ -1,7 +1,5 @@
 """Film of a run in its report: encoded again if it is too large for a page that is sent by mail."""
 
-from __future__ import annotations
-
 import base64
 import subprocess
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Findings of a run as sentences, computed from its summary, its FRFs and the modes of its car."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Finished run, read from its folder for the report."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,5 @@
 """Notices of a run without those that hold for every run of its shipped car: the documentation contains the latter."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from vehicle.model.flexbody.rigid_body import rigid_body

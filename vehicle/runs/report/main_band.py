@@ -1,7 +1,5 @@
 """Frequency band with most of the weighted vibration of a run, or of its difference from another run."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

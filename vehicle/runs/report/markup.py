@@ -1,7 +1,5 @@
 """HTML of the pages, from the templates in the folder `templates` beside a module; all values are escaped."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path

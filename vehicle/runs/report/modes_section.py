@@ -1,7 +1,5 @@
 """Animated modes: canvas, controls and gallery with the numbers of their script, and tables of all modes."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """Orders over speed as sentences, a table of peaks, pictures, and a page."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

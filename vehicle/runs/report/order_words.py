@@ -1,7 +1,5 @@
 """Applied forces of a run, and what they do at their frequencies, in words."""
 
-from __future__ import annotations
-
 from vehicle.digits import number
 from vehicle.names import AXES, channel_words, point_words
 from vehicle.signals.records.run_summary import OrderSummary, RunSummary, RunUpSummary

@@ -1,7 +1,5 @@
 """Page of the report: one HTML file with style, script, figures and values; it needs no network."""
 
-from __future__ import annotations
-
 import base64
 import dataclasses
 import hashlib

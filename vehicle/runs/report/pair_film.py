@@ -1,7 +1,5 @@
 """Film of two saved runs side by side: the folder of a run has no poses, so both are simulated again for it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Inputs of the runs of a report: their words, the runs that are compared, and the error of a change on one road."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

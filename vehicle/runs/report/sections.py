@@ -1,7 +1,5 @@
 """Sections of a report: tables and figures of one run."""
 
-from __future__ import annotations
-
 import base64
 import shlex
 from collections.abc import Mapping, Sequence

@@ -1,7 +1,5 @@
 """Section of the report with spectra of the seat rail and the seat, and the level of the road."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import partial
 

@@ -1,7 +1,5 @@
 """Plots of `rendering` as compact SVG elements of a page."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from pathlib import Path

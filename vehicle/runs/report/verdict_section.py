@@ -1,7 +1,5 @@
 """First section of a report: targets with limits, values and verdict, on a page of A4."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 from markupsafe import Markup

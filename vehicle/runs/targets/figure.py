@@ -1,7 +1,5 @@
 """Figure of a ride with its limit, one table of a targets file."""
 
-from __future__ import annotations
-
 import fnmatch
 import math
 from collections.abc import Mapping

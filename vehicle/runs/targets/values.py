@@ -5,8 +5,6 @@ with the spectrum of the record (`vehicle.signals.analysis.comfort_error`); that
 two RMS values, comes from `BLOCKS` blocks of the record. Extremes, doses and values over one obstacle have none.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Verdict: the figures of a targets file on finished runs, met, missed, or undecided within their error."""
 
-from __future__ import annotations
-
 import math
 import shlex
 from collections.abc import Mapping, Sequence

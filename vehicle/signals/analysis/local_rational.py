@@ -19,6 +19,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from vehicle.arrays import Mask
 from vehicle.digits import number
 from vehicle.errors import DataError
 from vehicle.signals.analysis.dependence import refuse_copies
@@ -220,7 +221,7 @@ def _without_mean(record: Vector, lines: RecordLines) -> Complex:
     return lines.of(lambda part: record[part] - mean)
 
 
-def _batches(wide: NDArray[np.bool_], outputs: int) -> Iterator[slice]:
+def _batches(wide: Mask, outputs: int) -> Iterator[slice]:
     """Cut frequency windows, narrowest first, into batches with one grid of poles."""
     size = min(max(FITS_AT_ONCE // max(outputs, 1), 1), WINDOWS_AT_ONCE)
     for first, last in itertools.pairwise((0, int(np.count_nonzero(~wide)), wide.size)):

@@ -28,6 +28,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from vehicle.arrays import Indices
 from vehicle.signals.analysis.pole_grid import FARTHEST, PoleGrid, pole_grid, right_sides, sums_of_poles
 from vehicle.signals.analysis.samples import Complex, Vector
 
@@ -121,7 +122,7 @@ def fit_windows(inputs: Complex, outputs: Complex, halves: NDArray[np.int_], *, 
 
 def _posterior(
     equations: _NormalEquations, right: list[Complex], total: Vector, floor: Vector, dof: NDArray[np.int_], block: slice
-) -> tuple[NDArray[np.intp], Vector, Vector, Complex, Complex]:
+) -> tuple[Indices, Vector, Vector, Complex, Complex]:
     """Average the estimates of all poles of the grid, weighted by their probability.
 
     Args:
@@ -201,7 +202,7 @@ class _Windows:
         self.weights = self.inverse[:, :input_count]
         self.covariance = self.weights @ _adjoint(self.weights)
 
-    def of(self, indices: NDArray[np.intp]) -> _Windows:
+    def of(self, indices: Indices) -> _Windows:
         """Return the windows with the given indices, repeated as listed."""
         chosen = copy.copy(self)
         for name in ("tail", "basis", "weights", "covariance", "offset", "size"):

@@ -16,8 +16,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vehicle.arrays import Indices
 from vehicle.errors import DataError
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.analysis.samples import Complex, Vector
@@ -59,7 +59,7 @@ class PhaseInputs:
     time_step: float
     samples: Mapping[str, Vector]
     frequency: Vector
-    lines: NDArray[np.intp]
+    lines: Indices
     spectra: Complex
 
     def periods(self, responses: Vector) -> Vector:

@@ -3,9 +3,10 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from vehicle.arrays import Complex as Complex
+from vehicle.arrays import Mask
 from vehicle.arrays import Vector as Vector
 from vehicle.errors import ConfigurationError, DataError
 
@@ -95,13 +96,13 @@ def checked_band(band: tuple[float, float], time_step: float) -> tuple[float, fl
     return low, high
 
 
-def lines_in_band(frequency: Vector, band: tuple[float, float]) -> NDArray[np.bool_]:
+def lines_in_band(frequency: Vector, band: tuple[float, float]) -> Mask:
     """Return a mask of the lines [Hz], shape (m,), in the closed band; rounding does not exclude a line on an edge."""
     slack = 1e-9 * (frequency[-1] if frequency.size else 0.0)
     return (frequency >= band[0] - slack) & (frequency <= band[1] + slack)
 
 
-def is_constant(signals: Vector) -> NDArray[np.bool_]:
+def is_constant(signals: Vector) -> Mask:
     """Return a mask of the constant signals among (k, n): peak-to-peak value within the rounding of their magnitude."""
     size = np.abs(signals).max(axis=-1)
     return np.asarray(np.ptp(signals, axis=-1) <= 8.0 * np.finfo(np.float64).eps * size)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from vehicle.arrays import Indices
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.samples import Vector, checked_single, checked_time_step
 
@@ -101,7 +102,7 @@ def cut_into_segments(
 
 def windows_of_equal_length(
     centres: NDArray[np.int_], halves: NDArray[np.int_]
-) -> Iterator[tuple[NDArray[np.intp], NDArray[np.int_]]]:
+) -> Iterator[tuple[Indices, NDArray[np.int_]]]:
     """Group windows of spectral lines by their length, at most `BATCH` in a batch.
 
     Args:

@@ -8,8 +8,9 @@ friction force, which reaches its limit at 1 mm/s.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from vehicle.arrays import Mask
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.samples import Vector, checked_same_length, checked_signals, checked_single
 from vehicle.signals.analysis.tops import prominent_tops
@@ -27,7 +28,7 @@ STANDING_OUT = 0.5
 """Minimum prominence of a peak over the largest break-away jump of the run [-]."""
 
 
-def _slipping(velocity: ArrayLike, slip_velocity: ArrayLike) -> NDArray[np.bool_]:
+def _slipping(velocity: ArrayLike, slip_velocity: ArrayLike) -> Mask:
     """Return a mask of the samples with |v| above the slip velocity of the damper, shape (d, n)."""
     limits = np.asarray(slip_velocity, dtype=np.float64).reshape(-1)
     if not (np.isfinite(limits).all() and (limits >= 0.0).all()):

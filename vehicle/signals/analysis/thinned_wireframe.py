@@ -1,12 +1,10 @@
 """Reduction of a mesh to a wireframe for pictures: a subset of its nodes, and lines between them."""
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from vehicle.arrays import Indices
 from vehicle.signals.analysis.samples import Vector
-
-Indices = npt.NDArray[np.intp]
 
 MOST_NODES, MOST_LINES = 400, 1500
 """Maximum nodes and lines of a mesh in a picture: with more, the lines merge to a dark area and a film takes minutes

@@ -14,9 +14,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from vehicle.arrays import Mask
 from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.shift_search import searched_line, spectral_shares
 
@@ -278,7 +278,7 @@ def coefficients(first: Vector, second: Vector, limit: int) -> Vector:
     length = count - np.abs(shifts)
     late = shifts >= 0
 
-    def sums(values: Vector, from_start: npt.NDArray[np.bool_]) -> Vector:
+    def sums(values: Vector, from_start: Mask) -> Vector:
         """Return the sums over the overlap for every shift."""
         total = np.concatenate([[0.0], np.cumsum(values)])
         return np.asarray(np.where(from_start, total[length], total[-1] - total[count - length]))

@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import scipy
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError, VehicleError
 from vehicle.signals.excitation.iso_road import Contact, Side, contact_words
 from vehicle.signals.excitation.tyre_envelope import SAMPLES, TyreEnvelope
@@ -23,7 +24,7 @@ from vehicle.signals.formats.crg_format import read_surface, road_words
 from vehicle.signals.formats.formats import recognised_format
 from vehicle.signals.formats.named_columns import named_columns
 from vehicle.signals.formats.reader import read_record
-from vehicle.signals.formats.table import Header, Vector, Wanted, name_and_unit
+from vehicle.signals.formats.table import Header, Wanted, name_and_unit
 from vehicle.signals.formats.table_file import read_table
 
 NEEDED = "'distance [m]', 'left [m]' and 'right [m]' ([mm] is accepted for the heights)"

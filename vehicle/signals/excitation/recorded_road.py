@@ -22,6 +22,7 @@ from pathlib import Path
 import numpy as np
 import scipy
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.excitation.iso_road import RISE_S, Side
 from vehicle.signals.excitation.measured_road import TRACKS
@@ -34,7 +35,7 @@ from vehicle.signals.formats.channel import Measurement
 from vehicle.signals.formats.clock import UNIFORM_TOLERANCE
 from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.reader import read_record
-from vehicle.signals.formats.table import USABLE, Vector
+from vehicle.signals.formats.table import USABLE
 from vehicle.signals.records.channel_words import of_receiver
 from vehicle.signals.records.choice import Choice, Chosen, choose
 from vehicle.signals.records.integration import displacement

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError, DataError, OutputError
 from vehicle.names import CORNERS, in_order, is_wheel
 from vehicle.replacement import replaced_file
@@ -32,7 +33,7 @@ from vehicle.signals.formats.clock import (
     without_rounding,
 )
 from vehicle.signals.formats.reader import is_table
-from vehicle.signals.formats.table import TIME, USABLE, Header, Table, Vector, Wanted, name_and_unit
+from vehicle.signals.formats.table import TIME, USABLE, Header, Table, Wanted, name_and_unit
 from vehicle.signals.formats.table_file import read_table
 from vehicle.signals.formats.text_format import write_table
 from vehicle.signals.formats.units import find_unit

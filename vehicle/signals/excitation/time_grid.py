@@ -5,10 +5,11 @@ from pathlib import Path
 import numpy as np
 import scipy
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.excitation.signal import MINIMUM_SAMPLES
 from vehicle.signals.formats.clock import UNIFORM_TOLERANCE, longest_gap
-from vehicle.signals.formats.table import USABLE, Table, Vector
+from vehicle.signals.formats.table import USABLE, Table
 
 LOWEST_RATE = 10.0
 """Minimum sampling rate [Hz]: usable up to 4 Hz, bounce and pitch of a body."""

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from vehicle.arrays import Mask
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.formats.can_frames import BusLog, Frames, Source
@@ -211,10 +212,10 @@ def _signals(
         )
 
 
-def _rows(signal: Any, message: Any, frames: Frames) -> NDArray[np.bool_]:
+def _rows(signal: Any, message: Any, frames: Frames) -> Mask:
     """Return which frames contain a signal, (n,): long enough, and the multiplexer selects the signal."""
     first, size = _first_bit(signal), signal.size
-    inside: NDArray[np.bool_] = frames.length >= -(-(first + size) // 8)
+    inside: Mask = frames.length >= -(-(first + size) // 8)
     name = signal.muxer_for_signal
     if name is None and signal.mux_val is not None:
         name = next((other.name for other in message.signals if other.is_multiplexer and other.mux_val is None), None)
@@ -259,7 +260,7 @@ def raw_values(signal: Any, payload: NDArray[np.uint8]) -> NDArray[Any]:
     return (numbers << np.uint64(WIDEST - size)).view(np.int64) >> np.int64(WIDEST - size)
 
 
-def _without_value(signal: Any, raw: NDArray[Any], values: Vector, j1939: bool) -> dict[str, NDArray[np.bool_]]:
+def _without_value(signal: Any, raw: NDArray[Any], values: Vector, j1939: bool) -> dict[str, Mask]:
     """Return the raw values that are no measured values, by reason, with their frames, (n,).
 
     A value table names raw values; it does not replace factor and offset. A named value of a measured quantity
@@ -267,7 +268,7 @@ def _without_value(signal: Any, raw: NDArray[Any], values: Vector, j1939: bool) 
     """
     if not signal.unit and float(signal.factor) == 1.0 and float(signal.offset) == 0.0:
         return {}  # a state, whose numbers are its values
-    reasons: dict[str, NDArray[np.bool_]] = {}
+    reasons: dict[str, Mask] = {}
     for key, text in signal.values.items():
         value = float(key) * float(signal.factor) + float(signal.offset)
         spaced = re.sub(r"(?<=[a-z])(?=[A-Z])|_", " ", str(text)).lower()

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from vehicle.signals.formats.table import Vector
+from vehicle.arrays import Vector
 
 FD_LENGTHS = (0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64)
 """Payload length of a CAN FD frame [byte] by data length code (ISO 11898-1)."""

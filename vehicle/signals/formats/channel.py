@@ -6,11 +6,11 @@ from typing import Literal
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.samples import Complex
 from vehicle.signals.formats.clock import clock_of_rounded, clock_of_stamps, is_uniform, longest_step, typical_rate
 from vehicle.signals.formats.geometry import Geometry, ModeShape
-from vehicle.signals.formats.table import Vector
 from vehicle.signals.formats.units import find_ratio
 
 Values = Vector | Complex

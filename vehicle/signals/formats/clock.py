@@ -3,9 +3,10 @@
 import numpy as np
 import scipy
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.formats.stamps import StampClock, stamp_clock
-from vehicle.signals.formats.table import Table, Vector
+from vehicle.signals.formats.table import Table
 
 PAUSE = 0.5
 """Minimum length [s] of a time step, or of a part without motion, that counts as a pause of the record."""

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from vehicle.signals.formats.table import Vector
+from vehicle.arrays import Vector
 
 DAY = 86400.0
 """Length of a day [s]."""

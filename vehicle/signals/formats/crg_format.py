@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import ROAD_PROFILE, Channel, Measurement, check_length, uniform_axis
-from vehicle.signals.formats.table import Vector
 
 WIDTHS = {"LRFI": 10, "LDFI": 20}
 """Text formats of numbers: name to width of a number [characters]."""

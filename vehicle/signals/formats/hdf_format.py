@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel, Measurement, even_step, uniform_axis
 from vehicle.signals.formats.heads import split_head, time_key
@@ -16,7 +17,6 @@ from vehicle.signals.formats.matlab_format import channels_of
 from vehicle.signals.formats.optional_library import extra, reading
 from vehicle.signals.formats.packed_values import attribute_text, unpacked
 from vehicle.signals.formats.pandas_frames import frame_channels
-from vehicle.signals.formats.table import Vector
 from vehicle.signals.formats.units import seconds_in
 from vehicle.signals.formats.unpacked_size import require_unpacked
 

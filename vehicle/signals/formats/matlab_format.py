@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel, Measurement, check_length, clock_step, even_step, uniform_axis
 from vehicle.signals.formats.matlab_elements import COMPRESSED, MATRIX, check_matrix, object_name
 from vehicle.signals.formats.matlab_structures import columns_of, is_structure, structure_channels, word
 from vehicle.signals.formats.optional_library import reading
-from vehicle.signals.formats.table import Vector
 from vehicle.signals.formats.units import find_ratio, find_unit
 from vehicle.signals.formats.unpacked_size import require_unpacked
 

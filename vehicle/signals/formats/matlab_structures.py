@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.signals.formats.channel import Channel
-from vehicle.signals.formats.table import Vector
 from vehicle.signals.formats.units import seconds_in
 
 

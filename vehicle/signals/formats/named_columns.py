@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.formats.reader import read_record
-from vehicle.signals.formats.table import Vector
 from vehicle.signals.formats.units import allowed_units, find_unit
 
 

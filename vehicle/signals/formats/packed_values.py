@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from vehicle.arrays import Mask
+
 SCALINGS = (("scale_factor", "add_offset"), ("conversion", "offset"))
 """Attributes of factor and offset: CF conventions, NWB. `add_offset` needs no factor, `offset` needs one."""
 
@@ -57,7 +59,7 @@ def unpacked(name: str, dataset: Any) -> tuple[NDArray[Any], str, tuple[str, ...
     return values, fault, tuple(notices)
 
 
-def _missing(dataset: Any, packed: NDArray[Any], values: NDArray[Any]) -> NDArray[np.bool_]:
+def _missing(dataset: Any, packed: NDArray[Any], values: NDArray[Any]) -> Mask:
     """Return the mask of missing values: equal to a fill value, or outside the valid range.
 
     The valid range is in packed values, except if it has the type of wider, unpacked values (NetCDF User Guide).

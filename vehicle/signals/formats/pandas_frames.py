@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel
 from vehicle.signals.formats.heads import split_head, time_key
 from vehicle.signals.formats.packed_values import attribute_text
-from vehicle.signals.formats.table import Vector
 from vehicle.signals.formats.units import seconds_in
 
 NANOSECONDS = 1e-9

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel, Measurement
 from vehicle.signals.formats.clock_text import epoch_seconds
 from vehicle.signals.formats.heads import TIME_NAME, split_head
 from vehicle.signals.formats.optional_library import extra, reading
-from vehicle.signals.formats.table import Vector
 from vehicle.signals.formats.units import seconds_in
 from vehicle.signals.formats.unpacked_size import require_unpacked
 

@@ -4,12 +4,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.formats.channel import Measurement
 from vehicle.signals.formats.clock import check_increasing, check_stamps, check_uniform, without_rounding
 from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.formats import recognised_format
-from vehicle.signals.formats.table import TIME, Record, Vector, Wanted, key_column, name_and_unit
+from vehicle.signals.formats.table import TIME, Record, Wanted, key_column, name_and_unit
 from vehicle.signals.formats.table_file import read_table
 
 MINIMUM_SAMPLES = 3

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy
 
-from vehicle.signals.formats.table import Vector
+from vehicle.arrays import Vector
 
 LONGEST_PATTERN = 1000
 """Maximum number of samples of a repeated pattern."""

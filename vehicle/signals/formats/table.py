@@ -9,10 +9,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.analysis import samples
-
-Vector = samples.Vector
 
 TIME = "time [s]"
 """Header of the column of sample times."""

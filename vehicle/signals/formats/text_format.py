@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
-from vehicle.signals.formats.table import TIME, Header, Record, Table, Vector, Wanted
+from vehicle.signals.formats.table import TIME, Header, Record, Table, Wanted
 from vehicle.signals.formats.text import LARGEST, Text, read_text
 
 ROWS_AT_ONCE = 4096

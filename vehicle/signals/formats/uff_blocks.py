@@ -6,8 +6,8 @@ from typing import NamedTuple, NoReturn
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
-from vehicle.signals.formats.table import Vector
 from vehicle.signals.formats.text import LARGEST
 
 END = re.compile(rb"\r?\n {0,4}-1[ ]*(?:\r?\n|$)")

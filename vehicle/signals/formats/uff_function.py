@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel, Values, check_length, clock_step, uniform_axis
-from vehicle.signals.formats.table import Vector
 from vehicle.signals.formats.uff_blocks import D_EXPONENT, END, Block, cells, check_values, raw_text, text_of
 from vehicle.signals.formats.uff_geometry import Units
 from vehicle.signals.formats.units import QUANTITIES, find_ratio, find_unit

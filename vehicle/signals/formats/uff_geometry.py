@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.formats.geometry import Geometry
-from vehicle.signals.formats.table import Vector
 from vehicle.signals.formats.text import LARGEST
 from vehicle.signals.formats.uff_blocks import numbers, refuse, wholes
 

@@ -6,10 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.names import AXES
 from vehicle.signals.formats.reader import is_table, read_columns, read_record
-from vehicle.signals.formats.table import Record, Vector
+from vehicle.signals.formats.table import Record
 from vehicle.signals.formats.units import STANDARD_GRAVITY
 from vehicle.signals.records.channel_faults import faults
 from vehicle.signals.records.choice import Choice, choose

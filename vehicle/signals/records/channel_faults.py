@@ -3,9 +3,8 @@
 from collections.abc import Container, Mapping
 
 import numpy as np
-import numpy.typing as npt
 
-from vehicle.signals.formats.table import Vector
+from vehicle.arrays import Mask, Vector
 from vehicle.signals.formats.text import LARGEST
 
 EQUAL = 1e-6
@@ -152,14 +151,14 @@ def _at_next_values(below: Vector, margin: float) -> int:
     return count
 
 
-def _edges(values: Vector, at_extreme: npt.NDArray[np.bool_]) -> Vector:
+def _edges(values: Vector, at_extreme: Mask) -> Vector:
     """Return the size of the second-last step before each flat part and after it; clipping shortens the last one."""
     entered = np.flatnonzero(at_extreme[2:] & ~at_extreme[1:-1]) + 1
     left = np.flatnonzero(at_extreme[:-2] & ~at_extreme[1:-1])
     return np.concatenate([np.abs(values[entered] - values[entered - 1]), np.abs(values[left + 2] - values[left + 1])])
 
 
-def _at_rest(at_extreme: npt.NDArray[np.bool_]) -> bool:
+def _at_rest(at_extreme: Mask) -> bool:
     """Return True if the longest flat part is at the beginning or the end of the record."""
     changes = np.flatnonzero(np.diff(at_extreme.astype(np.int8), prepend=0, append=0))
     begins, ends = changes[::2], changes[1::2]

@@ -8,10 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.formats.channel import NOT_OVER_TIME, Channel, Measurement, uniform_axis
 from vehicle.signals.formats.clock import check_stamps, clock_options, is_uniform, longest_step, without_rounding
-from vehicle.signals.formats.table import USABLE, Vector
+from vehicle.signals.formats.table import USABLE
 from vehicle.signals.formats.text import LARGEST
 from vehicle.signals.formats.units import allowed_units, find_ratio, find_unit, seconds_in
 from vehicle.signals.records.channel_faults import MOTIONS, faults

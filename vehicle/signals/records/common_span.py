@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel
-from vehicle.signals.formats.table import Vector
 
 COINCIDENT = 1e-3
 """Maximum difference of coincident sample times, in steps [-]."""

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.digits import number
 from vehicle.signals.analysis.samples import Complex
 from vehicle.signals.analysis.time_shift import TimeShift, time_shift
-from vehicle.signals.formats.table import Record, Vector
+from vehicle.signals.formats.table import Record
 from vehicle.signals.formats.units import STANDARD_GRAVITY
 from vehicle.signals.records.resampled import at_times
 

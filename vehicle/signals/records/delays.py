@@ -18,10 +18,10 @@ from dataclasses import replace
 import numpy as np
 import scipy
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import channel_units
 from vehicle.signals.formats.frf_file import FrfData
-from vehicle.signals.formats.table import Vector
 from vehicle.signals.records.choice import Chosen, pairs
 from vehicle.signals.records.resampled import DEGREE
 

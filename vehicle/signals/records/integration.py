@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.analysis.fast_length import fast_length
-from vehicle.signals.formats.table import Vector
 from vehicle.signals.records.choice import Choice, Chosen
 
 ORDER = 4

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.analysis.response_name import ResponseName, parsed_name
 from vehicle.signals.analysis.samples import Complex
 from vehicle.signals.formats.channel import Channel, Measurement
 from vehicle.signals.formats.frf_file import RANDOM_ERROR, FrfData
-from vehicle.signals.formats.table import Vector
 from vehicle.signals.formats.units import find_ratio
 from vehicle.signals.records.choice import Choice, matching, pick
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vehicle.signals.formats.table import Vector
+from vehicle.arrays import Vector
 
 RARE_SHARE = 0.01
 """Maximum share of samples [-] of rare events, such as potholes. A wrong unit makes a record at least 9.8 times larger:

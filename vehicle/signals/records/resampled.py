@@ -5,10 +5,10 @@ from collections.abc import Callable, Mapping
 import numpy as np
 import scipy
 
+from vehicle.arrays import Vector
 from vehicle.digits import number
 from vehicle.errors import DataError
 from vehicle.signals.formats.clock import UNIFORM_TOLERANCE, longest_gap
-from vehicle.signals.formats.table import Vector
 
 KEPT = 0.4
 """Corner frequency of the low-pass before downsampling, over the lower rate [-]."""

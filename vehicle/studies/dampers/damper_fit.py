@@ -17,24 +17,19 @@ Sources: leave-one-out and the rule of one standard error: Hastie, Tibshirani, F
 Learning, 7.10; blocks: Liang and Zeger, Biometrika 73 (1986).
 """
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from vehicle.arrays import Mask, Vector
 from vehicle.errors import DataError
 from vehicle.studies.dampers.damper_force import force_and_slopes
 from vehicle.studies.dampers.damper_law import LINEAR, DamperLaw, plain_parameters
 from vehicle.studies.dampers.damper_test import DamperTest
 from vehicle.studies.dampers.waveform import reversals
-
-Vector = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 PER_CYCLE, CYCLES = 250, 2
 """Samples of a cycle, and settled cycles of a periodic test, with which laws are compared; the chosen law has all."""

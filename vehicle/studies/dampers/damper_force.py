@@ -20,9 +20,9 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from vehicle.arrays import Mask, Vector
 from vehicle.studies.dampers.damper_law import EXPONENT, SOFT_STEP, STEP, DamperLaw, DamperValues, values_of
 
-Vector = npt.NDArray[np.float64]
 Counts = npt.NDArray[np.intp]
 
 CLOSED = 1e-10
@@ -120,7 +120,7 @@ def _difference(time: Vector) -> Vector:
     return np.asarray(weights)
 
 
-def _march(values: DamperValues, motion: Motion) -> tuple[Vector, Vector, npt.NDArray[np.bool_]]:
+def _march(values: DamperValues, motion: Motion) -> tuple[Vector, Vector, Mask]:
     """Return deflection s [m], inner velocity w [m/s], (n,), and True where a Jenkins element sticks, (m, n)."""
     knots, slopes, offsets = _curve(values, STEP)
     edges = [*knots, np.inf]
@@ -241,9 +241,7 @@ def _slider_force(x: Vector, stiffness: float, limit: float) -> Vector:
     return np.array(list(itertools.accumulate(np.diff(x).tolist(), next_force, initial=0.0)))
 
 
-def _slopes(
-    law: DamperLaw, values: DamperValues, motion: Motion, s: Vector, w: Vector, sticking: npt.NDArray[np.bool_]
-) -> Vector:
+def _slopes(law: DamperLaw, values: DamperValues, motion: Motion, s: Vector, w: Vector, sticking: Mask) -> Vector:
     """Return the derivatives of K s over the parameters, (n, p), from the linearised equations.
 
     Unknown in the order s, t_1 ... t_m of each sample; row of s: (K + k_g) ds - dt_1 ... - c dw = explicit derivatives

@@ -17,9 +17,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-Vector = npt.NDArray[np.float64]
+from vehicle.arrays import Vector
 
 MAX_BENDS, MAX_ELEMENTS = 3, 4
 """Maximum numbers of breakpoints on each side of a curve, and of Jenkins elements."""

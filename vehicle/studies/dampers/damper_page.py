@@ -1,7 +1,5 @@
 """Report of fitted dampers: laws, errors of the tests, pictures of every test, and the lines of the vehicle file."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import partial
 

@@ -10,9 +10,9 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from vehicle.arrays import Indices, Mask, Vector
 from vehicle.digits import number, rounded
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.formats.channel import Measurement
@@ -20,8 +20,6 @@ from vehicle.signals.formats.reader import read_record
 from vehicle.signals.records.choice import Choice, choose, pick
 from vehicle.studies.dampers.damper_force import Motion
 from vehicle.studies.dampers.waveform import Waveform, reversal_times, reversals, waveform_of
-
-Vector = npt.NDArray[np.float64]
 
 ROLES = ("displacement", "force", "velocity")
 """Roles of the channels, named as the quantities of their units."""
@@ -104,7 +102,7 @@ class DamperTest:
         return Motion(self.time, x, v, float(self.force[0]), parts)
 
     @property
-    def settled(self) -> npt.NDArray[np.bool_]:
+    def settled(self) -> Mask:
         """True for the samples that are fitted: all but run-up and run-down of equal swings; (n,)."""
         return self.waveform.settled
 
@@ -117,12 +115,12 @@ class DamperTest:
         turns = reversals(self.displacement, self.velocity)
         return np.asarray(steps / np.diff(self.time[turns])[self._strokes(turns)])
 
-    def _strokes(self, turns: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
+    def _strokes(self, turns: Indices) -> Indices:
         """Return the number of the stroke between two reversals that contains each sample; (n,)."""
         return np.clip(np.searchsorted(turns, np.arange(self.time.size), side="right") - 1, 0, turns.size - 2)
 
     @property
-    def cycle_rows(self) -> list[npt.NDArray[np.intp]]:
+    def cycle_rows(self) -> list[Indices]:
         """Settled samples of each cycle; of halves of the test where it has less than two cycles."""
         rows = np.flatnonzero(self.settled)
         starts = np.searchsorted(rows, reversals(self.displacement, self.velocity)[2:-1:2])
@@ -140,7 +138,7 @@ class DamperTest:
         """Duration of a cycle [s]: twice the median swing between reversals."""
         return 2.0 * float(np.median(np.diff(self.time[reversals(self.displacement, self.velocity)])))
 
-    def averaged(self, first: npt.NDArray[np.intp], last: int) -> DamperTest:
+    def averaged(self, first: Indices, last: int) -> DamperTest:
         """Return the test with means over groups of samples: the first of each group, and the number of samples."""
         size = np.diff(first, append=last)
 

@@ -1,7 +1,5 @@
 """Fitted dampers as text: lines of a vehicle file, table of the tests, printed summary."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

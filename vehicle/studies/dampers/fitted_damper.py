@@ -8,15 +8,13 @@ from os import PathLike
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
 from vehicle.signals.records.choice import Choice
 from vehicle.studies.dampers.damper_fit import DamperFit, choose_law, kind_of, limits_of
 from vehicle.studies.dampers.damper_law import LINEAR, values_of
 from vehicle.studies.dampers.damper_test import DamperTest, by_conditions, read_test
-
-Vector = npt.NDArray[np.float64]
 
 SLOW = 0.01
 """Maximum velocity [m/s] of a test that shows friction near rest."""

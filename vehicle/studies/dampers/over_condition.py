@@ -4,19 +4,15 @@ The damping is the constant with the work of the curve in the tests, sum F_c v /
 the last bend, where F_b is the force that a magnetorheological damper has to yield at.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.digits import rounded
 from vehicle.studies.dampers.damper_law import values_of
 from vehicle.studies.dampers.fitted_damper import FittedDamper
-
-Vector = npt.NDArray[np.float64]
 
 POINTS = 400
 """Even number of points of a curve in a picture: none at rest, where the friction changes its sign."""

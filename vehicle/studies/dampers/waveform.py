@@ -6,17 +6,13 @@ differ by 4 %, and a machine rounds the ends. Equal swings of equal duration are
 run-down are left out; straight swings of different velocities are velocity steps.
 """
 
-from __future__ import annotations
-
 import itertools
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Indices, Mask, Vector
 from vehicle.digits import number
-
-Vector = npt.NDArray[np.float64]
 
 FULL = 0.95
 """Minimum swing of a settled cycle, over the median swing: smaller swings at both ends are run-up and run-down."""
@@ -50,10 +46,10 @@ class Waveform(NamedTuple):
     words: str
     periodic: bool
     steps: bool
-    settled: npt.NDArray[np.bool_]
+    settled: Mask
 
 
-def reversals(x: Vector, velocity: Vector, share: float = 0.1) -> npt.NDArray[np.intp]:
+def reversals(x: Vector, velocity: Vector, share: float = 0.1) -> Indices:
     """Return the samples before reversals with swings of at least a share of the stroke, and both ends."""
     smallest_swing = share * np.ptp(x)
     turns = [0]
@@ -63,7 +59,7 @@ def reversals(x: Vector, velocity: Vector, share: float = 0.1) -> npt.NDArray[np
     return np.array([*turns, x.size - 1])
 
 
-def reversal_times(time: Vector, velocity: Vector, turns: npt.NDArray[np.intp]) -> Vector:
+def reversal_times(time: Vector, velocity: Vector, turns: Indices) -> Vector:
     """Return the times [s] at which the velocity is zero after the samples before reversals; ends as they are."""
     after = np.minimum(turns + 1, time.size - 1)
     rise = velocity[after] - velocity[turns]

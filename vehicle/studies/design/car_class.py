@@ -1,7 +1,5 @@
 """Classes of cars: default numbers and powertrain of a new car; data in `classes.toml`."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Text of a new vehicle file: behind each number its unit and where it comes from."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

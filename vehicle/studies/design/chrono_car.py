@@ -4,8 +4,6 @@ Its hardpoints are the static equilibrium, as of every vehicle file: the preload
 and differ from those that the free lengths of Chrono give at the same points.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import re
 import tempfile
@@ -15,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.digits import rounded
 from vehicle.engines.kinematics.axle_parts import axle_parts
 from vehicle.errors import ConfigurationError
@@ -22,7 +21,7 @@ from vehicle.model.parameters.template import read_template
 from vehicle.model.parameters.vehicle import vehicle_of
 from vehicle.runs.car import Car
 from vehicle.studies.design.car_file import vehicle_text
-from vehicle.studies.design.chrono_json import REFLECTION, ChronoFile, Vector, read_chrono_file, rotation, tensor
+from vehicle.studies.design.chrono_json import REFLECTION, ChronoFile, read_chrono_file, rotation, tensor
 from vehicle.studies.design.chrono_suspension import ImportedAxle, imported_axle, turning
 from vehicle.studies.design.chrono_tyre import ChronoTyre, chrono_tyre
 from vehicle.studies.design.new_car import NewCar, checks_of, new_car

@@ -18,11 +18,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError, DataError
-
-Vector = npt.NDArray[np.float64]
 
 LARGEST_FILE = 10_000_000
 """Maximum size of a JSON file [byte]; those of Chrono's cars have a few thousand."""

@@ -5,17 +5,16 @@ without mass in Chrono (dampers, tie rods without a body) have `SMALL` of the ma
 Source: ChDoubleWishbone.cpp, ChMacPhersonStrut.cpp and ChUtilsJSON.cpp of Chrono.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.digits import rounded
 from vehicle.errors import DataError
-from vehicle.studies.design.chrono_json import REFLECTION, ChronoFile, Vector, tensor
+from vehicle.studies.design.chrono_json import REFLECTION, ChronoFile, tensor
 
 RIGID = 1e7
 """Stiffness in place of a joint without give [N/m]: 0.1 mm under 1 kN, and steps of half a millisecond."""

@@ -8,15 +8,14 @@ half of it as nominal load, a damping ratio of 0.5 on the mass of the tyre, and 
 Sources: ChTMeasyTire.cpp, ChTMsimpleTire.cpp, FialaTire.cpp of Chrono; load indices: ISO 4000-1.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
-from vehicle.studies.design.chrono_json import ChronoFile, Vector
+from vehicle.studies.design.chrono_json import ChronoFile
 
 LOAD_INDEX = (
     250, 257, 265, 272, 280, 290, 300, 307, 315, 325, 335, 345, 355, 365, 375, 387, 400, 412, 425, 437, 450, 462, 475,

@@ -5,15 +5,13 @@
 and I_b is then taken about c_b. The parts are those of the compiled model: axles, engine, seats.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.digits import rounded
 from vehicle.engines.simulation.car_masses import car_masses
 from vehicle.engines.simulation.car_model import CarModel
@@ -27,8 +25,6 @@ from vehicle.runs.car.usual_figures import usual_ranges
 from vehicle.studies.design.moved_points import Sources
 from vehicle.studies.design.stated_numbers import StatedNumbers, option
 from vehicle.studies.design.template_car import TemplateCar
-
-Vector = npt.NDArray[np.float64]
 
 LIGHTEST_BODY = 100.0
 """Smallest mass of a body [kg], see `TrimmedBody`."""

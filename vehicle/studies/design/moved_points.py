@@ -5,8 +5,6 @@ the kinematics of a wheel against its body points are those of the template. The
 front axle is scaled with the wheelbase. Another tyre radius lowers or raises the ground under the car.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

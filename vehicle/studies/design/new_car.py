@@ -1,7 +1,5 @@
 """Make a new car from a template car and stated numbers, write its vehicle file, check the stated numbers."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from pathlib import Path

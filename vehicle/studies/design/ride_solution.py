@@ -7,16 +7,14 @@ kinematics, bushings, preloads and the coupling of the modes are part of the sol
 differences once and then updated by Broyden's formula.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.digits import rounded
 from vehicle.engines.kinematics.axle_ride import axle_rides
 from vehicle.engines.kinematics.ride_figures import ride_figures
@@ -28,8 +26,6 @@ from vehicle.model.parameters.whole_body import put
 from vehicle.runs.car import Car
 from vehicle.studies.design.stated_numbers import AXLES, StatedNumbers, option
 from vehicle.studies.design.template_car import TemplateCar
-
-Vector = npt.NDArray[np.float64]
 
 DIFFERENCE = 0.02
 """Relative step of the differences for the Jacobian."""

@@ -11,8 +11,6 @@ tyres: 165/65 R14 of a car of 1 t, 205/55 R16 of 1.6 t and 255/50 R19 of 2.4 t h
 (m / 1.6 t)^(2/3) of 210 N/mm gives 154 and 275. Hardpoints are moved (`moved_points`), not scaled.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Stated numbers of a new car; all are optional, and the template car supplies the others."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from collections.abc import Mapping

@@ -1,7 +1,5 @@
 """Size of a tyre, as 205/55R16: its radius without load, and under the static load of a car."""
 
-from __future__ import annotations
-
 import dataclasses
 import re
 

@@ -20,15 +20,12 @@ Source: Gelb and Vander Velde, Multiple-Input Describing Functions (1968), dead 
 for Nonlinear Vibration Problems (2019), alternating frequency and time.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
 
-Vector = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
+from vehicle.arrays import Complex, Indices, Mask, Vector
 
 HARMONICS = 16
 """Number of odd harmonics."""
@@ -166,14 +163,14 @@ class _Balance:
             waiting = waiting[~converged]
         return np.asarray(harmonics[:, :size] + 1j * harmonics[:, size:])
 
-    def _residual(self, q: Vector, points: npt.NDArray[np.intp], seat: float) -> tuple[Vector, Vector]:
+    def _residual(self, q: Vector, points: Indices, seat: float) -> tuple[Vector, Vector]:
         """Return residuals [N], (p, 2 n), and displacements over half a period [m], (p, samples)."""
         y = q @ self.to_time.T
         pressed = seat * (y - np.clip(y, -self.gap, self.gap))
         linear = np.einsum("pij,pj->pi", self.matrix[points], q)
         return linear + pressed @ self.to_harmonics.T - self.load[points], y
 
-    def _newton(self, q: Vector, points: npt.NDArray[np.intp], seat: float) -> npt.NDArray[np.bool_]:
+    def _newton(self, q: Vector, points: Indices, seat: float) -> Mask:
         """Improve the harmonics q of points, (p, 2 n) [m], in place; return True for the points that converge, (p,)."""
         live = np.arange(len(points))
         residual, y = self._residual(q, points, seat)

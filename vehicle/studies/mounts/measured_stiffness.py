@@ -1,19 +1,14 @@
 """Measured dynamic stiffness and loss angle of a mount over frequency and amplitude, from a table with units."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Complex, Indices, Vector
 from vehicle.errors import DataError
 from vehicle.signals.formats.table import Header, Table, Wanted, name_and_unit
 from vehicle.signals.formats.table_file import read_table
-
-Vector = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
 
 UNITS = {
     "frequency": {"Hz": 1.0},
@@ -49,7 +44,7 @@ class MeasuredStiffness:
     amplitude: Vector
     stiffness: Complex
 
-    def levels(self) -> list[tuple[float, npt.NDArray[np.intp]]]:
+    def levels(self) -> list[tuple[float, Indices]]:
         """Return mean amplitude [m] and indices of the points of each level, sorted by amplitude and frequency."""
         order = np.lexsort((self.frequency, self.amplitude))
         steps = np.flatnonzero(np.diff(np.log(self.amplitude[order])) > SAME_AMPLITUDE) + 1

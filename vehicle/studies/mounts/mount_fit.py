@@ -25,10 +25,11 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from vehicle.arrays import Complex, Mask, Vector
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.parameters.force_elements import SHORTEST_STROKE, Hydromount
 from vehicle.studies.mounts.measured_stiffness import MeasuredStiffness, read_stiffness
-from vehicle.studies.mounts.mount_laws import LAWS, Complex, MountLaw, Stiffness, Vector
+from vehicle.studies.mounts.mount_laws import LAWS, MountLaw, Stiffness
 
 WIDEST = float(np.log(1e6))
 """Maximum distance of ln(parameter) from its start."""
@@ -78,7 +79,7 @@ class MountFit:
         return self.law.stiffness(self.values, *np.broadcast_arrays(omega, np.asarray(amplitude, dtype=float)))
 
     @property
-    def determined(self) -> npt.NDArray[np.bool_]:
+    def determined(self) -> Mask:
         """True for the parameters with a relative standard error of at most `DETERMINED`; (p,)."""
         return np.asarray(self.errors <= DETERMINED * self.values)
 

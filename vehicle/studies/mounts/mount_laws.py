@@ -18,18 +18,14 @@ Masing, Proc. 2nd International Congress of Applied Mechanics (1926); hydromount
 `vehicle/core/source/rows.h`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Complex, Vector
 from vehicle.studies.mounts.decoupler_balance import DecouplerBalance, decoupled_stiffness, describing_stiffness
 
-Vector = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
 Stiffness = Callable[[Vector, Vector, Vector], Complex]
 """Function from parameters (p,), angular frequencies [rad/s] and amplitudes [m] to K [N/m], all (m,)."""
 

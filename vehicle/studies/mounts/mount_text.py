@@ -1,7 +1,5 @@
 """Fits of mounts as text: lines of a vehicle file, table of the points, printed summary."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

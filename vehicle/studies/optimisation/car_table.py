@@ -1,7 +1,5 @@
 """Table `cars.csv` of all cars tried, written generation by generation and read when a search is continued."""
 
-from __future__ import annotations
-
 import csv
 import io
 import math

@@ -1,16 +1,11 @@
 """Pareto front: non-dominated rows, ends, knee point, thinning, hypervolume, and distance of two fronts."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
-from vehicle.studies.optimisation.problem import Vector
+from vehicle.arrays import Indices, Vector
 from vehicle.studies.optimisation.search import pymoo
-
-Indices = npt.NDArray[np.intp]
 
 MARGIN = 0.1
 """Distance of the reference point from the worst values of the front, in extents of the front: with a margin the ends

@@ -1,15 +1,13 @@
 """Checks on the front of a search: values without tolerances, runs with MuJoCo, validity of the reduced engine."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.runs.car import Car
 from vehicle.studies.optimisation.outcome import BASE, Outcome
-from vehicle.studies.optimisation.problem import Vector
 from vehicle.studies.optimisation.trials import NO_TOLERANCES, Trials
 from vehicle.studies.sweeps.case import overrides_of, signal_of
 

@@ -1,15 +1,14 @@
 """Outcome of a search: Pareto front, named cars on the front, and growth of the hypervolume."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from vehicle.arrays import Indices, Vector
 from vehicle.errors import SimulationError
-from vehicle.studies.optimisation.front import Indices, ends, front, hypervolume, knee, thinned
-from vehicle.studies.optimisation.problem import Problem, Vector
+from vehicle.studies.optimisation.front import ends, front, hypervolume, knee, thinned
+from vehicle.studies.optimisation.problem import Problem
 from vehicle.studies.optimisation.search import TriedCars, joined
 
 BASE, KNEE, BEST = "base", "knee", "best"

@@ -1,19 +1,15 @@
 """Optimisation problem: parameters with bounds, objectives, and limits."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.ranges import Range
-
-Vector = npt.NDArray[np.float64]
 
 MEAN, WORST = "mean", "worst"
 """Texts after the @ that combine the values of all inputs."""

@@ -1,13 +1,12 @@
 """Quantities of the ride for a search: comfort, tyre load, travel and slip of a run."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 import scipy
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import AXES
@@ -22,7 +21,7 @@ from vehicle.signals.analysis.ride_comfort import (
 )
 from vehicle.signals.analysis.slip import slip_shares
 from vehicle.studies.sweeps.measure import STEP, of_one
-from vehicle.studies.sweeps.run_batch import Runs, Vector
+from vehicle.studies.sweeps.run_batch import Runs
 
 RAIL = tuple(f"seat_rail_acc_{axis}" for axis in AXES)
 SEAT = tuple(f"seat_acc_{axis}" for axis in AXES)

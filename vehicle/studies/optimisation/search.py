@@ -4,8 +4,6 @@ Source: Deb, Pratap, Agarwal, Meyarivan, A fast and elitist multiobjective genet
 on Evolutionary Computation 6 (2002); a feasible car is better than an infeasible car (section VI).
 """
 
-from __future__ import annotations
-
 import importlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -13,8 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError, MissingPartError
-from vehicle.studies.optimisation.problem import Problem, Vector
+from vehicle.studies.optimisation.problem import Problem
 
 FAILED = 1e3
 """Constraint violation assigned to a car that cannot be run: more than that of any other car."""

@@ -1,7 +1,5 @@
 """Files of a finished search: front as table and picture, vehicle files of the named cars, summary."""
 
-from __future__ import annotations
-
 import csv
 import io
 import re
@@ -12,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.drawing.rendering.front_plot import FrontPicture, plot_front
 from vehicle.errors import DataError
 from vehicle.runs.car import Car
@@ -20,7 +19,7 @@ from vehicle.runs.output.own_files import parameters_text, write_own_files
 from vehicle.studies.optimisation.car_table import CARS, cells, columns
 from vehicle.studies.optimisation.front import distance, hypervolume
 from vehicle.studies.optimisation.outcome import BASE, Outcome
-from vehicle.studies.optimisation.problem import Problem, Vector
+from vehicle.studies.optimisation.problem import Problem
 
 FRONT = "front.csv"
 

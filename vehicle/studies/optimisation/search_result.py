@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from vehicle.arrays import Vector
 from vehicle.model.parameters.body_notices import body_rules
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car import Car
 from vehicle.studies.optimisation.car_table import columns
 from vehicle.studies.optimisation.front_checks import NEW_CARS, Differences, Shares
 from vehicle.studies.optimisation.outcome import Outcome
-from vehicle.studies.optimisation.problem import Vector
 from vehicle.studies.optimisation.search_files import OtherFront, agreement, numbers, write_search
 from vehicle.studies.optimisation.trials import Trials
 from vehicle.studies.sweeps.case import all_tyre_words

@@ -11,16 +11,13 @@ limits, the largest excess is minimised the same way: its active figures exclude
 Source: Nocedal and Wright, Numerical Optimization, 2nd ed., chapter 18 (SLSQP of Kraft in SciPy).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
-Vector = npt.NDArray[np.float64]
+from vehicle.arrays import Vector
 
 Excesses = Callable[[Vector], Vector]
 """Function of positions u (n, p) that returns relative excesses (n, figures); NaN of a failed run."""

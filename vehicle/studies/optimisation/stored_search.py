@@ -1,18 +1,16 @@
 """Search in a folder: store each finished generation, and continue after an interruption."""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
 from vehicle.runs.output.folder import write_json
 from vehicle.runs.output.locks import folder_lock
 from vehicle.studies.optimisation.car_table import CARS, CarTable
-from vehicle.studies.optimisation.problem import Vector
 from vehicle.studies.optimisation.search import TriedCars, search
 from vehicle.studies.optimisation.search_settings import SearchSettings
 from vehicle.studies.optimisation.trials import Trials

@@ -1,13 +1,12 @@
 """Measure of the figures of a targets file in a search, and the inputs of the figures."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError, DataError, VehicleError
 from vehicle.model.parameters.channel_words import channels_named
 from vehicle.runs.car import Car, Run
@@ -15,7 +14,6 @@ from vehicle.runs.car.road import Road
 from vehicle.runs.targets.figure import Figure
 from vehicle.runs.targets.values import Histories, value_of
 from vehicle.signals.analysis.ride_comfort import ERROR
-from vehicle.studies.optimisation.problem import Vector
 from vehicle.studies.sweeps.measure import STEP, of_one
 from vehicle.studies.sweeps.run_batch import Runs
 

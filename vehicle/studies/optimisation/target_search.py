@@ -1,7 +1,5 @@
 """Smallest change of a car's parameters that meets all targets, or the targets that exclude each other."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -10,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.digits import aligned, number
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.paths import value_of as parameter_value
@@ -19,7 +18,6 @@ from vehicle.runs.car import Car
 from vehicle.runs.targets.figure import Figure
 from vehicle.runs.targets.verdict import CONFIDENCE, UNDECIDED, state_of
 from vehicle.signals.analysis.ride_comfort import ERROR
-from vehicle.studies.optimisation.problem import Vector
 from vehicle.studies.optimisation.smallest_change import SAMPLE, SAMPLE_SHARE, SmallestChange, smallest_change
 from vehicle.studies.optimisation.target_measure import measures_of
 from vehicle.studies.sweeps.executors import StandingExecutor, ThisProcess, process_pool

@@ -1,7 +1,5 @@
 """Evaluation of cars of a search on all inputs and over the production tolerances."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
@@ -12,8 +10,9 @@ from pathlib import Path
 import numpy as np
 import scipy
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
-from vehicle.studies.optimisation.problem import Problem, Tolerance, Vector
+from vehicle.studies.optimisation.problem import Problem, Tolerance
 from vehicle.studies.sweeps.case import Case, Input
 from vehicle.studies.sweeps.case_result import Result
 from vehicle.studies.sweeps.case_table import table_cases

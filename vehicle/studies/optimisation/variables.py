@@ -1,7 +1,5 @@
 """Parameters of a search in a vehicle: full paths, units, and values of the unmodified car."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path

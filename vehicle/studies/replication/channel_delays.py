@@ -15,16 +15,15 @@ Source: Golub and Pereyra, SIAM J. Numerical Analysis 10(2), 1973, 413-432 (sepa
 projected out).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from vehicle.arrays import Complex, Vector
 from vehicle.digits import number
 from vehicle.signals.records.counterpart import SHARE_OF_STEP, SIGNIFICANT
-from vehicle.studies.replication.inverse import Complex, Lines, Vector
+from vehicle.studies.replication.inverse import Lines
 
 LARGEST_DELAY = 0.1
 """Maximum |delay| between two channels in the search [s]."""

@@ -1,9 +1,8 @@
 """Car on driven plates for the replication of a drive: its runs, and its FRFs linearised about the last run."""
 
-from __future__ import annotations
-
 import numpy as np
 
+from vehicle.arrays import Complex, Vector
 from vehicle.engines.reduced.equivalent_damping import equivalent_damping, linearised_response
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Car, Run
@@ -14,7 +13,6 @@ from vehicle.signals.excitation.plausibility import (
 )
 from vehicle.signals.excitation.rest import RAMP_S, start_from_rest
 from vehicle.signals.excitation.signal import Signal
-from vehicle.studies.replication.inverse import Complex, Vector
 from vehicle.studies.replication.iteration import Plant
 from vehicle.studies.replication.target import Target
 

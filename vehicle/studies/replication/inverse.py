@@ -1,13 +1,9 @@
 """Correction of a drive from the error of the response by the regularised inverse of the FRF."""
 
-from __future__ import annotations
-
 import numpy as np
-import numpy.typing as npt
 import scipy
 
-Vector = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
+from vehicle.arrays import Complex, Vector
 
 LEAST_SHARE = 1e-2
 """Minimum inverted transmissibility over the maximum in the band. A weaker line would need a hundred times the motion

@@ -7,16 +7,14 @@ nonlinear plant this is a quasi-Newton method; a test rig uses a fixed H. A step
 repeated with half the gain.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Complex, Vector
 from vehicle.studies.replication.drive_settings import DriveSettings
-from vehicle.studies.replication.inverse import Complex, Lines, Vector, regularised_inverse
+from vehicle.studies.replication.inverse import Lines, regularised_inverse
 
 HALVINGS = 3
 """Number of consecutive undone steps, each with half the gain, after which the iteration counts as diverging."""
@@ -62,7 +60,7 @@ class Step:
     number: int
     gain: float
     error: float
-    errors: npt.NDArray[np.float64]
+    errors: Vector
     kept: bool
 
 

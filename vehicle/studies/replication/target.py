@@ -1,7 +1,5 @@
 """Measured accelerations to be replicated, resampled to the rate of the runs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -9,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import scipy
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.excitation.signal import MINIMUM_SAMPLES, uniform_time
 from vehicle.signals.formats.reader import read_record
@@ -17,7 +16,7 @@ from vehicle.signals.records.channel_faults import copies
 from vehicle.signals.records.choice import Choice, choose
 from vehicle.signals.records.delays import channel_delays, without_delays
 from vehicle.signals.records.integration import filtered
-from vehicle.studies.replication.inverse import Lines, Vector
+from vehicle.studies.replication.inverse import Lines
 
 LEAST_PERIODS = 2.0
 """Minimum length of a record in periods of the lower edge."""

@@ -1,7 +1,5 @@
 """Case of a sweep: a car with modified parameters on an input."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections.abc import Mapping, Sequence

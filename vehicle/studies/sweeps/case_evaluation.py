@@ -1,7 +1,5 @@
 """Evaluation of the cases of a sweep in this process, in batches where the reduced engine supports it."""
 
-from __future__ import annotations
-
 import math
 import threading
 import time as clock

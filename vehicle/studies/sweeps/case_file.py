@@ -1,7 +1,5 @@
 """Cases of a file: roads and speeds, laden states and variants of a car, run as one sweep in one table."""
 
-from __future__ import annotations
-
 import csv
 import itertools
 import math
@@ -11,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.digits import aligned
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.parameter_list import flattened
@@ -136,12 +134,12 @@ class CaseResults:
     cars: tuple[str, ...]
     inputs: tuple[str, ...]
     name: str
-    weighted: npt.NDArray[np.float64]
-    unweighted: npt.NDArray[np.float64]
-    errors: npt.NDArray[np.float64]
+    weighted: Vector
+    unweighted: Vector
+    errors: Vector
 
     @property
-    def half_widths(self) -> npt.NDArray[np.float64]:
+    def half_widths(self) -> Vector:
         """Return the half width of the 95 % interval of each change [%], NaN on one event, (inputs + 1, cars).
 
         The last row is that of the mean change.
@@ -151,7 +149,7 @@ class CaseResults:
         return np.array([*each, half_width(relative)])
 
     @property
-    def changes(self) -> npt.NDArray[np.float64]:
+    def changes(self) -> Vector:
         """Return the change of the weighted value from the unchanged car on the same input [%], (inputs, cars)."""
         return np.asarray(100.0 * (self.weighted / self.weighted[:, :1] - 1.0))
 

@@ -1,7 +1,5 @@
 """Keys of the cases of a sweep: a stored row is used again only for an equal case, measure and program."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Cases of a sweep by their number: variations on inputs, made when they are used."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import product

@@ -5,19 +5,15 @@ degrees of freedom. The differences on n inputs are independent, so their mean h
 event, as an obstacle, is the same for every car: its differences have no random error, and add none.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 
 import numpy as np
-import numpy.typing as npt
 from scipy.special import stdtrit
 
+from vehicle.arrays import Vector
 from vehicle.signals.analysis.comfort_error import WAVES, difference_error
 from vehicle.signals.analysis.ride_comfort import wave_names
 from vehicle.studies.sweeps.case_result import Row
-
-Vector = npt.NDArray[np.float64]
 
 MEANING_OF_ERROR = "+-: half width of the 95 % interval of a change, over random inputs like this"
 NO_ERROR = "no +-: one event has no random error"

@@ -8,8 +8,6 @@ amplitudes, scatter less. For a road with two or more seeds the mean over the se
 estimated from the scatter.
 """
 
-from __future__ import annotations
-
 import csv
 import math
 from collections.abc import Collection, Sequence

@@ -1,7 +1,5 @@
 """Dispatch of cases to an executor in tasks: size of the tasks, and recovery from the death of a worker."""
 
-from __future__ import annotations
-
 import time as clock
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -13,13 +11,13 @@ from queue import Empty, SimpleQueue
 
 import numpy as np
 
+from vehicle.arrays import Indices
 from vehicle.errors import ConfigurationError, SimulationError, VehicleError
 from vehicle.studies.sweeps.case import Case
 from vehicle.studies.sweeps.case_result import Block, Result
 from vehicle.studies.sweeps.executors import StandingExecutor, ThisProcess, close, worker_remedy, workers_of
 from vehicle.studies.sweeps.measure import Measure
 from vehicle.studies.sweeps.program import program_digest
-from vehicle.studies.sweeps.store import Indices
 from vehicle.studies.sweeps.worker import TimeLimit, carry_out
 
 PER_WORKER = 2

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.digits import aligned, number
 from vehicle.drawing.rendering.tornado_plot import draw_tornado, plot_tornado
 from vehicle.studies.sweeps.change_error import MEANING_OF_ERROR, NO_ERROR
@@ -133,7 +133,7 @@ class Effects:
         return self.effects[:MOST_SHOWN]
 
     @property
-    def bars(self) -> tuple[list[str], npt.NDArray[np.float64], npt.NDArray[np.float64], list[tuple[str, str]]]:
+    def bars(self) -> tuple[list[str], Vector, Vector, list[tuple[str, str]]]:
         """Labels, changes at low and high value [%], (bars, 2), half widths [%], (bars,), and names of their ends."""
         labels = [f"{each.path}  {number(each.value)} {each.unit}" for each in self.shown]
         changes = np.array([(each.change_low, each.change_high) for each in self.shown])

@@ -1,7 +1,5 @@
 """Executors of a sweep: processes on this machine, a Dask cluster, or a user-defined executor."""
 
-from __future__ import annotations
-
 import importlib
 import logging
 import os

@@ -25,10 +25,9 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.parameters.ranges import Range
-
-Vector = npt.NDArray[np.float64]
 
 CONFIDENCE = 0.95
 SCRAMBLINGS = 16

@@ -1,7 +1,5 @@
 """Sequence whose items are made when they are used, so that millions of items take no memory."""
 
-from __future__ import annotations
-
 from abc import abstractmethod
 from collections.abc import Iterator, Sequence
 from typing import TypeVar, overload

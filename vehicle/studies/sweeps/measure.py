@@ -9,6 +9,7 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.engines.reduced.reduced_run import LONGEST_STEP
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.vehicle import Vehicle
@@ -16,7 +17,7 @@ from vehicle.names import AXES, CORNERS
 from vehicle.runs.car import SATURATED_VELOCITY, Run
 from vehicle.signals.analysis.ride_comfort import comfort_columns, comfort_units
 from vehicle.signals.analysis.slip import first_slips, slip_shares
-from vehicle.studies.sweeps.run_batch import Runs, Vector, single
+from vehicle.studies.sweeps.run_batch import Runs, single
 
 
 class Measure(Protocol):

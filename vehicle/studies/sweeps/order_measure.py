@@ -1,7 +1,5 @@
 """Measure of a sweep: the amplitude of a channel at an order of a turning part."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 

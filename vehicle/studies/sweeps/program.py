@@ -1,7 +1,5 @@
 """Digest of the program that computes the rows of a sweep: sources and library versions."""
 
-from __future__ import annotations
-
 import hashlib
 import inspect
 from functools import cache

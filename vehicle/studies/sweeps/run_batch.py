@@ -1,17 +1,13 @@
 """Batch of runs of several cars on one signal, the argument of a measure."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car import Run
-
-Vector = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

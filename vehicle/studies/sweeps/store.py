@@ -4,8 +4,6 @@ The process of a sweep holds only the position of each row in the file (16 byte 
 is written or read: Windows moves no folder with an open file. Without a folder the file is a temporary one.
 """
 
-from __future__ import annotations
-
 import os
 import tempfile
 import time as clock
@@ -18,6 +16,7 @@ from typing import BinaryIO, Literal
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Indices, Mask
 from vehicle.errors import DataError, OutputError
 from vehicle.runs.output.written_files import note
 from vehicle.studies.sweeps.case import Case
@@ -33,8 +32,6 @@ a large cluster; rows survive the death of the process without it."""
 
 BEGINNING = b'{"key": "'
 """Beginning of a row, before its key."""
-
-Indices = npt.NDArray[np.intp]
 
 
 class StoredRows(LazySequence[Result]):
@@ -81,7 +78,7 @@ class StoredRows(LazySequence[Result]):
             yield file
 
     @property
-    def stored(self) -> npt.NDArray[np.bool_]:
+    def stored(self) -> Mask:
         """Return True for each case with a row; (count,)."""
         return self._length > 0
 
@@ -174,7 +171,7 @@ class StoredRows(LazySequence[Result]):
         file.seek(int(self._start[number]))
         return file.read(int(self._length[number]))
 
-    def _read(self) -> tuple[npt.NDArray[np.bytes_], Indices, Indices, npt.NDArray[np.bool_]]:
+    def _read(self) -> tuple[npt.NDArray[np.bytes_], Indices, Indices, Mask]:
         """Return key, position, length and failure of all rows in the file; remove an incomplete last line."""
         keys, starts, lengths, failed = bytearray(), [], [], []
         position = 0

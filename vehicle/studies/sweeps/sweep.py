@@ -1,7 +1,5 @@
 """Sweep: run cases on any executor, store finished rows, and continue after an interruption."""
 
-from __future__ import annotations
-
 import time as clock
 from collections.abc import Collection, Sequence
 from contextlib import ExitStack
@@ -10,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.arrays import Indices
 from vehicle.model.parameters.driving import tyre_words
 from vehicle.runs.output.locks import folder_lock
 from vehicle.settings import with_settings
@@ -20,7 +19,7 @@ from vehicle.studies.sweeps.dispatcher import Dispatcher
 from vehicle.studies.sweeps.executors import ThisProcess, process_pool
 from vehicle.studies.sweeps.measure import Measure
 from vehicle.studies.sweeps.program import libraries, program_digest
-from vehicle.studies.sweeps.store import ROWS, Indices, StoredRows
+from vehicle.studies.sweeps.store import ROWS, StoredRows
 from vehicle.studies.sweeps.sweep_settings import RunSettings
 from vehicle.studies.sweeps.sweep_table import SweepTable
 from vehicle.studies.sweeps.table_files import write_table

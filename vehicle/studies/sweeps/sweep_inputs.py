@@ -1,7 +1,5 @@
 """Inputs of a sweep from files, names of shipped files, roads and signals."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path

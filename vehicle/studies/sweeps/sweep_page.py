@@ -1,7 +1,5 @@
 """Report of a sweep: best and base car, picture, cars in the order of comfort, all runs, and how to repeat it."""
 
-from __future__ import annotations
-
 import math
 import shlex
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Picture of the comfort of all cars of a sweep over their parameters."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,15 +1,13 @@
 """Cars of a sweep ranked by comfort: mean over all inputs, best car, base car, and their printed table."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.digits import aligned
 from vehicle.digits import number as number_text
 from vehicle.model.parameters.parameter_list import value_text
@@ -19,8 +17,6 @@ from vehicle.signals.analysis.ride_comfort import MEANING, SEAT_PREFIX, SEAT_VAL
 from vehicle.studies.sweeps.case import Case, parameter_cells
 from vehicle.studies.sweeps.case_result import Row
 from vehicle.studies.sweeps.change_error import MEANING_OF_ERROR, NO_ERROR, change_errors, half_width
-
-Vector = npt.NDArray[np.float64]
 
 RANKED_BY = (f"{SEAT_PREFIX}{WEIGHTED}", WEIGHTED)
 """Columns by which cars are ranked: on the cushion of a car with a seat, otherwise at the seat rail."""

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any, TextIO
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.drawing.notebook.frames import table_frame
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.runs.output.folder import check_file, write_text
@@ -49,7 +49,7 @@ class SweepTable:
     units: Mapping[str, str]
     made: Mapping[str, Any]
 
-    def column(self, name: str) -> npt.NDArray[np.float64]:
+    def column(self, name: str) -> Vector:
         """Return the values of a column, NaN for a failed run; (cases,)."""
         if name not in self.units:
             raise ConfigurationError(f"no column {name!r}; choose from {', '.join(self.units)}")

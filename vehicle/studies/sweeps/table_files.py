@@ -1,7 +1,5 @@
 """Files of a finished sweep, written row by row: table, computing times, differences in comfort, and the plan."""
 
-from __future__ import annotations
-
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TextIO

@@ -1,7 +1,5 @@
 """Function that a worker runs: evaluate the cases of a task with the same program as the sweep, within a time limit."""
 
-from __future__ import annotations
-
 import errno
 import faulthandler
 import os

@@ -13,17 +13,14 @@ Ter Braak, A Markov chain Monte Carlo version of the genetic algorithm different
 16 (2006), 239-249.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
-Vector = npt.NDArray[np.float64]
+from vehicle.arrays import Vector
 
 POINTS = 1000
 """Number of points of the population."""

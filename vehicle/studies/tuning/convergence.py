@@ -4,13 +4,10 @@ Source: Vehtari, Gelman, Simpson, Carpenter, Buerkner, Rank-normalization, foldi
 for assessing convergence of MCMC, Bayesian Analysis 16 (2021), 667-718, equations 1 to 14.
 """
 
-from __future__ import annotations
-
 import numpy as np
-import numpy.typing as npt
 import scipy
 
-Vector = npt.NDArray[np.float64]
+from vehicle.arrays import Vector
 
 
 def rank_normalised(chains: Vector) -> Vector:

@@ -1,7 +1,5 @@
 """Polynomial emulator of outputs of a car over its parameters, with its leave-one-out error."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations_with_replacement
@@ -10,9 +8,8 @@ from math import ceil, comb
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
-
-Vector = npt.NDArray[np.float64]
 
 CARS_PER_TERM = 2.5
 """Minimum number of cars per coefficient. With fewer the leave-one-out error of a cubic exceeds that of a quadratic."""

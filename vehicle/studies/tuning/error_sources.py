@@ -17,14 +17,11 @@ Source: Liang and Zeger, Longitudinal data analysis using generalized linear mod
 Kuensch, The jackknife and the bootstrap for general stationary observations, Annals of Statistics 17 (1989), 1217-1241.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
-Vector = npt.NDArray[np.float64]
+from vehicle.arrays import Vector
 
 STRETCHES = 20
 """Stretches of a measurement: with 20 a standard error is known to 1 / sqrt(40) = 16 %."""

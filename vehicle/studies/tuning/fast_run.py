@@ -1,7 +1,5 @@
 """Runs of the variants of a fit: the reduced engine without its errors, which no step of a fit reads."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from vehicle.runs.car import Car, Run

@@ -7,15 +7,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.digits import number
 from vehicle.model.parameters.ranges import Range
 from vehicle.studies.tuning.identifiability import Unidentified
 from vehicle.studies.tuning.response_delays import DelayRange
-
-Vector = npt.NDArray[np.float64]
-
 
 Unknown = Range | DelayRange
 """Unknown of a fit: a parameter of the model, or the delay of a group of channels."""

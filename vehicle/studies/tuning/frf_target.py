@@ -1,7 +1,5 @@
 """Measured FRFs as a target of a fit, and the corresponding FRFs of the car."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Self
@@ -9,6 +7,7 @@ from typing import Self
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.arrays import Complex, Vector
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.runs.car import FRF_BAND, Car, Run
 from vehicle.signals.analysis.dependence import common_motions
@@ -21,10 +20,6 @@ from vehicle.signals.formats.frf_file import FrfData, frf_data
 from vehicle.signals.records.counterpart import SAME_MOTION
 from vehicle.studies.tuning.fast_run import fast_run
 from vehicle.studies.tuning.response_delays import ResponseDelays
-
-Vector = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
-
 
 LEAST_COHERENCE = 0.1
 """Minimum coherence of an included point: at lower coherence the logarithm is biased, and the weight would be small."""

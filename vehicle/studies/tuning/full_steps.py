@@ -1,19 +1,14 @@
 """Final steps of a fit with the full simulation, which remove the error of the fast models from the values."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.runs.car import Car, Run
 from vehicle.studies.tuning.fit_result import TuningResult, target_statistics
 from vehicle.studies.tuning.target import Target
-
-Vector = npt.NDArray[np.float64]
 
 SMALL = 0.3
 """Maximum step in standard errors that is left out: it would not change any conclusion about the values."""

@@ -1,18 +1,14 @@
 """Identifiability of parameters from the singular values of the weighted Jacobian."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.digits import number
 from vehicle.model.parameters.ranges import Range
 from vehicle.studies.tuning.response_delays import DelayRange
-
-Vector = npt.NDArray[np.float64]
 
 WIDEST = 0.5 / np.sqrt(3.0)
 """Maximum standard error of an identifiable direction in parameter space, in half widths of the bounds: half the

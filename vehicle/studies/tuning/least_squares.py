@@ -13,15 +13,13 @@ Source of the covariance: Zellner, Journal of the American Statistical Associati
 correlated.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.parameters.ranges import Range, checked_ranges
 from vehicle.studies.tuning.error_sources import lag_shifts, misfit_errors
@@ -30,8 +28,6 @@ from vehicle.studies.tuning.identifiability import Unidentified, covariance, wor
 from vehicle.studies.tuning.response_delays import DelayRange
 from vehicle.studies.tuning.target import Target
 from vehicle.threads import one_blas_thread
-
-Vector = npt.NDArray[np.float64]
 
 COARSE_STEP, STEP = 0.1, 1e-3
 """Steps of ln(value) for difference quotients. The coarse step is for values far from the minimum, where slips that

@@ -1,7 +1,5 @@
 """FRFs in classes of the input level as a target of a fit: friction makes the response depend on the level."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Self
@@ -10,13 +8,14 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from vehicle.arrays import Complex, Mask, Vector
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.runs.car import Car, Run
 from vehicle.signals.analysis.phase_delay import PhaseDelay
 from vehicle.signals.analysis.response_name import ResponseName
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.formats.frf_file import FrfData
-from vehicle.studies.tuning.frf_target import FLOOR, LEAST_COHERENCE, Complex, Vector, late, response_lags, scaled_ratio
+from vehicle.studies.tuning.frf_target import FLOOR, LEAST_COHERENCE, late, response_lags, scaled_ratio
 from vehicle.studies.tuning.record_target import RecordTarget, RoadCar
 from vehicle.studies.tuning.response_delays import ResponseDelays
 
@@ -275,7 +274,7 @@ def _fitted(histories: RecordTarget, reference: str) -> tuple[str, ...]:
     return tuple(name for name in histories.record.channels if name != reference)
 
 
-def _members(classes: Indices) -> list[npt.NDArray[np.bool_]]:
+def _members(classes: Indices) -> list[Mask]:
     """Return the mask of the windows of each class."""
     return [classes == number for number in range(int(classes.max()) + 1)]
 
@@ -288,21 +287,21 @@ def _spectra(histories: Vector, starts: Indices, lines: Indices, length: int) ->
     return np.asarray(np.fft.rfft(hann * pieces, axis=2)[:, :, lines])
 
 
-def _transfer(x: Complex, y: Complex, chosen: npt.NDArray[np.bool_]) -> Complex:
+def _transfer(x: Complex, y: Complex, chosen: Mask) -> Complex:
     """Return H1 = sum X* Y / sum |X|^2 over the chosen windows, (m,); NaN without input."""
     power = np.sum(np.abs(x[chosen]) ** 2, axis=0)
     across = np.sum(np.conj(x[chosen]) * y[chosen], axis=0)
     return np.asarray(np.divide(across, power, out=np.full(power.shape, np.nan + 0j), where=power > 0.0))
 
 
-def _coherence(x: Complex, y: Complex, chosen: npt.NDArray[np.bool_]) -> Vector:
+def _coherence(x: Complex, y: Complex, chosen: Mask) -> Vector:
     """Return |sum X* Y|^2 / (sum |X|^2 sum |Y|^2) over the chosen windows, (m,)."""
     product = np.sum(np.abs(x[chosen]) ** 2, axis=0) * np.sum(np.abs(y[chosen]) ** 2, axis=0)
     across = np.abs(np.sum(np.conj(x[chosen]) * y[chosen], axis=0)) ** 2
     return np.asarray(np.divide(across, product, out=np.zeros(product.shape), where=product > 0.0))
 
 
-def _random_error(x: Complex, y: Complex, inputs: Complex, chosen: npt.NDArray[np.bool_]) -> Vector:
+def _random_error(x: Complex, y: Complex, inputs: Complex, chosen: Mask) -> Vector:
     """Return the standard error of Re H and Im H, (m,): sqrt(R / (2 n sum |X|^2 / n)).
 
     R is the mean power of the part of Y that no combination of the inputs explains, over n - p degrees of freedom with

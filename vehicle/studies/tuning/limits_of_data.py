@@ -1,7 +1,5 @@
 """Statements on what the data of a fit leave open, and the reason why its values are not to be used."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import combinations
 
@@ -54,7 +52,7 @@ def what_data_leave_open(result: TuningResult) -> tuple[str, ...]:
         )
     relative = {path: result.deviation_of_u(path) for path in result.free}
     # A product, a ratio or a percentage of a delay or of a coordinate has no meaning.
-    linear = {each.path for each in (*result.delays, *(one for one in result.parameters if one.is_linear))}
+    linear = {each.path for each in result.delays} | {each.path for each in result.parameters if each.is_linear}
     for (i, first), (j, second) in combinations(enumerate(result.free), 2):
         rho = float(result.correlation[i, j])
         if abs(rho) < CORRELATED:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
@@ -26,7 +27,7 @@ from vehicle.studies.tuning.fit_settings import HistorySettings, LevelSettings, 
 from vehicle.studies.tuning.frf_target import FrfTarget, motions_of, to_driven_plates
 from vehicle.studies.tuning.level_target import LevelTarget, level_target
 from vehicle.studies.tuning.plate_signal import plate_choices, plate_signal
-from vehicle.studies.tuning.record_target import KEPT, RecordTarget, RoadCar, Vector, signal_until
+from vehicle.studies.tuning.record_target import KEPT, RecordTarget, RoadCar, signal_until
 from vehicle.studies.tuning.response_delays import response_delays
 
 LEVEL_WINDOW = 4.0

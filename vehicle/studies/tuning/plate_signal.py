@@ -1,7 +1,5 @@
 """Plate displacement of a measurement: in the measurement file, or in another file, with chosen channels of both."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from dataclasses import replace
 from pathlib import Path

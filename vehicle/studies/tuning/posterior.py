@@ -10,17 +10,15 @@ Sources: Kennedy and O'Hagan, Bayesian calibration of computer models, J. Royal 
 (discrepancy); Foreman-Mackey et al., emcee: the MCMC hammer, PASP 125 (2013), 306-312 (sampler).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError, MissingPartError, SimulationError
 from vehicle.model.parameters.paths import overrides_of
 from vehicle.model.parameters.ranges import Range, checked_ranges
@@ -32,8 +30,6 @@ from vehicle.studies.tuning.fit_settings import CARS, DISCREPANCY
 from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.response_cells import ResponseCells, evaluated_cars, response_cells, signals_of
 from vehicle.threads import one_blas_thread
-
-Vector = npt.NDArray[np.float64]
 
 TAIL = 50.0 * (1.0 - 0.9)
 ENDS = (TAIL, 50.0, 100.0 - TAIL)

@@ -1,7 +1,5 @@
 """Posterior distribution in words and as plain data: intervals, comfort, convergence, rival laws."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Measured time histories as a target of a fit."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Self
@@ -10,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from vehicle.arrays import Mask, Vector
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import channel_units
 from vehicle.runs.car import Car, Run
@@ -20,8 +19,6 @@ from vehicle.signals.formats.table import Record
 from vehicle.signals.records.counterpart import SAME_MOTION
 from vehicle.studies.tuning.fast_run import fast_run
 from vehicle.studies.tuning.response_delays import ResponseDelays
-
-Vector = npt.NDArray[np.float64]
 
 KEPT = 2.0
 """Samples per period of the low-pass frequency after decimation: white noise then stays nearly white."""
@@ -102,7 +99,7 @@ class RecordTarget:
         return np.flatnonzero(self.inside)[::every]
 
     @property
-    def inside(self) -> npt.NDArray[np.bool_]:
+    def inside(self) -> Mask:
         """Return the mask of the samples in the window, (n,)."""
         return np.asarray((self.record.time >= self.window[0]) & (self.record.time <= self.window[1]))
 

@@ -1,21 +1,16 @@
 """Mean magnitudes of FRFs in third-octave bands: the data of a posterior distribution."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Complex, Vector
 from vehicle.engines.reduced.batch_simulation import simulate_batch
 from vehicle.errors import DataError
 from vehicle.runs.car import Car, Run
 from vehicle.signals.excitation.signal import Signal
 from vehicle.studies.tuning.frf_target import FrfTarget
-
-Vector = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
 
 BATCH = 32
 """Number of cars of a batch: three channels of 60 s at 1 kHz are 46 MB."""

@@ -7,13 +7,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
 from vehicle.signals.records.delays import PLATES, channel_delays, group_of
 from vehicle.signals.records.measured import Measured
-
-Vector = npt.NDArray[np.float64]
 
 HALF_RANGE = 0.02
 """Half the range of a delay around its start [s]: half a period at 25 Hz. It starts at the delay of best agreement with

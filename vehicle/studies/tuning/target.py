@@ -1,14 +1,9 @@
 """Measurements that a model is compared with in a fit."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any, Protocol
 
-import numpy as np
-import numpy.typing as npt
-
-Vector = npt.NDArray[np.float64]
+from vehicle.arrays import Vector
 
 
 class Target(Protocol):

@@ -1,7 +1,5 @@
 """Fit of a car to measurements with its last steps in MuJoCo, and the agreement with the data before and after."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
@@ -9,8 +7,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.paths import full_path, overrides_of, unit_of, value_of
 from vehicle.model.parameters.ranges import Range
@@ -27,8 +25,6 @@ from vehicle.studies.tuning.limits_of_data import OFTEN_WRONG, refusal, unexplai
 from vehicle.studies.tuning.measured_targets import MeasuredTarget
 from vehicle.studies.tuning.record_target import RecordTarget
 from vehicle.threads import one_blas_thread
-
-Vector = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

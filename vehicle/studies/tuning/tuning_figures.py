@@ -1,14 +1,12 @@
 """Figures of a fit: FRFs and time histories before and after, correlation of the values, posterior."""
 
-from __future__ import annotations
-
 import textwrap
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from vehicle.arrays import Vector
 from vehicle.digits import number
 from vehicle.drawing.rendering.figure import COLOURS, FADED, FRF_TICKS, fading, frf_axes, saved_figure, wrapped_phase
 from vehicle.model.parameters.ranges import Range
@@ -100,7 +98,7 @@ def plot_histories(path: Path, target: RecordTarget, start: Car, fitted: Car, so
         figure.align_ylabels(axes)
 
 
-def _highest_level(time: npt.NDArray[np.float64], measured: npt.NDArray[np.float64]) -> slice:
+def _highest_level(time: Vector, measured: Vector) -> slice:
     """Return the excerpt of `SHOWN` seconds with the largest normalised mean square of all channels."""
     count = min(max(int(SHOWN / (time[1] - time[0])), 2), time.size)
     power = np.mean(measured**2 / np.mean(measured**2, axis=1, keepdims=True), axis=0)

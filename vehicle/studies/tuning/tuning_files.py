@@ -1,7 +1,5 @@
 """Files of a fit: fitted vehicle file, numbers, pictures, report."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Report of a fit: values, undetermined parameters, errors and figures before and after, command line."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Text of a fit for the console: values first, then what the data leave open, then the agreement."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import scipy
 
-from vehicle.model.flexbody.beam import FloatArray
+from vehicle.arrays import Vector
 from vehicle.model.flexbody.sources.body_matrices import BodyMatrices
 from vehicle.model.flexbody.sources.free_body_modes import FreeModes, residual_vectors
 
@@ -34,9 +34,9 @@ class ReducedModes:
         residual: static flexibility of the modes above at each attachment [m/N], shape (3, 3).
     """
 
-    frequencies: FloatArray
-    vectors: FloatArray
-    residual: list[FloatArray]
+    frequencies: Vector
+    vectors: Vector
+    residual: list[Vector]
 
 
 def attachment_modes(body: BodyMatrices, modes: FreeModes, attachments: Sequence[Any], up_to: float) -> ReducedModes:
@@ -57,9 +57,7 @@ def attachment_modes(body: BodyMatrices, modes: FreeModes, attachments: Sequence
     return kept_modes(inverse, mix, psi, attachments, up_to)
 
 
-def kept_modes(
-    inverse: FloatArray, mix: FloatArray, basis: FloatArray, attachments: Sequence[Any], up_to: float
-) -> ReducedModes:
+def kept_modes(inverse: Vector, mix: Vector, basis: Vector, attachments: Sequence[Any], up_to: float) -> ReducedModes:
     """Split the modes of a stiffness-orthonormal basis into modes up to a frequency and residual flexibility.
 
     Args:

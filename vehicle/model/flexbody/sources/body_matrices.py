@@ -9,10 +9,9 @@ from typing import Any
 import numpy as np
 import scipy
 
+from vehicle.arrays import Indices, Vector
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.flexbody.mass_properties import MassProperties
-from vehicle.model.flexbody.sources.text_matrices import IntArray
 from vehicle.model.parameters.hardpoints import Point
 
 _RIGID_MOTION = 1e-3
@@ -38,20 +37,20 @@ class BodyNodes:
     """
 
     nodes: tuple[str, ...]
-    positions: FloatArray
-    node: IntArray
-    direction: IntArray
-    edges: IntArray
+    positions: Vector
+    node: Indices
+    direction: Indices
+    edges: Indices
     source: str
 
-    def displacements(self, vectors: FloatArray) -> FloatArray:
+    def displacements(self, vectors: Vector) -> Vector:
         """Return the displacements of all nodes, shape (modes, n, 3), for vectors of shape (dofs, modes)."""
         displacements = np.zeros((vectors.shape[1], len(self.nodes), 3))
         moving = self.direction < 3
         displacements[:, self.node[moving], self.direction[moving]] = vectors[moving].T
         return displacements
 
-    def frame(self, axes: str, origin: Point) -> tuple[BodyNodes, FloatArray]:
+    def frame(self, axes: str, origin: Point) -> tuple[BodyNodes, Vector]:
         """Transform the nodes to the vehicle frame.
 
         Args:
@@ -153,7 +152,7 @@ class BodyMatrices(BodyNodes):
         stiffness, mass = (flip @ self.stiffness @ flip).tocsc(), (flip @ self.mass @ flip).tocsc()
         return replace(self, positions=moved.positions, direction=moved.direction, stiffness=stiffness, mass=mass)
 
-    def rigid_motions(self, centre: FloatArray) -> FloatArray:
+    def rigid_motions(self, centre: Vector) -> Vector:
         """Return unit translations, and unit rotations about a centre [m, rad], shape (dofs, 6)."""
         motions = np.zeros((len(self.node), 6))
         arm = self.positions[self.node] - centre

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
-from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.flexbody.mass_difference import powers_of_thousand
 from vehicle.model.flexbody.sources import FOLLOWING, LENGTHS, MASSES
 from vehicle.model.flexbody.superelement_checks import HIGHEST_FIRST_MODE, LOWEST_FIRST_MODE
@@ -61,7 +61,7 @@ def units_of(length: str | None, mass: str | None) -> Units:
     return Units(length_unit, mass or FOLLOWING[length_unit], stated=mass is not None)
 
 
-def require_size(positions: FloatArray, points: Mapping[str, Point], units: Units) -> None:
+def require_size(positions: Vector, points: Mapping[str, Point], units: Units) -> None:
     """Check the unit of length of a body by comparing its size with the car.
 
     Args:
@@ -131,7 +131,7 @@ def require_first_mode(frequency: float, units: Units) -> None:
     )
 
 
-def require_level(vectors: FloatArray, modal_mass: FloatArray, mass: float, units: Units) -> None:
+def require_level(vectors: Vector, modal_mass: Vector, mass: float, units: Units) -> None:
     """Check the unit of mass of mode shapes by their scale.
 
     Shapes with modal mass m at all nodes of a body have sum of m_i phi_i^2 = m, so that sqrt(3 M / m) times their RMS

@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.arrays import Indices
 from vehicle.errors import DataError
 from vehicle.model.flexbody.sources.body_matrices import BodyMatrices
 from vehicle.model.flexbody.sources.deck import Deck, read_deck
 from vehicle.model.flexbody.sources.text_matrices import (
-    IntArray,
     coordinate_matrix,
     nodes_and_directions,
     rows_of_numbers,
@@ -47,7 +47,7 @@ def read_calculix(path: Path) -> BodyMatrices:
 
 
 def assembled(
-    path: Path, stiffness: Any, mass: Any, identity: IntArray, direction: IntArray, deck: Deck, program: str
+    path: Path, stiffness: Any, mass: Any, identity: Indices, direction: Indices, deck: Deck, program: str
 ) -> BodyMatrices:
     """Combine matrices, degrees of freedom and nodes to `BodyMatrices`.
 

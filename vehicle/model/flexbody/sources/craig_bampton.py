@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import scipy
 
-from vehicle.model.flexbody.beam import FloatArray
+from vehicle.arrays import Vector
 from vehicle.model.flexbody.sources.attachment_modes import DEPENDENT, ReducedModes, kept_modes
 from vehicle.model.flexbody.sources.body_matrices import BodyMatrices
 from vehicle.model.flexbody.sources.free_body_modes import (
@@ -46,7 +46,7 @@ def craig_bampton(
     combinations = combinations[:, independent] / np.sqrt(size[independent])
     constraint, displacement = constraint @ combinations, displacement @ combinations  # N'(K + s M)^-1 N = 1
 
-    def solve_fixed(load: FloatArray) -> FloatArray:
+    def solve_fixed(load: Vector) -> Vector:
         """Solve (K + s M) x = load - N lambda with N' x = 0."""
         unconstrained = free.factor.solve(load)
         return np.asarray(unconstrained - displacement @ (constraint.T @ unconstrained))

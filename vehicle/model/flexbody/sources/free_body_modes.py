@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import scipy
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
-from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.flexbody.mass_properties import MassProperties
 from vehicle.model.flexbody.sources.body_matrices import BodyMatrices
 
@@ -39,9 +39,9 @@ class FreeModes:
     """
 
     rigid: MassProperties
-    frequencies: FloatArray
-    vectors: FloatArray
-    rigid_vectors: FloatArray
+    frequencies: Vector
+    vectors: Vector
+    rigid_vectors: Vector
     rigid_frequency: float
     orthogonality: float
     up_to: float
@@ -84,7 +84,7 @@ def free_modes(body: BodyMatrices, up_to: float) -> FreeModes:
     missed = modes_below(body, limit) - 6 - int(kept.sum())
     if missed > 0:
         raise DataError(f"{missed} modes up to {up_to:g} Hz were not found; change --up-to slightly.")
-    shapes: FloatArray = flexible[:, kept]
+    shapes: Vector = flexible[:, kept]
     shapes = shapes - motions @ (motions.T @ (body.mass @ shapes))  # removes the effect of rounded entries of K and M
     shapes = shapes / np.sqrt(np.einsum("ij,ij->j", shapes, body.mass @ shapes))
     among_modes = np.abs(shapes.T @ (body.mass @ shapes) - np.eye(shapes.shape[1])).max(initial=0.0)
@@ -101,7 +101,7 @@ def free_modes(body: BodyMatrices, up_to: float) -> FreeModes:
     )
 
 
-def residual_flexibility(body: BodyMatrices, modes: FreeModes, attachments: Sequence[Any]) -> list[FloatArray]:
+def residual_flexibility(body: BodyMatrices, modes: FreeModes, attachments: Sequence[Any]) -> list[Vector]:
     """Compute the residual flexibility of attachments, the static flexibility of the truncated modes: G = P' K^-1 P.
 
     The projected load P f = f - M R R'f - M Phi Phi'f excites neither the rigid motions (inertia relief) nor the modes
@@ -125,7 +125,7 @@ def residual_flexibility(body: BodyMatrices, modes: FreeModes, attachments: Sequ
     return flexibilities
 
 
-def residual_vectors(body: BodyMatrices, modes: FreeModes, load: FloatArray) -> FloatArray:
+def residual_vectors(body: BodyMatrices, modes: FreeModes, load: Vector) -> Vector:
     """Return P' K^-1 P f for each column f of a load [N], in the shape of the load; see `residual_flexibility`."""
     kept = np.hstack([modes.rigid_vectors, modes.vectors])
     load = load - body.mass @ (kept @ (kept.T @ load))
@@ -139,7 +139,7 @@ def residual_vectors(body: BodyMatrices, modes: FreeModes, load: FloatArray) -> 
     return displacement
 
 
-def _all(body: BodyMatrices, shift: float) -> tuple[FloatArray, FloatArray]:
+def _all(body: BodyMatrices, shift: float) -> tuple[Vector, Vector]:
     """Compute all modes from M phi = (K + s M) phi / (w^2 + s), which allows massless degrees of freedom."""
     shifted = (body.stiffness + shift * body.mass).toarray()
     inverse, vectors = scipy.linalg.eigh(body.mass.toarray(), shifted)
@@ -152,9 +152,9 @@ def lowest_modes(
     body: BodyMatrices,
     shift: float,
     limit: float,
-    solve: Callable[[FloatArray], FloatArray],
+    solve: Callable[[Vector], Vector],
     count: int = FIRST_GUESS,
-) -> tuple[FloatArray, FloatArray]:
+) -> tuple[Vector, Vector]:
     """Compute the lowest modes by Lanczos iteration until an eigenvalue exceeds a limit.
 
     Args:

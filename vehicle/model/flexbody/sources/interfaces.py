@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import scipy
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
-from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.flexbody.carried_nodes import rigid_fit
 from vehicle.model.flexbody.sources.body_matrices import BodyNodes
 from vehicle.model.flexbody.sources.text_matrices import text_of
@@ -33,7 +33,7 @@ class Interface:
     """
 
     name: str
-    position: FloatArray
+    position: Vector
     moved: Any
     turned: Any
     distance: float
@@ -162,7 +162,7 @@ def _of_nodes(body: BodyNodes, name: str, position: Point, nodes: Any) -> Interf
     if np.any(dofs < 0):
         return "a node lacks a displacement"
 
-    def columns(part: FloatArray) -> Any:
+    def columns(part: Vector) -> Any:
         values = part.reshape(3, -1)
         rows = np.broadcast_to(dofs.ravel(), values.shape)
         axes = np.repeat(np.arange(3), values.shape[1])

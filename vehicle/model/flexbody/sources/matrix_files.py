@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import scipy
 
+from vehicle.arrays import Indices
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.flexbody.sources.body_matrices import BodyMatrices
 from vehicle.model.flexbody.sources.calculix import assembled
@@ -14,7 +15,6 @@ from vehicle.model.flexbody.sources.deck import Deck, read_deck
 from vehicle.model.flexbody.sources.harwell_boeing import is_harwell_boeing, read_harwell_boeing
 from vehicle.model.flexbody.sources.nastran import dmig_pair, is_bulk_data, read_bulk_data
 from vehicle.model.flexbody.sources.text_matrices import (
-    IntArray,
     coordinate_matrix,
     nodes_and_directions,
     rows_of_numbers,
@@ -70,7 +70,7 @@ def read_matrices(stiffness: Path, mass: Path | None, dofs: Path | None, nodes: 
     return assembled(stiffness, matrices[0], matrices[1], identity, direction, deck, "finite elements")
 
 
-def read_dofs(path: Path) -> tuple[IntArray, IntArray]:
+def read_dofs(path: Path) -> tuple[Indices, Indices]:
     """Read the node numbers and the directions, 0 to 5, of the rows of the matrices, in their order.
 
     Args:

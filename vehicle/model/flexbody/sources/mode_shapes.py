@@ -9,8 +9,8 @@ from types import MappingProxyType
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
-from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.flexbody.mass_properties import MassProperties
 from vehicle.model.flexbody.sources.body_matrices import BodyNodes
 from vehicle.model.flexbody.sources.superelement_of import BodyModes
@@ -37,10 +37,10 @@ class GivenModes:
     """
 
     body: BodyNodes
-    frequencies: FloatArray
-    damping_ratio: FloatArray
+    frequencies: Vector
+    damping_ratio: Vector
     vectors: np.ndarray
-    modal_mass: FloatArray
+    modal_mass: Vector
 
     def placed(self, axes: str, origin: Point) -> GivenModes:
         """Transform the modes to the vehicle frame; see `BodyNodes.frame`."""
@@ -106,7 +106,7 @@ def normalised(
     rigid: MassProperties,
     stated_mass: float | None,
     up_to: float,
-    residual: Mapping[str, FloatArray] = MappingProxyType({}),
+    residual: Mapping[str, Vector] = MappingProxyType({}),
 ) -> BodyModes:
     """Select the elastic modes of a source, make them real and scale them to modal mass 1.
 

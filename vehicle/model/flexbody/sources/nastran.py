@@ -15,8 +15,9 @@ from typing import Any
 import numpy as np
 import scipy
 
+from vehicle.arrays import Indices
 from vehicle.errors import DataError
-from vehicle.model.flexbody.sources.text_matrices import IntArray, text_of, whole
+from vehicle.model.flexbody.sources.text_matrices import text_of, whole
 from vehicle.model.parameters.hardpoints import Point
 
 _BARE_EXPONENT = re.compile(r"(?<=[\d.])([+-]\d+)$")
@@ -97,7 +98,7 @@ def is_bulk_data(path: Path) -> bool:
     return path.with_name(path.name.partition(":")[0]).suffix.lower() in (".pch", ".bdf", ".nas")
 
 
-def dmig_pair(path: Path, data: BulkData, names: tuple[str, str]) -> tuple[Any, Any, IntArray, IntArray]:
+def dmig_pair(path: Path, data: BulkData, names: tuple[str, str]) -> tuple[Any, Any, Indices, Indices]:
     """Return K and M of a file, with the node and direction of their rows.
 
     Args:

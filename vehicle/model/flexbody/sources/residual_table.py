@@ -11,15 +11,15 @@ from pathlib import Path
 
 import numpy as np
 
+from vehicle.arrays import Vector
 from vehicle.errors import DataError
-from vehicle.model.flexbody.beam import FloatArray
 from vehicle.names import AXES
 
 UNITS = {"m/N": (1.0, 1), "mm/N": (1e-3, 1), "N/m": (1.0, -1), "N/mm": (1e3, -1)}
 """Unit -> its size in SI, and the exponent that converts to flexibility: 1 for a flexibility, -1 for a stiffness."""
 
 
-def read_residuals(path: Path, points: Collection[str]) -> dict[str, FloatArray]:
+def read_residuals(path: Path, points: Collection[str]) -> dict[str, Vector]:
     """Read the residual flexibility of attachments along the axes of the car [m/N], shape (3, 3) by point.
 
     Args:
@@ -41,7 +41,7 @@ def read_residuals(path: Path, points: Collection[str]) -> dict[str, FloatArray]
             f"{path}: found the header {','.join(header)!r}, must be point,x [N/m],y [N/m],z [N/m] for stiffnesses, or "
             f"another unit of {', '.join(UNITS)}."
         )
-    flexibilities: dict[str, FloatArray] = {}
+    flexibilities: dict[str, Vector] = {}
     for row in rows[1:]:
         point, values = row[0].strip(), [_number(word) for word in row[1:]]
         if point not in points or point in flexibilities:

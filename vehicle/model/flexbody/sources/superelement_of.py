@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.arrays import Indices, Vector
 from vehicle.digits import number
-from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.flexbody.frame_modes import signs
 from vehicle.model.flexbody.mass_properties import MassProperties
 from vehicle.model.flexbody.sources import METHODS
@@ -16,7 +16,6 @@ from vehicle.model.flexbody.sources.body_matrices import BodyMatrices, BodyNodes
 from vehicle.model.flexbody.sources.craig_bampton import craig_bampton
 from vehicle.model.flexbody.sources.free_body_modes import FreeModes, free_modes, residual_flexibility
 from vehicle.model.flexbody.sources.interfaces import Interface
-from vehicle.model.flexbody.sources.text_matrices import IntArray
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.signals.analysis.thinned_wireframe import neighbours, thinned
 
@@ -38,13 +37,13 @@ class BodyModes:
     """
 
     body: BodyNodes
-    frequencies: FloatArray
-    damping_ratio: FloatArray
-    vectors: FloatArray
+    frequencies: Vector
+    damping_ratio: Vector
+    vectors: Vector
     rigid: MassProperties
     names: tuple[str, ...]
     remarks: tuple[str, ...] = ()
-    residual: Mapping[str, FloatArray] = field(default_factory=dict)
+    residual: Mapping[str, Vector] = field(default_factory=dict)
     notices: tuple[str, ...] = ()
 
 
@@ -193,7 +192,7 @@ def superelement_of(
     )
 
 
-def _picture(body: BodyNodes, maximum: int) -> tuple[IntArray, IntArray]:
+def _picture(body: BodyNodes, maximum: int) -> tuple[Indices, Indices]:
     """Select nodes and lines of the picture; without lines in the source, each node is joined to its neighbours."""
     if not len(body.edges):
         shown = np.unique(np.linspace(0, len(body.nodes) - 1, maximum).astype(int))

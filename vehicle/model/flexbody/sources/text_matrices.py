@@ -10,11 +10,8 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from vehicle.arrays import Indices, Vector
 from vehicle.errors import DataError
-from vehicle.model.flexbody.beam import FloatArray
-
-IntArray = npt.NDArray[np.intp]
-
 
 _NAMES = re.compile(r"(?!nan|inf)[a-z_]\w*([\s,]+[a-z_]\w*)*", re.IGNORECASE)
 """Header line of column names, as "node,direction". Headers with units in brackets do not match."""
@@ -38,7 +35,7 @@ def text_of(path: Path, advice: str = "", *, encoding: str = "ascii", errors: st
         raise DataError(f"{path}: cannot be read as text ({error}){advice}.") from error
 
 
-def rows_of_numbers(path: Path, columns: int, *, separator: str = ",") -> FloatArray:
+def rows_of_numbers(path: Path, columns: int, *, separator: str = ",") -> Vector:
     """Read a text file with rows of numbers of equal length, shape (rows, columns); skip a header line of names.
 
     Args:
@@ -96,7 +93,7 @@ def coordinate_matrix(path: Path, size: int) -> Any:
     return whole(matrix)
 
 
-def whole_numbers(path: Path, values: npt.NDArray[Any]) -> IntArray:
+def whole_numbers(path: Path, values: npt.NDArray[Any]) -> Indices:
     """Convert numbers of nodes, directions or rows to integers.
 
     Raises:
@@ -110,7 +107,7 @@ def whole_numbers(path: Path, values: npt.NDArray[Any]) -> IntArray:
     return integers
 
 
-def nodes_and_directions(path: Path, rows: npt.NDArray[Any]) -> tuple[IntArray, IntArray]:
+def nodes_and_directions(path: Path, rows: npt.NDArray[Any]) -> tuple[Indices, Indices]:
     """Return the node numbers, and the directions as 0 to 5, of rows "node, direction 1 to 6".
 
     Raises:
