@@ -70,7 +70,7 @@ ROOMS: dict[str, set[str]] = {
     "output": {"analysis", "car", "comparison", "excitation", "flexbody", "formats", "linear", "parameters"}
     | {"records", "rendering", "replacement", "simulation"},
     "targets": {"analysis", "car", "output", "parameters", "records", "simulation"},
-    "report": {"analysis", "car", "excitation", "flexbody", "linear", "output", "parameters", "records"}
+    "report": {"analysis", "car", "flexbody", "linear", "output", "parameters", "records"}
     | {"rendering", "simulation", "targets", "version"},
     "fmu": {"car", "core", "linear", "parameters", "reduced", "version"},
     "page": {"analysis", "car", "excitation", "fmu", "linear", "output", "parameters", "reduced"}
