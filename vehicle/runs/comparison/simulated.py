@@ -8,6 +8,7 @@ from pathlib import Path
 
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Run
+from vehicle.signals.excitation.rest import settling_time
 from vehicle.signals.formats.frf_file import FrfData, frf_data
 from vehicle.signals.formats.reader import read_columns
 from vehicle.signals.formats.table import Record
@@ -28,6 +29,7 @@ class Simulated:
     # independent motion of the plates, or None
     responses: Responses
     tyres: str = ""  # state of the tyres, "standing" or "rolling at ..."; empty if unknown
+    settled: float = 0.0  # time after which the run, which begins at rest, follows a measurement in motion [s]
 
 
 def of_run(run: Run) -> Simulated:
@@ -37,7 +39,13 @@ def of_run(run: Run) -> Simulated:
         return frf_data(run.frfs(names, window=window), names)
 
     record = Record(time=run.time, channels=run.recording.channels, units=run.recording.units)
-    return Simulated(name=run.signal.source, record=record, responses=responses, tyres=run.car.vehicle.driving.words)
+    return Simulated(
+        name=run.signal.source,
+        record=record,
+        responses=responses,
+        tyres=run.car.vehicle.driving.words,
+        settled=run.skip or settling_time(run.signal.notices),
+    )
 
 
 def of_folder(folder: Path) -> Simulated:
@@ -60,4 +68,7 @@ def of_folder(folder: Path) -> Simulated:
         return run_frf(folder / "frf.csv", summary) if (folder / "frf.csv").is_file() else None
 
     tyres = summary.get("tyre", "") if summary else ""
-    return Simulated(name=folder.name, record=record, responses=responses, tyres=tyres)
+    settled = 0.0
+    if summary:
+        settled = float(summary.get("evaluated_s", [0.0])[0]) or settling_time(summary.get("notices", []))
+    return Simulated(name=folder.name, record=record, responses=responses, tyres=tyres, settled=settled)

@@ -13,6 +13,7 @@ from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
 from vehicle.settings import with_settings
 from vehicle.signals.analysis.response_name import ResponseName, plates_of
+from vehicle.signals.excitation.rest import settling_time
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.formats.channel import uniform_axis
 from vehicle.signals.formats.table import Record
@@ -35,10 +36,6 @@ of a road to be nearly constant."""
 
 AFTER = 5.0
 """Length of the run after the compared part, in periods of the low-pass frequency: the filter then forgets to 1e-5."""
-
-SETTLED = 2.0
-"""Time after which a car that began at rest on a moving plate follows the measured one [s], as for runs on a road: four
-periods of the body bounce near 2 Hz."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -196,7 +193,14 @@ def _histories(
         )
     window, more = (float(grid[inside[0]]), float(grid[inside[-1]])), list[str]()
     if stretch is not None:
-        window = (max(stretch[0], window[0]), min(stretch[1], window[1]))
+        # From the times of the file to those of the signal.
+        asked_for = [float(times[0] + (t - held.time[0]) * (1.0 + settings.drift)) for t in stretch]
+        if asked_for[0] >= window[1] or asked_for[1] <= window[0]:
+            raise DataError(
+                f"{path}: --stretch {stretch[0]:g}:{stretch[1]:g} is outside the record, which has "
+                f"{held.time[0]:.6g} to {held.time[-1]:.6g} s; set times of the file"
+            )
+        window = (max(asked_for[0], window[0]), min(asked_for[1], window[1]))
     elif settled > window[0]:
         window = (settled, window[1])
         more = [f"begins in motion: the first {settled:g} s are left out; --stretch FROM:TO sets other times"]
@@ -246,8 +250,7 @@ def _driven_input(
         drive = settings.signal.under(car.vehicle, car.overrides)
         return drive.signal(), RoadCar(start=car, rolling=car.with_(drive.overrides)), drive.skip
     signal = plate_signal(settings.signal, car, path, measured, asked, settings.inverted, plates)
-    from_motion = settings.signal is None and any("half-cosine ramp" in text for text in signal.notices)
-    return signal, None, SETTLED if from_motion else 0.0
+    return signal, None, settling_time(signal.notices) if settings.signal is None else 0.0
 
 
 def _beside_run(target: RecordTarget, car: Car, held: Record, times: Vector) -> list[Counterpart]:
