@@ -8,13 +8,13 @@ from pathlib import Path
 
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Run
-from vehicle.signals.excitation.rest import settling_time
 from vehicle.signals.formats.frf_file import FrfData, frf_data
 from vehicle.signals.formats.reader import read_columns
 from vehicle.signals.formats.table import Record
 from vehicle.signals.records.measured import estimated_frf
 from vehicle.signals.records.run_frf import run_frf
 from vehicle.signals.records.run_summary import available_summary
+from vehicle.signals.records.settling import settling_time
 
 Responses = Callable[[Sequence[str], float | None], FrfData | None]
 

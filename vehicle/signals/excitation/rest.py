@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
 from vehicle.signals.analysis.samples import Vector
+from vehicle.signals.records.settling import RAMP_WORDS
 
 RAMP_S = 0.5
 """Length of the half-cosine ramp [s]: half a period of 1 Hz, the lower end of the range of interest."""
 
 OFFSET_SHARE = 0.01
 """Maximum first value over the RMS [-]; a larger one is a step of the plate at t = 0."""
-
-RAMP_WORDS = "half-cosine ramp"
-"""Words in the notices of a signal that was faded in."""
-
-SETTLED = 2.0
-"""Time after which a car that began at rest on a moving plate follows the measured one [s], as for runs on a road: four
-periods of the body bounce near 2 Hz."""
 
 VELOCITY_SHARE = 0.1
 """Maximum first difference over the RMS of all differences [-]; a larger one is a velocity jump at t = 0."""
@@ -69,15 +63,6 @@ def start_from_rest(
     done = f"the motion of all plates is faded in over the first {length:.3f} s ({RAMP_WORDS}); no mean was subtracted"
     # Adding 0.0 avoids -0.0 for a negative first value.
     return {wheel: z * weights + 0.0 for wheel, z in plates.items()}, tuple(f"{cause}; {done}" for cause in causes)
-
-
-def settling_time(notices: Iterable[str]) -> float:
-    """Return the time after which a run follows a record of its signal [s]: `SETTLED` if faded in, otherwise 0.
-
-    Args:
-        notices: notices of the signal, or of its run.
-    """
-    return SETTLED if any(RAMP_WORDS in text for text in notices) else 0.0
 
 
 def _causes(wheel: str, z: Vector, timestep: float) -> list[str]:

@@ -13,7 +13,6 @@ from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
 from vehicle.settings import with_settings
 from vehicle.signals.analysis.response_name import ResponseName, plates_of
-from vehicle.signals.excitation.rest import settling_time
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.formats.channel import uniform_axis
 from vehicle.signals.formats.table import Record
@@ -22,6 +21,7 @@ from vehicle.signals.records.counterpart import Counterpart, clock_advice, count
 from vehicle.signals.records.delays import split_delay
 from vehicle.signals.records.measured import Measured, read_measured
 from vehicle.signals.records.resampled import at_times
+from vehicle.signals.records.settling import settling_time
 from vehicle.studies.tuning.fit_result import LEAST_VALUES
 from vehicle.studies.tuning.fit_settings import HistorySettings, LevelSettings, ReadingSettings, ResponseSettings
 from vehicle.studies.tuning.frf_target import FrfTarget, motions_of, to_driven_plates
