@@ -211,8 +211,8 @@ def with_settings(settings_class: Callable[P, S]) -> _WithSettings[P, S]:
 def engine_setting(default: str) -> Any:
     """Declare the engine of the runs of a function or a command; the default is "auto" for many runs."""
     return setting(
-        "mujoco: complete nonlinear model; reduced: hundreds of times faster, with all force laws but linear "
-        "geometry, no film; auto: reduced inside its valid range, otherwise mujoco; default: %(default)s",
+        "mujoco: complete nonlinear model; reduced: one run 3 times, sweeps tens of times faster, with all force laws "
+        "but linear geometry, no film; auto: reduced inside its valid range, otherwise mujoco; default: %(default)s",
         default,
         choices=ENGINES,
     )

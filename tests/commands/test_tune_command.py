@@ -76,6 +76,8 @@ def test_hidden_values_are_found_in_an_mdf4_record(fitted):
         )
         # With a larger standard error the check above would be too weak.
         assert row["standard_error"] < 0.01 * hidden
+        # The stated error holds the misfit, too.
+        assert 0.0 < row["noise_error"] <= row["standard_error"]
         assert abs(row["start"] / hidden - 1.0) > 0.02
     assert all(row["after"] < 0.2 * row["before"] for row in content["agreement"])
 

@@ -2,14 +2,18 @@
 
 import re
 from html import unescape
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from markupsafe import Markup
 
+from vehicle import Car
 from vehicle.commands.summary_text import summary_text
 from vehicle.runs.report.answer import explained
+from vehicle.runs.report.comparison_section import wheelbase_words
 from vehicle.runs.report.findings import damper_sentences
+from vehicle.runs.report.page import warned
 from vehicle.signals.formats.frf_file import read_frf
 from vehicle.signals.records.run_summary import read_summary
 
@@ -76,3 +80,28 @@ def test_console_and_report_give_dampers_without_slip_one_state(reported, full, 
     ending = next(k for k, line in enumerate(lines) if line.startswith("resonances "))
     assert [line[12:] for line in lines[first:ending]] == console
     assert damper_sentences(summary)[0].startswith(page)
+
+
+def test_a_warning_of_the_solver_stands_at_the_verdict():
+    """In a report of several runs the findings of each run are folded."""
+
+    def run(name, *warnings):
+        return SimpleNamespace(name=name, summary={"solver": {"warnings": list(warnings)}})
+
+    runs = [run("a"), run("b", "rotates", "wrong <by> 35 %"), run("c", "rotates")]
+    assert warned(runs) == "<p>Warning (b and 1 more run): wrong &lt;by&gt; 35 %.</p>"
+    assert warned(runs[:1]) == "" and warned(runs[2:]) == "<p>Warning: rotates.</p>"
+
+
+def test_the_wheelbase_filter_of_runs_is_named_where_it_differs():
+    """Half of speed over wheelbase by hand: 80 and 60 km/h over 2.757 m are 4.03 and 3.02 Hz."""
+    sedan = Car.load("sedan")
+
+    def run(name, speed, road="B"):
+        car = sedan.with_({"driving.speed": speed / 3.6})
+        return SimpleNamespace(name=name, car=car, summary={"input": {"road": road}})
+
+    (text,) = wheelbase_words([run("a", 80.0), run("b", 60.0)])
+    assert "(a 4.03, b 3.02 Hz)" in text
+    assert wheelbase_words([run("a", 80.0), run("b", 80.0)]) == []
+    assert wheelbase_words([run("a", 80.0, None), run("b", 60.0)]) == []

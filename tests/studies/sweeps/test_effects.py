@@ -70,6 +70,18 @@ def test_error_of_a_change_is_that_of_the_differences_of_the_sweep():
     assert effect.half_width == pytest.approx(expected, rel=1e-4)
 
 
+def test_each_input_counts_by_its_relative_change():
+    """By hand: the mean of the changes on a smooth and on a rough road, 16 times as loud."""
+    car, ways = Car.load("sedan"), [road("A", 80, duration=3), road("D", 80, duration=3)]
+    both = parameter_effects(car, ways, groups=("rear.damper.viscous",), engine="reduced")
+    alone = [parameter_effects(car, way, groups=("rear.damper.viscous",), engine="reduced") for way in ways]
+    expected = [np.mean([each.effects[0].change_low for each in alone])]
+    assert [both.effects[0].change_low] == pytest.approx(expected, abs=2e-3)
+    # The ratio of the means would be that of the loud road.
+    loud = alone[1].effects[0].change_low
+    assert abs(expected[0] - loud) > 0.05 and "means of 2 inputs" in str(both)
+
+
 def test_groups():
     vehicle = Car.load("sedan").vehicle
     every = varied_parameters(vehicle)

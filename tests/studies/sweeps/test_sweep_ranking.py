@@ -12,6 +12,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.signals.analysis.ride_comfort import wave_names
 from vehicle.studies.sweeps.case import Case, SignalFile
 from vehicle.studies.sweeps.case_result import Result
+from vehicle.studies.sweeps.sweep_page import sweep_page
 from vehicle.studies.sweeps.sweep_picture import can_be_drawn, draw_ranked
 from vehicle.studies.sweeps.sweep_ranking import ranked_cars, ranking_lines
 from vehicle.studies.sweeps.sweep_table import SweepTable
@@ -43,11 +44,23 @@ def test_cars_are_ranked_by_the_mean_over_the_inputs():
     cars = ranked(table)
     assert cars.paths == ["front.spring"] and cars.inputs == 2 and cars.point == "at the seat rail"
     assert cars.order == [0, 1, 2] and cars.weighted.tolist() == [2.0, 3.0, 4.0]
-    assert cars.change(2) == pytest.approx(100.0) and cars.unweighted[1] == 6.0
+    # By hand: (3 / 1 + 5 / 3) / 2 - 1; the ratio of the means would give 100 %.
+    assert cars.change(2) == pytest.approx(400.0 / 3.0) and cars.unweighted[1] == 6.0
     lines = ranking_lines(cars)
     assert lines[0].split()[:2] == ["front.spring", "weighted"]
-    assert lines[1].split() == ["30", "2", "base", "4"] and lines[2].split() == ["10", "3", "+50.00", "%", "6"]
+    assert lines[1].split() == ["30", "2", "base", "4"] and lines[2].split() == ["10", "3", "+66.67", "%", "6"]
+    assert "mean of 2 inputs; change: mean of the changes on each" in "\n".join(lines)
     assert lines[-1] == "most comfortable is the first car: front.spring = 30"
+
+
+def test_a_loud_input_does_not_outweigh_a_quiet_one():
+    """By hand: 0.1 to 0.08 and 10 to 10.1 m/s2 are -20 % and +1 %, so -9.5 %; the plain mean rises by 0.8 %."""
+    table = table_of([("30",), ("10",)], ["front.spring"])
+    values = (0.1, 10.0, 0.08, 10.1)
+    results = [Result(values={"unweighted": value, "weighted": value}) for value in values]
+    cars = ranked(replace(table, results=results))
+    assert cars.change(1) == pytest.approx(-9.5) and cars.order == [1, 0] and cars.best == 1
+    assert cars.weighted[1] > cars.weighted[0]
 
 
 def test_what_an_input_sets_makes_no_car():
@@ -73,7 +86,7 @@ def test_a_failed_run_takes_its_car_out():
 
 
 def test_the_error_of_the_ranking_is_that_of_the_weighted_value():
-    """Over two inputs with the errors e and 2 e of a change: t(12) sqrt(5) e / 2, relative to the first car."""
+    """Over two inputs with errors e and 2 e of a change, each over the value of the first car there."""
     table, names = table_of([("30",), ("10",)], ["front.spring"]), wave_names("weighted")
     sizes = [0.0, 0.0, 0.1, 0.2]  # of the waves of each row: the first car, then the second
     results = [
@@ -81,10 +94,10 @@ def test_the_error_of_the_ranking_is_that_of_the_weighted_value():
         for result, size in zip(table.results, sizes, strict=True)
     ]
     cars = ranked(replace(table, results=results))
-    expected = 100.0 * 2.1788 * math.sqrt(5.0) * 0.1 / 2.0 / 2.0  # the first car has 2 m/s2
+    expected = 100.0 * 2.1788 * math.hypot(0.1 / 1.0, 0.2 / 3.0) / 2.0  # the first car has 1 and 3 m/s2
     assert cars.half_width[1] == pytest.approx(expected, rel=1e-4)
     lines = ranking_lines(cars)
-    assert lines[0].split()[3:5] == ["change", "+-"] and lines[2].split()[2:5] == ["+50.00", "%", f"{expected:.2f}"]
+    assert lines[0].split()[3:5] == ["change", "+-"] and lines[2].split()[2:5] == ["+66.67", "%", f"{expected:.2f}"]
     assert "+-: half width of the 95 % interval" in lines[3]
     large = [replace(each, values=each.values | dict.fromkeys(names, 9.0)) if size else each
              for each, size in zip(results, sizes, strict=True)]  # fmt: skip
@@ -121,12 +134,20 @@ def test_the_report_names_best_and_base_with_the_numbers_of_the_table(tmp_path):
     falling = [replace(r, values={k: 40.0 - v for k, v in r.values.items()}) for r in table.results]
     table = replace(table, results=falling)
     page = table.report(tmp_path / "sweep.html").read_text(encoding="utf-8")
-    assert "Most comfortable of 3 cars: damper.viscous = 20: weighted 36 m/s², unweighted 32 m/s², -5.26 %" in page
+    assert "Most comfortable of 3 cars: damper.viscous = 20: weighted 36 m/s², unweighted 32 m/s², -5.27 %" in page
     assert "Base car, the first of the sweep: damper.viscous = 30: weighted 38 m/s², unweighted 36 m/s²." in page
     assert "--set damper.viscous=20" in page and page.count("<svg") == 1 and ">b<" in page
     with pytest.raises(ConfigurationError, match=r"sweep\.html"):
         table.report(tmp_path / "sweep.html")
-    assert str(table).splitlines()[1].split() == ["20", "36", "-5.26", "%", "32"] and "\n" not in repr(table)
+    assert str(table).splitlines()[1].split() == ["20", "36", "-5.27", "%", "32"] and "\n" not in repr(table)
+
+
+def test_a_note_on_the_valid_range_stands_at_the_verdict():
+    page = sweep_page(
+        table_of([("30",), ("10",)], ["damper.viscous"]), "focus", caption="", notes=("outside the valid range: a",)
+    )
+    before = page.index("Base car, the first of the sweep")
+    assert before < page.index("<p>outside the valid range: a</p>") < page.rindex("All runs")
 
 
 def test_parameters_have_the_units_of_the_car(tmp_path):

@@ -73,7 +73,10 @@ def test_the_residuals_of_the_true_car_are_the_noise(files):
 
 
 def test_the_part_that_counts(files):
-    assert measured(files, delay=0.2, stretch=(0.25, 0.9)).window == pytest.approx((0.25, 0.9))
+    # The file begins at 12.5 s, and the record 0.2 s after the signal: --stretch has the times of --from.
+    assert measured(files, delay=0.2, stretch=(12.55, 13.2)).window == pytest.approx((0.25, 0.9))
+    with pytest.raises(DataError, match=r"--stretch 0.25:0.9 is outside the record, which has 12.5 to 13.5 s"):
+        measured(files, delay=0.2, stretch=(0.25, 0.9))
     late = measured(files)  # taken to begin with the signal: nothing fits
     assert np.sqrt(np.mean(late.residuals(Car.load(overrides=STRIBECK)) ** 2)) > 0.5
     with pytest.raises(DataError, match="they do not overlap; set --delay S"):
@@ -83,7 +86,7 @@ def test_the_part_that_counts(files):
         match=r"0.03 s of the record are evaluated, must be at least 0.04 "
         r"s .* longer record",
     ):
-        measured(files, delay=0.2, stretch=(0.25, 0.28))
+        measured(files, delay=0.2, stretch=(12.55, 12.58))
 
 
 def test_the_channels_that_count(files):

@@ -366,7 +366,7 @@ class Car:
             source: displacement of the plates; a file of it or the name of a shipped one, as "low.csv"; or a road, as
                 road("C", 80), on which the tyres roll.
             progress: called with the finished fraction now and then (MuJoCo only; the reduced engine is done at once).
-            engine: "mujoco"; "reduced", hundreds of times faster, all laws but linear geometry; "auto": "reduced",
+            engine: "mujoco"; "reduced", faster (3 times; sweeps tens), all laws but linear geometry; "auto": "reduced",
                 and "mujoco" if the motion leaves the valid range.
             channels: names of the recorded channels, those on request (`vehicle.requested_channels`) among
                 them; by default all but those.

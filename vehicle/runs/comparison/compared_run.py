@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -21,6 +22,7 @@ from vehicle.runs.comparison.frf_comparison import (
 from vehicle.runs.comparison.record_comparison import RecordComparison, compare_records, offsets, unlike_copies
 from vehicle.runs.comparison.simulated import Simulated, of_folder, of_run
 from vehicle.signals.analysis.phase_delay import phase_delay
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.formats.channel import Measurement
 from vehicle.signals.records.choice import Choice
 from vehicle.signals.records.counterpart import (
@@ -182,7 +184,9 @@ def comparison_of(
     lags, step, reference = list[ChannelLag](), 0.0, ""
     if measured.record is not None:
         times = run_times(measured.record, delay, drift, measured.start)
-        records, parts = compare_records(measured.record, simulated.record, times)
+        begin, text = _settled_part(measured, simulated, times)
+        notices += text
+        records, parts = compare_records(measured.record, simulated.record, times, begin)
         step = float(records[0].time[1] - records[0].time[0]) if records else 0.0
         lags = channel_lags(parts, measured.delays)
     elif responses:
@@ -216,6 +220,29 @@ def comparison_of(
         notices=tuple(notices),
         tyres=simulated.tyres,
     )
+
+
+def _settled_part(measured: Measured, simulated: Simulated, times: Vector) -> tuple[float, list[str]]:
+    """Return the time of the run from which time histories are compared [s], and a notice if it is not the first.
+
+    The run begins at rest; a record in motion is compared after the settling of the run. An excerpt of a file begins
+    where the user wants, and another run begins at rest too.
+    """
+    record, settled = measured.record, simulated.settled
+    if record is None or measured.file.format == "run" or record.time[0] > measured.start + record.step:
+        return -math.inf, []
+    begin, end = float(simulated.record.time[0] + settled), min(float(times[-1]), float(simulated.record.time[-1]))
+    if settled == 0.0 or times[0] >= begin:
+        return -math.inf, []
+    if end - begin < settled:
+        return -math.inf, [
+            f"time histories: the run begins at rest and settles for about {settled:g} s, most of the record: the "
+            "comparison contains the settling; use a longer record"
+        ]
+    return begin, [
+        f"time histories are compared from {settled:g} s of the run on, since it begins at rest; with stuck dampers it "
+        "settles for longer: --from S compares from S of the file on"
+    ]
 
 
 def response_lags(responses: Sequence[FrfComparison], taken_out: Mapping[str, float]) -> list[ChannelLag]:

@@ -50,7 +50,7 @@ class RecordComparison:
 
 
 def compare_records(
-    measured: Record, simulated: Record, times: Vector | None = None
+    measured: Record, simulated: Record, times: Vector | None = None, begin: float = -math.inf
 ) -> tuple[tuple[RecordComparison, ...], list[Counterpart]]:
     """Compare all common time histories over the common time.
 
@@ -59,6 +59,7 @@ def compare_records(
     Args:
         measured, simulated: with the same units.
         times: times of the measured samples on the clock of the run [s], (n,); by default those of the record.
+        begin: beginning of the compared part on the clock of the run [s].
 
     Returns:
         The comparisons, and how each measured channel fits its counterpart when both are shifted.
@@ -68,7 +69,7 @@ def compare_records(
     """
     times = measured.time if times is None else times
     step = max(float(times[-1] - times[0]) / (times.size - 1), simulated.step)
-    start, end = max(times[0], simulated.time[0]), min(times[-1], simulated.time[-1])
+    start, end = max(times[0], simulated.time[0], begin), min(times[-1], simulated.time[-1])
     count = int((end - start) / step + 1e-6) + 1
     if end <= start or count < LEAST_SAMPLES:
         raise DataError(

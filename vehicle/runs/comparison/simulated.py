@@ -12,6 +12,7 @@ from vehicle.signals.formats.table import Record
 from vehicle.signals.records.measured import estimated_frf
 from vehicle.signals.records.run_frf import run_frf
 from vehicle.signals.records.run_summary import available_summary
+from vehicle.signals.records.settling import settling_time
 
 Responses = Callable[[Sequence[str], float | None], FrfData | None]
 
@@ -26,6 +27,7 @@ class Simulated:
     # independent motion of the plates, or None
     responses: Responses
     tyres: str = ""  # state of the tyres, "standing" or "rolling at ..."; empty if unknown
+    settled: float = 0.0  # time after which the run, which begins at rest, follows a measurement in motion [s]
 
 
 def of_run(run: Run) -> Simulated:
@@ -35,7 +37,13 @@ def of_run(run: Run) -> Simulated:
         return frf_data(run.frfs(names, window=window), names)
 
     record = Record(time=run.time, channels=run.recording.channels, units=run.recording.units)
-    return Simulated(name=run.signal.source, record=record, responses=responses, tyres=run.car.vehicle.driving.words)
+    return Simulated(
+        name=run.signal.source,
+        record=record,
+        responses=responses,
+        tyres=run.car.vehicle.driving.words,
+        settled=run.skip or settling_time(run.signal.notices),
+    )
 
 
 def of_folder(folder: Path) -> Simulated:
@@ -58,4 +66,7 @@ def of_folder(folder: Path) -> Simulated:
         return run_frf(folder / "frf.csv", summary) if (folder / "frf.csv").is_file() else None
 
     tyres = summary.get("tyre", "") if summary else ""
-    return Simulated(name=folder.name, record=record, responses=responses, tyres=tyres)
+    settled = 0.0
+    if summary:
+        settled = float(summary.get("evaluated_s", [0.0])[0]) or settling_time(summary.get("notices", []))
+    return Simulated(name=folder.name, record=record, responses=responses, tyres=tyres, settled=settled)

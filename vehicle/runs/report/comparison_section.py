@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 from markupsafe import Markup
 
 from vehicle.digits import number
@@ -22,6 +23,9 @@ fill = templates(__file__)
 
 MANY = 6
 """Number of runs above which a run is a row of the tables, and pictures of single runs are few."""
+
+LEAST_SHIFT = 0.01
+"""Least relative difference of speed over wheelbase that is named: it moves a zero at 10 Hz by 0.1 Hz."""
 
 SIZE = (PAGE_WIDTH, 5.6)
 """Width and height of the figure of FRFs [inch]."""
@@ -108,7 +112,29 @@ def _notices(runs: Sequence[FinishedRun]) -> list[str]:
     for text in texts:
         names = [name for name, notices in of_runs.items() if text in notices]
         items.append(text if len(names) == len(runs) else f"{', '.join(names)}: {text}")
-    return items
+    return [*items, *wheelbase_words(runs)]
+
+
+def wheelbase_words(runs: Sequence[FinishedRun]) -> list[str]:
+    """Return a notice if the wheelbase filter of runs on roads differs: wheelbase l or speed v.
+
+    On equal tracks the wheels of an axle at a distance l follow after l/v, so the mean of both axles has zeros at odd
+    multiples of v/(2 l) and their difference has zeros at multiples of v/l (Gillespie, Fundamentals of Vehicle
+    Dynamics, chapter 5).
+    """
+    rates = {}
+    for run in runs:
+        speed, places = run.car.vehicle.driving.speed, [wheel.patch[0] for wheel in run.car.vehicle.composition.wheels]
+        if run.summary["input"].get("road") and speed > 0.0 and np.ptp(places) > 0.0:
+            rates[run.name] = speed / float(np.ptp(places))
+    if not rates or max(rates.values()) - min(rates.values()) <= LEAST_SHIFT * max(rates.values()):
+        return []
+    values = ", ".join(f"{name} {number(0.5 * rate)}" for name, rate in rates.items())
+    return [
+        "the rear wheels follow the front wheels after another time, because wheelbase or speed differ: gaps of bounce "
+        f"at odd multiples of half of speed over wheelbase ({values} Hz), of pitch at even ones, lie elsewhere in the "
+        "spectra and FRFs; differences there are no effect of the suspension"
+    ]
 
 
 def curves_over_each_other(runs: Sequence[FinishedRun]) -> Markup:

@@ -115,12 +115,12 @@ def told_apart(runs: Sequence[FinishedRun]) -> list[FinishedRun]:
 def _of_one(run: FinishedRun, modes: Modes, trial_part: Markup) -> list[Part]:
     """Return the sections of the report of a single run, with the given section for trials."""
     base = base_run(run)
-    single = answer([run], [modes]) + sections.tiles(run)
+    single = answer([run], [modes]) + warned([run]) + sections.tiles(run)
     # Beside the table of reactions; on the first screen of a run without FRFs.
     bands = comfort_bands(run, modes, 6.2 if run.responses else PAGE_WIDTH)
     if not run.responses:
         single, bands = single + bands, Markup()
-    changed = None if base is None else answer([base, run], [modes_of(base), modes])
+    changed = None if base is None else answer([base, run], [modes_of(base), modes]) + warned([base, run])
     parts = [
         ("Result", "result", explained(single if changed is None else changed)),
         ("This run", "alone", None if changed is None else single),
@@ -143,6 +143,17 @@ def _of_one(run: FinishedRun, modes: Modes, trial_part: Markup) -> list[Part]:
     return [(title, anchor, content) for title, anchor, content in parts if content is not None]
 
 
+def warned(runs: Sequence[FinishedRun]) -> Markup:
+    """Return a line with the last warning of the solver, as on the error outside the valid range of the engine."""
+    texts = {run.name: run.summary["solver"]["warnings"][-1] for run in runs if run.summary["solver"]["warnings"]}
+    if not texts:
+        return Markup()
+    name, others = next(iter(texts)), len(texts) - 1
+    more = f" and {others} more {'run' if others == 1 else 'runs'}" if others else ""
+    where = f" ({name}{more})" if len(runs) > 1 else ""
+    return Markup("<p>Warning{}: {}.</p>").format(where, texts[name])
+
+
 def _drawn(runs: Sequence[FinishedRun]) -> list[int]:
     """Return the indices of runs with pictures of their own: all; above `MANY` the first, the calmest, the loudest."""
     totals = [
@@ -163,8 +174,9 @@ def _of_several(
     few = fill("few_of_many", count=len(runs)) if len(shown) < len(runs) else Markup()
     # Runs on several inputs are compared on each of them.
     compared = shown if len({run.caption for run in runs}) == 1 else range(len(runs))
+    verdict = answer([runs[k] for k in compared], [modes[k] for k in compared]) + warned(runs)
     parts = [
-        ("Result", "result", few + explained(answer([runs[k] for k in compared], [modes[k] for k in compared]))),
+        ("Result", "result", few + explained(verdict)),
         *([("Film", "film", film_part(pair))] if pair is not None else []),
         ("Comparison of the runs", "comparison", numbers_beside(runs)),
         ("Frequency responses and spectra", "responses", curves_over_each_other(of_shown)),

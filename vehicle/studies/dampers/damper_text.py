@@ -64,7 +64,8 @@ def vehicle_lines(fitted: FittedDamper) -> str:
         force = _short(values.gas_stiffness * travel)
         lines.append(f"stop = {{ displacement = [{_short(-travel)}, {_short(travel)}], force = [-{force}, {force}] }}  "
                      f"# stiffness of the gas, {values.gas_stiffness:.4g} N/m, standard error "
-                     f"{number(spread['gas_stiffness'], 2)} N/m; add the bump stops of the car")  # fmt: skip
+                     f"{number(spread['gas_stiffness'], 2)} N/m; add the bump stops of the car, "
+                     "which the errors of this fit do not contain")  # fmt: skip
     if law.series:
         lines += [
             f"# series stiffness {values.series:.4g} N/m, standard error {number(spread['series_stiffness'], 2)} N/m:",

@@ -84,12 +84,14 @@ class Effects:
         name: comfort value, as "weighted".
         base: comfort value of the unchanged car, mean over the inputs [m/s2].
         without: parameters without effect.
+        inputs: number of inputs.
     """
 
     effects: tuple[Effect, ...]
     name: str
     base: float
     without: tuple[str, ...]
+    inputs: int = 1
 
     def __str__(self) -> str:
         """Return the printed table and the result in words."""
@@ -165,7 +167,9 @@ def effect_lines(effects: Effects) -> list[str]:
     lines = aligned([heads, *rows])
     if len(effects.effects) > len(rows):
         lines.append(f"and {len(effects.effects) - len(rows)} parameters with smaller effects in {EFFECTS}")
-    lines.append(f"change of {effects.name!r}, {effects.base:.4g} m/s2 of the unchanged car; {effects.error_words}")
+    over = f", means of {effects.inputs} inputs" if effects.inputs > 1 else ""
+    base = f"{effects.base:.4g} m/s2 of the unchanged car"
+    lines.append(f"change of {effects.name!r}, {base}{over}; {effects.error_words}")
     if effects.without:
         shown = ", ".join(effects.without[:3]) + (" ..." if len(effects.without) > 3 else "")
         lines.append(f"without effect here: {len(effects.without)} parameters ({shown})")

@@ -157,7 +157,7 @@ def effects_of(
     without: Sequence[str] = (),
     shift: float = SHIFT,
 ) -> Effects:
-    """Return the effects of the parameters of a sweep over `single_changes`, the mean over all inputs.
+    """Return the effects of the parameters of a sweep over `single_changes`, the mean change over all inputs.
 
     Args:
         table: the table.
@@ -172,9 +172,11 @@ def effects_of(
     rows = np.arange(len(table.cases)).reshape(inputs, -1)
     base = table.cases[0]
     vehicle = load_vehicle(base.vehicle, base.overrides[: base.shared])
-    means = table.column(name)[rows].mean(axis=0)
-    changes = 100.0 * (means / means[0] - 1.0)
-    widths = 100.0 * half_width(change_errors(table.rows(), rows.T.tolist(), name)[0]) / means[0]
+    values = table.column(name)[rows]
+    unchanged = values[:, :1]
+    # Each input counts by its relative change, so that a loud one does not outweigh the others.
+    changes = 100.0 * np.mean(values / unchanged - 1.0, axis=0)
+    widths = 100.0 * half_width(change_errors(table.rows(), rows.T.tolist(), name)[0] / unchanged.T)
     varied = [path for path in parameters if path not in without]
     effects = []
     for index, path in enumerate(varied):
@@ -192,4 +194,6 @@ def effects_of(
         )  # fmt: skip
     idle = [each.path for each in effects if each.largest <= 100.0 * ROUNDING]
     ranked = sorted((each for each in effects if each.path not in idle), key=lambda each: -each.largest)
-    return Effects(effects=tuple(ranked), name=name, base=float(means[0]), without=(*without, *idle))
+    return Effects(
+        effects=tuple(ranked), name=name, base=float(np.mean(unchanged)), without=(*without, *idle), inputs=inputs
+    )

@@ -6,6 +6,8 @@ import csv
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+import numpy as np
+
 from vehicle.errors import DataError
 from vehicle.model.parameters.ranges import Range
 from vehicle.runs.car import Car
@@ -29,7 +31,9 @@ QUANTITIES = (f"{SEAT_PREFIX}{WEIGHTED}", f"{SEAT_PREFIX}{UNWEIGHTED}", WEIGHTED
 def sobol(
     car: Car, vary: Mapping[str, tuple[float, float]], inputs: Source | Sequence[Source], settings: SobolSettings
 ) -> dict[str, SobolIndices]:
-    """Return the Sobol indices of comfort, the mean over all inputs, for parameters uniform between bounds.
+    """Return the Sobol indices of comfort for parameters uniform between bounds, the mean over all inputs.
+
+    Each input counts over its own mean over the sample.
 
     S1: share of the variance that a parameter explains alone; ST: with all its interactions. It takes
     base (p + 2) runs on each input, p the number of parameters. As `sweep`, a script must call this function below
@@ -68,7 +72,7 @@ def sobol_changes(ranges: Sequence[Range], base: int) -> RowChanges:
 
 
 def comfort_indices(table: SweptCases, ranges: Sequence[Range]) -> dict[str, SobolIndices]:
-    """Return the indices of each comfort value of a sweep over `sobol_changes`, the mean over all inputs.
+    """Return the indices of each comfort value of a sweep over `sobol_changes`: mean of the inputs, each over its mean.
 
     Args:
         table: the table.
@@ -81,7 +85,9 @@ def comfort_indices(table: SweptCases, ranges: Sequence[Range]) -> dict[str, Sob
     names = [name for name in QUANTITIES if name in table.units]
     try:
         # The inputs vary slowest.
-        means = [table.column(name).reshape(inputs, -1).mean(axis=0) for name in names]
+        tables = [table.column(name).reshape(inputs, -1) for name in names]
+        # Each input counts over its own mean, so that a loud one does not outweigh the others.
+        means = [np.mean(values / np.nanmean(values, axis=1, keepdims=True), axis=0) for values in tables]
         return {name: sobol_indices(ranges, mean) for name, mean in zip(names, means, strict=True)}
     except DataError as error:
         raise DataError(f"--sobol: {error}") from None

@@ -52,14 +52,14 @@ def sweep_page(
     cars = ranked_cars(table) if effects is None and results is None else None
     parts: list[tuple[str, str, Markup]] = []
     if cars is not None:
-        parts += [("Result", "result", _result(cars, caption)), ("Cars", "cars", _cars(cars))]
+        parts += [("Result", "result", _result(cars, caption, notes)), ("Cars", "cars", _cars(cars))]
     if effects is not None:
-        parts.append(("Result", "result", _effects(effects, caption)))
+        parts.append(("Result", "result", _effects(effects, caption, notes)))
     elif results is not None:
-        parts.append(("Result", "result", fill("cases", results=results)))
+        parts.append(("Result", "result", fill("cases", results=results, notes=notes)))
     if effects is None:
         parts.append(("All runs", "runs", _runs(table)))
-    parts.append(("How to repeat the sweep", "repeat", _repeating(cars, table, command, notes)))
+    parts.append(("How to repeat the sweep", "repeat", _repeating(cars, table, command)))
     inputs = ", ".join(str(source) for source in table.made.get("inputs", {}))
     counts = f"{len(table.cases)} runs, {len(table.failed)} failed"
     head = f"{name} on {inputs}; {counts}; {caption}"
@@ -86,15 +86,16 @@ def best_sentences(cars: RankedCars) -> list[str]:
     return [f"Most comfortable of {len(cars.order)} cars: {parameters(cars.best)}: {values(cars.best)}{against}.", base]
 
 
-def _result(cars: RankedCars, caption: str) -> Markup:
+def _result(cars: RankedCars, caption: str, notes: Sequence[str]) -> Markup:
     figure = Markup()
     if can_be_drawn(cars):
         figure = drawing(lambda path: draw_ranked(path, cars, caption), "Comfort over the varied parameters")
     definitions = [f"{cars.prefix}{name}: {MEANING[name]}" for name in (WEIGHTED, UNWEIGHTED)]
-    return fill("result", sentences=best_sentences(cars), figure=figure, definitions=definitions, cars=cars)
+    sentences = best_sentences(cars)
+    return fill("result", sentences=sentences, notes=notes, figure=figure, definitions=definitions, cars=cars)
 
 
-def _effects(effects: Effects, caption: str) -> Markup:
+def _effects(effects: Effects, caption: str, notes: Sequence[str]) -> Markup:
     figure = drawing(lambda path: effects.write_picture(path, caption), "Changes of comfort by single parameters")
     heads = ["parameter", "unit", "value", "low", "high", "change at low [%]", "change at high [%]", "± 95 % [%]"]
     rows = []
@@ -107,7 +108,8 @@ def _effects(effects: Effects, caption: str) -> Markup:
         rows.append(
             (each.path, each.unit, *(number(value, 4) for value in (each.value, each.low, each.high)), *changes, width)
         )
-    return fill("effects", sentence=effect_sentence(effects), figure=figure, heads=heads, rows=rows, effects=effects)
+    sentence = effect_sentence(effects)
+    return fill("effects", sentence=sentence, notes=notes, figure=figure, heads=heads, rows=rows, effects=effects)
 
 
 def _cars(cars: RankedCars) -> Markup:
@@ -146,7 +148,7 @@ def _runs(results: SweptCases) -> Markup:
     return fill("runs", heads=heads, rows=rows, runs=len(results.cases), parameters=len(paths), failed=results.failed)
 
 
-def _repeating(cars: RankedCars | None, results: SweptCases, command: str, notes: Sequence[str]) -> Markup:
+def _repeating(cars: RankedCars | None, results: SweptCases, command: str) -> Markup:
     best = ""
     if cars is not None and cars.paths:
         first, cells = results.cases[0], cars.cells[cars.best]
@@ -155,4 +157,4 @@ def _repeating(cars: RankedCars | None, results: SweptCases, command: str, notes
         best = " ".join(f"--set {shlex.quote(text)}" for text in base.with_(settings).overrides[first.shared :])
     engines = ", ".join(results.made.get("engines_asked", ()))
     program = results.made.get("program", "")
-    return fill("repeat_sweep", notes=notes, command=command, best=best, engines=engines, program=program)
+    return fill("repeat_sweep", command=command, best=best, engines=engines, program=program)

@@ -60,14 +60,16 @@ class SweptCases(Protocol):
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class RankedCars:
-    """Cars of a sweep with their comfort as the mean over all inputs.
+    """Cars of a sweep, ranked by the mean over all inputs of their weighted value over that of the first car.
 
     Attributes:
         prefix: prefix of the columns: `seat_` for the cushion, empty for the seat rail.
         paths: varied parameters.
         cells: values of the parameters of each car, as texts; (cars, paths).
-        weighted: weighted RMS (ISO 2631-1) at the point [m/s2], NaN if a run of the car failed; (cars,).
-        unweighted: unweighted RMS there, 2 to 50 Hz [m/s2]; (cars,).
+        weighted: weighted RMS (ISO 2631-1) at the point, mean over the inputs [m/s2], NaN if a run of the car failed;
+            (cars,).
+        relative: mean over the inputs of the weighted value over that of the first car on the same input [-]; (cars,).
+        unweighted: unweighted RMS there, 2 to 50 Hz, mean over the inputs [m/s2]; (cars,).
         seat_value: SEAT value [-]; (cars,), None for cars without a seat.
         order: cars with a value, most comfortable first.
         half_width: half width of the 95 % interval of each change from the first car [%], NaN without one; (cars,).
@@ -80,6 +82,7 @@ class RankedCars:
     paths: Sequence[str]
     cells: Sequence[Sequence[str]]
     weighted: Vector
+    relative: Vector
     unweighted: Vector
     seat_value: Vector | None
     order: Sequence[int]
@@ -95,7 +98,7 @@ class RankedCars:
 
     @property
     def best(self) -> int:
-        """Car with the lowest weighted value."""
+        """Car with the lowest relative value."""
         return self.order[0]
 
     @property
@@ -105,8 +108,8 @@ class RankedCars:
         return bool(np.ptp(values) <= ROUNDING * np.max(values))
 
     def change(self, car: int) -> float:
-        """Return the change of the weighted value from the first car [%]; NaN without a value of the first car."""
-        return 100.0 * (float(self.weighted[car]) / float(self.weighted[0]) - 1.0)
+        """Return the mean change of the weighted value from the first car [%]; NaN without a value of the first car."""
+        return 100.0 * (float(self.relative[car]) / float(self.relative[0]) - 1.0)
 
     @property
     def doubt(self) -> str:
@@ -168,17 +171,19 @@ def ranked_cars(table: SweptCases) -> RankedCars | None:
         np.array([float(np.mean(column[numbers])) for numbers in cars.values()])
         for column in map(table.column, (ranked_by, f"{prefix}{UNWEIGHTED}", *([SEAT_VALUE] if prefix else [])))
     )
-    order = [int(car) for car in np.argsort(weighted, kind="stable") if math.isfinite(weighted[car])]
+    rows_of_cars, values = list(cars.values()), table.column(ranked_by)
+    relative = _relative(values, [case.source for case in table.cases], rows_of_cars)
+    order = [int(car) for car in np.argsort(relative, kind="stable") if math.isfinite(relative[car])]
     if not order:
         return None
-    rows_of_cars = list(cars.values())
     errors, events = change_errors(table.rows(), rows_of_cars, ranked_by)
-    widths = 100.0 * half_width(errors) / weighted[0]
+    widths = 100.0 * half_width(errors / values[rows_of_cars[0]])
     return RankedCars(
         prefix=prefix,
         paths=names,
         cells=list(cars),
         weighted=weighted,
+        relative=relative,
         unweighted=unweighted,
         seat_value=seat_values[0] if seat_values else None,
         order=order,
@@ -187,6 +192,22 @@ def ranked_cars(table: SweptCases) -> RankedCars | None:
         inputs=len({case.source for case in table.cases}),
         units={path: unit_of_override(vehicle, path) for path in names},
     )
+
+
+def _relative(values: Vector, sources: Sequence[object], rows_of_cars: Sequence[Sequence[int]]) -> Vector:
+    """Return the mean over the inputs of the values of each car over those of the first car, (cars,).
+
+    An input counts by its relative change, so that a loud one does not outweigh the others. Where the first car failed,
+    the mean of the other cars takes its place.
+    """
+    scale = {}
+    for source in set(sources):
+        rows = [row for row, each in enumerate(sources) if each == source]
+        first = float(np.mean(values[[row for row in rows_of_cars[0] if sources[row] == source]]))
+        others = values[rows][np.isfinite(values[rows])]
+        scale[source] = first if math.isfinite(first) else float(np.mean(others)) if others.size else math.nan
+    over = values / np.array([scale[source] for source in sources])
+    return np.array([float(np.mean(over[list(rows)])) for rows in rows_of_cars])
 
 
 def ranking_lines(cars: RankedCars) -> list[str]:
@@ -213,7 +234,7 @@ def ranking_lines(cars: RankedCars) -> list[str]:
     left = len(cars.order) - len(shown)
     if left > 0:
         lines.append(f"and {left} more cars in table.csv")
-    over = f", mean of {cars.inputs} inputs" if cars.inputs > 1 else ""
+    over = f", mean of {cars.inputs} inputs; change: mean of the changes on each" if cars.inputs > 1 else ""
     definitions = ", ".join(f"{cars.prefix}{name}: {MEANING[name]}" for name in (WEIGHTED, UNWEIGHTED))
     lines.append("; ".join(filter(None, (definitions, f"{cars.point}{over}", cars.error_words))))
     best = ", ".join(f"{path} = {cell}" for path, cell in zip(cars.paths, cars.cells[cars.best], strict=True))

@@ -128,15 +128,24 @@ class TuningResult:
         """Return group of channels to fitted delay of a measurement [s]."""
         return {delay.group: self.solution[delay.path] for delay in self.delays if delay.target == target}
 
-    def deviation_of_u(self, path: str) -> float:
-        """Return the standard error of the coordinate u of an unknown [-]: relative for a parameter."""
+    @cached_property
+    def errors(self) -> dict[str, float]:
+        """Path to the standard error that is stated beside the value: that from noise and misfit."""
+        return {**self.standard_errors, **self.misfit_errors}
+
+    def deviation_of_u(self, path: str, errors: Mapping[str, float] | None = None) -> float:
+        """Return the standard error of the coordinate u of an unknown [-]: relative for a parameter.
+
+        Args:
+            path: path of the unknown.
+            errors: standard errors in the unit of the unknown; by default those from noise alone.
+        """
         unknown = next(each for each in self.unknowns if each.path == path)
-        return self.standard_errors[path] / unknown.slope(self.solution[path])
+        return (errors or self.standard_errors)[path] / unknown.slope(self.solution[path])
 
     def __repr__(self) -> str:
         """Return the fitted values with their standard errors in a line."""
-        errors = self.standard_errors
-        values = [f"{path} {value:.5g} +- {number(errors[path], 2)}" for path, value in self.solution.items()]
+        values = [f"{path} {value:.5g} +- {number(self.errors[path], 2)}" for path, value in self.solution.items()]
         return f"TuningResult({'; '.join(values)})"
 
     def deviation(self, path: str, value: float) -> float:

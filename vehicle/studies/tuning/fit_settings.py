@@ -99,7 +99,8 @@ class HistorySettings(ReadingSettings):
 
     drift: float = setting("how much the clock of the record is slow [-]", 0.0)
     stretch: tuple[float, float] | None = setting(
-        "part of the signal to fit [s]; default: the whole record, on a road from 2 s on",
+        "part of the record to fit, in times of the file, as --from and --to [s]; default: the whole record, on a "
+        "road from 2 s on",
         type=pair("--stretch", "FROM:TO in s, as 4.9:6.5"),
         metavar="FROM:TO",
     )

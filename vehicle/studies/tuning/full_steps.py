@@ -90,6 +90,11 @@ def full_steps(
                 unknown.path: relative.get(unknown.path, float("nan")) * unknown.slope(values[unknown.path])
                 for unknown in result.unknowns
             },
+            misfit_errors={
+                unknown.path: result.deviation_of_u(unknown.path, result.errors) * unknown.slope(values[unknown.path])
+                for unknown in result.unknowns
+                if unknown.path in result.misfit_errors
+            },
             rows=tuple(
                 row
                 for target, rows in zip(targets, residuals, strict=True)

@@ -50,7 +50,7 @@ def what_data_leave_open(result: TuningResult) -> tuple[str, ...]:
             f"{path} ran into your {side} limit of {value:.6g}, so without a standard error. Either the limit is too "
             "tight, or the data do not fit this model"
         )
-    relative = {path: result.deviation_of_u(path) for path in result.free}
+    relative = {path: result.deviation_of_u(path, result.errors) for path in result.free}
     # A product, a ratio or a percentage of a delay or of a coordinate has no meaning.
     linear = {each.path for each in result.delays} | {each.path for each in result.parameters if each.is_linear}
     for (i, first), (j, second) in combinations(enumerate(result.free), 2):

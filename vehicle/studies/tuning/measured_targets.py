@@ -22,6 +22,7 @@ from vehicle.signals.records.counterpart import Counterpart, clock_advice, count
 from vehicle.signals.records.delays import split_delay
 from vehicle.signals.records.measured import Measured, read_measured
 from vehicle.signals.records.resampled import at_times
+from vehicle.signals.records.settling import settling_time
 from vehicle.studies.tuning.fit_result import LEAST_VALUES
 from vehicle.studies.tuning.fit_settings import HistorySettings, LevelSettings, ReadingSettings, ResponseSettings
 from vehicle.studies.tuning.frf_target import FrfTarget, motions_of, to_driven_plates
@@ -36,10 +37,6 @@ of a road to be nearly constant."""
 
 AFTER = 5.0
 """Length of the run after the compared part, in periods of the low-pass frequency: the filter then forgets to 1e-5."""
-
-SETTLED = 2.0
-"""Time after which a car that began at rest on a moving plate follows the measured one [s], as for runs on a road: four
-periods of the body bounce near 2 Hz."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -197,7 +194,14 @@ def _histories(
         )
     window, more = (float(grid[inside[0]]), float(grid[inside[-1]])), list[str]()
     if stretch is not None:
-        window = (max(stretch[0], window[0]), min(stretch[1], window[1]))
+        # From the times of the file to those of the signal.
+        asked_for = [float(times[0] + (t - held.time[0]) * (1.0 + settings.drift)) for t in stretch]
+        if asked_for[0] >= window[1] or asked_for[1] <= window[0]:
+            raise DataError(
+                f"{path}: --stretch {stretch[0]:g}:{stretch[1]:g} is outside the record, which has "
+                f"{held.time[0]:.6g} to {held.time[-1]:.6g} s; set times of the file"
+            )
+        window = (max(asked_for[0], window[0]), min(asked_for[1], window[1]))
     elif settled > window[0]:
         window = (settled, window[1])
         more = [f"begins in motion: the first {settled:g} s are left out; --stretch FROM:TO sets other times"]
@@ -247,8 +251,7 @@ def _driven_input(
         drive = settings.signal.under(car.vehicle, car.overrides)
         return drive.signal(), RoadCar(start=car, rolling=car.with_(drive.overrides)), drive.skip
     signal = plate_signal(settings.signal, car, path, measured, asked, settings.inverted, plates)
-    from_motion = settings.signal is None and any("half-cosine ramp" in text for text in signal.notices)
-    return signal, None, SETTLED if from_motion else 0.0
+    return signal, None, settling_time(signal.notices) if settings.signal is None else 0.0
 
 
 def _beside_run(target: RecordTarget, car: Car, held: Record, times: Vector) -> list[Counterpart]:

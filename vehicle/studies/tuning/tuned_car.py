@@ -172,8 +172,8 @@ class TunedCar:
                     "path": parameter.path,
                     "unit": unit_of(vehicle, parameter.path),
                     "value": result.values[parameter.path],
-                    "standard_error": known(result.standard_errors[parameter.path]),
-                    "misfit_error": known(result.misfit_errors.get(parameter.path)),
+                    "standard_error": known(result.errors[parameter.path]),
+                    "noise_error": known(result.standard_errors[parameter.path]),
                     "half_sample_shift": known(result.lag_shifts.get(parameter.path)),
                     "start": parameter.start,
                     "low": parameter.low,
@@ -186,8 +186,8 @@ class TunedCar:
                     "measurement": self.measurements[delay.target].target.name,
                     "group": delay.group,
                     "delay_s": result.solution[delay.path],
-                    "standard_error_s": known(result.standard_errors[delay.path]),
-                    "misfit_error_s": known(result.misfit_errors.get(delay.path)),
+                    "standard_error_s": known(result.errors[delay.path]),
+                    "noise_error_s": known(result.standard_errors[delay.path]),
                 }
                 for delay in result.delays
             ],

@@ -73,7 +73,7 @@ def _result(tuned: TunedCar, figures: Mapping[str, Callable[[Path], None]]) -> M
     result, vehicle = tuned.result, tuned.start.vehicle
     changes = []
     for parameter in result.parameters[:MOST_NAMED]:
-        value, error = result.values[parameter.path], result.standard_errors[parameter.path]
+        value, error = result.values[parameter.path], result.errors[parameter.path]
         unit = unit_of(vehicle, parameter.path)
         spread = f" ± {number(error, 2)}" if math.isfinite(error) else ""
         start = number(parameter.start, 4)
@@ -114,14 +114,14 @@ def _values(tuned: TunedCar) -> Markup:
     result, vehicle = tuned.result, tuned.start.vehicle
     rows = []
     for parameter in result.parameters:
-        value, error = result.values[parameter.path], result.standard_errors[parameter.path]
+        value, error = result.values[parameter.path], result.errors[parameter.path]
         rows.append(
             (
                 parameter.path,
                 unit_of(vehicle, parameter.path),
                 number(value, 5),
                 *(number(known(each), 2) for each in (error, parameter.percent(error, value))),
-                *(number(known(each.get(parameter.path)), 2) for each in (result.misfit_errors, result.lag_shifts)),
+                *(number(known(each.get(parameter.path)), 2) for each in (result.standard_errors, result.lag_shifts)),
                 number(parameter.start, 5),
                 number(known(parameter.percent(value - parameter.start, parameter.start)), 3),
                 f"{number(parameter.low, 5)} to {number(parameter.high, 5)}",

@@ -18,7 +18,7 @@ def value_lines(result: TuningResult, vehicle: Vehicle) -> list[str]:
     width = max((len(parameter.path) for parameter in result.parameters), default=0)
     lines = []
     for parameter in result.parameters:
-        value, error = result.values[parameter.path], result.standard_errors[parameter.path]
+        value, error = result.values[parameter.path], result.errors[parameter.path]
         spread = f"+- {number(error, 2)}" if math.isfinite(error) else "without a standard error"
         percent = parameter.percent(error, value)
         share = f" ({number(percent, 2)} %)" if math.isfinite(percent) else ""
@@ -59,7 +59,7 @@ def delay_lines(tuned: TunedCar) -> list[str]:
     """Return a line for each fitted delay."""
     result, lines = tuned.result, []
     for delay in result.delays:
-        value, error = 1e3 * result.solution[delay.path], 1e3 * result.standard_errors[delay.path]
+        value, error = 1e3 * result.solution[delay.path], 1e3 * result.errors[delay.path]
         target = tuned.measurements[delay.target].target
         digits = min(max(1 - math.floor(math.log10(error)), 0), 4) if 0.0 < error < math.inf else 3
         spread = f"{abs(value):.{digits}f}" + (f" +- {error:.{digits}f}" if math.isfinite(error) else "") + " ms"
@@ -78,19 +78,22 @@ def delay_lines(tuned: TunedCar) -> list[str]:
 
 
 def source_lines(result: TuningResult, vehicle: Vehicle) -> list[str]:
-    """Return the table of what the standard errors hold, and of what else would move the values."""
+    """Return the table of the causes in the stated standard errors, and of what else would move the values."""
     free = [parameter.path for parameter in result.parameters if parameter.path in result.free]
     if not free:
         return []
     names = [f"{path} [{unit_of(vehicle, path)}]" for path in free]
     width = max(48, *map(len, names))
-    lines = [f"{'standard error from':<{width}} {'noise':>9} {'and misfit':>11} {'shift by half a sample of lag':>30}"]
+    lines = [
+        f"{'standard error from':<{width}} {'noise and misfit':>16} {'noise alone':>12} "
+        f"{'shift by half a sample of lag':>30}"
+    ]
     for name, path in zip(names, free, strict=True):
         lag = result.lag_shifts[path]
         shift = number(lag, 2) if math.isfinite(lag) else "-"
         lines.append(
-            f"{name:<{width}} {number(result.standard_errors[path], 2):>9} "
-            f"{number(result.misfit_errors[path], 2):>11} {shift:>30}"
+            f"{name:<{width}} {number(result.errors[path], 2):>16} "
+            f"{number(result.standard_errors[path], 2):>12} {shift:>30}"
         )
     return lines
 
