@@ -160,7 +160,7 @@ def examine(car: Car, *, quick: bool, engine: str) -> Found:
         for level in levels:
             signal = four_post(motion, factor=level, duration=duration)
             run = car.run(signal, engine=engine, channels=[name for name in car.vehicle.channels if name in recorded])
-            to = {}
+            to: dict[str, float] = {}
             if level in (levels[0], levels[-1]):
                 responses[motion, level] = run.frf(asked)
                 to = {state: distance_db(responses[motion, level], exact[motion, state]) for state in STATES}
