@@ -123,7 +123,7 @@ def swept(
     table = sweep(cases, measure, jobs=jobs, folder=folder)
     for case, reason in table.failed[:1]:
         raise SimulationError(f"{case.label}: {reason}; {len(table.failed)} of {len(cases)} runs failed")
-    values = [result.values for result in table.results]
+    values: list[Mapping[str, float]] = [result.values for result in table.results]
     if folder is not None:
         # They served an interrupted study; a finished one must not read them when the program has changed.
         (folder / ROWS).unlink()

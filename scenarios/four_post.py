@@ -360,9 +360,9 @@ def response_figure(path: Path, examined: Found, caption: str) -> None:
                 for state, (colour, style) in STATES.items():
                     size = transmissibility(LINES, examined.exact[motion, state][row])
                     axis.plot(LINES, size, color=colour, linestyle=style, label=f"matrices, dampers {state}")
-                for (level, response), colour, style in zip(shown.items(), COLOURS, STYLES, strict=False):
+                for (level, response), colour, line in zip(shown.items(), COLOURS, STYLES, strict=False):
                     size = transmissibility(response.frequency, response.response[row])
-                    look = {"color": colour, "linestyle": style, "linewidth": 1.0, "label": level_words(level)}
+                    look = {"color": colour, "linestyle": line, "linewidth": 1.0, "label": level_words(level)}
                     axis.plot(response.frequency, size, **look)
                 axis.set(xscale="log", yscale="log", xlim=(1.0, 40.0))
                 axis.set_title(f"{motion}: {channel.replace('_acc_', ', ').replace('_', ' ')}")
