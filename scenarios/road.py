@@ -177,7 +177,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     quick = options.quick
     if options.records is not None and options.records < 1:
         raise ConfigurationError(f"--records {options.records}: must be at least 1; an error needs at least 2")
-    files = CARS if runs.vehicle is None else {runs.car().vehicle.name: runs.vehicle}
+    files: Mapping[str, str | Path] = CARS if runs.vehicle is None else {runs.car().vehicle.name: runs.vehicle}
     rides = Rides(
         {name: Car.load(vehicle_file(file), runs.overrides) for name, file in files.items()},
         engine=runs.engine,
