@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -213,7 +213,7 @@ def order_points_at(
     chosen = angle or (CRANK if len(rpm) else None)
     if len(rpm) and chosen != CRANK:
         raise ConfigurationError(f"orders: {chosen} does not turn with the crankshaft; give speeds of the car")
-    drive, results = 3.6 * car.vehicle.driving.speed, list[list[_Point]]()
+    drive, results = 3.6 * car.vehicle.driving.speed, list[list[OrderPoints]]()
     # Channel and order to the largest amplitude, the car there, and the share of its time in slip.
     largest: dict[tuple[int, int], tuple[float, Car, float]] = {}
     for value in points:
@@ -221,11 +221,11 @@ def order_points_at(
             run = _run(car.with_({"crank.rpm": float(value)}), surface, drive, duration, engine, names)
         else:
             run = _run(car, surface, float(value), duration, engine, names)
-        results.append([_point(run, name, chosen, orders) for name in names])
+        results.append([_point(run, float(value), name, chosen, orders) for name in names])
         for channel, point in enumerate(results[-1]):
-            for order, size in enumerate(np.abs(point.amplitude).tolist()):
+            for order, size in enumerate(np.abs(point.amplitude[:, 0]).tolist()):
                 if size > largest.get((channel, order), (-1.0, run.car, 0.0))[0]:
-                    largest[channel, order] = size, run.car, point.slip
+                    largest[channel, order] = size, run.car, float(point.slip[0])
         if len(results) == 1 and not any(
             results[0][0].angle in (force.law.angle, force.name) for force in run.car.vehicle.composition.forces
         ):
@@ -234,57 +234,29 @@ def order_points_at(
                 "[engine.orders], [front.imbalance] or [force.NAME] to the vehicle file"
             )
     joined = []
-    for channel, name in enumerate(names):
+    for channel, each in enumerate(zip(*results, strict=True)):
         tops = (largest[channel, order] for order in range(len(orders)))
-        parts = [_main_modes(there, name, results[0][0].angle, order, slip < 0.5)
+        parts = [_main_modes(there, each[0].channel, each[0].angle, order, slip < 0.5)
                  for order, (_, there, slip) in zip(orders, tops, strict=True)]  # fmt: skip
-        each = [points_of[channel] for points_of in results]
-        joined.append(_joined(run, name, points, np.array(orders, dtype=float), each, tuple(parts)))
+        joined.append(_joined(each, run, tuple(parts)))
     return tuple(joined)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class _Point:
-    """Values of one run; see `OrderPoints`."""
-
-    angle: str
-    turns: float
-    amplitude: Complex
-    error: Vector
-    stuck: Vector
-    free: Vector
-    slip: float
-    frequency: Vector
-    spectrum: Vector
-
-
-def _joined(
-    run: Run,
-    name: str,
-    points: Vector,
-    orders: Vector,
-    results: Sequence[_Point],
-    parts: tuple[tuple[NamedMode, ...], ...],
-) -> OrderPoints:
+def _joined(results: Sequence[OrderPoints], run: Run, parts: tuple[tuple[NamedMode, ...], ...]) -> OrderPoints:
     """Return the amplitudes of a channel at all points; `run` is the last of them."""
-    first, turns = results[0], np.array([point.turns for point in results])
-    highest, lowest = 1.1 * float(np.max(turns)) * orders.max(), 0.9 * float(np.min(turns)) * orders.min()
+    first, turns = results[0], np.concatenate([point.turns for point in results])
+    highest, lowest = 1.1 * float(np.max(turns)) * first.orders.max(), 0.9 * float(np.min(turns)) * first.orders.min()
     shown = first.frequency <= highest
-    return OrderPoints(
-        angle=first.angle,
-        points=points,
-        turns=turns,
-        orders=orders,
-        channel=name,
-        unit="m/s2",
-        amplitude=np.array([point.amplitude for point in results]).T,
-        error=np.array([point.error for point in results]).T,
-        stuck=np.array([point.stuck for point in results]).T,
-        free=np.array([point.free for point in results]).T,
-        slip=np.array([point.slip for point in results]),
+    columns = {
+        name: np.concatenate([getattr(point, name) for point in results], axis=-1)
+        for name in ("points", "turns", "amplitude", "error", "stuck", "free", "slip")
+    }
+    return replace(
+        first,
+        **columns,
         frequency=first.frequency[shown],
-        spectrum=np.array([point.spectrum[shown] for point in results]),
-        modes=_excited_modes(run, name, lowest, highest),
+        spectrum=np.concatenate([point.spectrum[:, shown] for point in results]),
+        modes=_excited_modes(run, first.channel, lowest, highest),
         parts=parts,
     )
 
@@ -294,8 +266,8 @@ def _run(car: Car, surface: str, speed: float, duration: float, engine: str, nam
     return car.run(Road(surface, speed, duration=duration), engine=engine, channels=channels)
 
 
-def _point(run: Run, channel: str, angle: str | None, orders: Sequence[float]) -> _Point:
-    """Return the values of one run."""
+def _point(run: Run, point: float, channel: str, angle: str | None, orders: Sequence[float]) -> OrderPoints:
+    """Return the amplitudes of one run, without modes and parts."""
     vehicle = run.car.vehicle
     angle_name, speed = vehicle.composition.turning(angle)
     turns = speed / (2.0 * np.pi)
@@ -306,18 +278,24 @@ def _point(run: Run, channel: str, angle: str | None, orders: Sequence[float]) -
         of_forces = forced_response(run.car.matrices, [channel], dampers, stuck=stuck)
         amplitudes = np.abs(of_forces.sum(axis=0)[0])
         columns = [_line(run.car, order * speed) for order in orders]
-        limits.append(np.array([amplitudes[each[0]] if each.size else np.nan for each in columns]))
+        limits.append(np.array([[amplitudes[each[0]] if each.size else np.nan] for each in columns]))
     frequency, spectrum = _amplitudes(run[channel][run.evaluated], run.recording.timestep)
-    return _Point(
+    return OrderPoints(
         angle=angle_name,
-        turns=turns,
-        amplitude=lines.amplitude[0],
-        error=lines.error[0],
+        points=np.array([point]),
+        turns=np.array([turns]),
+        orders=np.array(orders, dtype=float),
+        channel=channel,
+        unit="m/s2",
+        amplitude=lines.amplitude.T,
+        error=lines.error.T,
         stuck=limits[0],
         free=limits[1],
-        slip=max((run.slip_share(wheel) for wheel in vehicle.damped_wheels), default=0.0),
+        slip=np.array([max((run.slip_share(wheel) for wheel in vehicle.damped_wheels), default=0.0)]),
         frequency=frequency,
-        spectrum=spectrum,
+        spectrum=spectrum[None],
+        modes=(),
+        parts=(),
     )
 
 
