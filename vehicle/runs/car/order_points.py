@@ -247,7 +247,7 @@ def _joined(results: Sequence[OrderPoints], run: Run, parts: tuple[tuple[NamedMo
     first, turns = results[0], np.concatenate([point.turns for point in results])
     highest, lowest = 1.1 * float(np.max(turns)) * first.orders.max(), 0.9 * float(np.min(turns)) * first.orders.min()
     shown = first.frequency <= highest
-    columns = {
+    columns: dict[str, Any] = {
         name: np.concatenate([getattr(point, name) for point in results], axis=-1)
         for name in ("points", "turns", "amplitude", "error", "stuck", "free", "slip")
     }
