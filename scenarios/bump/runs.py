@@ -173,21 +173,20 @@ POINTS = (*BODY, "suspension_mount_fr", "suspension_mount_fl", "engine")
 """Points whose ring-down times are reported."""
 
 
-def ring_down_time(time: Vector, motion: Vector, end: float, share: float = RUNG_DOWN) -> float:
-    """Return the time from the end of a bump until |motion| last exceeds a share of its largest value after the bump.
+def ring_down_time(time: Vector, motion: Vector, end: float) -> float:
+    """Return the time from the end of a bump until |motion| last exceeds `RUNG_DOWN` of its largest value after it.
 
     Args:
         time: [s], (n,).
         motion: free of other excitation, (n,).
         end: of the bump [s].
-        share: of the largest value [-].
 
     Returns:
         [s]; NaN where the motion still exceeds it within the last tenth of the record, which is then too short.
     """
     after = time >= end
     size = np.abs(motion[after])
-    last = float(time[after][np.flatnonzero(size > share * np.max(size))[-1]])
+    last = float(time[after][np.flatnonzero(size > RUNG_DOWN * np.max(size))[-1]])
     return last - end if last < end + 0.9 * (float(time[-1]) - end) else float("nan")
 
 

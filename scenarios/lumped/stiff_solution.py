@@ -202,11 +202,7 @@ def switch_solution(
     law: Switch,
     time: npt.ArrayLike,
     *,
-    road: InputSignal | tuple[InputSignal, ...] | None = None,
     force: InputSignal | None = None,
-    initial: npt.ArrayLike | None = None,
-    relative: float = 1e-6,
-    longest_step: float = 1e-3,
     max_evaluations: int = MAX_EVALUATIONS,
 ) -> History:
     """Solve x' = alpha f+ + (1 - alpha) f- with the mixing factor alpha of the switch model.
@@ -217,9 +213,7 @@ def switch_solution(
     Args:
         model: a single model with one sliding pair that does not depend on the road velocity.
         law: Coulomb limit, stick band and return time.
-        time, road, force, initial: see `stiff_solution`.
-        relative: relative tolerance of the solver; the absolute one of velocities is a hundredth of the band.
-        longest_step: maximum step of the solver [s].
+        time, force: see `stiff_solution`.
         max_evaluations: maximum number of evaluations of the equations; a chattering law would need too many.
 
     Returns:
@@ -237,7 +231,7 @@ def switch_solution(
         )
     if max_evaluations < 1:
         raise ConfigurationError(f"max_evaluations: found {max_evaluations!r}, must be at least 1")
-    case = Driven(model, time, road=road, force=force, initial=initial)
+    case = Driven(model, time, road=None, force=force, initial=None)
     row, effect, limit, band = model.slide[0], model.friction[:, 0], float(law.limit), float(law.band)
 
     def friction(t: float, x: Vector) -> tuple[Vector, float]:
@@ -259,5 +253,5 @@ def switch_solution(
 
     # Tolerance of displacements: a thousandth of the velocity of the band over a millisecond.
     absolute = Tolerances(displacement=1e-6 * band, velocity=1e-2 * band, force=1e-2 * band).absolute(model)
-    options = {"rtol": relative, "atol": absolute, "max_step": longest_step}
+    options = {"rtol": 1e-6, "atol": absolute, "max_step": 1e-3}
     return case.solved(slope, lambda t, x: np.array([friction(t, x)[1]]), method="LSODA", **options)

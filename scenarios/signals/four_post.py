@@ -38,17 +38,13 @@ def level_rms() -> float:
     return float(np.sqrt(density * (1.0 / LOWEST_HZ - 1.0 / HIGHEST_HZ)))
 
 
-def four_post(
-    name: str, *, factor: float = 1.0, duration: float = DURATION_S, rate: float = RATE_HZ, seed: int = SEED
-) -> Signal:
+def four_post(name: str, *, factor: float = 1.0, duration: float = DURATION_S) -> Signal:
     """Generate displacements of four plates with constant velocity PSD, from rest to rest.
 
     Args:
         name: "heave", "pitch", "roll", "warp": a noise times the factors of `MOTIONS`; or "four_plates".
         factor: factor on the level of `level_rms`.
         duration: length [s].
-        rate: sampling rate [Hz].
-        seed: seed of the generator.
 
     Raises:
         ConfigurationError: unknown motion, or a parameter out of range, see `random_road`.
@@ -59,10 +55,10 @@ def four_post(
     def noise(wheel: str, number: int) -> Signal:
         return random_road(
             rms=factor * level_rms(),
-            seed=seed + number,
+            seed=SEED + number,
             wheel=wheel,
             duration=duration,
-            rate=rate,
+            rate=RATE_HZ,
             lower_band_edge=LOWEST_HZ,
             upper_band_edge=HIGHEST_HZ,
         )

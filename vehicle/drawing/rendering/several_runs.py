@@ -15,7 +15,6 @@ def plot_responses(
     runs: Mapping[str, tuple[RecordedRun, FrequencyResponse]],
     channels: Mapping[str, str],
     title: str = "",
-    caption: str = "",
     size: tuple[float, float] = (13.0, 7.6),
 ) -> None:
     """Plot FRFs of several runs over each other, with a column for each channel.
@@ -24,7 +23,7 @@ def plot_responses(
         runs: name to run and FRFs of all its acceleration channels.
         channels: channel recorded in all runs to the title of its column.
     """
-    with saved_figure(path, size, title, wrapped(f"{caption}; {FADED}" if caption else FADED, size[0])) as figure:
+    with saved_figure(path, size, title, wrapped(FADED, size[0])) as figure:
         axes = figure.subplots(
             3, len(channels), sharex=True, sharey="row", height_ratios=(2.2, 1.0, 0.9), squeeze=False
         )

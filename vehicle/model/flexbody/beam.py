@@ -65,13 +65,12 @@ def local_stiffness(length: float, section: BeamSection) -> Vector:
     return k
 
 
-def local_axes(start: ArrayLike, end: ArrayLike, reference: ArrayLike = (0.0, 0.0, 1.0)) -> Vector:
-    """Return the local axes of a beam: x along the beam, z the reference direction made perpendicular to x.
+def local_axes(start: ArrayLike, end: ArrayLike) -> Vector:
+    """Return the local axes of a beam: x along it, z the global z, or x for a vertical beam, made perpendicular to x.
 
     Args:
         start: position of the first node [m], shape (3,).
         end: position of the second node [m], shape (3,).
-        reference: direction near the local z axis; for a beam parallel to the reference, global x replaces it.
 
     Returns:
         Rotation with the local axes as rows, shape (3, 3): local = rotation @ global.
@@ -86,9 +85,8 @@ def local_axes(start: ArrayLike, end: ArrayLike, reference: ArrayLike = (0.0, 0.
             f"beam: both ends are at {np.asarray(start).tolist()} m; they must be different points."
         )
     x = along / length
-    up = np.asarray(reference, dtype=float)
-    y = _cross(up, x)
-    if np.linalg.norm(y) < _PARALLEL * np.linalg.norm(up):
+    y = _cross(np.array([0.0, 0.0, 1.0]), x)
+    if np.linalg.norm(y) < _PARALLEL:
         y = _cross(np.array([1.0, 0.0, 0.0]), x)
     y /= np.linalg.norm(y)
     return np.stack([x, y, _cross(x, y)])  # (3, 3)

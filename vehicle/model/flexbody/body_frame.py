@@ -60,14 +60,10 @@ class BodyFrame:
             stiffness += factors[group] * matrix
         return stiffness
 
-    def superelement(self, factors: Mapping[str, float] | None = None) -> Superelement:
-        """Return the modal superelement of the frame.
-
-        Args:
-            factors: factor of every member group [1]; by default the factors of the design.
-        """
+    def superelement(self) -> Superelement:
+        """Return the modal superelement of the frame."""
         skeleton, count = self.skeleton, int(self.design.mode_count)
-        factors = self.design.factors if factors is None else factors
+        factors = self.design.factors
         frequencies, shapes = self.modes(factors, count)
         rotations = {}
         if self.design.node_rotations:

@@ -58,20 +58,19 @@ def obstacle_values(run: Run) -> ObstacleSummary | None:
     }
 
 
-def settling_time(time: Vector, values: Vector, after: float, share: float = SETTLED) -> float | None:
-    """Return the time after which |values| stays within a share of its peak [s]; None if the last quarter exceeds it.
+def settling_time(time: Vector, values: Vector, after: float) -> float | None:
+    """Return the time after which |values| stays within `SETTLED` of its peak [s]; None if the last quarter exceeds it.
 
     Args:
         time: times [s], (n,).
         values: history, (n,).
         after: time from which it is counted [s].
-        share: share of the peak [-].
 
     Returns:
         The time, 0 if the values are within the share from `after` on.
     """
     size = np.abs(values)
-    outside = np.flatnonzero(size > share * size.max())
+    outside = np.flatnonzero(size > SETTLED * size.max())
     last = float(time[outside[-1]]) if outside.size else after
     if last > time[-1] - 0.25 * (time[-1] - after):
         return None

@@ -103,21 +103,18 @@ def _of(orders: OrderPoints) -> str:
     return "the crankshaft" if orders.angle == CRANK else orders.angle.replace("_", " ")
 
 
-def order_page(
-    channels: Sequence[OrderPoints], name: str, caption: str, *, command: str, author: str = "", project: str = ""
-) -> str:
+def order_page(channels: Sequence[OrderPoints], name: str, caption: str, *, command: str) -> str:
     """Return the report of orders over speed as one HTML document.
 
     Args:
         channels: the amplitudes of each channel; at least two points.
         caption: road, length of the runs and engine.
         command: command line that made them.
-        author, project: names in the head of the page; may be empty.
     """
     repeat = Markup("<p>{}</p><pre>{}</pre>").format(caption, command)
     parts = [_part(orders, name, caption, several=len(channels) > 1) for orders in channels]
     parts.append(("How to repeat it", "repeat", repeat))
-    return document(f"Orders of {name}", (f"{name}; {caption}", head_line(author, project)), parts)
+    return document(f"Orders of {name}", (f"{name}; {caption}", head_line()), parts)
 
 
 def _part(orders: OrderPoints, name: str, caption: str, *, several: bool) -> tuple[str, str, Markup]:

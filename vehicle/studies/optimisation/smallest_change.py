@@ -102,13 +102,7 @@ class _Cars:
 
 
 def smallest_change(
-    excesses: Excesses,
-    low: Vector,
-    high: Vector,
-    costs: Vector,
-    *,
-    sample: int = SAMPLE,
-    progress: Callable[[float], None] | None = None,
+    excesses: Excesses, low: Vector, high: Vector, costs: Vector, *, progress: Callable[[float], None] | None = None
 ) -> SmallestChange:
     """Return the smallest change for which all limits are met.
 
@@ -116,14 +110,13 @@ def smallest_change(
         excesses: see `Excesses`.
         low, high: bounds of u, (p,); they contain 0, the present car.
         costs: cost c of each parameter, (p,).
-        sample: number of cars for the quadratic surfaces, a power of two.
         progress: called with the finished fraction.
     """
     cars, done = _Cars(excesses), progress or (lambda share: None)
     present = np.zeros(low.size)
     if np.all(cars.at(present[None])[0] <= 0.0):
         return _result(cars, present, low, high, costs)
-    positions = low + (high - low) * scipy.stats.qmc.Sobol(low.size, rng=1).random(sample)
+    positions = low + (high - low) * scipy.stats.qmc.Sobol(low.size, rng=1).random(SAMPLE)
     values = cars.at(np.vstack([present, positions]))
     done(SAMPLE_SHARE)
     surfaces = _Surfaces(np.vstack([present, positions]), values)
