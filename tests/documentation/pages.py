@@ -31,6 +31,7 @@ from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 from tests.patience import HANG
 
@@ -129,6 +130,10 @@ def first_difference(expected: list[str], lines: list[str]) -> str | None:
     return None if free or position == len(lines) else f"end of output before {lines[position]!r}"
 
 
+WIDTH = {"COLUMNS": "80"}
+"""Environment of the outputs on the pages: help texts are as wide as the terminal says."""
+
+
 def output_of(line: str, folder: Path, in_process: bool) -> tuple[int, str]:
     """Run a command in a folder and return its exit code and its output, both streams together.
 
@@ -143,8 +148,8 @@ def output_of(line: str, folder: Path, in_process: bool) -> tuple[int, str]:
         module = import_module(words[2])
         if hasattr(module, "__path__"):
             module = import_module(f"{words[2]}.__main__")
-        stream = io.StringIO()
-        with contextlib.chdir(folder), contextlib.redirect_stdout(stream), contextlib.redirect_stderr(stream):
+        stream, wide = io.StringIO(), mock.patch.dict(os.environ, WIDTH)
+        with wide, contextlib.chdir(folder), contextlib.redirect_stdout(stream), contextlib.redirect_stderr(stream):
             try:
                 code = module.main(words[3:])
             except SystemExit as end:
@@ -153,6 +158,7 @@ def output_of(line: str, folder: Path, in_process: bool) -> tuple[int, str]:
     here = ROOT if in_process else folder
     environment = {
         **os.environ,
+        **WIDTH,
         "PATH": os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]]),
         "PYTHONPATH": str(here),
     }
