@@ -3,7 +3,7 @@
 import mujoco
 import numpy as np
 
-from tests.engines.simulation.row_model import add_bushing, element_law, empty_spec
+from tests.engines.simulation.row_model import add_bushing, add_mass, element_law, empty_spec
 from vehicle.model.laws.control_laws import pack as control_numbers
 from vehicle.model.laws.damper import actuator_parameters, pack
 
@@ -21,12 +21,12 @@ def half_car_spec(car, damper, step):
         step: [s].
     """
     spec = empty_spec(step)
-    body = _mass(spec.worldbody, "body", [0.0, 0.0, 1.0], car.body.mass, np.full(3, car.body.pitch_inertia))
+    body = add_mass(spec.worldbody, "body", car.body.mass, np.full(3, car.body.pitch_inertia), position=[0.0, 0.0, 1.0])
     body.add_joint(name="heave", type=mujoco.mjtJoint.mjJNT_SLIDE, axis=UP)
     # The frame of cars: x to the rear, so that a nose that rises turns about +y.
     body.add_joint(name="pitch", type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0.0, -1.0, 0.0])
     for name, axle, arm in (("fr", car.front, -car.body.front_arm), ("rr", car.rear, car.body.rear_arm)):
-        wheel = _mass(body, f"wheel_{name}", [arm, 0.0, 0.0], axle.unsprung_mass, np.full(3, 1e-9))
+        wheel = add_mass(body, f"wheel_{name}", axle.unsprung_mass, np.full(3, 1e-9), position=[arm, 0.0, 0.0])
         wheel.add_joint(
             name=f"damper_{name}",
             type=mujoco.mjtJoint.mjJNT_SLIDE,
@@ -44,15 +44,8 @@ def half_car_spec(car, damper, step):
     return spec
 
 
-def _mass(parent, name, position, mass, inertia):
-    body = parent.add_body(name=name, pos=position)
-    body.explicitinertial = True
-    body.mass, body.inertia, body.ipos = mass, inertia, np.zeros(3)
-    return body
-
-
 def _limb(parent, name, position, limb):
-    body = _mass(parent, name, position, limb.mass, np.full(3, 1e-9))
+    body = add_mass(parent, name, limb.mass, np.full(3, 1e-9), position=position)
     body.add_joint(
         name=name,
         type=mujoco.mjtJoint.mjJNT_SLIDE,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from tests.engines.simulation.row_model import Stepper, add_damper, empty_spec
+from tests.engines.simulation.row_model import Stepper, add_damper, add_mass, empty_spec
 from tests.validation import foreign, validated
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.curve import Curve
@@ -33,9 +33,7 @@ def table_force(velocity):
 def strut(step, mass=MASS, stiffness=STIFFNESS):
     """Return a mass on the damper and a spring that carries the gas force."""
     spec = empty_spec(step)
-    body = spec.worldbody.add_body(name="mass")
-    body.explicitinertial = True
-    body.mass, body.inertia, body.ipos = mass, [1.0] * 3, np.zeros(3)
+    body = add_mass(spec.worldbody, "mass", mass)
     curve = Curve.through(VELOCITY, FORCE)
     law = [curve.least_slope, 1e5, 1e-9, 1e-9, 0.03, 3.5]
     add_damper(spec, body, law, stiffness=stiffness, pieces=curve.clamped(), rest=REST)

@@ -6,7 +6,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from scenarios.lumped.degressive import Degressive
-from tests.engines.simulation.row_model import Stepper, add_damper, empty_spec
+from tests.engines.simulation.row_model import Stepper, add_damper, add_mass, empty_spec
 from tests.validation import foreign, validated
 from vehicle.runs.car import Car
 
@@ -19,9 +19,7 @@ OVERRIDES = ['damper.viscous_law="degressive"']
 def strut(step, friction=(0.0, 0.0), *, mass=MASS, stiffness=0.0):
     """Return a mass on a degressive damper; `friction` are the sliding and the static limit [N]."""
     spec = empty_spec(step)
-    body = spec.worldbody.add_body(name="mass")
-    body.explicitinertial = True
-    body.mass, body.inertia, body.ipos = mass, [1.0] * 3, np.zeros(3)
+    body = add_mass(spec.worldbody, "mass", mass)
     law = [LAW.high_damping, SMOOTHING, max(friction[0], 1e-9), max(friction[1], 1e-9), 0.03, 3.5]
     add_damper(spec, body, law, stiffness=stiffness, pieces=[VALVE])
     return Stepper(spec)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from tests.engines.simulation.row_model import Stepper, add_damper, empty_spec
+from tests.engines.simulation.row_model import Stepper, add_damper, add_mass, empty_spec
 from tests.validation import foreign, validated
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.curve import Curve
@@ -32,9 +32,7 @@ def stop_force(x):
 def dropped(step, speed=SPEED, duration=0.12):
     """Positions of a mass that flies into the stop, every 4 ms."""
     spec = empty_spec(step)
-    body = spec.worldbody.add_body(name="mass")
-    body.explicitinertial = True
-    body.mass, body.inertia, body.ipos = MASS, [1.0] * 3, np.zeros(3)
+    body = add_mass(spec.worldbody, "mass", MASS)
     add_damper(spec, body, [0.0, 1e5, 1e-9, 1e-9, 0.03, 3.5])
     spec.add_numeric(name="table/damper_fr", data=[*GIVES, *FORCES])
     run = Stepper(spec)

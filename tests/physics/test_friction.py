@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.engines.simulation.row_model import Stepper, add_damper, empty_spec
+from tests.engines.simulation.row_model import Stepper, add_damper, add_mass, empty_spec
 from tests.validation import validated
 from vehicle.model.laws.stribeck import Stribeck
 
@@ -14,9 +14,7 @@ CREEP = 2.0 / np.pi * LIMIT * SMOOTHING  # N s/m, slope of the smooth law at res
 def strut(step=1e-3, mass=40.0, *, viscous=VISCOUS, limit=LIMIT, static=None, stiffness=0.0, exponent=3.5):
     """A mass on a slide joint with a damper, and a spring to the ground where `stiffness` is given."""
     spec = empty_spec(step)
-    body = spec.worldbody.add_body(name="mass")
-    body.explicitinertial = True
-    body.mass, body.inertia, body.ipos = mass, [1.0, 1.0, 1.0], np.zeros(3)
+    body = add_mass(spec.worldbody, "mass", mass)
     law = [viscous, SMOOTHING, limit, limit if static is None else static, 0.03, exponent]
     add_damper(spec, body, law, stiffness=stiffness)
     return Stepper(spec)

@@ -8,7 +8,14 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from tests.engines.simulation.row_model import Stepper, add_bushing, add_free_body, element_law, empty_spec
+from tests.engines.simulation.row_model import (
+    Stepper,
+    add_bushing,
+    add_coordinate,
+    add_free_body,
+    element_law,
+    empty_spec,
+)
 from tests.validation import foreign, validated
 from vehicle.engines.linear.dynamic_stiffness import steady_motion
 from vehicle.engines.simulation.callbacks import installed
@@ -65,21 +72,6 @@ def add_fluid(spec, name, moving, *, decoupler=False):
         seat = GAP * np.array([-2.0, -1.0, 1.0, 2.0, -SEAT, 0.0, 0.0, SEAT])
         spec.add_numeric(name=f"table/decoupler/{name}", data=seat)
         add_coordinate(spec, f"decoupler/{name}", DISC, MEMBRANE, LEAK)
-
-
-def add_coordinate(spec, name, mass, stiffness, damping):
-    """A scalar coordinate, as the generator writes it."""
-    body = spec.worldbody.add_body(name=name)
-    body.explicitinertial = True
-    body.mass, body.inertia, body.ipos = 1e-9, [1e-9] * 3, np.zeros(3)
-    body.add_joint(
-        name=name,
-        type=mujoco.mjtJoint.mjJNT_SLIDE,
-        axis=[1.0, 0.0, 0.0],
-        armature=mass - 1e-9,
-        stiffness=stiffness,
-        damping=damping,
-    )
 
 
 def dynamic_stiffness(frequency, step=1e-4, mass=5.0):

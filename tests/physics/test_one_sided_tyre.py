@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from tests.engines.simulation.row_model import Stepper, add_bushing, element_law, empty_spec
+from tests.engines.simulation.row_model import Stepper, add_bushing, add_mass, element_law, empty_spec
 from tests.validation import foreign, validated
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.vehicle import load_vehicle
@@ -19,9 +19,7 @@ def dropped(step: float, height: float = HEIGHT) -> tuple[np.ndarray, np.ndarray
     """Return the height of a bouncing wheel every 4 ms, and the force of its tyre at every step."""
     spec = empty_spec(step)
     spec.option.gravity = [0.0, 0.0, -GRAVITY]
-    body = spec.worldbody.add_body(name="wheel")
-    body.explicitinertial = True
-    body.mass, body.inertia, body.ipos = MASS, [1.0] * 3, np.zeros(3)
+    body = add_mass(spec.worldbody, "wheel", MASS)
     body.add_joint(name="z", type=2, axis=[0.0, 0.0, 1.0])
     law = element_law([0.0, 0.0, STIFFNESS], [0.0, 0.0, DAMPING])
     add_bushing(spec, "tyre", body, spec.worldbody.add_body(name="ground"), law)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.engines.reduced.test_reduced_quarter_car import CAR, ROAD, damper, matrices
-from tests.engines.simulation.row_model import Stepper, add_damper, empty_spec
+from tests.engines.simulation.row_model import Stepper, add_damper, add_mass, empty_spec
 from tests.validation import validated
 from vehicle.engines.linear.damper_elements import SliderElements
 from vehicle.engines.reduced.batch_simulation import simulate_batch
@@ -24,9 +24,7 @@ STEPS = np.array([1e-3, 5e-4, 2.5e-4])
 def strut(step, elements):
     """A mass on a slide joint with a spring to the ground and a damper with presliding friction."""
     spec = empty_spec(step)
-    body = spec.worldbody.add_body(name="mass")
-    body.explicitinertial = True
-    body.mass, body.inertia, body.ipos = MASS, [1.0, 1.0, 1.0], np.zeros(3)
+    body = add_mass(spec.worldbody, "mass", MASS)
     add_damper(spec, body, [VISCOUS, 1e5, LIMIT, LIMIT, 1.0, 1.0], stiffness=SPRING, sliders=elements)
     return Stepper(spec)
 

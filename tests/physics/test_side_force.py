@@ -5,7 +5,15 @@ import numpy as np
 import pytest
 
 from scenarios.signals.random_road import random_road
-from tests.engines.simulation.row_model import Stepper, add_bushing, add_damper, add_free_body, element_law, empty_spec
+from tests.engines.simulation.row_model import (
+    Stepper,
+    add_bushing,
+    add_damper,
+    add_free_body,
+    add_mass,
+    element_law,
+    empty_spec,
+)
 from tests.validation import validated
 from vehicle.engines.reduced.batch_simulation import simulate_batch
 from vehicle.engines.simulation.row_layout import equality_rows
@@ -36,9 +44,7 @@ def leaning_strut(lean, height, offset):
     spec.add_numeric(name="law/bushing/ball", data=element_law([1e9] * 3, [1e5] * 3, rotational=10.0, averaged=True))
     axis = np.array([0.0, np.sin(lean), np.cos(lean)])
     top = axis * height / np.cos(lean)
-    rod = upright.add_body(name="rod", pos=top)
-    rod.explicitinertial = True
-    rod.mass, rod.inertia, rod.ipos = 1.0, [1.0, 1.0, 1.0], np.zeros(3)
+    rod = add_mass(upright, "rod", 1.0, position=top)
     add_damper(spec, rod, [500.0, 1e5, LIMIT, LIMIT, 1.0, 1.0])
     spec.joint("damper_fr").axis = axis
     parameters = np.array(spec.actuator("damper_fr").biasprm)
@@ -155,9 +161,7 @@ def test_a_rod_without_a_bushing_is_refused():
     run, _, _ = leaning_strut(0.0, 0.6, 0.15)
     assert run.rows.layout.sides.dampers.tolist() == [0]
     spec = empty_spec(1e-3)
-    body = spec.worldbody.add_body(name="mass")
-    body.explicitinertial = True
-    body.mass, body.inertia, body.ipos = 1.0, [1.0, 1.0, 1.0], np.zeros(3)
+    body = add_mass(spec.worldbody, "mass", 1.0)
     add_damper(spec, body, [500.0, 1e5, LIMIT, LIMIT, 1.0, 1.0])
     parameters = np.array(spec.actuator("damper_fr").biasprm)
     parameters[9] = COEFFICIENT

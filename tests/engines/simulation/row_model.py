@@ -32,11 +32,17 @@ def empty_spec(step: float) -> mujoco.MjSpec:
     return spec
 
 
-def add_free_body(spec, name, mass, inertia, *, position=(0.0, 0.0, 0.0), turn=None):
-    """A body with a free joint; `inertia` are its principal moments [kg m2]."""
-    body = spec.worldbody.add_body(name=name, pos=position)
+def add_mass(parent, name, mass, inertia=(1.0, 1.0, 1.0), *, position=(0.0, 0.0, 0.0)):
+    """A body without a joint; `inertia` are its principal moments about its origin [kg m2]."""
+    body = parent.add_body(name=name, pos=position)
     body.explicitinertial = True
-    body.mass, body.inertia, body.ipos = mass, inertia, np.zeros(3)
+    body.mass, body.inertia, body.ipos = mass, list(inertia), np.zeros(3)
+    return body
+
+
+def add_free_body(spec, name, mass, inertia, *, position=(0.0, 0.0, 0.0), turn=None):
+    """The same with a free joint."""
+    body = add_mass(spec.worldbody, name, mass, inertia, position=position)
     if turn is not None:
         body.quat = turn
     body.add_freejoint(name=name)
@@ -78,19 +84,17 @@ def element_law(stiffness, damping=(0, 0, 0), branch=(0, 0, 0), time=(0, 0, 0), 
     return np.concatenate([stiffness, damping, branch, branch_damping, [rotational, float(averaged)]]).astype(float)
 
 
+def add_coordinate(spec, name, mass, stiffness, damping):
+    """A scalar coordinate, as the generator writes it."""
+    add_mass(spec.worldbody, name, 1e-9, [1e-9] * 3).add_joint(
+        name=name, type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[1.0, 0.0, 0.0], armature=mass - 1e-9, stiffness=stiffness,
+        damping=damping,
+    )  # fmt: skip
+
+
 def add_mode(spec, number, omega, ratio=0.0):
-    """A mass-normalised modal coordinate, as the generator writes it."""
-    body = spec.worldbody.add_body(name=f"mode_{number}")
-    body.explicitinertial = True
-    body.mass, body.inertia, body.ipos = 1e-9, [1e-9] * 3, np.zeros(3)
-    body.add_joint(
-        name=f"mode_{number}",
-        type=mujoco.mjtJoint.mjJNT_SLIDE,
-        axis=[1.0, 0.0, 0.0],
-        armature=1.0 - 1e-9,
-        stiffness=omega**2,
-        damping=2.0 * ratio * omega,
-    )
+    """A mass-normalised modal coordinate."""
+    add_coordinate(spec, f"mode_{number}", 1.0, omega**2, 2.0 * ratio * omega)
 
 
 def add_damper(spec, body, parameters, *, stiffness=0.0, pieces=(), rest=0.0, sliders=()):
