@@ -4,7 +4,7 @@ import numpy as np
 import scipy
 
 from vehicle.signals.excitation.signal import Signal
-from vehicle.signals.formats.text_format import write_table
+from vehicle.signals.formats.csv_table import write_table
 
 RATE = 1000.0
 

@@ -20,7 +20,7 @@ from vehicle import (
     tune,
     write_report,
 )
-from vehicle.signals.formats.text_format import write_table
+from vehicle.signals.formats.csv_table import write_table
 from vehicle.studies.sweeps.plan import changes_of, plan_sweep
 from vehicle.studies.sweeps.sweep_inputs import file_of, inputs_of
 from vehicle.studies.sweeps.sweep_settings import SweepSettings

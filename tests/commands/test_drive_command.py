@@ -7,7 +7,7 @@ import pytest
 
 from vehicle.commands.drive import main
 from vehicle.signals.excitation.signal_file import read_signal
-from vehicle.signals.formats.text_format import write_table
+from vehicle.signals.formats.csv_table import write_table
 
 CHANNEL = "knuckle_fr_acc_z"
 

@@ -39,7 +39,7 @@ ELSEWHERE = {
     "signals/formats/matlab_format.py": GIVEN,
     "signals/formats/npz_format.py": GIVEN,
     "signals/formats/rpc_format.py": GIVEN,
-    "signals/formats/text_format.py": GIVEN,
+    "signals/formats/csv_table.py": GIVEN,
     "signals/formats/uff_writer.py": GIVEN,
     "studies/sweeps/case_file.py": GIVEN,
     "studies/sweeps/effects.py": GIVEN,

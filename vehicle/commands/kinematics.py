@@ -220,7 +220,7 @@ def _write(
 ) -> None:
     from vehicle.drawing.rendering.kinematics_plot import plot_kinematics
     from vehicle.runs.output.folder import output_folder, write_files
-    from vehicle.signals.formats.text_format import write_table
+    from vehicle.signals.formats.csv_table import write_table
 
     units = {"m": "m", "deg": "deg", "n": "N"}
     heads = [f"{name.rpartition('_')[0]} [{units[name.rpartition('_')[2]]}]" for name in COLUMNS]

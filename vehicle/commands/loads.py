@@ -105,7 +105,7 @@ def _schedule(options: argparse.Namespace) -> None:
     from vehicle.digits import number
     from vehicle.runs.output.folder import write_text
     from vehicle.signals.analysis.load_schedule import scheduled_loads
-    from vehicle.signals.formats.text_format import table_text
+    from vehicle.signals.formats.csv_table import table_text
 
     texts = options.repeats.split(",") if options.repeats else ["1"] * len(options.runs)
     try:
@@ -178,7 +178,7 @@ HEADS = ("minimum", "maximum", "mean", "rms", "cycles", "largest_range", "equiva
 
 
 def _table(loads: list[LoadSpectrum], caption: str) -> str:
-    from vehicle.signals.formats.text_format import table_text
+    from vehicle.signals.formats.csv_table import table_text
 
     rows = [[load.name, load.unit, *(getattr(load, head) for head in HEADS)] for load in loads]
     return table_text([["channel", "unit", *HEADS], *rows], [caption], digits=9)
@@ -186,7 +186,7 @@ def _table(loads: list[LoadSpectrum], caption: str) -> str:
 
 def _spectra(loads: list[LoadSpectrum], caption: str, classes: int) -> str:
     """Return the range-pair table: cycles in equal classes from zero to the largest range of each channel."""
-    from vehicle.signals.formats.text_format import table_text
+    from vehicle.signals.formats.csv_table import table_text
 
     rows: list[list[Any]] = [
         ["channel", "unit", "range_above", "range_up_to", "cycles", "cycles_of_this_range_or_more"]

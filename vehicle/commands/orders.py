@@ -191,7 +191,7 @@ def _orders(text: str) -> list[float]:
 def _write(options: argparse.Namespace, channels: Sequence[OrderPoints], name: str, caption: str) -> None:
     from vehicle.runs.output.folder import output_folder, write_text, write_whole
     from vehicle.runs.report.order_page import draw_cuts, draw_map, order_page
-    from vehicle.signals.formats.text_format import write_table
+    from vehicle.signals.formats.csv_table import write_table
 
     command = shlex.join(["python", "-m", "vehicle", "orders", *options.words])
     with output_folder(options.output, force=options.force) as folder:

@@ -70,7 +70,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.signals.excitation.obstacle import Obstacle
     from vehicle.signals.excitation.road_drive import RoadDrive
     from vehicle.signals.excitation.signal_file import write_signal
-    from vehicle.signals.formats.text_format import write_table
+    from vehicle.signals.formats.csv_table import write_table
 
     roads = [road for road in (options.road_class, options.profile, options.obstacle) if road is not None]
     if len(roads) != 1:

@@ -23,7 +23,7 @@ from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal_file import read_signal
 from vehicle.signals.formats import uff_writer
 from vehicle.signals.formats.channel import Channel
-from vehicle.signals.formats.text_format import write_table
+from vehicle.signals.formats.csv_table import write_table
 from vehicle.signals.records.choice import Choice
 from vehicle.signals.records.measured import read_measured
 

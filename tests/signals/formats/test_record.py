@@ -9,7 +9,7 @@ from vehicle.arrays import Vector
 from vehicle.commands.comfort import main
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.excitation.signal_file import read_signal
-from vehicle.signals.formats import text, text_format
+from vehicle.signals.formats import csv_table, text
 from vehicle.signals.formats.formats import TABLES, write_record
 from vehicle.signals.formats.reader import read_columns
 from vehicle.signals.formats.table import Record, Wanted, key_column
@@ -105,15 +105,15 @@ def test_a_long_table_is_read_in_pieces(tmp_path, monkeypatch, ending):
     path = tmp_path / "long.csv"
     path.write_text("# first\ntime [s],a [m],b [m]\n" + "\n".join(rows) + ending)
     wanted = Wanted(needed="time [s]", key=key_column("time [s]", "time [s]"))
-    whole = text_format.read(path, wanted)
+    whole = csv_table.read(path, wanted)
     assert whole.values.shape == (298, 3) and whole.values[17, 2] == 19.0**2 and whole.lines[17] == 22
     damaged = tmp_path / "damaged.csv"
     damaged.write_text(path.read_text().replace("0.250,", "0.25o,"))
     for size in (1, 40, 1000):
         monkeypatch.setattr(text, "PIECE", size)
-        found = text_format.read(path, wanted)
+        found = csv_table.read(path, wanted)
         np.testing.assert_array_equal(found.values, whole.values)
         np.testing.assert_array_equal(found.lines, whole.lines)
         assert [line for _, lines in text.read_text(path).pieces() for line in lines] == text.read_text(path).lines
         with pytest.raises(DataError, match=r"damaged\.csv:253:1: .*0\.25o"):
-            text_format.read(damaged, wanted)
+            csv_table.read(damaged, wanted)

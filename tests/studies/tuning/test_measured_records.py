@@ -10,7 +10,7 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.runs.car import Car
 from vehicle.signals.formats import uff_writer
 from vehicle.signals.formats.channel import Channel, uniform_axis
-from vehicle.signals.formats.text_format import write_table
+from vehicle.signals.formats.csv_table import write_table
 from vehicle.studies.tuning.measured_targets import measured_histories
 from vehicle.studies.tuning.record_target import RecordTarget
 

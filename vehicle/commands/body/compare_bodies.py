@@ -68,7 +68,7 @@ def _write_files(options: argparse.Namespace, models: list[Superelement], likene
     """Write the MAC matrix as a table, and a picture of its first modes."""
     from vehicle.runs.comparison.pictures import plot_mac
     from vehicle.runs.output.folder import output_folder, write_files
-    from vehicle.signals.formats.text_format import table_text
+    from vehicle.signals.formats.csv_table import table_text
 
     rows, columns = (model.frequencies for model in models)
     heads = ["mode", "frequency [Hz]", *(f"mode_{j + 1} {each:.9g} Hz [-]" for j, each in enumerate(columns))]

@@ -180,7 +180,7 @@ def _write(options: argparse.Namespace, over: Participation, result: Participati
     from vehicle.drawing.rendering.participation_plot import plot_participation
     from vehicle.engines.linear.mode_participation import in_phase
     from vehicle.runs.output.folder import output_folder, write_files
-    from vehicle.signals.formats.text_format import table_text, write_table
+    from vehicle.signals.formats.csv_table import table_text, write_table
 
     at, keys = result.frequency[0], ["body_x", "body_y", "body_z", "body_rx", "body_ry", "body_rz"]
     keys += [f"mode_{n + 1}" for n in range(len(over.mode_frequency))]

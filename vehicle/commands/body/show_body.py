@@ -249,7 +249,7 @@ def _write(options: argparse.Namespace, model: Superelement, levels: Mapping[str
 
     from vehicle.drawing.rendering.body_plot import MOST, plot_body
     from vehicle.runs.output.folder import Content, output_folder, write_files
-    from vehicle.signals.formats.text_format import table_text
+    from vehicle.signals.formats.csv_table import table_text
 
     count = len(model.frequencies)
     modes = ["mode,frequency [Hz],damping ratio [-],name"]

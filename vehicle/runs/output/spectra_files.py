@@ -7,7 +7,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.names import point_words
 from vehicle.runs.car import Run
 from vehicle.signals.analysis.spectra import power_spectral_density
-from vehicle.signals.formats.text_format import table_text, write_table
+from vehicle.signals.formats.csv_table import table_text, write_table
 from vehicle.signals.records.record_spectra import RecordSpectra
 
 PSD_WINDOW, PSD_HIGHEST = 4.0, 100.0

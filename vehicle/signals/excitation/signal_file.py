@@ -32,10 +32,10 @@ from vehicle.signals.formats.clock import (
     is_uniform,
     without_rounding,
 )
+from vehicle.signals.formats.csv_table import write_table
 from vehicle.signals.formats.reader import is_table
 from vehicle.signals.formats.table import TIME, USABLE, Header, Table, Wanted, name_and_unit
 from vehicle.signals.formats.table_file import read_table
-from vehicle.signals.formats.text_format import write_table
 from vehicle.signals.formats.units import find_unit
 from vehicle.signals.records.choice import Choice
 from vehicle.signals.records.resampled import resampled

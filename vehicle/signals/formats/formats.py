@@ -71,7 +71,7 @@ FORMATS = (
     Format(name="vbo", recognise=signatures.is_vbo, reader="vbo_format"),
     Format(name="crg", recognise=signatures.is_crg, reader="crg_format"),
     Format(name="uff", recognise=signatures.is_uff, reader="uff_format", writer="uff_writer"),
-    Format(name="csv", recognise=lambda head: True, reader="logger_format", table="text_format"),
+    Format(name="csv", recognise=lambda head: True, reader="csv_format", table="csv_table"),
 )
 """File formats in the order of recognition. Text is last and accepts every file that
 `vehicle.signals.formats.refused_formats` does not reject."""

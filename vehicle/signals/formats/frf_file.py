@@ -15,9 +15,9 @@ from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.analysis.motion_response import MotionResponse
 from vehicle.signals.analysis.response_name import ResponseName, parsed_name
 from vehicle.signals.analysis.samples import Complex
+from vehicle.signals.formats.csv_table import write_table
 from vehicle.signals.formats.table import Header, Table, Wanted, key_column
 from vehicle.signals.formats.table_file import read_table
-from vehicle.signals.formats.text_format import write_table
 
 SUFFIXES = ("_magnitude", "_phase [deg]", "_coherence")
 RANDOM_ERROR = "_random_error"

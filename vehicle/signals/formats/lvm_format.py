@@ -19,10 +19,10 @@ from vehicle.digits import number
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import OVER_ANGLE, OVER_DISTANCE, Channel, Measurement, uniform_axis
 from vehicle.signals.formats.clock_text import clock_seconds
+from vehicle.signals.formats.csv_table import logged
 from vehicle.signals.formats.heads import split_head
 from vehicle.signals.formats.table import Header
 from vehicle.signals.formats.text import read_text
-from vehicle.signals.formats.text_format import logged
 
 END = "***End_of_Header***"
 SPECIAL = ("***Start_Special***", "***End_Special***")

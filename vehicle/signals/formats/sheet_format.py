@@ -7,7 +7,7 @@ import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Measurement
-from vehicle.signals.formats.logger_format import read_lines
+from vehicle.signals.formats.csv_format import read_lines
 from vehicle.signals.formats.optional_library import extra, reading
 from vehicle.signals.formats.text import Text
 from vehicle.signals.formats.unpacked_size import require_archive

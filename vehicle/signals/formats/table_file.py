@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from vehicle.signals.formats import npz_format, text_format
+from vehicle.signals.formats import csv_table, npz_format
 from vehicle.signals.formats.channel import Channel, Measurement
 from vehicle.signals.formats.table import TIME, Table, Wanted, key_column, name_and_unit
 
@@ -19,7 +19,7 @@ def read_table(path: Path, wanted: Wanted) -> Table:
             archive = file.read(2) == b"PK"
     except OSError:
         archive = False  # the text reader reports the error
-    return npz_format.read(path, wanted) if archive else text_format.read(path, wanted)
+    return npz_format.read(path, wanted) if archive else csv_table.read(path, wanted)
 
 
 def read(path: Path) -> Measurement:

@@ -14,9 +14,9 @@ from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel, Measurement
 from vehicle.signals.formats.clock_text import DAY, clock_of_day
+from vehicle.signals.formats.csv_table import decimal_points, logged
 from vehicle.signals.formats.table import Header
 from vehicle.signals.formats.text import read_text
-from vehicle.signals.formats.text_format import decimal_points, logged
 from vehicle.signals.formats.units import find_unit
 
 FIXED_UNITS = {"heading": "deg", "height": "m"}

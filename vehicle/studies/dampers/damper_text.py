@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from vehicle.digits import number, rounded
-from vehicle.signals.formats.text_format import table_text
+from vehicle.signals.formats.csv_table import table_text
 from vehicle.studies.dampers.damper_law import EXPONENT, SMOOTHING, values_of
 from vehicle.studies.dampers.fitted_damper import FittedDamper
 

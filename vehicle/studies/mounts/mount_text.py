@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from vehicle.digits import number, rounded
-from vehicle.signals.formats.text_format import table_text
+from vehicle.signals.formats.csv_table import table_text
 from vehicle.studies.mounts.measured_stiffness import MeasuredStiffness
 from vehicle.studies.mounts.mount_fit import MountFit
 

@@ -12,9 +12,9 @@ from vehicle.drawing.rendering.drive_plot import plot_convergence, plot_replicat
 from vehicle.runs.output.folder import Content, output_folder, write_files, write_json
 from vehicle.runs.output.own_files import parameters_text, write_own_files
 from vehicle.signals.excitation.signal_file import write_signal
+from vehicle.signals.formats.csv_table import table_text
 from vehicle.signals.formats.formats import write_record
 from vehicle.signals.formats.table import Record
-from vehicle.signals.formats.text_format import table_text
 from vehicle.studies.replication.drive_search import FoundDrive
 from vehicle.studies.replication.iteration import Replication
 

@@ -18,9 +18,9 @@ from vehicle.arrays import Vector
 from vehicle.drawing.notebook.frames import table_frame
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.runs.output.folder import check_file, write_text
+from vehicle.signals.formats.csv_table import read_texts
 from vehicle.signals.formats.formats import recognised_format
 from vehicle.signals.formats.sheet_format import read_sheet_texts
-from vehicle.signals.formats.text_format import read_texts
 from vehicle.studies.sweeps.case import Case, parameter_cells
 from vehicle.studies.sweeps.case_result import Result, Row
 from vehicle.studies.sweeps.store import StoredRows

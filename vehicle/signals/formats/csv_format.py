@@ -12,12 +12,12 @@ from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel, Measurement
 from vehicle.signals.formats.clock_text import clock_seconds, epoch_seconds, is_date
+from vehicle.signals.formats.csv_table import decimal_points, logged
 from vehicle.signals.formats.frf_file import FREQUENCY, RANDOM_ERROR, SUFFIXES, read_frf
 from vehicle.signals.formats.heads import FREQUENCY_NAME, TIME_NAME, Heads, cells_of, read_heads
 from vehicle.signals.formats.spectrum_columns import joined
 from vehicle.signals.formats.table import Header
 from vehicle.signals.formats.text import Text, read_text
-from vehicle.signals.formats.text_format import decimal_points, logged
 from vehicle.signals.formats.text_table import AGREEING, Kind, TextTable, find_table, settled_kinds, with_remarks
 from vehicle.signals.formats.units import find_unit
 
