@@ -214,7 +214,7 @@ def error_sentence(errors: Mapping[str, float]) -> tuple[str, ...]:
     off = sorted((name for name in errors if abs(errors[name]) > NAMED_ERROR), key=lambda name: -abs(errors[name]))
     if not off:
         return ()
-    texts = [f"{name} by {100.0 * errors[name]:+.0f} %" for name in off[:NAMED]]
+    texts = [f"{100.0 * errors[name]:+.0f} % ({name})" for name in off[:NAMED]]
     more = f" and {len(off) - NAMED} more" if len(off) > NAMED else ""
     return (f"the linear geometry of the reduced engine makes the RMS wrong by about {', '.join(texts)}{more}{REMEDY}",)
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
+from vehicle.model.parameters.force_elements import LIFTS, PULLS
 
 LARGEST_ANGLE = 0.05
 """Maximum rotation of a part [rad]. Measured against MuJoCo on roads of increasing level: up to this rotation the
@@ -74,10 +75,7 @@ class Validity:
             )
         for wheel, load in self.loads.items():
             if load < 0.0 and wheel not in self.one_sided:
-                messages.append(
-                    f"tyre {wheel} would lift off its plate (lowest load {load:.0f} N); the linear tyre then "
-                    "pulls the wheel down, so the result is not valid"
-                )
+                messages.append(f"tyre {wheel} {LIFTS} (lowest load {load:.0f} N); {PULLS}")
         return tuple(messages)
 
 

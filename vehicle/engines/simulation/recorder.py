@@ -18,6 +18,7 @@ from vehicle.engines.simulation.row_layout import numeric
 from vehicle.engines.simulation.rows import Rows, joint_dampers
 from vehicle.engines.simulation.sampling import Samples, empty_samples
 from vehicle.engines.simulation.structures import offsets
+from vehicle.model.parameters.force_elements import LIFTS, PULLS
 from vehicle.names import AXES, channel_units
 from vehicle.signals.excitation.signal import Signal, uniform_time
 
@@ -336,8 +337,7 @@ class Recorder:
                 first = self.channels[f"tyre_{wheel}_force_z"]
                 start = int(np.argmax(first < 0.0)) / self.car.vehicle.solver.record_rate
                 messages.append(
-                    f"tyre {wheel} would lift off its plate at t = {start:.3f} s (lowest load {load:.0f} N at "
-                    f"{when:.3f} s); the linear tyre then pulls the wheel down, so the result is invalid"
+                    f"tyre {wheel} {LIFTS} at t = {start:.3f} s (lowest load {load:.0f} N at {when:.3f} s); {PULLS}"
                 )
         return tuple(messages)
 

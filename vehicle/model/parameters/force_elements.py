@@ -21,6 +21,15 @@ TWISTED: dict[str, Any] = {"at_most": 1e6, "why": "a stabilizer bar has 1e4 N m/
 FRICTION_LAWS = ("coulomb", "stribeck", "presliding")
 """Names of the friction laws; each is a module of `vehicle.model.laws`."""
 
+LIFTS = "would lift off its plate"
+"""Words of a warning about a linear tyre whose load is negative."""
+
+PULLS = (
+    "the linear tyre then pulls the wheel down, so the result is invalid; to let it lift off: "
+    "--set AXLE.bushings.tyre.one_sided=true, for example with front as AXLE"
+)
+"""Effect and remedy in such a warning."""
+
 NUMBERS = {
     "linear": {"viscous": "N s/m"},
     "degressive": {"viscous": "N s/m", "degressive_viscous": "N s/m", "degressive_velocity": "m/s"},

@@ -17,6 +17,7 @@ from vehicle.engines.reduced.validity import REMEDY
 from vehicle.engines.simulation.judgement import require_finite, require_samples
 from vehicle.engines.simulation.recording import Recording
 from vehicle.errors import SimulationError, VehicleError
+from vehicle.model.parameters.force_elements import LIFTS
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car import Car, Run
 from vehicle.signals.excitation.signal import Signal
@@ -74,8 +75,8 @@ def reason_for_mujoco(case: Case, measure: BatchMeasure) -> str | None:
         measure: measure of the run.
 
     Returns:
-        The first warning of the reduced engine; empty inside its valid range; None if the run fails, whose row then
-        has the error message.
+        The first warning of the reduced engine, and that on a tyre that would lift off; empty inside its valid range;
+        None if the run fails, whose row then has the error message.
     """
     try:
         car, signal = _car_of(case), signal_of(case.source)
@@ -83,7 +84,10 @@ def reason_for_mujoco(case: Case, measure: BatchMeasure) -> str | None:
         statistics = _simulated([car], signal, measure.channels, measure.timestep).statistics[0]
     except OF_A_RUN:
         return None
-    return "" if statistics.within_validity else statistics.warnings[0].removesuffix(REMEDY)
+    if statistics.within_validity:
+        return ""
+    first, *others = (text.removesuffix(REMEDY) for text in statistics.warnings)
+    return "; ".join([first, *[text for text in others if LIFTS in text][:1]])
 
 
 def run_of(case: Case, channels: Sequence[str] | None = None) -> Run:

@@ -13,6 +13,7 @@ from vehicle.digits import duration
 from vehicle.engines.reduced.validity import ERROR_IN_RANGE, ERROR_ON_CLASS_C
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.body_notices import body_rules
+from vehicle.model.parameters.force_elements import LIFTS
 from vehicle.model.parameters.idle import idle_parameters
 from vehicle.model.parameters.paths import assignments, meant
 from vehicle.model.parameters.shipped import FOCUS_FILE, vehicle_file
@@ -93,10 +94,9 @@ class SweepPlan:
         where = (
             f"on {names} ({len(reasons)} of {len(self.cases.inputs)} inputs), at least for the {which} car: {reason}"
         )
-        error = f"(on class C {ERROR_ON_CLASS_C})"
         if engine == "mujoco":
-            return (f"{asked} {error}, outside its valid range {where}",)
-        return (f"engine mujoco {where}; {reduced} {error}",)
+            return (f"{asked}{_difference(reason)}, outside its valid range {where}",)
+        return (f"engine mujoco {where}; {reduced}{_difference(reason)}",)
 
     def _outside_range(self, measure: BatchMeasure) -> tuple[str, ...]:
         """Return a message on the first input on which the first car leaves the valid range of the reduced engine."""
@@ -108,12 +108,17 @@ class SweepPlan:
         for name, number in roads.items():
             if reason := reason_for_mujoco(self.cases[number * count], measure):
                 where = f"outside the valid range of the reduced engine on {name}, at least for the first car"
-                return (f"{where}: {reason} (on class C {ERROR_ON_CLASS_C}); --engine mujoco runs the complete model",)
+                return (f"{where}: {reason}{_difference(reason)}; --engine mujoco runs the complete model",)
         return ()
 
     def run(self, **changed: Any) -> SweepTable:
         """Run the sweep, see `vehicle.studies.sweeps.sweep.sweep_cases`; `changed` replaces settings."""
         return sweep_cases(self.cases, self.measure, replace(self.settings, **changed))
+
+
+def _difference(reason: str) -> str:
+    """Return the difference of the reduced engine from MuJoCo as text; empty where a tyre pulls."""
+    return "" if LIFTS in reason else f" (on class C {ERROR_ON_CLASS_C})"
 
 
 def plan_sweep(
