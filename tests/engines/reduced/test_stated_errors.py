@@ -14,9 +14,9 @@ from vehicle.runs.car.road import Road
 def test_channels_are_named_by_their_error_with_its_sign() -> None:
     errors = {"seat_acc_x": -0.031, "seat_acc_z": 0.019, "engine_acc_y": 0.12}
     (sentence,) = error_sentence(errors)
-    assert sentence.endswith("by about engine_acc_y by +12 %, seat_acc_x by -3 %: use the MuJoCo engine")
+    assert sentence.endswith("by about +12 % (engine_acc_y), -3 % (seat_acc_x): use the MuJoCo engine")
     (long,) = error_sentence({f"seat_{k}_acc_x": 0.03 + 0.01 * k for k in range(7)})
-    assert "seat_6_acc_x by +9 %" in long and "and 3 more: use" in long
+    assert "+9 % (seat_6_acc_x)" in long and "and 3 more: use" in long
     assert error_sentence({"seat_acc_x": -0.019}) == ()
 
 
@@ -118,4 +118,4 @@ def test_auto_answers_for_the_channels_that_are_asked_for() -> None:
     assert (vertical.engine, vertical.warnings) == ("reduced", ())
     assert list(vertical.errors) == ["seat_acc_z"] and abs(vertical.errors["seat_acc_z"]) < 0.02
     run = car.run(road, engine="auto", channels=["seat_acc_x"])
-    assert run.recording.statistics.engine == "mujoco" and "seat_acc_x by -3 %" in run.engine_reason
+    assert run.recording.statistics.engine == "mujoco" and "-3 % (seat_acc_x)" in run.engine_reason
