@@ -36,7 +36,7 @@ def test_a_run_is_compared_on_its_input_and_an_input_is_not_rated(reported):
     told = str(answer(runs, [{}] * 4))
     first, second = (told.index(text) for text in ("base B against changed B (", "changed A against base A ("))
     rated = [any(word in part for word in (", better)", ", worse)")) for part in (told[first:second], told[second:])]
-    assert rated == [True, True] and told.count(" against ") == told.count("<p ") == 2
+    assert rated == [True, True] and told.count(" against ") == told.count('<p class="answer"') == 2
     alone = str(answer([*runs, on_input(base, "base C", "c.csv")], [{}] * 5))
     assert "base C is not compared: no other run here is on c.csv" in alone and "base C against" not in alone
     # Only inputs differ: they are compared, and not rated.
