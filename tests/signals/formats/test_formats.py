@@ -12,7 +12,7 @@ FOLDER = Path(formats.__file__).parent
 
 
 def test_every_module_of_a_format_is_registered():
-    modules = {path.stem for path in FOLDER.glob("*_format.py")} | {"table_file", "uff_writer"}
+    modules = {path.stem for path in FOLDER.glob("*_format.py")} | {"csv_table", "table_file", "uff_writer"}
     registered = {module for entry in FORMATS for module in (entry.reader, entry.table, entry.writer) if module}
     assert modules == registered
 
