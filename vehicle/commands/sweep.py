@@ -223,7 +223,7 @@ def steps_of(text: str) -> tuple[float, float]:
         ConfigurationError: no number.
     """
     from vehicle.errors import ConfigurationError
-    from vehicle.studies.sweeps.parameter_effects import SHIFT
+    from vehicle.studies.sweeps.sweep_settings import SHIFT
 
     percent, comma, length = text.strip().removeprefix("+-").partition(",")
     try:

@@ -10,6 +10,7 @@ from vehicle.signals.formats.frf_file import FrfData, frf_data
 from vehicle.signals.formats.reader import read_columns
 from vehicle.signals.formats.table import Record
 from vehicle.signals.records.measured import estimated_frf
+from vehicle.signals.records.record_spectra import evaluated_from
 from vehicle.signals.records.run_frf import run_frf
 from vehicle.signals.records.run_summary import available_summary
 from vehicle.signals.records.settling import settling_time
@@ -68,5 +69,5 @@ def of_folder(folder: Path) -> Simulated:
     tyres = summary.get("tyre", "") if summary else ""
     settled = 0.0
     if summary:
-        settled = float(summary.get("evaluated_s", [0.0])[0]) or settling_time(summary.get("notices", []))
+        settled = evaluated_from(summary) or settling_time(summary.get("notices", []))
     return Simulated(name=folder.name, record=record, responses=responses, tyres=tyres, settled=settled)

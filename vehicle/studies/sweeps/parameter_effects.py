@@ -26,15 +26,11 @@ from vehicle.studies.sweeps.effects import Effect, Effects
 from vehicle.studies.sweeps.plan import plan_sweep
 from vehicle.studies.sweeps.sweep_inputs import Source
 from vehicle.studies.sweeps.sweep_ranking import RANKED_BY, ROUNDING
-from vehicle.studies.sweeps.sweep_settings import EffectSettings
+from vehicle.studies.sweeps.sweep_settings import SHIFT, EffectSettings
 from vehicle.studies.sweeps.sweep_table import SweepTable
 
 UNITS = ("N/m", "N s/m", "N", "N m/rad", "N/rad", "kg")
 """Units of the parameters that are varied by default: stiffness, damping, friction and mass of a law or a part."""
-
-SHIFT = 0.01
-"""Default change of a coordinate [m], by which it is varied in place of a share: a share of it would depend on the
-origin. Assumed: a usual step of a study of hardpoints; the sliders of the bench reach five of them."""
 
 LEFT_OUT = ("gravity", "smoothing")
 """Last keys of parameters that are never varied by default: they belong to the computation."""

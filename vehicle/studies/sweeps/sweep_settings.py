@@ -15,6 +15,10 @@ if TYPE_CHECKING:
 
     from vehicle.studies.sweeps.measure import Measure
 
+SHIFT = 0.01
+"""Default change of a coordinate [m], by which it is varied in place of a share: a share of it would depend on the
+origin. Assumed: a usual step of a study of hardpoints; the sliders of the bench reach five of them."""
+
 
 def _jobs(text: str) -> int:
     """Return the number of processes of the option.
@@ -97,7 +101,7 @@ class EffectSettings(SweepSettings):
     """Settings of the effects of single parameters."""
 
     share: float = setting("relative change of each parameter [-]; %(default)s by default", 0.2)
-    shift: float = setting("change of each coordinate [m], in place of a share; %(default)s by default", 0.01)
+    shift: float = setting("change of each coordinate [m], in place of a share; %(default)s by default", SHIFT)
     groups: tuple[str, ...] | list[str] = setting(
         "parameters, as front.damper or viscous; by default all stiffnesses, dampings, friction forces and masses", ()
     )
