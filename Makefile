@@ -3,7 +3,7 @@
 # make check    format, lint and types only
 # make studies  the studies of the sources, whole (hours) -> docs/published-results.md
 # make faults   every system call of every command fails once (hours) -> docs/faults.md
-# make core     build the compiled core for all platforms (needs ziglang, see tools/core.py)
+# make core     build the compiled core for all platforms
 # make lowest   smoke tests with the lowest versions of the dependencies
 # make laptop   a folder for Windows without installation -> build/vehicle-for-windows.zip
 # make test-windows   the commands with CPython for Windows under wine, compared with this system
@@ -16,7 +16,7 @@ BIN := $(VENV)/bin
 INPUT ?= low.csv
 export OMP_NUM_THREADS ?= 1
 
-.PHONY: shaker test check core core-sanitize studies faults docs course setup setup-tests mjcf benchmark lowest laptop test-windows clean
+.PHONY: shaker test check core core-sanitize studies faults docs course setup setup-tests tools mjcf benchmark lowest laptop test-windows clean
 
 shaker: setup
 	@if $(BIN)/python -m vehicle.drawing.rendering.backend; then \
@@ -34,7 +34,7 @@ check: setup-tests
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 
-core: setup
+core: tools
 	$(BIN)/python tools/core.py
 
 core-sanitize: setup-tests
@@ -50,9 +50,8 @@ mjcf: setup
 	$(BIN)/python -m vehicle mjcf --force
 
 # uv resolves the packages of another system than this one.
-.stamps/windows: tools/system-libraries.sh tools/windows_folder.py pyproject.toml constraints.txt | setup-tests
+.stamps/windows: tools/system-libraries.sh tools/windows_folder.py pyproject.toml constraints.txt | setup-tests tools
 	@bash tools/system-libraries.sh windows
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt uv
 	@touch $@
 
 laptop: setup-tests .stamps/windows
@@ -79,6 +78,9 @@ setup: .stamps/system .stamps/python
 
 setup-tests: .stamps/system .stamps/python-tests
 
+# The compiler of `make core` and the installer of `make laptop`.
+tools: setup .stamps/python-tools
+
 # The off-screen OpenGL library; without root it is only named, and films are left out.
 .stamps/system: tools/system-libraries.sh
 	@mkdir -p .stamps
@@ -91,15 +93,19 @@ setup-tests: .stamps/system .stamps/python-tests
 	@bash tools/system-libraries.sh tests
 	@touch $@
 
-.stamps/python: constraints.txt pyproject.toml tools/environment.sh
+.stamps/python: constraints-hashes.txt pyproject.toml tools/environment.sh
 	@mkdir -p .stamps
 	@bash tools/environment.sh "$(PYTHON)" $(VENV)
 	@touch $@
 
-.stamps/python-tests: constraints.txt pyproject.toml tools/environment.sh
+.stamps/python-tests: constraints-hashes.txt pyproject.toml tools/environment.sh
 	@mkdir -p .stamps
 	@bash tools/environment.sh "$(PYTHON)" $(VENV) tests
 	@touch .stamps/python $@
+
+.stamps/python-tools: constraints-hashes.txt tools/environment.sh | .stamps/python
+	@bash tools/environment.sh "$(PYTHON)" $(VENV) tools
+	@touch $@
 
 clean:
 	rm -rf $(VENV) .stamps runs build docs/_build *.egg-info .pytest_cache .mypy_cache .ruff_cache

@@ -66,6 +66,15 @@ def test_every_core_dependency_has_a_lower_bound_and_a_locked_version():
         assert requirement.specifier.contains(locked[name]), name
 
 
+def test_every_locked_version_has_its_hashes_and_no_address():
+    hashes = (ROOT / "constraints-hashes.txt").read_text("utf-8")
+    versions = re.findall(r"^([\w.-]+==[^\s;]+)[^\n]*\\\n +--hash=sha256:[0-9a-f]{64}", hashes, re.MULTILINE)
+    normal = [re.sub("[-_.]+", "-", line).lower() for line in versions]
+    locked = (ROOT / "constraints.txt").read_text("utf-8").split()
+    assert sorted(normal) == sorted(re.sub("[-_.]+", "-", line).lower() for line in locked), "run tools/lock.py"
+    assert "://" not in hashes and {line.partition("==")[0] for line in locked} >= {"ziglang", "uv"}
+
+
 def test_the_page_of_installation_names_every_core_dependency_with_its_bound():
     page = (ROOT / "docs" / "install.md").read_text("utf-8")
     rows = re.findall(r"^\| `([\w-]+)` \| ([\d.]+) \| [\d.]+ \|", page, re.MULTILINE)

@@ -1,7 +1,7 @@
 """Build the library of the controller FMU of the tests, for Linux, with the compiler of the wheel ziglang.
 
-    python -m pip install ziglang==0.17.1
-    python tools/controller_library.py
+    make tools
+    .venv/bin/python tools/controller_library.py
 
 Equal sources give equal bytes. stamp.json beside the library has the digests of both, which a test compares.
 """

@@ -1,7 +1,7 @@
 """Build the core, and the libraries of FMUs and pages that contain it, with the compiler of the wheel ziglang.
 
-    python -m pip install ziglang==0.17.1
-    python tools/core.py [core|fmu|page] [PLATFORM ...] [--fmi-headers FOLDER]
+    make tools
+    .venv/bin/python tools/core.py [core|fmu|page] [PLATFORM ...] [--fmi-headers FOLDER] [--check]
 
 The sources are in vehicle/core/source and vehicle/handover/fmu/runtime; equal sources give equal bytes. stamp.json
 beside the libraries has the digest of the sources and the SHA-256 of each library, which tests compare. With the C
@@ -14,6 +14,7 @@ from __future__ import annotations
 import argparse
 import hashlib
 import json
+import os
 import shutil
 import subprocess
 import sys
@@ -126,28 +127,42 @@ def stamp_of(product: Product) -> dict[str, object]:
     }
 
 
-def build_target(product: Product, platform: str, headers: str | None) -> None:
-    """Build a library for a platform."""
+def built(product: Product, platform: str, folder: Path, headers: str | None = None) -> Path:
+    """Build the library of a platform in a new folder named source, and return its path.
+
+    The name of the folder is the same for all: paths of sources must not be in the libraries.
+    """
     target = TARGETS[platform]
-    with tempfile.TemporaryDirectory() as place:
-        # The same folder name for all: paths of sources must not be in the libraries.
-        folder = Path(place) / "source"
-        copy_sources(product, folder)
-        built = folder / f"{product.stem}.{target.ending}"
-        options = [*target.options, *product.options, *WARNINGS]
-        compiler = [*COMPILER, "-target", target.name]
-        try:
-            for name in FMI if headers and product.stem == "car" else ():
-                checked = ["-std=gnu11", *product.options, "-DFMI_HEADERS_OF_STANDARD", f"-I{headers}", "-c", name]
-                subprocess.run([*compiler, *checked, "-o", "checked.o"], cwd=folder, check=True, text=True)
-            linked = [*target.linked, "-s"]
-            compile_core(compiler, platform.split("-")[0], built, options, linked, single=not product.runtime)
-        except subprocess.CalledProcessError as error:
-            sys.exit(f"{platform}: {error.stderr}")
-        destination = product.binaries / platform / built.name
+    source = folder / "source"
+    copy_sources(product, source)
+    result = source / f"{product.stem}.{target.ending}"
+    options = [*target.options, *product.options, *WARNINGS]
+    compiler = [*COMPILER, "-target", target.name]
+    try:
+        for name in FMI if headers and product.stem == "car" else ():
+            checked = ["-std=gnu11", *product.options, "-DFMI_HEADERS_OF_STANDARD", f"-I{headers}", "-c", name]
+            subprocess.run([*compiler, *checked, "-o", "checked.o"], cwd=source, check=True, text=True)
+        # Without it, the linker for Windows writes the present time into the library.
+        os.environ["SOURCE_DATE_EPOCH"] = "0"
+        linked = [*target.linked, "-s"]
+        compile_core(compiler, platform.split("-")[0], result, options, linked, single=not product.runtime)
+    except subprocess.CalledProcessError as error:
+        sys.exit(f"{platform}: {error.stderr}")
+    return result
+
+
+def build_target(product: Product, platform: str, headers: str | None, *, check: bool) -> bool:
+    """Build the library of a platform; put it into the package, or return whether the one there has the same bytes."""
+    with tempfile.TemporaryDirectory() as folder:
+        content = built(product, platform, Path(folder), headers).read_bytes()
+    destination = product.binaries / platform / f"{product.stem}.{TARGETS[platform].ending}"
+    same = check and destination.read_bytes() == content
+    if not check:
         destination.parent.mkdir(parents=True, exist_ok=True)
-        destination.write_bytes(built.read_bytes())
-    print(f"{destination.relative_to(RUNTIME.parents[2])}: {destination.stat().st_size} bytes", flush=True)
+        destination.write_bytes(content)
+    verdict = f"{len(content)} bytes" if not check else "same bytes" if same else "OTHER bytes"
+    print(f"{destination.relative_to(RUNTIME.parents[2])}: {verdict}", flush=True)
+    return same or not check
 
 
 def main() -> None:
@@ -155,15 +170,18 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("names", nargs="*", choices=[[], *PRODUCTS, *TARGETS])
     parser.add_argument("--fmi-headers")
+    parser.add_argument("--check", action="store_true", help="compare with the libraries of the package; write nothing")
     given = parser.parse_args()
     headers = given.fmi_headers and str(Path(given.fmi_headers).resolve())
     build.PROCESSORS.update(PROCESSORS)
-    chosen = [name for name in PRODUCTS if name in given.names] or list(PRODUCTS)
-    for name in chosen:
-        product = PRODUCTS[name]
-        for platform in product.platforms:
-            if platform in given.names or not set(given.names) & set(TARGETS):
-                build_target(product, platform, headers)
+    same = [
+        build_target(PRODUCTS[name], platform, headers, check=given.check)
+        for name in [name for name in PRODUCTS if name in given.names] or list(PRODUCTS)
+        for platform in PRODUCTS[name].platforms
+        if platform in given.names or not set(given.names) & set(TARGETS)
+    ]
+    if given.check:
+        sys.exit(not all(same))
     for binaries in {product.binaries for product in PRODUCTS.values()}:
         stamps = {name: stamp_of(product) for name, product in PRODUCTS.items() if product.binaries == binaries}
         stamp = {"compiler": f"ziglang {metadata.version('ziglang')}", **stamps}

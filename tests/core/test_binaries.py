@@ -1,6 +1,7 @@
 """The shipped libraries are built from these sources, and a changed source is compiled with the compiler at hand."""
 
 import hashlib
+import importlib.util
 import json
 import shutil
 import subprocess
@@ -31,6 +32,12 @@ def test_the_shipped_library_needs_no_compiler(monkeypatch):
     monkeypatch.setenv("PATH", "")
     monkeypatch.delenv("CC", raising=False)
     assert library.core.__wrapped__().core_variant() in (2, 3)
+
+
+@pytest.mark.skipif(importlib.util.find_spec("ziglang") is None, reason="the compiler is not there: make tools")
+def test_all_eleven_libraries_are_built_again_byte_for_byte():
+    done = subprocess.run([sys.executable, "tools/core.py", "--check"], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0 and done.stdout.count("same bytes") == 11, done.stdout + done.stderr
 
 
 def test_without_library_and_compiler_it_is_said(monkeypatch, tmp_path):
