@@ -1,6 +1,8 @@
 """Cars and short runs that several test folders share, made once a session."""
 
 import gc
+import os
+import tempfile
 
 import pytest
 
@@ -53,7 +55,10 @@ def pytest_collection_modifyitems(items):
 
 
 def pytest_configure(config):
-    """Draw figures only where a test looks at them; build equal cars once."""
+    """Draw figures only where a test looks at them; build equal cars once; keep the user's list of trusted code."""
+    folder = tempfile.TemporaryDirectory(prefix="configuration-")
+    config.add_cleanup(folder.cleanup)
+    os.environ["XDG_CONFIG_HOME"] = folder.name
     present = PresentTest()
     # Not as functions of this file: pytest does not ask a conftest about fixtures of the session.
     config.pluginmanager.register(present, "present test")

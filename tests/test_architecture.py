@@ -48,7 +48,7 @@ ROOMS: dict[str, set[str]] = {
     "settings": set(),
     "threads": set(),
     "version": set(),
-    "core": set(),
+    "core": {"replacement"},
     "analysis": {"threads"},
     "formats": {"analysis"},
     "records": {"analysis", "formats"},
@@ -86,7 +86,7 @@ ROOMS: dict[str, set[str]] = {
     "tuning": {"analysis", "car", "excitation", "formats", "output", "parameters", "records", "reduced"}
     | {"rendering", "report", "threads"},
     "optimisation": {"analysis", "car", "output", "parameters", "rendering", "sweeps", "targets"},
-    "commands": {"analysis", "assembly", "bench", "car", "comparison", "dampers", "design", "excitation"}
+    "commands": {"analysis", "assembly", "bench", "car", "comparison", "core", "dampers", "design", "excitation"}
     | {"flexbody", "fmu", "formats", "kinematics", "linear", "mounts", "optimisation", "output"}
     | {"page", "parameters", "records", "rendering", "replication", "report", "sweeps", "targets"}
     | {"threads", "tuning", "version"},

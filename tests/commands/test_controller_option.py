@@ -34,13 +34,15 @@ def test_all_dampers_with_a_control_have_the_controller(tmp_path, monkeypatch, c
     option = ["--vehicle", "focus_road", "--controller", "my contröllers/skyhook.fmu"]
     assert shaker.main([*ROAD, *option, "--output", "run"]) == 2
     said = capsys.readouterr().err
-    assert "native code, which runs with all your rights" in said and "--trust" in said and not Path("run").exists()
+    assert (
+        "native code, which runs with all your rights" in said and "vehicle trust" in said and not Path("run").exists()
+    )
     option.append("--trust")
     assert shaker.main([*ROAD, *option, "--output", "run"]) == 0
     car = load_vehicle(tmp_path / "run" / "vehicle.toml")
     assert controllers_of(car) == 4 * [("fmu", str(folder / "skyhook.fmu"))]
     assert tomllib.loads((tmp_path / "run" / "vehicle.toml").read_text())["front"]["damper"]["control"]["law"] == "fmu"
-    # The file of the run has the digest: it runs again without the option, and not with another controller.
+    # The user has allowed the file: it runs again without the option.
     again = ["--vehicle", "run/vehicle.toml"]
     assert shaker.main([*(word for word in ROAD if word != "--quiet"), *again, "--output", "again"]) == 0
     assert f"controller  {folder / 'skyhook.fmu'} runs as native code with all your rights" in capsys.readouterr().out

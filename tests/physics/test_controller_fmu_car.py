@@ -9,11 +9,11 @@ pytest.importorskip("fmpy", reason="FMPy is missing: pip install 'vehicle-on-sha
 
 from tests.model.laws.controller_files import PARAMETERS, controller_fmu
 from tests.validation import validated
+from vehicle.core.trusted_code import trust
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.handover.fmu.fmu_file import write_fmu
 from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
-from vehicle.signals.formats.file_digest import digest
 
 if sys.platform != "linux":
     pytest.skip("the library of the tests is for Linux", allow_module_level=True)
@@ -28,7 +28,7 @@ def car_with(law, *values):
 
 
 def trusted(path):
-    return f"fmu={path}", f"fmu_sha256={digest(path)}"
+    return f"fmu={path}", f"fmu_sha256={trust(path)}"
 
 
 @pytest.mark.parametrize(("engine", "version"), [("reduced", "2"), ("reduced", "3"), ("mujoco", "2")])

@@ -49,6 +49,7 @@ ELSEWHERE = {
     "studies/sweeps/store.py": APPENDS,
     "core/cache_folder.py": PRIVATE,
     "core/library.py": PRIVATE,
+    "core/trusted_code.py": GIVEN + "; makes the folder of the user's list",
     "drawing/rendering/backend.py": PRIVATE,
     "handover/bench/results.py": PRIVATE,
     "runs/car/run.py": PRIVATE,

@@ -24,6 +24,7 @@ COMMANDS = (
     "new",
     "fmu",
     "bench",
+    "trust",
 )
 """Each is a module with `parser()` and `main(arguments)`, and is called as `python -m vehicle NAME`."""
 

@@ -87,13 +87,12 @@ def parser() -> Parser:
         type=Path,
         metavar="FILE.fmu",
         help="FMU (FMI 2.0 or 3.0 co-simulation) that controls each semi-active damper: velocities in, damping "
-        "coefficient out. It runs native code with all your rights, so it needs --trust",
+        "coefficient out. It runs native code with all your rights, so you must allow it: --trust, or vehicle trust",
     )
     car.add_argument(
         "--trust",
         action="store_true",
-        help="allow the native code of FMU controllers; its SHA-256 is stored in the vehicle file of the run, "
-        "which then needs no --trust",
+        help="allow the native code of the FMU controllers from now on: add them to your list (vehicle trust --list)",
     )
     setting_options(parser, SweepSettings, "engine", default="mujoco")
     setting_options(parser, SweepSettings, "skip")
@@ -306,8 +305,8 @@ def _check_signal(options: argparse.Namespace, signal: Signal) -> None:
 
 def _controller_overrides(options: argparse.Namespace) -> list[str]:
     """Return the overrides of --controller for all semi-active dampers, and of --trust for all FMUs."""
+    from vehicle.core.trusted_code import trust
     from vehicle.model.parameters.vehicle import load_vehicle
-    from vehicle.signals.formats.file_digest import digest
 
     vehicle = load_vehicle(options.vehicle, options.overrides)
     controls = {damper.path: control for damper in vehicle.composition.dampers if (control := damper.law.control)}
@@ -319,7 +318,7 @@ def _controller_overrides(options: argparse.Namespace) -> list[str]:
                 f"--trust: no damper of {vehicle.name} is controlled by an FMU; leave --trust out, or add "
                 "--controller FILE"
             )
-        return [f"{path}.control.fmu_sha256={digest(file)}" for path, file in files.items()]
+        return [f"{path}.control.fmu_sha256={trust(file)}" for path, file in files.items()]
     paths = list(controls)
     if not paths:
         raise ConfigurationError(
@@ -335,7 +334,7 @@ def _controller_overrides(options: argparse.Namespace) -> list[str]:
             "files do not allow; rename or move the FMU"
         )
     texts = [f"law={FMU}", f"fmu={file}"]
-    texts += [f"fmu_sha256={digest(options.controller)}"] if options.trust else []
+    texts += [f"fmu_sha256={trust(options.controller)}"] if options.trust else []
     return [f"{path}.control.{text}" for path in paths for text in texts]
 
 

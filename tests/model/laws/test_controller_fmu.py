@@ -18,6 +18,7 @@ from tests.core import laws as core_laws
 from tests.core.laws import called
 from tests.model.laws.controller_files import NUMBERS, PARAMETERS, controller_fmu
 from tools.controller_library import FOLDER, digests
+from vehicle.core.trusted_code import trust
 from vehicle.errors import ConfigurationError, DataError, SimulationError
 from vehicle.model.laws.control_laws import PRESENT, act, at_rest, demanded, in_steps, pack
 from vehicle.model.laws.controller_fmu import NOT_FINITE, TERMINATED, Controller, controllers, read_controller
@@ -33,13 +34,13 @@ VERSIONS = pytest.mark.parametrize("version", ["2", "3"])
 
 def started(path, control=SKYHOOK, messages=None):
     return Controller(
-        read_controller(path, digest(path)), "damper_fr", control, STEP, [] if messages is None else messages
+        read_controller(path, trust(path)), "damper_fr", control, STEP, [] if messages is None else messages
     )
 
 
 def outside(control, path):
     """A control whose law is that of an FMU with its digest."""
-    return replace(control, law="fmu", fmu=str(path), fmu_sha256=digest(path))
+    return replace(control, law="fmu", fmu=str(path), fmu_sha256=trust(path))
 
 
 def speeds(count=200):
@@ -164,7 +165,7 @@ def test_an_unsuitable_fmu_is_refused_with_the_remedy(tmp_path, case):
     options, error, text = REFUSED[case]
     path = controller_fmu(tmp_path / "bad.fmu", **options)
     with pytest.raises(error) as caught:
-        read_controller(path, digest(path))
+        read_controller(path, trust(path))
     assert str(caught.value).startswith(f"controller {path}: ") and text in str(caught.value)
 
 
@@ -173,13 +174,17 @@ def test_a_file_that_is_missing_or_no_fmu_is_refused(tmp_path):
         read_controller(tmp_path / "none.fmu", "")
     (tmp_path / "text.fmu").write_text("no archive")
     with pytest.raises(DataError, match=r"cannot be read as an FMU .*; export it as FMI 2\.0 or 3\.0 co-simulation"):
-        read_controller(tmp_path / "text.fmu", digest(tmp_path / "text.fmu"))
+        read_controller(tmp_path / "text.fmu", trust(tmp_path / "text.fmu"))
 
 
-def test_native_code_runs_only_with_its_digest(tmp_path):
+def test_native_code_runs_only_by_the_word_of_the_user(tmp_path, monkeypatch):
+    """The digest in a vehicle file allows nothing; it must fit."""
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
     path = controller_fmu(tmp_path / "skyhook.fmu")
-    with pytest.raises(ConfigurationError, match=f'native code.* fmu_sha256 = "{digest(path)}" .* --trust'):
-        read_controller(path, None)
+    for named in (None, digest(path)):
+        with pytest.raises(ConfigurationError, match=f'native code.* you have not allowed .* trust "{path}"'):
+            read_controller(path, named)
+    assert trust(path) == digest(path) and read_controller(path, None).path == path
     with pytest.raises(ConfigurationError, match="the FMU has changed: its SHA-256 is"):
         read_controller(path, digest(path)[::-1])
 
@@ -191,7 +196,7 @@ def test_an_fmu_that_would_fill_the_disk_is_refused_before_it_is_unpacked(tmp_pa
     with zipfile.ZipFile(path, "a", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("resources/zeros.bin", bytes(size * 10**6))
     with pytest.raises(DataError, match=f"cannot be read as an FMU .*{found}"):
-        read_controller(path, digest(path))
+        read_controller(path, trust(path))
 
 
 @VERSIONS
@@ -209,4 +214,4 @@ def test_without_fmpy_the_extra_is_named(tmp_path, monkeypatch):
     path = controller_fmu(tmp_path / "skyhook.fmu")
     monkeypatch.setitem(sys.modules, "fmpy", None)
     with pytest.raises(MissingPartError, match=r"needs FMPy.*pip install 'vehicle-on-shaker\[fmu\]'"):
-        read_controller(path, digest(path))
+        read_controller(path, trust(path))

@@ -1,7 +1,7 @@
 """Controller of a semi-active damper in an FMU: FMI 2.0 or 3.0 co-simulation, an instance for each damper and run.
 
-An FMU is native code, which runs with all rights of the user. So it is loaded only if the car has its digest, which
-says that somebody has checked where this very file comes from, and it unpacks within limits.
+An FMU is native code, which runs with all rights of the user. So it is loaded only if its digest is in the list of
+this user (`vehicle.core.trusted_code`), and it unpacks within limits.
 
 At the communication point t_k = k T the FMU gets its sensors, does the communication step from t_k to t_k + T, and
 returns the damper coefficient c that holds over this step. T is the control period, a multiple of the time step.
@@ -36,6 +36,7 @@ import numpy.typing as npt
 
 from vehicle.core.library import core
 from vehicle.core.records import Packed, packed
+from vehicle.core.trusted_code import trusted
 from vehicle.errors import ConfigurationError, DataError, MissingPartError, SimulationError
 from vehicle.model.parameters.semi_active_damper import CONTROLLER_PARAMETERS, FMU, SemiActiveDamper
 from vehicle.signals.formats.unpacked_size import require_archive
@@ -95,10 +96,10 @@ def read_controller(path: Path, digest: str | None) -> ControllerFile:
 
     Args:
         path: the file.
-        digest: SHA-256 of the file that may run, in hexadecimal digits.
+        digest: SHA-256 that the file must have, in hexadecimal digits; None: any.
 
     Raises:
-        ConfigurationError: the file is missing, or its digest is missing or different.
+        ConfigurationError: the file is missing, has another digest, or is not in the user's list of trusted code.
         DataError: the file is too large, no FMU for co-simulation, its variables have other names, or it has no
             library for this platform.
         MissingPartError: FMPy is not installed.
@@ -112,16 +113,15 @@ def read_controller(path: Path, digest: str | None) -> ControllerFile:
         )
     content = path.read_bytes()
     actual_digest = hashlib.sha256(content).hexdigest()
-    if digest is None:
-        raise ConfigurationError(
-            f"controller {path}: an FMU is native code, which runs with all your rights; if you trust its "
-            f'source, add fmu_sha256 = "{actual_digest}" to its section control in the vehicle file, or start '
-            "shaker with --trust"
-        )
-    if digest.lower() != actual_digest:
+    if digest is not None and digest.lower() != actual_digest:
         raise ConfigurationError(
             f"controller {path}: the FMU has changed: its SHA-256 is {actual_digest}, but fmu_sha256 in the "
-            f"vehicle file is {digest}; if you trust the new FMU, set fmu_sha256 to the new value"
+            f"vehicle file is {digest}; if the new FMU is meant, set fmu_sha256 to the new value"
+        )
+    if actual_digest not in trusted():
+        raise ConfigurationError(
+            f"controller {path}: an FMU is native code, which runs with all your rights, and you have not allowed "
+            f'this one; if you trust its source, type: python -m vehicle trust "{path}"'
         )
     try:
         require_archive("its archive", io.BytesIO(content), limit=LARGEST)

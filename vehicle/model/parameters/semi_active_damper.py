@@ -35,7 +35,7 @@ class SemiActiveDamper:
     fmu: str | None = quantity("-", "file of the FMU that controls the damper (law = fmu)", is_file=True, default=None)
     fmu_sha256: str | None = quantity(
         "-",
-        "SHA-256 of the FMU that you trust: only this file may run, as native code with all your rights",
+        "SHA-256 that the FMU must have; the permission to run it is the user's own: vehicle trust",
         default=None,
     )
     minimum_damping: float = quantity("N s/m", "softest setting cmin", at_least=0.0)
