@@ -85,7 +85,7 @@ ROOMS: dict[str, set[str]] = {
     | {"parameters", "reduced", "rendering", "report", "simulation", "threads"},
     "tuning": {"analysis", "car", "excitation", "formats", "output", "parameters", "records", "reduced"}
     | {"rendering", "report", "threads"},
-    "optimisation": {"analysis", "car", "output", "parameters", "rendering", "sweeps", "targets"},
+    "optimisation": {"analysis", "car", "formats", "output", "parameters", "rendering", "sweeps", "targets"},
     "commands": {"analysis", "assembly", "bench", "car", "comparison", "core", "dampers", "design", "excitation"}
     | {"flexbody", "fmu", "formats", "kinematics", "linear", "mounts", "optimisation", "output"}
     | {"page", "parameters", "records", "rendering", "replication", "report", "sweeps", "targets"}

@@ -12,13 +12,14 @@ import sys
 import threading
 import time
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from types import FrameType
 from typing import Any
 
 from vehicle.commands.parser import Parser
+from vehicle.commands.printable import printable_streams
 from vehicle.digits import duration
 from vehicle.errors import ConfigurationError, OutputError, VehicleError
 from vehicle.threads import prefer_one_thread
@@ -50,6 +51,19 @@ def run_command(job: Callable[[], None], *, debug: bool = False) -> int:
     previous = {number: signal.signal(number, _interrupt) for number in (signal.SIGINT, signal.SIGTERM)}
     _asked_to_end.clear()
     lost = _stand_in_for_closed_streams()
+    with printable_streams():
+        return _exit_code(job, previous, lost, debug=debug)
+
+
+def _exit_code(job: Callable[[], None], previous: Mapping[int, Any], lost: io.StringIO | None, *, debug: bool) -> int:
+    """Run the job; see `run_command`.
+
+    Args:
+        job: work of the command.
+        previous: handlers of signals, restored at the end.
+        lost: substitute of a closed standard output; None: it is open.
+        debug: print the traceback of a failure.
+    """
     try:
         backend = os.environ.get("MUJOCO_GL", "").strip().lower()
         if backend not in (*OPENGL, *SWITCHES):
@@ -282,7 +296,8 @@ class ProgressLine:
         elapsed = f"after {now - self.started:.0f} s"
         remark = elapsed if math.isnan(self.end) else f"{duration(max(self.end - now, 0.0))} left"
         counted = f"  {self._counted()}" if self.runs else ""
-        sys.stderr.write(f"\r{self.what} [{bar:<30}] {100 * self.fraction:3.0f} %{counted}  {remark:>12} {newline}")
+        stream = getattr(sys.stderr, "stream", sys.stderr)  # the return to the begin of the line is meant
+        stream.write(f"\r{self.what} [{bar:<30}] {100 * self.fraction:3.0f} %{counted}  {remark:>12} {newline}")
         sys.stderr.flush()
 
     def _counted(self) -> str:

@@ -13,6 +13,7 @@ from vehicle.digits import number
 from vehicle.errors import ConfigurationError
 from vehicle.runs.comparison.frf_comparison import FrfComparison, Signatures
 from vehicle.runs.comparison.record_comparison import RecordComparison
+from vehicle.signals.formats.csv_table import table_text
 from vehicle.signals.records.counterpart import PARTS
 from vehicle.signals.records.group_delays import GroupDelay
 
@@ -192,14 +193,13 @@ class Comparison:
     def csv(self) -> str:
         """Return the content of `compare.csv`; columns of the other kind of row are empty."""
         header = (
-            f"# measured {self.measured}, simulated {self.run}; worst first; plate: input of the response; "
+            f"measured {self.measured}, simulated {self.run}; worst first; plate: input of the response; "
             "error: root of the mean of |ln(simulated / measured)|^2 weighted by both coherences; magnitude positive "
             "where simulated is larger; "
             "iso18571: ISO/TS 18571, 0 to 1, mean over windows of window_s at the full rate, weighted by their RMS; "
             "lag: positive where simulated is late, in the middle of the record; drift: its change per time"
         )
-        rows = [",".join(_cell(row.get(name)) for name in HEADS) for row in self.rows()]
-        return "\n".join([header, ",".join(HEADS), *rows, ""])
+        return table_text([HEADS, *([_cell(row.get(name)) for name in HEADS] for row in self.rows())], [header])
 
     def text(self) -> str:
         """Return the tables for the console."""

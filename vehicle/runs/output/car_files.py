@@ -1,6 +1,5 @@
 """Files of a car: its drawing, its data and its parameters."""
 
-import csv
 import io
 from pathlib import Path
 
@@ -10,6 +9,7 @@ from vehicle.model.parameters.parameter_list import Parameter, value_text
 from vehicle.runs.car import Car
 from vehicle.runs.car.car_data import CarData
 from vehicle.runs.output.folder import output_folder, write_json, write_text, write_whole
+from vehicle.signals.formats.csv_table import RowWriter
 
 
 def write_car(folder: Path, car: Car, data: CarData, *, force: bool = False) -> None:
@@ -28,7 +28,7 @@ def write_car(folder: Path, car: Car, data: CarData, *, force: bool = False) -> 
 def parameters_csv(parameters: tuple[Parameter, ...]) -> str:
     """Return parameters as CSV text, a row for each parameter."""
     text = io.StringIO()
-    table = csv.writer(text, lineterminator="\n")
+    table = RowWriter(text)
     table.writerow(["path", "value", "unit", "range", "meaning", "source"])
     table.writerows([p.path, value_text(p.value), p.unit, p.range, p.meaning, p.source] for p in parameters)
     return text.getvalue()

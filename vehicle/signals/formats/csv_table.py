@@ -79,6 +79,39 @@ def _plain(text: Text, header: Header) -> tuple[Vector, NDArray[np.int64]] | Non
     return (np.concatenate(values), np.concatenate(line_numbers)) if values else None
 
 
+FORMULA_TEXT = re.compile(r"^'(?=[=+@\t\r-])")
+"""Apostrophe before a text that a spreadsheet would compute; written by `plain_cell`, left out by `read_texts`."""
+
+
+def plain_cell(cell: Any) -> Any:
+    """Return a cell as spreadsheets show it: a text that begins like a formula, and is no number, gets an apostrophe.
+
+    Names of files, channels and cases come from other people: "=HYPERLINK(...)" in one would be computed.
+    """
+    return f"'{cell}" if isinstance(cell, str) and cell[:1] in set("=+@\t\r-") and not _NUMBER.fullmatch(cell) else cell
+
+
+def comment_line(text: str) -> str:
+    """Return a comment of a table, one line without a formula in any cell into which a spreadsheet would split it."""
+    return "# " + re.sub(r"([,;\t])(?=[=+@-])", r"\1 ", re.sub(r"[\r\n]+", " ", text))
+
+
+class RowWriter:
+    """Writer of rows of any cells as CSV, see `plain_cell`; methods as those of the module csv."""
+
+    def __init__(self, file: Any) -> None:
+        self._rows = csv.writer(file, lineterminator="\n")
+
+    def writerow(self, cells: Iterable[Any]) -> Any:
+        """Write a row; returns what `write` of the file returns."""
+        return self._rows.writerow([plain_cell(cell) for cell in cells])
+
+    def writerows(self, rows: Iterable[Iterable[Any]]) -> None:
+        """Write rows."""
+        for cells in rows:
+            self.writerow(cells)
+
+
 def read_texts(path: Path) -> list[list[str]]:
     """Read the cells of all rows as texts, the header first; keep commas within quotes.
 
@@ -88,7 +121,7 @@ def read_texts(path: Path) -> list[list[str]]:
     """
     try:
         rows = csv.reader(line for line in read_text(path).lines if not _is_comment(line))
-        return [[cell.strip() for cell in row] for row in rows]
+        return [[FORMULA_TEXT.sub("", cell.strip()) for cell in row] for row in rows]
     except csv.Error as error:
         raise DataError(f"{path}: cannot be read ({error})") from None
 
@@ -107,7 +140,7 @@ def write_table(
     cell_formats = formats.split(",") if "," in formats else [formats] * len(cells)
     row = ",".join(cell_formats)
     with path.open("w", encoding="utf-8", newline="") as file:
-        file.writelines(f"{line}\n" for line in (*(f"# {comment}" for comment in comments), ",".join(cells)))
+        file.writelines(f"{line}\n" for line in (*map(comment_line, comments), ",".join(map(plain_cell, cells))))
         for first in range(0, len(columns[0]), ROWS_AT_ONCE):
             table = np.column_stack([column[first : first + ROWS_AT_ONCE] for column in columns])
             gaps = set(np.flatnonzero(np.isnan(table).any(axis=1)).tolist())
@@ -289,6 +322,6 @@ def table_text(rows: Iterable[Sequence[Any]], comments: Sequence[str] = (), digi
         return "" if cell is None or cell != cell else f"{cell:.{digits}g}"
 
     file = io.StringIO()
-    file.writelines(f"# {comment}\n" for comment in comments)
-    csv.writer(file, lineterminator="\n").writerows([shown(cell) for cell in row] for row in rows)
+    file.writelines(f"{comment_line(comment)}\n" for comment in comments)
+    RowWriter(file).writerows([shown(cell) for cell in row] for row in rows)
     return file.getvalue()

@@ -11,6 +11,7 @@ import numpy as np
 from vehicle.errors import DataError, OutputError
 from vehicle.runs.output.folder import write_text
 from vehicle.runs.output.written_files import note
+from vehicle.signals.formats.csv_table import RowWriter
 from vehicle.studies.optimisation.problem import Problem
 from vehicle.studies.optimisation.search import TriedCars
 
@@ -104,5 +105,5 @@ def _number(cell: str) -> float:
 
 def _text(rows: Sequence[Sequence[str]]) -> str:
     text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows(rows)
+    RowWriter(text).writerows(rows)
     return text.getvalue()

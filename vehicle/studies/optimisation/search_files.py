@@ -16,6 +16,7 @@ from vehicle.errors import DataError
 from vehicle.runs.car import Car
 from vehicle.runs.output.folder import write_json, write_text, write_whole
 from vehicle.runs.output.own_files import parameters_text, write_own_files
+from vehicle.signals.formats.csv_table import RowWriter
 from vehicle.studies.optimisation.car_table import CARS, cells, columns
 from vehicle.studies.optimisation.front import distance, hypervolume
 from vehicle.studies.optimisation.outcome import BASE, Outcome
@@ -78,7 +79,7 @@ def front_text(outcome: Outcome, nominal: Vector | None) -> str:
         nominal: values of the cars of the front without tolerances, (f, criteria); None for a search without them.
     """
     text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
+    writer = RowWriter(text)
     criteria = [f"{criterion.label} without tolerances [{criterion.unit}]" for criterion in outcome.problem.criteria]
     writer.writerow(["name", *columns(outcome.problem), *([] if nominal is None else criteria)])
     names = {

@@ -1,6 +1,5 @@
 """Cases of a file: roads and speeds, laden states and variants of a car, run as one sweep in one table."""
 
-import csv
 import itertools
 import math
 from collections.abc import Mapping, Sequence
@@ -18,6 +17,7 @@ from vehicle.model.parameters.paths import assignments
 from vehicle.model.parameters.toml_file import build, read_table
 from vehicle.runs.car.road import Road
 from vehicle.signals.analysis.ride_comfort import UNWEIGHTED, WEIGHTED
+from vehicle.signals.formats.csv_table import RowWriter
 from vehicle.studies.sweeps.change_error import MEANING_OF_ERROR, NO_ERROR, change_errors, half_width
 from vehicle.studies.sweeps.sweep_ranking import RANKED_BY, SweptCases
 
@@ -226,7 +226,7 @@ def write_cases(path: Path, results: CaseResults) -> None:
         results: see `case_results`.
     """
     with path.open("w", encoding="utf-8", newline="") as file:
-        rows = csv.writer(file, lineterminator="\n")
+        rows = RowWriter(file)
         rows.writerow(
             ["input", "car", f"{results.name} [m/s2]", "change [%]", "unweighted [m/s2]", "half_width_95 [%]"]
         )

@@ -8,7 +8,6 @@ amplitudes, scatter less. For a road with two or more seeds the mean over the se
 estimated from the scatter.
 """
 
-import csv
 import math
 from collections.abc import Collection, Sequence
 from dataclasses import replace
@@ -21,6 +20,7 @@ from scipy.special import stdtrit
 from vehicle.signals.analysis.comfort_error import WAVES, difference_error
 from vehicle.signals.analysis.ride_comfort import ERROR, UNWEIGHTED, wave_names
 from vehicle.signals.excitation.road_drive import RoadDrive
+from vehicle.signals.formats.csv_table import RowWriter
 from vehicle.studies.sweeps.case import Case, Input
 from vehicle.studies.sweeps.case_result import Row
 from vehicle.studies.sweeps.change_error import is_event
@@ -79,7 +79,7 @@ class DifferencesWriter:
         self._values = [each for name in names for each in (name, f"{name}{ERROR}", *wave_names(name))]
         heads = [head.format(name if head == HEADS[0] else "" if name == UNWEIGHTED else f"{name}_")
                  for name in names for head in HEADS]  # fmt: skip
-        self._writer = csv.writer(file, lineterminator="\n")
+        self._writer = RowWriter(file)
         self._writer.writerow(["input", *paths, "cars differ on", *heads])
         self._factor = float(stdtrit(2 * WAVES, 0.975))
         self._first: dict[Input, Numbers] = {}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +12,7 @@ import numpy as np
 from vehicle.arrays import Vector
 from vehicle.digits import aligned, number
 from vehicle.drawing.rendering.tornado_plot import draw_tornado, plot_tornado
+from vehicle.signals.formats.csv_table import RowWriter
 from vehicle.studies.sweeps.change_error import MEANING_OF_ERROR, NO_ERROR
 
 EFFECTS, TORNADO = "effects.csv", "effects.png"
@@ -208,7 +208,7 @@ def write_effects(path: Path, effects: Effects) -> None:
         effects: the effects.
     """
     with path.open("w", encoding="utf-8", newline="") as file:
-        rows = csv.writer(file, lineterminator="\n")
+        rows = RowWriter(file)
         heads = ("value", "low", "high", "change_low [%]", "change_high [%]", "half_width_95 [%]")
         rows.writerow(["parameter", "unit", *heads])
         for each in effects.effects:

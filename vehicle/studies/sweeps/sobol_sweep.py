@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -13,6 +12,7 @@ from vehicle.model.parameters.ranges import Range
 from vehicle.runs.car import Car
 from vehicle.settings import with_settings
 from vehicle.signals.analysis.ride_comfort import SEAT_PREFIX, UNWEIGHTED, WEIGHTED
+from vehicle.signals.formats.csv_table import RowWriter
 from vehicle.studies.sweeps.case_table import RowChanges
 from vehicle.studies.sweeps.indices import SobolIndices, sobol_indices, sobol_sample
 from vehicle.studies.sweeps.plan import plan_sweep
@@ -101,7 +101,7 @@ def write_indices(path: Path, indices: Mapping[str, SobolIndices]) -> None:
         indices: see `comfort_indices`.
     """
     with path.open("w", encoding="utf-8", newline="") as file:
-        rows = csv.writer(file, lineterminator="\n")
+        rows = RowWriter(file)
         rows.writerow(["value", "parameter", *(f"{name} [-]" for name in ("S1", "S1_95", "ST", "ST_95"))])
         for name, each in indices.items():
             columns = (each.first, each.first_error, each.total, each.total_error)

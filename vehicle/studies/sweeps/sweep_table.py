@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import html
 import io
 import json
@@ -18,7 +17,7 @@ from vehicle.arrays import Vector
 from vehicle.drawing.notebook.frames import table_frame
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.runs.output.folder import check_file, write_text
-from vehicle.signals.formats.csv_table import read_texts
+from vehicle.signals.formats.csv_table import RowWriter, read_texts
 from vehicle.signals.formats.formats import recognised_format
 from vehicle.signals.formats.sheet_format import read_sheet_texts
 from vehicle.studies.sweeps.case import Case, parameter_cells
@@ -171,9 +170,9 @@ class TableWriter:
 
     def __init__(self, file: TextIO, paths: Sequence[str], units: Mapping[str, str]) -> None:
         self.names, self._file = list(units), file
-        self._texts = csv.writer(_Returned(), lineterminator="\n")
+        self._texts = RowWriter(_Returned())
         heads = (f"{name} [{unit}]" for name, unit in units.items())
-        csv.writer(file, lineterminator="\n").writerow([INPUT, *paths, *heads, ENGINE, REASON])
+        RowWriter(file).writerow([INPUT, *paths, *heads, ENGINE, REASON])
 
     def add(self, case: Case, parameters: Sequence[str], row: Row) -> None:
         """Write the row of a case; `parameters` are its values, see `parameter_cells`."""

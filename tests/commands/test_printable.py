@@ -1,0 +1,51 @@
+"""What a command prints cannot steer a terminal."""
+
+import sys
+
+import pytest
+
+from vehicle.commands import inspect
+from vehicle.commands.command_line import ProgressLine, run_command
+from vehicle.commands.printable import PrintableStream, printable
+from vehicle.errors import DataError
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("a\x1b[2Jb", "a\\x1b[2Jb"),
+        ("a\u202eb\u200b", "a\\u202eb\\u200b"),
+        ("\x9b31m\r\x07", "\\x9b31m\\r\\x07"),
+        ("Prüfstand µm m/s²\u00a0\tx\n", "Prüfstand µm m/s²\u00a0\tx\n"),
+    ],
+)
+def test_control_characters_are_shown_as_escapes(text, shown):
+    assert printable(text) == shown
+
+
+def test_names_of_a_file_are_printed_without_their_escapes(tmp_path, capsys):
+    rows = "".join(f"{n / 1000},{n % 7}\n" for n in range(50))
+    (tmp_path / "a.csv").write_text(f"time [s],Seat \x1b[2J Z [m/s2]\n{rows}", encoding="utf-8")
+    assert inspect.main([str(tmp_path / "a.csv")]) == 0
+    said = capsys.readouterr()
+    assert "Seat \\x1b[2J Z" in said.out and "\x1b" not in said.out + said.err
+
+
+def test_errors_and_nested_commands_are_printed_once_escaped(capsys):
+    def inner() -> None:
+        assert isinstance(sys.stdout, PrintableStream) and not isinstance(sys.stdout.stream, PrintableStream)
+        raise DataError("bad \x1b name")
+
+    assert run_command(lambda: print(run_command(inner))) == 0
+    assert capsys.readouterr() == ("3\n", "error: bad \\x1b name\n")
+    assert not isinstance(sys.stdout, PrintableStream)
+
+
+def test_a_bar_still_returns_to_the_begin_of_its_line(capsys, monkeypatch):
+    def job() -> None:
+        monkeypatch.setattr(sys.stderr.stream, "isatty", lambda: True, raising=False)
+        line = ProgressLine("work")
+        line(1.0)
+
+    assert run_command(job) == 0
+    assert "\rwork [" in capsys.readouterr().err
