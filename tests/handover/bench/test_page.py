@@ -1,5 +1,6 @@
 """Page of the bench on a real server, attacked by raw websocket clients; no browser."""
 
+import gc
 import os
 import socket
 import time
@@ -162,6 +163,27 @@ def test_absurd_values_change_nothing(bench, value, capsys, caplog):
             bench.wait_for(lambda: bench.slider.value == 70.0)
         bench.follows(client, 80.0)
     bench.wait_for(lambda: bench.slider.value == 80.0)
+
+
+def test_values_of_a_wrong_type_are_ignored_in_a_line_each(bench, capfd, caplog):
+    """Also for other properties than the value, and for lists and check boxes."""
+    view = bench.page.view
+    wrong = ["text", None, [1.0], {"a": 1}, {}, [[]], b"\x1b[2J\n", True]
+    with bench.client() as client:
+        for handle in (bench.slider, view.kind, view.larger, view.playing):
+            kept = handle.value
+            for value in wrong:
+                bench.set(client, handle, value)
+            bench.set(client, handle, kept)
+        unknown = {"type": "GuiUpdateMessage", "uuid": bench.slider._impl.uuid, "updates": {"no such property": 1}}
+        client.send(msgspec.msgpack.encode(unknown))
+        bench.follows(client, 75.0)
+        gc.collect()  # an error that nobody has looked at is reported when its task is collected
+        bench.follows(client, 76.0)
+    said = capfd.readouterr().err
+    ignored = [line for line in said.splitlines() if line.startswith("bench: a message of the page was ignored (")]
+    assert len(ignored) >= 10 and "Traceback" not in said and "\x1b" not in said
+    assert not any(record.exc_info for record in caplog.records)
 
 
 def test_garbage_and_closed_browsers_do_not_end_the_bench(bench, capfd, caplog):

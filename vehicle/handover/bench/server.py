@@ -1,5 +1,6 @@
 """Web server of the bench: viser on 127.0.0.1 with the checks of the guard."""
 
+import asyncio
 import io
 import logging
 import sys
@@ -13,6 +14,9 @@ from vehicle.signals.formats.optional_library import extra
 
 HOST = "127.0.0.1"
 """Address on which the page is served: this machine alone."""
+
+LONGEST = 200
+"""Maximum length of the message of an error; the error may quote the message of a client."""
 
 PORTS = (1024, 65535)
 """Permitted ports."""
@@ -49,6 +53,8 @@ def open_server(guard: Guard, port: int) -> Any:
 
         def __init__(self, *arguments: Any, process_request: Any, **options: Any) -> None:
             options["logger"] = connection_log()
+            # viser handles each message in a task, whose error asyncio would print with its traceback.
+            asyncio.get_running_loop().set_exception_handler(_report)
             super().__init__(*arguments, process_request=guard.checked(process_request), **options)
             started.append(True)
 
@@ -76,8 +82,18 @@ class OneLine(logging.Handler):
 
     def emit(self, record: logging.LogRecord) -> None:
         """Write the error of a record to standard error."""
-        error = record.exc_info[1] if record.exc_info else None
-        sys.stderr.write(f"bench: a connection was closed ({type(error).__name__}: {error})\n")
+        _say("a connection was closed", record.exc_info[1] if record.exc_info else None)
+
+
+def _report(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+    """Report a message of the page that could not be handled, for example a word as the value of a slider."""
+    _say("a message of the page was ignored", context.get("exception"))
+
+
+def _say(event: str, error: BaseException | None) -> None:
+    """Write an event and its error to standard error, in one line without control characters."""
+    text = " ".join(f"{type(error).__name__}: {error}".split())[:LONGEST]
+    sys.stderr.write(f"bench: {event} ({''.join(sign if sign.isprintable() else '?' for sign in text)})\n")
 
 
 def connection_log() -> logging.Logger:
