@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import zipfile
 
 import numpy as np
 import pytest
@@ -45,6 +46,20 @@ def toml(change, says):
 
 def npz(change, says):
     return Case("box.npz", change, SHOW, says)
+
+
+def head_of_array(head):
+    """Give the frequencies of an npz another head."""
+
+    def change(path):
+        with zipfile.ZipFile(path) as archive:
+            members = {name: archive.read(name) for name in archive.namelist()}
+        members["frequency_hz.npy"] = b"\x93NUMPY\x01\x00" + len(head).to_bytes(2, "little") + head
+        with zipfile.ZipFile(path, "w") as archive:
+            for name, content in members.items():
+                archive.writestr(name, content)
+
+    return change
 
 
 def option(*arguments, says, code=2):
@@ -97,6 +112,9 @@ CASES = {
         lambda path: path.write_bytes(path.read_bytes()[:900] + b"\x07" * 40 + path.read_bytes()[940:]),
         "not a valid npz",
     ),
+    # An archive that is whole, with an array whose head is not: NumPy raises errors of its parser.
+    "npz damaged head": npz(head_of_array(b"((((\n"), "not a valid npz, perhaps truncated (TokenError: "),
+    "npz nested head": npz(head_of_array(b"[" * 3000), "not a valid npz, perhaps truncated ("),
     "npz renamed array": npz(array(frequency_hz=None), "'frequency_hz' is mi"),
     "npz unknown array": npz(array(shape=np.zeros(3)), "unknown array 'shape'; the most similar known name is"),
     "npz of objects": npz(array(nodes=lambda names: names.astype(object)), "Object arrays cannot be loaded"),

@@ -3,8 +3,6 @@
 import difflib
 import io
 import json
-import zipfile
-import zlib
 from typing import Any
 
 import numpy as np
@@ -39,8 +37,11 @@ def of_arrays(raw: bytes) -> Superelement:
             require_archive("the npz", io.BytesIO(raw))
             content = {name: np.asarray(file[name]) for name in file.files}
         head = json.loads(str(content.get("head", "null")))
-    except (ValueError, OSError, EOFError, KeyError, zipfile.BadZipFile, zlib.error, NotImplementedError) as error:
-        raise DataError(f"is not a valid npz, perhaps truncated: {error}. Write the file again.") from error
+    except DataError:
+        raise
+    except Exception as error:  # NumPy raises errors of any type for damaged files, for example TokenError
+        reason = " ".join(f"{type(error).__name__}: {error}".split())
+        raise DataError(f"is not a valid npz, perhaps truncated ({reason}). Write the file again.") from None
     if not isinstance(head, dict) or head.get("format") != FORMAT:
         file_format = head.get("format") if isinstance(head, dict) else None
         raise DataError(f"format is {file_format!r}, must be {FORMAT!r} for npz.")
