@@ -241,7 +241,7 @@ def test_large_values_have_a_prefix_as_the_field_shows_five_digits_alone(bench):
         bench.send(client, 251.0, path)
         bench.wait_for(lambda: bench.page.state.changes.get(path) == 251e3)
         bench.send(client, 1e300, path)
-        bench.wait_for(lambda: "must be 0 to 1e\\+06 N/m" in bench.page._note.content)
+        bench.wait_for(lambda: " to 1e\\+06 N/m" in bench.page._note.content)
         bench.wait_for(lambda: slider.value == 251.0)
     bench.page._reset()
     bench.wait_for(lambda: "**B** unchanged" in bench.page._table.content)

@@ -52,6 +52,46 @@ def test_a_zero_has_a_range_of_a_usual_size(car):
     assert (mount.low, mount.value, mount.high) == (0.0, 0.0, 500.0)
 
 
+@pytest.mark.parametrize(
+    "path",
+    [
+        *("front.parts.knuckle.inertia.z", "body.inertia.ixx", "front.parts.a_arm.products.x"),
+        *("front.parts.suspension_mount.inertia.z", "body.inertia.izx"),
+    ],
+)
+def test_a_slider_ends_where_the_car_cannot_be_built(state, path):
+    whole, setting = state.settings[path], state.setting(path)
+    assert whole.low <= setting.low < setting.high <= whole.high and setting.high - setting.low < whole.high - whole.low
+    for share in (0.0, 0.45, 1.0):
+        state.reset()
+        state.change(path, setting.low + share * (setting.high - setting.low))
+        assert state.update(), state.message
+    margin = 0.03 * (whole.high - whole.low)
+    beyond = [end for end in (setting.low - margin, setting.high + margin) if whole.low <= end <= whole.high]
+    refused = []
+    for value in beyond:
+        try:
+            state.car.with_([f"{path}={value!r}"]).static  # noqa: B018
+        except ConfigurationError:
+            refused.append(value)
+    assert refused, "the range is narrower than the car allows"
+    with pytest.raises(ConfigurationError, match="must be"):
+        state.change(path, refused[0])
+
+
+@pytest.mark.parametrize(
+    ("path", "reason"),
+    [
+        ("engine.bushings.hydromount.friction_force.z", r"friction_stroke\.z: found 0\.0 m, must be at least"),
+        # A thin rod: its two large moments differ by less than the third.
+        ("front.parts.steering_rod.inertia.x", "the sum of the two smaller must be at least the largest"),
+    ],
+)
+def test_a_number_of_which_no_other_value_is_possible_has_no_slider(state, path, reason):
+    with pytest.raises(ConfigurationError, match=reason):
+        state.setting(path)
+
+
 def test_search_finds_words_in_path_or_meaning(state):
     assert state.search("FRONT coulomb") == [FRICTION]
     assert "front.hardpoints.strut_top.x" in state.search("strut_top")

@@ -2,12 +2,16 @@
 
 import threading
 from collections.abc import Callable
+from dataclasses import replace
 
 from vehicle.errors import ConfigurationError, VehicleError
 from vehicle.handover.bench.drive import BenchDrive
 from vehicle.handover.bench.numbers import BenchNumbers, numbers
 from vehicle.handover.bench.setting import Setting, settings
 from vehicle.runs.car import Car
+
+HALVINGS = 7
+"""Bisections of the range of a slider: its end is accurate to 1 % of the range."""
 
 MOST_FOUND = 50
 """Maximum number of parameters that a search lists."""
@@ -39,6 +43,7 @@ class BenchState:
         fixed = {text.partition("=")[0] for text in drive.overrides}
         self.settings = {path: setting for path, setting in settings(self.car).items() if path not in fixed}
         self.changes: dict[str, float] = {}
+        self._narrowed: set[str] = set()
         self.message = ""
         self.computing = threading.Lock()
         # The terms of all variants and the compiled functions are made now, not at the first change.
@@ -60,14 +65,48 @@ class BenchState:
         return [path for path, _ in zip(matches, range(MOST_FOUND), strict=False)]
 
     def setting(self, path: str) -> Setting:
-        """Return a setting.
+        """Return a setting, whose range at its first use is narrowed to values with which the car can be built.
+
+        A moment of inertia, for example, cannot exceed the sum of the two others.
 
         Raises:
-            ConfigurationError: an unknown path.
+            ConfigurationError: an unknown path, or a number of which the car accepts no other value.
         """
         if path not in self.settings:
             raise ConfigurationError(f"bench: found {path[:80]!r}, must be the path of a number of the car")
+        if path not in self._narrowed:
+            setting = self.settings[path]
+            low, high = (self._last_accepted(setting, end) for end in (setting.low, setting.high))
+            if low == high:
+                self._require(path, setting.high if setting.high != setting.value else setting.low)
+            self.settings[path] = replace(setting, low=low, high=high)
+            self._narrowed.add(path)
         return self.settings[path]
+
+    def _require(self, path: str, value: float) -> None:
+        """Raise a VehicleError if the base car cannot be built with a value, or does not stand."""
+        with self.computing:
+            _ = self.car.with_([f"{path}={value!r}"]).static
+
+    def _last_accepted(self, setting: Setting, end: float) -> float:
+        """Return the value nearest to an end of a range with which the car can be built, by bisection."""
+
+        def accepted(value: float) -> bool:
+            try:
+                self._require(setting.path, value)
+            except VehicleError:
+                return False
+            return True
+
+        if end == setting.value or accepted(end):
+            return end
+        inside, outside = setting.value, end
+        for _ in range(HALVINGS):
+            middle = 0.5 * (inside + outside)
+            inside, outside = (middle, outside) if accepted(middle) else (inside, middle)
+        rounded = float(f"{inside:.2g}")  # an end that can be read
+        between = min(setting.value, inside) <= rounded <= max(setting.value, inside)
+        return rounded if between and rounded != setting.value else inside
 
     def change(self, path: str, value: float) -> None:
         """Change a number of the car; `update` computes.
