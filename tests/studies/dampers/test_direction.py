@@ -45,13 +45,13 @@ def test_files_of_the_other_direction_are_refused(tmp_path, signs):
 
 
 def test_a_wrong_option_is_refused(tmp_path):
-    with pytest.raises(DataError, match="a: positive in extension, .*; set --positive extension"):
+    with pytest.raises(DataError, match=r"a: positive in extension, .*; set --positive extension"):
         require_direction([read_test(write(tmp_path / "a.csv"), compression=True)], True)
 
 
 def test_files_of_both_directions_are_named(tmp_path):
     tests = [read_test(write(tmp_path / "a.csv")), read_test(write(tmp_path / "b.csv", signs=(-1, -1, -1)))]
-    with pytest.raises(DataError, match="b: has the opposite direction to a, whose gas force is .* in b$"):
+    with pytest.raises(DataError, match=r"b: has the opposite direction to a, whose gas force is .* in b$"):
         require_direction(tests, None)
 
 

@@ -1,7 +1,7 @@
 """Direction of damper tests by physics: gas pushes the rod out, and dampers of cars damp rebound more than bump.
 
 The work of a damper is positive, sum F v > 0, in extension and in compression alike, so that the signs of force and
-motion in a file determine each other (`read_test`); both together are found from the fit of each test
+motion in a file determine each other (`read_test`); both together follow from the fit of each test
 
     F = -F_gas + k (x - x_0) + F_f clamp(v/v_f, 1) + straight segments over v, separate for both directions,
 
@@ -114,17 +114,21 @@ def require_direction(tests: Sequence[DamperTest], compression: bool | None) -> 
     Raises:
         DataError: some tests, or all, have the other direction.
     """
-    found = {test.name: direction_of(test) for test in tests}
-    wrong = {name: each for name, each in found.items() if each.by_gas < 0 and each.by_damping <= 0}
-    right = [name for name, each in found.items() if each.by_gas > 0]
+    directions = {test.name: direction_of(test) for test in tests}
+    wrong = {name: each for name, each in directions.items() if each.by_gas < 0 and each.by_damping <= 0}
+    right = [name for name, each in directions.items() if each.by_gas > 0]
     if wrong and right:
         name, first = next(iter(wrong.items()))
         raise DataError(
-            f"{name}: has the opposite direction to {right[0]}, whose gas force is {found[right[0]].gas[0]:.1f} N: "
+            f"{name}: has the opposite direction to {right[0]}, whose gas force is {directions[right[0]].gas[0]:.1f} N: "
             f"{first.words}; change the signs of displacement, velocity and force in {', '.join(wrong)}"
         )
-    if not wrong and compression is None and not any(each.by_gas > 0 or each.by_damping > 0 for each in found.values()):
-        wrong = {name: each for name, each in found.items() if each.by_damping < 0}
+    if (
+        not wrong
+        and compression is None
+        and not any(each.by_gas > 0 or each.by_damping > 0 for each in directions.values())
+    ):
+        wrong = {name: each for name, each in directions.items() if each.by_damping < 0}
         more = ", or --positive extension if this damper damps bump more than rebound"
     else:
         more = ", or remove the offset of the load cell from the files"

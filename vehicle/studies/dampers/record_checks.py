@@ -46,16 +46,16 @@ def require_sensors(path: Path, values: Mapping[str, Vector], names: Mapping[str
     for role in ("displacement", "force"):
         if is_dead(values[role]):
             raise DataError(
-                f"{path}: the {role}, channel {names[role]!r}, is constant, {_value(values[role], role)}: the sensor is "
-                f"dead or not connected; choose another channel with --channel {role}=NAME"
+                f"{path}: the {role}, channel {names[role]!r}, is constant, {_value(values[role], role)}: the sensor "
+                f"is dead or not connected; choose another channel with --channel {role}=NAME"
             )
         largest, unit, other = LARGEST[role]
         size = float(np.ptp(values[role]) if role == "displacement" else np.max(np.abs(values[role])))
         if size > largest:
             word = "stroke" if role == "displacement" else "force"
             raise DataError(
-                f"{path}: the {word} is {number(size, 3)} {unit}, must be at most {largest:g} {unit}; check the unit of "
-                f"channel {names[role]!r}, for example --unit {role}={other}"
+                f"{path}: the {word} is {number(size, 3)} {unit}, must be at most {largest:g} {unit}; check the unit "
+                f"of channel {names[role]!r}, for example --unit {role}={other}"
             )
     for role, copy in (("displacement", "force"), ("displacement", "velocity"), ("velocity", "force")):
         if role in values and copy in values and is_copy(values[role], values[copy]):
