@@ -118,9 +118,9 @@ def require_direction(tests: Sequence[DamperTest], compression: bool | None) -> 
     wrong = {name: each for name, each in directions.items() if each.by_gas < 0 and each.by_damping <= 0}
     right = [name for name, each in directions.items() if each.by_gas > 0]
     if wrong and right:
-        name, first = next(iter(wrong.items()))
+        (name, first), other = next(iter(wrong.items())), right[0]
         raise DataError(
-            f"{name}: has the opposite direction to {right[0]}, whose gas force is {directions[right[0]].gas[0]:.1f} N: "
+            f"{name}: has the opposite direction to {other}, whose gas force is {directions[other].gas[0]:.0f} N: "
             f"{first.words}; change the signs of displacement, velocity and force in {', '.join(wrong)}"
         )
     if (

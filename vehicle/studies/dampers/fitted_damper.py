@@ -59,6 +59,17 @@ class FittedDamper:
         speeds = [float(np.max(np.abs(test.velocity))) for test in self.tests]
         return min(speeds), max(speeds)
 
+    @property
+    def tested(self) -> dict[str, tuple[float, float]]:
+        """Lowest and highest values of the tests, by their keys in `TestedRange`."""
+        values = {
+            "velocity": list(self.speeds),
+            "amplitude": [0.5 * float(np.ptp(test.displacement)) for test in self.tests],
+            "frequency": [1.0 / test.cycle for test in self.tests],
+        }
+        values |= {name: [self.conditions[name]] for name in ("temperature", "current") if name in self.conditions}
+        return {name: (min(each), max(each)) for name, each in values.items()}
+
     def curve(self, velocity: Vector) -> Vector:
         """Return the force of the curve F_c [N] at velocities [m/s]; (n,)."""
         values = values_of(self.fit.law, self.fit.parameters)
