@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
+from vehicle.digits import rounded
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.quantity import quantity, validate
 from vehicle.names import AXES
@@ -64,6 +65,19 @@ class TestedRange:
                     f"TestedRange.{entry.name}: found {list(values)}, must be the lowest and the highest value of the "
                     "tests, in this order"
                 )
+
+
+def range_lines(tested: Mapping[str, tuple[float, float]]) -> list[str]:
+    """Return the lines of a range for the table of a law.
+
+    Args:
+        tested: lowest and highest values of the tests by key.
+    """
+    units = {entry.name: entry.metadata["unit"] for entry in fields(TestedRange)}
+    return [
+        f"{RANGE}.{name} = {[rounded(value, 4) for value in values]!r}  # [{units[name]}] range of the tests"
+        for name, values in tested.items()
+    ]
 
 
 def merged_law(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:

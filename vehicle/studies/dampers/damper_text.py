@@ -1,14 +1,13 @@
 """Fitted dampers as text: lines of a vehicle file, table of the tests, printed summary."""
 
-import dataclasses
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from vehicle.digits import number, rounded
-from vehicle.model.parameters.tested_range import RANGE, TestedRange
+from vehicle.model.parameters.tested_range import range_lines
 from vehicle.signals.formats.csv_table import table_text
 from vehicle.studies.dampers.damper_law import EXPONENT, SMOOTHING, values_of
 from vehicle.studies.dampers.fitted_damper import FittedDamper
@@ -76,17 +75,6 @@ def vehicle_lines(fitted: FittedDamper) -> str:
             f"# [AXLE.bushings.MOUNT] stiffness.z = {_short(values.series)} where the eye of the test is the mount",
         ]
     return "\n".join(lines + [f"# {sentence}" for sentence in fitted.left_open()]) + "\n"
-
-
-def range_lines(tested: Mapping[str, tuple[float, float]]) -> list[str]:
-    """Return the lines of the range of the tests for the table of a law; see `TestedRange`.
-
-    Args:
-        tested: lowest and highest values by key.
-    """
-    units = {entry.name: entry.metadata["unit"] for entry in dataclasses.fields(TestedRange)}
-    return [f"{RANGE}.{name} = [{', '.join(map(_short, values))}]  # [{units[name]}] range of the tests"
-            for name, values in tested.items()]  # fmt: skip
 
 
 def _curve_lines(fitted: FittedDamper, spread: dict[str, float]) -> list[str]:

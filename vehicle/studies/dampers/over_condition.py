@@ -11,8 +11,8 @@ import numpy as np
 
 from vehicle.arrays import Vector
 from vehicle.digits import rounded
+from vehicle.model.parameters.tested_range import range_lines
 from vehicle.studies.dampers.damper_law import values_of
-from vehicle.studies.dampers.damper_text import range_lines
 from vehicle.studies.dampers.fitted_damper import FittedDamper
 
 POINTS = 400
