@@ -27,9 +27,18 @@ def run():
     return Car.load("focus_road", LAW | TESTED).run(DRIVE, engine="reduced")
 
 
-def test_continuations_of_a_curve():
+TABLE = {
+    "front.damper.viscous_law": "table",
+    "front.damper.velocity": [-1.06, -0.06, 0.0, 0.06, 0.5, 1.06],
+    "front.damper.force": [-256.0, -186.0, 0.0, 186.0, 216.8, 256.0],
+}
+"""The same curve as a table with further points, as fits of both directions write it."""
+
+
+@pytest.mark.parametrize("form", [LAW, TABLE], ids=["degressive", "table"])
+def test_continuations_of_a_curve(form):
     """D v to 60 mm/s with 3100 N s/m, then 70 N s/m; friction 62.5 N; range 16 to 79 mm/s: in closed form."""
-    law = Car.load("focus_road", LAW | {"front.damper.coulomb_friction": 62.5} | TESTED).vehicle.damper
+    law = Car.load("focus_road", form | {"front.damper.coulomb_friction": 62.5} | TESTED).vehicle.damper
     v = np.array([-0.5, -0.079, -0.03, -0.004, 0.0, 0.008, 0.016, 0.05, 0.079, 0.3])
     size, sign = np.abs(v), np.sign(v)
     plain = 3100.0 * np.minimum(size, 0.06) + 70.0 * np.maximum(size - 0.06, 0.0)

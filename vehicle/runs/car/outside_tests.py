@@ -155,24 +155,26 @@ def continued(law: Damper, *, above: bool, constant: bool) -> Damper:
     assert law.tested is not None and law.tested.velocity is not None
     end = law.tested.velocity[1 if above else 0]
     curve, at_rest = damper_curve(law), float(damper_curve(law).force(0.0))
-    inner = {abs(float(knot)) for knot in curve.knots}
-    speeds = np.array(sorted({each for each in inner if (each < end if above else each > end)} | {end}))
-    sides = {sign: sign * (curve.force(sign * speeds) - at_rest) for sign in (1.0, -1.0)}
+    speeds, sides = {}, {}
+    for sign in (1.0, -1.0):
+        knots = sign * curve.knots
+        inner = knots[(knots > 0.0) & (knots < end)] if above else knots[knots > end]
+        speeds[sign] = np.unique([*inner, end])
+        sides[sign] = sign * (curve.force(sign * speeds[sign]) - at_rest)
     last = {sign: float(curve.slope(sign * FAR)) for sign in sides}
     friction = 0.0
     if above:
         last = {sign: 0.0 if constant else float(force[-1]) / end for sign, force in sides.items()}
     else:
-        more = _friction(law, speeds)
         if constant:  # the friction is alike on both sides; what one side has more remains damping
-            friction = min(float(force[0]) for force in sides.values()) + float(more[0])
-        sides = {sign: np.maximum.accumulate(np.maximum(force + more - friction, 0.0)) for sign, force in sides.items()}
+            friction = min(float(force[0]) for force in sides.values()) + float(_friction(law, np.array([end]))[0])
+        sides = {sign: np.maximum.accumulate(np.maximum(force + _friction(law, speeds[sign]) - friction, 0.0))
+                 for sign, force in sides.items()}  # fmt: skip
     points = [(0.0, at_rest)]
     for sign, force in sides.items():
-        far = float(force[-1]) + last[sign] * (FAR - float(speeds[-1]))
-        points += [
-            (sign * v, at_rest + sign * f) for v, f in zip([*speeds.tolist(), FAR], [*force.tolist(), far], strict=True)
-        ]
+        far = float(force[-1]) + last[sign] * (FAR - float(speeds[sign][-1]))
+        pairs = zip([*speeds[sign].tolist(), FAR], [*force.tolist(), far], strict=True)
+        points += [(sign * v, at_rest + sign * f) for v, f in pairs]
     velocity, forces = zip(*sorted(points), strict=True)
     table = replace(law, viscous_law="table", velocity=velocity, force=forces, tested=None)
     if above:
