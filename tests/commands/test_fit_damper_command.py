@@ -55,6 +55,7 @@ def test_files_and_summary(tmp_path, capsys):
     damper = build(Damper, tomllib.loads((folder / "damper.toml").read_text()), "damper")
     assert damper.viscous == pytest.approx(1200.0, rel=0.02) and damper.coulomb_friction == pytest.approx(60.0, abs=3.0)
     assert damper.gas_force == pytest.approx(150.0, abs=2.0) and damper.friction_law == "coulomb"
+    assert damper.tested is not None
     # Two sines: 20 mm at 1 Hz and 4 mm at 5 Hz have 0.126 m/s both.
     assert damper.tested.velocity == pytest.approx((0.04 * np.pi, 0.04 * np.pi), rel=1e-3)
     assert damper.tested.amplitude == pytest.approx((0.004, 0.02), rel=1e-3)

@@ -1,5 +1,7 @@
 """Range of the tests of a law: part of the vehicle file, and dropped with the numbers to which it belongs."""
 
+from typing import Any
+
 import pytest
 
 from vehicle import Car
@@ -66,5 +68,5 @@ def test_a_wrong_range_is_refused(value, said):
 
 def test_a_bushing_has_a_range():
     tested = Car.load("focus_road", {"front.bushings.suspension_mount.tested.frequency": [1.0, 100.0]})
-    laws = {link.name: link.law for link in tested.vehicle.composition.connections}
+    laws: dict[str, Any] = {link.name: link.law for link in tested.vehicle.composition.connections}
     assert laws["suspension_mount_fr"].tested.frequency == (1.0, 100.0)

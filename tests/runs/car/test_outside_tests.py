@@ -7,6 +7,7 @@ from tests.validation import validated
 from vehicle import Car, road
 from vehicle.model.laws.damper import damper_curve
 from vehicle.runs.car.outside_tests import continued
+from vehicle.studies.sweeps.plan import plan_sweep
 
 LAW = {
     "front.damper.viscous_law": "degressive",
@@ -110,6 +111,13 @@ def test_a_controlled_damper_has_its_share_alone():
     control = {"law": "skyhook", "minimum_damping": 500.0, "maximum_damping": 3000.0, "skyhook_damping": 2000.0}
     control |= {"groundhook_damping": 0.0, "skyhook_share": 1.0, "control_period": 0.001}
     changes = TESTED | {f"front.damper.control.{name}": value for name, value in control.items()}
-    (above, below) = notices(Car.load("focus_road", changes).run(DRIVE, engine="reduced"))
-    assert above.endswith("no test shows its force there, and the effect on comfort is not computed")
-    assert "slower than its slowest test" in below
+    (text,) = notices(Car.load("focus_road", changes).run(DRIVE, engine="reduced"))
+    assert text.endswith("no test shows its force there, and the effect on comfort is not computed")
+
+
+def test_a_sweep_states_it_for_its_first_car(run):
+    plan = plan_sweep(Car.load("focus_road", LAW | TESTED), {"rear.damper.viscous": [1400.0, 1600.0]}, [DRIVE])
+    (note,) = plan.range_notes()
+    assert note.startswith("first car on road_B_80")
+    changed = plan_sweep(Car.load("focus_road", LAW | TESTED), {"front.damper.viscous": [80.0, 90.0]}, [DRIVE])
+    assert changed.range_notes() == ()

@@ -13,7 +13,7 @@ a run of the same engine with the law as it is.
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -27,6 +27,8 @@ from vehicle.model.parameters.force_elements import Damper
 from vehicle.names import AXES
 from vehicle.runs.car.simulated_run import with_notices
 from vehicle.signals.analysis.ride_comfort import WEIGHTED, comfort_columns
+
+T = TypeVar("T")
 
 RELEVANT = 0.01
 """Minimum change of the weighted acceleration [-] that is stated: a tenth of a change that persons notice."""
@@ -52,9 +54,11 @@ CONTINUATIONS = {
 """Two continuations of a law on each side in words: the force constant, and in proportion to the velocity."""
 
 
-def with_range_notice(run: Any) -> Any:
+def with_range_notice(run: T) -> T:
     """Return a run with the sentence of `outside_tests` among the notices of its recording."""
-    return replace(run, recording=with_notices(run.recording, outside_tests(run)))
+    simulated: Any = run
+    noted: T = replace(simulated, recording=with_notices(simulated.recording, outside_tests(simulated)))
+    return noted
 
 
 def outside_tests(run: Any) -> tuple[str, ...]:
@@ -71,9 +75,9 @@ def outside_tests(run: Any) -> tuple[str, ...]:
             continue
         low, high = tested.velocity
         speed = np.abs(run.recording[channel][run.evaluated])
-        side = _Outside(low, high, float(np.mean(speed > high)), float(np.mean(speed < low)), float(np.max(speed)))
-        other = laws.get(damper.path, side)
-        laws[damper.path] = _Outside(low, high, *map(max, side[2:], other[2:]))
+        found = _Outside(low, high, float(np.mean(speed > high)), float(np.mean(speed < low)), float(np.max(speed)))
+        other = laws.get(damper.path, found)
+        laws[damper.path] = _Outside(low, high, *map(max, found[2:], other[2:]))
         names.append(damper.name)
     outside = {side: {path: each for path, each in laws.items() if each[side]} for side in CONTINUATIONS}
     try:
@@ -83,7 +87,8 @@ def outside_tests(run: Any) -> tuple[str, ...]:
     sentences = []
     for side, sides in outside.items():
         shares = "; ".join(f"{path} is {each.words(side)}" for path, each in sides.items())
-        if changes is None and any(each[side] > RARE for each in sides.values()):
+        # Every damper is slow at times, so that the time below the range alone is no reason for a message.
+        if changes is None and side == ABOVE and any(each.above > RARE for each in sides.values()):
             sentences.append(f"{shares}; no test shows its force there, and the effect on comfort is not computed")
         elif changes is not None and any(abs(each) >= RELEVANT for each in changes.get(side, {}).values()):
             effects = " and ".join(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import time as clock
 from collections.abc import Iterable, Mapping, Sequence
@@ -23,7 +24,7 @@ from vehicle.runs.car.outside_tests import outside_tests
 from vehicle.settings import with_settings
 from vehicle.signals.excitation.road_drive import RoadDrive
 from vehicle.studies.sweeps.case import all_tyre_words
-from vehicle.studies.sweeps.case_evaluation import loaded_car, reason_for_mujoco, run_of
+from vehicle.studies.sweeps.case_evaluation import OF_A_RUN, loaded_car, reason_for_mujoco, run_of
 from vehicle.studies.sweeps.case_table import Cases, Combinations, RowChanges
 from vehicle.studies.sweeps.dispatcher import FILL
 from vehicle.studies.sweeps.measure import BatchMeasure, Measure, comfort_measure
@@ -114,14 +115,14 @@ class SweepPlan:
 
     def range_notes(self) -> tuple[str, ...]:
         """Return messages on the first car and the first input on which its dampers leave the range of their tests."""
-        dampers = loaded_car(self.cases[0]).vehicle.composition.dampers
-        if not any(damper.law.tested for damper in dampers):
-            return ()
         count = len(self.cases.changes)
-        for number, (source, _) in enumerate(self.cases.inputs):
-            run = run_of(replace(self.cases[number * count], engine="reduced"))
-            if texts := outside_tests(replace(run, skip=self.skip)):
-                return tuple(f"first car on {source.name}: {text}" for text in texts)
+        with contextlib.suppress(*OF_A_RUN):  # the row of the case has the error message
+            if not any(damper.law.tested for damper in loaded_car(self.cases[0]).vehicle.composition.dampers):
+                return ()
+            for number, (source, _) in enumerate(self.cases.inputs):
+                run = run_of(replace(self.cases[number * count], engine="reduced"))
+                if texts := outside_tests(replace(run, skip=self.skip)):
+                    return tuple(f"first car on {source.name}: {text}" for text in texts)
         return ()
 
     def run(self, **changed: Any) -> SweepTable:
