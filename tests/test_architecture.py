@@ -79,7 +79,7 @@ ROOMS: dict[str, set[str]] = {
     | {"parameters", "records", "reduced", "rendering", "report", "shapes", "threads"},
     "design": {"car", "flexbody", "kinematics", "parameters", "simulation", "threads"},
     "mounts": {"formats", "parameters"},
-    "dampers": {"formats", "records", "rendering", "report"},
+    "dampers": {"formats", "parameters", "records", "rendering", "report"},
     "replication": {"car", "excitation", "formats", "output", "records", "reduced", "rendering", "threads"},
     "sweeps": {"analysis", "car", "excitation", "flexbody", "formats", "notebook", "output"}
     | {"parameters", "reduced", "rendering", "report", "simulation", "threads"},

@@ -55,6 +55,11 @@ def test_files_and_summary(tmp_path, capsys):
     damper = build(Damper, tomllib.loads((folder / "damper.toml").read_text()), "damper")
     assert damper.viscous == pytest.approx(1200.0, rel=0.02) and damper.coulomb_friction == pytest.approx(60.0, abs=3.0)
     assert damper.gas_force == pytest.approx(150.0, abs=2.0) and damper.friction_law == "coulomb"
+    assert damper.tested is not None
+    # Two sines: 20 mm at 1 Hz and 4 mm at 5 Hz have 0.126 m/s both.
+    assert damper.tested.velocity == pytest.approx((0.04 * np.pi, 0.04 * np.pi), rel=1e-3)
+    assert damper.tested.amplitude == pytest.approx((0.004, 0.02), rel=1e-3)
+    assert damper.tested.frequency == pytest.approx((1.0, 5.0), rel=0.01) and damper.tested.current is None
     assert (folder / "damper.png").stat().st_size > 20_000
     assert (folder / "damper_tests.csv").read_text().count("\n") == 3
 
@@ -68,6 +73,9 @@ def test_a_current_gives_a_fit_each_and_the_limits_of_a_semi_active_damper(tmp_p
     }
     control = tomllib.loads((tmp_path / "out" / "damper_control.toml").read_text())
     assert control == pytest.approx({"minimum_damping": 800.0, "maximum_damping": 2400.0}, rel=0.02)
+    laws = [tomllib.loads((tmp_path / "out" / f"damper_current_{n}.toml").read_text()) for n in (0, 1)]
+    assert [law["tested"]["current"] for law in laws] == [[0.0, 0.0], [1.0, 1.0]]
+    assert "# there: tested.current = [0.0, 1.0]" in (tmp_path / "out" / "damper_control.toml").read_text()
     page = (tmp_path / "out" / "report.html").read_text()
     for text in ("Law at current 0", "Law at current 1", "maximum_damping", "friction_law", "sine20_1A"):
         assert text in page

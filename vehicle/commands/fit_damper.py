@@ -5,7 +5,7 @@ import shlex
 from functools import partial
 from pathlib import Path
 
-from vehicle.commands.command_line import command, print_result
+from vehicle.commands.command_line import ProgressLine, command, print_result
 from vehicle.commands.destination import output_files_of
 from vehicle.commands.input_options import record_choice, record_options
 from vehicle.commands.options import command_parser, head_options, message_options, output_options
@@ -24,8 +24,9 @@ def parser() -> Parser:
     )  # fmt: skip
     record_options(parser, "channel of time, displacement, force or velocity, for example force=Load", highpass=False)
     parser.add_argument(
-        "--positive", choices=("extension", "compression"), default="extension",
-        help="direction in which displacement, velocity and force of the files count positive; default: %(default)s",
+        "--positive", choices=("extension", "compression"),
+        help="direction in which displacement, velocity and force of the files are positive; default: extension; the "
+            "gas force and bump against rebound show a wrong direction",
     )  # fmt: skip
     parser.add_argument(
         "--condition", action="append", default=[], metavar="NAME=VALUE",
@@ -58,9 +59,10 @@ def _job(options: argparse.Namespace) -> None:
     fits = fit_damper(
         options.files,
         record_choice(options, "", known=("time", "displacement", "force", "velocity", *named)),
-        compression=options.positive == "compression",
+        compression=None if options.positive is None else options.positive == "compression",
         conditions=pairs("--condition", options.condition, ""),
         pattern=options.pattern,
+        progress=ProgressLine("fit       ", enabled=not options.quiet),
     )
     command_line = f"python -m vehicle fit-damper {shlex.join(options.words)}"
     contents: dict[str, Content] = {

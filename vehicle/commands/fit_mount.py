@@ -65,9 +65,9 @@ def _job(options: argparse.Namespace) -> None:
     best, caption = fits[0], caption_of(data, options.file.name)
     title = f"{TITLES[best.law.name].capitalize()}: points and fitted curves"
     picture = partial(plot_mount, curves=_curves(best, data), title=title, caption=caption)
-    write_together(paths, (vehicle_lines(best, caption), points_text(best, data), picture))
+    write_together(paths, (vehicle_lines(best, caption, data), points_text(best, data), picture))
     files = f"files: {paths[0].parent}: {', '.join(path.name for path in paths)}"
-    print_result(options, fit_json(fits, caption), "\n".join([*summary_lines(fits, caption), files]))
+    print_result(options, fit_json(fits, caption, data), "\n".join([*summary_lines(fits, caption), files]))
 
 
 def _curves(fit: MountFit, data: MeasuredStiffness) -> list[MountCurve]:

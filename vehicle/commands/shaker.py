@@ -215,7 +215,7 @@ def _job(options: argparse.Namespace) -> None:
     with output_folder(output, force=options.force, protect=inputs) as folder:
         try:
             progress = ProgressLine("simulation", enabled=not options.quiet)
-            run = replace(car.run(signal, progress, engine=engine, channels=channels), skip=skip, road=road)
+            run = replace(car.run(signal, progress, engine=engine, channels=channels, skip=skip), road=road)
         except SimulationError as error:
             raise save_last_state(error, output) from None
 

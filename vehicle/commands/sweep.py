@@ -149,7 +149,7 @@ def _job(options: argparse.Namespace) -> None:
         plan = replace(plan, measure=order_measure(options.measure, plan.skip))
     output = study_folder_of(options, options.output, rows=(ROWS,))
     report = None if options.report is None else report_path(options, output)
-    notes = (*plan.notes, *plan.engine_notes())
+    notes = (*plan.notes, *plan.engine_notes(), *plan.range_notes())
     for text in () if options.quiet else notes:
         print(f"note        {text}")
     with study_folder(output, force=options.force, resume=options.resume, rows=(ROWS,)) as folder:

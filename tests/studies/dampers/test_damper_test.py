@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from vehicle.errors import ConfigurationError
+from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.records.choice import Choice
 from vehicle.studies.dampers.damper_test import by_conditions, read_test
 
@@ -36,7 +36,9 @@ def test_channels_are_found_and_converted(tmp_path):
 
 def test_a_file_without_a_header_has_usual_columns_unless_they_are_named(tmp_path):
     path = write(tmp_path / "12mm0x5Hz1x5A.txt", head="", columns=(0, 1, 3))
-    usual = read_test(path)
+    with pytest.raises(DataError, match="if its values are in kN, set --unit force=kN"):
+        read_test(path)
+    usual = read_test(write(tmp_path / "newton.txt", head="", sign=1000.0, columns=(0, 1, 3)))
     assert any(
         ("the file has no header; the columns are read as time [s], displacement [mm], force [N]") in text
         for text in usual.notices
@@ -44,7 +46,7 @@ def test_a_file_without_a_header_has_usual_columns_unless_they_are_named(tmp_pat
     channels = {"time": "1", "displacement": "2", "force": "3"}
     choice = Choice(channels=channels, units={"time": "s", "displacement": "mm", "force": "kN"})
     test = read_test(path, choice, pattern="*Hz{current}A")
-    assert test.conditions == {"current": 1.5} and test.scale == pytest.approx(1000.0 * usual.scale)
+    assert test.conditions == {"current": 1.5} and test.scale == pytest.approx(usual.scale)
     assert any("Savitzky-Golay filter of 5 samples: no delay, within 1 % up to" in text for text in test.notices)
     reference = read_test(write(tmp_path / "a.csv"))
     error = (test.velocity - reference.velocity)[test.settled]

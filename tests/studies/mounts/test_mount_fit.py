@@ -118,7 +118,10 @@ def test_parts_that_the_points_do_not_show_stay_within_the_limits_of_a_vehicle_f
         stiffness = (2e5 + 20.0 * s + branch) * np.exp(relative + 1j * angle)
         data = MeasuredStiffness(frequency=frequency, amplitude=amplitude, stiffness=stiffness)
         (fit,) = fit_mount(data, ["rubber"])
-        law = build(Hydromount, tomllib.loads(vehicle_lines(fit, caption_of(data, "points.csv"))), "mount")
+        law = build(Hydromount, tomllib.loads(vehicle_lines(fit, caption_of(data, "points.csv"), data)), "mount")
+        assert law.tested is not None
+        assert law.tested.frequency == pytest.approx((min(data.frequency), max(data.frequency)), rel=1e-3)
+        assert law.tested.amplitude == pytest.approx((min(data.amplitude), max(data.amplitude)), rel=1e-3)
         assert law.stiffness[2] > 4e4 and law.friction_force[2] / law.friction_stroke[2] < 0.2 * law.stiffness[2]
 
 

@@ -148,6 +148,7 @@ def test_the_engine_and_its_reason_are_told_before_the_runs():
     """On class C parts rotate beyond the valid range of the reduced engine; on class A they do not."""
     car, change = Car.load("sedan"), {"rear.damper.viscous": [1600.0]}
     roads = [Road("A", speed=80.0, duration=4.0), Road("C", speed=50.0, duration=4.0)]
+    assert plan_sweep(car, change, roads).range_notes() == ()  # no damper has a range
     (note,) = plan_sweep(car, change, roads).engine_notes()
     assert note.startswith("engine mujoco on road_C_50 (1 of 2 inputs), at least for the first car: ")
     assert re.search(

@@ -59,4 +59,4 @@ def write_comparison(state: BenchState, folder: Path) -> Path:
 def _run(car: Car, drive: BenchDrive) -> Run:
     """Return the run of a car on the excerpt, with all default channels."""
     drive = drive.under(car)
-    return replace(car.run(drive.record, engine="reduced"), skip=drive.skip, road=drive.road)
+    return replace(car.run(drive.record, engine="reduced", skip=drive.skip), road=drive.road)

@@ -7,6 +7,7 @@ from typing import Any
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.body import MOMENTS
 from vehicle.model.parameters.shipped import CARS, vehicle_file
+from vehicle.model.parameters.tested_range import merged_law
 from vehicle.model.parameters.toml_file import convert, read_table
 from vehicle.model.parameters.whole_body import body_moves, followers, put
 
@@ -72,7 +73,7 @@ def with_body(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, A
 
 def _merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
     """Return two tables merged key by key; values of `above` take precedence."""
-    merged = dict(below)
+    merged = merged_law(below, above)
     for key, value in above.items():
         both = isinstance(value, Mapping) and isinstance(below.get(key), Mapping)
         merged[key] = _merged(below[key], value) if both and "template" not in value else value

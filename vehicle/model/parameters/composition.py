@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import reduce
 from typing import Any, Self, TypeVar
 
 from vehicle.errors import ConfigurationError
@@ -27,6 +28,7 @@ from vehicle.model.parameters.paths import value_at
 from vehicle.model.parameters.placed_force import PlacedForce
 from vehicle.model.parameters.quantity import type_hints
 from vehicle.model.parameters.rigid_part import Load, Part
+from vehicle.model.parameters.tested_range import merged_law
 from vehicle.model.parameters.toml_file import build
 from vehicle.names import AXES
 
@@ -41,7 +43,7 @@ def _numbers(parameters: type[T], file: Mapping[str, Any], tables: tuple[str, ..
     """Build the numbers of an element from its tables in a vehicle file, once for all elements with these tables."""
     key = parameters, tables
     if key not in built:
-        merged = {name: value for path in tables for name, value in value_at(file, path).items()}
+        merged = reduce(merged_law, (value_at(file, path) for path in tables))
         fields = type_hints(parameters)  # type: ignore[arg-type]
         built[key] = build(parameters, {name: value for name, value in merged.items() if name in fields}, tables[-1])
     numbers: T = built[key]

@@ -10,6 +10,7 @@ from vehicle.model.parameters.force_table import ForceTable
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.quantity import Validated, quantity, validate
 from vehicle.model.parameters.semi_active_damper import PASSIVE, SemiActiveDamper
+from vehicle.model.parameters.tested_range import TestedRange
 from vehicle.names import AXES
 
 STIFFEST: dict[str, Any] = {"at_most": 1e10, "why": "a block of steel of 5 cm has 1e10 N/m"}
@@ -97,6 +98,7 @@ class Bushing(LinearBushing):
 
     friction_force: Point = _friction_force()
     friction_stroke: Point = _friction_stroke()
+    tested: TestedRange | None = None
 
     def __post_init__(self) -> None:
         LinearBushing.__post_init__(self)
@@ -198,6 +200,7 @@ class Hydromount:
     decoupler_seat: float | None = quantity(
         "N/m", "stiffness of the seat of the decoupler beyond the gap", above=0.0, default=None, **STIFFEST
     )
+    tested: TestedRange | None = None
 
     def __post_init__(self) -> None:
         validate(self)
@@ -343,6 +346,7 @@ class Damper:
         "-", "slopes of these segments, as shares of K", above=0.0, at_most=1.0, default=(1.0, 0.75, 0.5, 0.25)
     )
     slip_velocity: float = quantity("m/s", "velocity above which the damper counts as slipping", above=0.0, **MOVING)
+    tested: TestedRange | None = None
 
     def __post_init__(self) -> None:
         validate(self)

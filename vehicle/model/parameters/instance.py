@@ -17,6 +17,7 @@ from vehicle.model.parameters.engine_orders import ENGINE, ORDERS
 from vehicle.model.parameters.hardpoints import Point, mirrored, require_point
 from vehicle.model.parameters.quantity import NAME_PATTERN
 from vehicle.model.parameters.template import read_template
+from vehicle.model.parameters.tested_range import merged_law
 from vehicle.model.parameters.toml_file import build, convert, nearest
 from vehicle.model.parameters.topology import Template
 from vehicle.model.parameters.wheel_forces import WHEEL_FORCES
@@ -139,7 +140,7 @@ class Instance:
         *_, path = tables
         if len(tables) > 1:
             first, second = tables.values()
-            return build(parameters, {**first, **second}, path)
+            return build(parameters, merged_law(first, second), path)
         if path not in self.typed:
             self.typed[path] = build(parameters, tables[path], path)
         numbers: T = self.typed[path]

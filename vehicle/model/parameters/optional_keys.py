@@ -16,13 +16,14 @@ from vehicle.model.parameters.instance import instances
 from vehicle.model.parameters.paths import is_zero_vector
 from vehicle.model.parameters.quantity import type_hints
 from vehicle.model.parameters.semi_active_damper import SemiActiveDamper
+from vehicle.model.parameters.tested_range import TestedRange
 from vehicle.model.parameters.wheel_forces import WHEEL_FORCES
 from vehicle.names import AXES, SIDE_SIGN
 
 WITH_FILES = (Damper, ForceTable, MainSpring, Bushing)
 """Parameter classes whose numbers may be in a file that `curve` names."""
 
-TABLES = (ForceTable, SemiActiveDamper)
+TABLES = (ForceTable, SemiActiveDamper, TestedRange)
 """Parameter classes of tables inside the table of an element."""
 
 

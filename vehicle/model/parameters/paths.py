@@ -14,6 +14,7 @@ from typing import Any
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.quantity import PATH_PATTERN, field_quantity
+from vehicle.model.parameters.tested_range import StaleRanges
 from vehicle.model.parameters.toml_file import as_table, copy_table, literal
 from vehicle.names import AXES, SIDE_SIGN
 
@@ -182,6 +183,7 @@ def override(table: Mapping[str, Any], assignments: Iterable[str], optional: Opt
             ambiguous.
     """
     result: dict[str, Any] = copy_table(table)
+    ranges = StaleRanges()
     for assignment in assignments:
         name, separator, text = (part.strip() for part in assignment.partition("="))
         if not separator or not name:
@@ -193,7 +195,10 @@ def override(table: Mapping[str, Any], assignments: Iterable[str], optional: Opt
         except ConfigurationError as error:
             raise ConfigurationError(f"--set {assignment}: {error}") from None
         for path in paths:
+            before = value_at(result, path)
             _set(result, path, assignment, text)
+            ranges.note(path, changed=value_at(result, path) != before)
+    ranges.remove_from(result)
     return result
 
 

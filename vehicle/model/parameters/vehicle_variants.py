@@ -13,6 +13,7 @@ from vehicle.model.parameters.optional_keys import optional_paths
 from vehicle.model.parameters.paths import meant, parsed_value, value_at
 from vehicle.model.parameters.plausible import require_body, require_parts
 from vehicle.model.parameters.quantity import type_hints
+from vehicle.model.parameters.tested_range import StaleRanges
 from vehicle.model.parameters.toml_file import build
 from vehicle.model.parameters.vehicle import Solver, Vehicle
 from vehicle.model.parameters.whole_body import body_moves, followers, put
@@ -54,6 +55,7 @@ class VehicleVariants:
         """Return the vehicle with other values; None if more than single numbers of elements change."""
         table, changed = dict(self.vehicle.table), dict[str, None]()
         copies: set[int] = {id(table)}
+        ranges = StaleRanges()
         for assignment in overrides:
             name, separator, text = (part.strip() for part in assignment.partition("="))
             if name not in self._numbers:
@@ -66,7 +68,9 @@ class VehicleVariants:
                 if isinstance(value, bool) or not isinstance(value, int | float):
                     return None
                 put(table, {path: value}, copies)
+                ranges.note(path, changed=value != value_at(self.vehicle.table, path))
                 changed[owner] = None
+        ranges.remove_from(table)
         if body_moves(self.vehicle.table, table):
             user_paths = {path for text in overrides for path, _ in self._numbers[text.partition("=")[0].strip()] or ()}
             put(table, followers(self.vehicle.table["body"], table["body"], user_paths), copies)

@@ -38,6 +38,7 @@ from vehicle.model.parameters.vehicle_variants import VehicleVariants
 from vehicle.model.parameters.whole_body import restated
 from vehicle.runs.car.given_forces import GivenForce, with_histories
 from vehicle.runs.car.linear_response import force_frf, is_stuck, plate_frf
+from vehicle.runs.car.outside_tests import with_range_notice
 from vehicle.runs.car.road import Road
 from vehicle.runs.car.run import Run
 from vehicle.runs.car.simulated_run import simulated_run
@@ -389,11 +390,11 @@ class Car:
             signal = (drive := source.under(self.vehicle, self.overrides)).signal()
             start = evaluation_start({drive.name: signal.duration}, skip, drive.skip)
             car, named = self.with_(drive.overrides) if drive.overrides else self, replace(signal, source=drive.name)
-            run = car.run(named, progress, engine=engine, channels=channels, forces=forces)
-            return replace(run, skip=start, road=drive.summary(signal))
+            run = car.run(named, progress, engine=engine, channels=channels, skip=start, forces=forces)
+            return replace(run, road=drive.summary(signal))
         wheel = self.vehicle.shaker_wheel
         signal = source if isinstance(source, Signal) else read_signal(find_input(source), wheel=wheel)
         start = evaluation_start({signal.source: signal.duration}, skip, 0.0)
         driven = with_histories(self, forces, signal.time) if forces else self
         car, recording, reason = simulated_run(driven, signal, progress, engine, channels)
-        return Run(car=car, signal=signal, recording=recording, engine_reason=reason, skip=start)
+        return with_range_notice(Run(car=car, signal=signal, recording=recording, engine_reason=reason, skip=start))

@@ -86,7 +86,7 @@ def simulated_run(
             f"the time step is {used_step:g} s, because the {wanted_step:g} s of the vehicle file are too long "
             "for this car"
         )
-        recording = _with_notices(recording, [said])
+        recording = with_notices(recording, [said])
     if channels is not None:
         recording = recording.only(channels)
     return stepped, recording, reason
@@ -95,7 +95,7 @@ def simulated_run(
 def _with_forces(recording: Recording, car: Any, names: Sequence[str], shown: Mapping[str, str]) -> Recording:
     """Return a recording with the notices on the forces of its car and their histories, in the order of `names`."""
     composition = car.vehicle.composition
-    recording = _with_notices(recording, [*force_notices(composition.forces), *run_up_notice(car)])
+    recording = with_notices(recording, [*force_notices(composition.forces), *run_up_notice(car)])
     if not shown:
         return recording
     channels = {**recording.channels, **force_histories(composition, shown, recording.time)}
@@ -106,6 +106,7 @@ def _with_forces(recording: Recording, car: Any, names: Sequence[str], shown: Ma
     )
 
 
-def _with_notices(recording: Recording, notices: Sequence[str]) -> Recording:
+def with_notices(recording: Recording, notices: Sequence[str]) -> Recording:
+    """Return a recording with further notices."""
     statistics = recording.statistics
     return replace(recording, statistics=replace(statistics, notices=(*statistics.notices, *notices)))

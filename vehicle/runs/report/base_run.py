@@ -36,10 +36,10 @@ def base_run(run: FinishedRun) -> FinishedRun | None:
         car = _unchanged(run)
         if car is None or not _same_plates(run, car):
             return None
-        simulated = car.run(recorded_signal(run.summary, run.recording), engine="reduced")
+        simulated = car.run(recorded_signal(run.summary, run.recording), engine="reduced", skip=run.skip)
     except VehicleError:
         return None
-    simulated = dataclasses.replace(simulated, skip=run.skip, road=excitation["road"])
+    simulated = dataclasses.replace(simulated, road=excitation["road"])
     return FinishedRun(
         name=f"the unchanged {car.vehicle.name}",
         folder=run.folder,

@@ -18,7 +18,7 @@ Learning, 7.10; blocks: Liang and Zeger, Biometrika 73 (1986).
 """
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -280,8 +280,13 @@ def thinned(test: DamperTest) -> DamperTest:
     return test.averaged(np.flatnonzero(first[:last]), last)
 
 
-def choose_law(tests: Sequence[DamperTest]) -> tuple[DamperFit, list[DamperFit]]:
+def choose_law(
+    tests: Sequence[DamperTest], progress: Callable[[int], None] | None = None
+) -> tuple[DamperFit, list[DamperFit]]:
     """Return the chosen law fitted to all samples, with standard errors, and all laws that were compared.
+
+    Args:
+        progress: called with the number of compared laws.
 
     Raises:
         DataError: no test.
@@ -301,6 +306,8 @@ def choose_law(tests: Sequence[DamperTest]) -> tuple[DamperFit, list[DamperFit]]
                 if law not in fits:
                     fits[law] = judged(few, law, starts_of(law, smaller, few))
                     new.append(fits[law])
+                    if progress is not None:
+                        progress(len(fits))
         front = [
             fit
             for fit in sorted(new, key=lambda fit: fit.left_out_error)[:BEAM]

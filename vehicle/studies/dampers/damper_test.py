@@ -19,6 +19,7 @@ from vehicle.signals.formats.channel import Measurement
 from vehicle.signals.formats.reader import read_record
 from vehicle.signals.records.choice import Choice, choose, pick
 from vehicle.studies.dampers.damper_force import Motion
+from vehicle.studies.dampers.record_checks import require_damping, require_sensors, usable_velocity
 from vehicle.studies.dampers.waveform import Waveform, reversal_times, reversals, waveform_of
 
 ROLES = ("displacement", "force", "velocity")
@@ -188,8 +189,13 @@ def read_test(path: Path, choice: Choice | None = None, *, compression: bool = F
     if time.size < LEAST_SAMPLES:
         raise DataError(f"{path}: contains {time.size} samples, must be at least {LEAST_SAMPLES}; record a longer test")
     x, force = sign * chosen.values["displacement"], sign * chosen.values["force"]
-    measured = sign * chosen.values["velocity"] if "velocity" in chosen.values else None
+    names = {role: measurement.channels[pick(measurement, complete.channels[role])].name for role in chosen.values}
+    require_sensors(path, chosen.values, names)
+    measured = None
+    if "velocity" in chosen.values:
+        measured = usable_velocity(path, time, x, sign * chosen.values["velocity"], names, notices)
     velocity = _velocity(x, measured, float(np.mean(np.diff(time))), notices)
+    require_damping(path, force, velocity, names)
     if np.sum(force * velocity) < 0.0:
         force = -force
         notices.append("the force has the sign of the test machine, opposite to the velocity; it is inverted")

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from vehicle.digits import number, rounded
+from vehicle.model.parameters.tested_range import range_lines
 from vehicle.signals.formats.csv_table import table_text
 from vehicle.studies.dampers.damper_law import EXPONENT, SMOOTHING, values_of
 from vehicle.studies.dampers.fitted_damper import FittedDamper
@@ -66,6 +67,7 @@ def vehicle_lines(fitted: FittedDamper) -> str:
                      f"# stiffness of the gas, {values.gas_stiffness:.4g} N/m, standard error "
                      f"{number(spread['gas_stiffness'], 2)} N/m; add the bump stops of the car, "
                      "which the errors of this fit do not contain")  # fmt: skip
+    lines += range_lines(fitted.tested)
     if law.series:
         lines += [
             f"# series stiffness {values.series:.4g} N/m, standard error {number(spread['series_stiffness'], 2)} N/m:",

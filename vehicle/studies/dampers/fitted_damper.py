@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -15,12 +15,16 @@ from vehicle.signals.records.choice import Choice
 from vehicle.studies.dampers.damper_fit import DamperFit, choose_law, kind_of, limits_of
 from vehicle.studies.dampers.damper_law import LINEAR, values_of
 from vehicle.studies.dampers.damper_test import DamperTest, by_conditions, read_test
+from vehicle.studies.dampers.direction import require_direction
 
 SLOW = 0.01
 """Maximum velocity [m/s] of a test that shows friction near rest."""
 
 AT_LIMIT = 1.02
 """Ratio to a limit of its range within which a parameter counts as being there."""
+
+READING, HALF_OF_LAWS = 0.05, 15.0
+"""Share of the progress for the reading of the files, and number of compared laws at half of a fit."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -54,6 +58,17 @@ class FittedDamper:
         """Highest velocities of the slowest and of the fastest test [m/s]."""
         speeds = [float(np.max(np.abs(test.velocity))) for test in self.tests]
         return min(speeds), max(speeds)
+
+    @property
+    def tested(self) -> dict[str, tuple[float, float]]:
+        """Lowest and highest values of the tests, by their keys in `TestedRange`."""
+        values = {
+            "velocity": list(self.speeds),
+            "amplitude": [0.5 * float(np.ptp(test.displacement)) for test in self.tests],
+            "frequency": [1.0 / test.cycle for test in self.tests],
+        }
+        values |= {name: [self.conditions[name]] for name in ("temperature", "current") if name in self.conditions}
+        return {name: (min(each), max(each)) for name, each in values.items()}
 
     def curve(self, velocity: Vector) -> Vector:
         """Return the force of the curve F_c [N] at velocities [m/s]; (n,)."""
@@ -97,37 +112,48 @@ class FittedDamper:
 
 
 def fit_damper(
-    files: Sequence[str | PathLike[str]], choice: Choice | None = None, *, compression: bool = False,
-    conditions: Mapping[str, str] | None = None, pattern: str = "",
+    files: Sequence[str | PathLike[str]], choice: Choice | None = None, *, compression: bool | None = None,
+    conditions: Mapping[str, str] | None = None, pattern: str = "", progress: Callable[[float], None] | None = None,
 ) -> list[FittedDamper]:  # fmt: skip
     """Fit the law of a damper to records of a test machine: one law for each set of conditions.
 
     Args:
         files: measurement files of any format, with displacement, force, and velocity if measured.
         choice: channels, units and excerpt; see `vehicle.studies.dampers.damper_test.read_test`.
-        compression: the files are positive in compression.
+        compression: True if the files are positive in compression, False in extension; None for extension, unless bump
+            damps more than rebound.
         conditions: name of a condition to a number, to numbers of all files as "0,0.5,1", or to "channel:NAME".
         pattern: pattern of the file names with conditions in braces, as "*Hz{current}A".
+        progress: called with the finished fraction.
 
     Returns:
         Fits sorted by their conditions; `fits[0].fit.values` are the parameters in the order of `fit.law.parameters`.
 
     Raises:
         ConfigurationError: no file, a file twice or missing, or wrong conditions.
-        DataError: bad data in a file.
+        DataError: bad data in a file, or files of the other direction.
     """
+    tell = progress or (lambda fraction: None)
     paths = [Path(file) for file in files]
     if not paths or len(set(paths)) < len(paths):
         raise ConfigurationError(f"found {len(paths)} files of tests; name at least one, each once")
     typed = _typed(conditions or {}, len(paths))
-    tests = [
-        read_test(path, choice, compression=compression, conditions=of_file, pattern=pattern)
-        for path, of_file in zip(paths, typed, strict=True)
-    ]
-    fitted = []
-    for group in by_conditions(tests).values():
-        fit, compared = choose_law(group)
+    tests = []
+    for path, of_file in zip(paths, typed, strict=True):
+        tests.append(read_test(path, choice, compression=bool(compression), conditions=of_file, pattern=pattern))
+        tell(READING * len(tests) / len(paths))
+    require_direction(tests, compression)
+    fitted: list[FittedDamper] = []
+    groups = by_conditions(tests).values()
+    for group in groups:
+
+        def of_laws(count: int) -> None:
+            # The number of laws is not known before: 25 to 45 are usual.
+            tell(READING + (1.0 - READING) * (len(fitted) + count / (count + HALF_OF_LAWS)) / len(groups))
+
+        fit, compared = choose_law(group, of_laws)
         fitted.append(FittedDamper(conditions=group[0].conditions, tests=group, fit=fit, compared=compared))
+    tell(1.0)
     return fitted
 
 

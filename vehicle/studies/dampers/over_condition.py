@@ -11,6 +11,7 @@ import numpy as np
 
 from vehicle.arrays import Vector
 from vehicle.digits import rounded
+from vehicle.model.parameters.tested_range import range_lines
 from vehicle.studies.dampers.damper_law import values_of
 from vehicle.studies.dampers.fitted_damper import FittedDamper
 
@@ -72,9 +73,14 @@ def control_lines(fits: Sequence[FittedDamper]) -> str:
     for condition, damping, friction, force, slope in settings:
         lines.append(f"# {condition:<18} {damping:>16.5g} {friction:>13.4g} {force:>15.4g} {slope:>14.4g}")
     dampings = [each.damping for each in settings]
+    ranges = [fitted.tested for fitted in fits]
+    tested = {
+        name: (min(each[name][0] for each in ranges), max(each[name][1] for each in ranges)) for name in ranges[0]
+    }
     lines += [
         "# values for the section [AXLE.damper.control]: the coefficient replaces the curve; friction, gas and stop",
-        f"# stay in the section of the damper, for example those in damper{fits[0].name}.toml",
+        f"# stay in the section of the damper, for example those in damper{fits[0].name}.toml; the range of all tests",
+        *(f"# there: {line}" for line in range_lines(tested)),
         f"minimum_damping = {rounded(min(dampings), 5)!r}  # [N s/m]",
         f"maximum_damping = {rounded(max(dampings), 5)!r}  # [N s/m]",
     ]

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from vehicle.digits import number, rounded
+from vehicle.model.parameters.tested_range import range_lines
 from vehicle.signals.formats.csv_table import table_text
 from vehicle.studies.mounts.measured_stiffness import MeasuredStiffness
 from vehicle.studies.mounts.mount_fit import MountFit
@@ -38,7 +39,7 @@ def caption_of(data: MeasuredStiffness, source: str) -> str:
     return f"{source}: {len(data.frequency)} points, {several} mm peak, {low:g} to {high:g} Hz"
 
 
-def vehicle_lines(fit: MountFit, caption: str) -> str:
+def vehicle_lines(fit: MountFit, caption: str, data: MeasuredStiffness) -> str:
     """Return the parameters as lines for a table of a bushing in a vehicle file, with their standard errors."""
     source = caption.split(":")[0]
     lines = [
@@ -56,13 +57,15 @@ def vehicle_lines(fit: MountFit, caption: str) -> str:
         shown = f"[{text}, {text}, {text}]" if name in VECTORS else text
         spread = f"standard error {number(error, 2)}" if determined else "not determined by these points"
         lines.append(f"{name} = {shown}  # [{unit}] fitted to {source}, {spread}")
+    tested = {"amplitude": data.amplitude, "frequency": data.frequency}
+    lines += range_lines({name: (float(np.min(each)), float(np.max(each))) for name, each in tested.items()})
     return "\n".join(lines) + "\n"
 
 
-def fit_json(fits: Sequence[MountFit], caption: str) -> dict[str, Any]:
+def fit_json(fits: Sequence[MountFit], caption: str, data: MeasuredStiffness) -> dict[str, Any]:
     """Return the first fit for `--json`: law, parameters, lines for `--set`, errors, and the criteria of all laws."""
     best = fits[0]
-    lines = (line.partition("#")[0].strip() for line in vehicle_lines(best, caption).splitlines())
+    lines = (line.partition("#")[0].strip() for line in vehicle_lines(best, caption, data).splitlines())
     return {
         "chosen": best.law.name,
         "parameters": [

@@ -92,11 +92,15 @@ def reason_for_mujoco(case: Case, measure: BatchMeasure) -> str | None:
 
 def run_of(case: Case, channels: Sequence[str] | None = None) -> Run:
     """Run a single case; channels as in `Car.run`."""
+    return loaded_car(case).run(signal_of(case.source), engine=case.engine, channels=channels)
+
+
+def loaded_car(case: Case) -> Car:
+    """Return the car of a case, loaded from its vehicle file."""
     changed = _changed(case.vehicle)
     # The variation of a case acts on the car of the study; one variation with the values of both makes the same car.
     overrides = _varied(case.vehicle, changed, case.overrides[: case.shared], case.overrides[case.shared :]).overrides
-    car = _loaded(case.vehicle, changed, overrides)
-    return car.run(signal_of(case.source), engine=case.engine, channels=channels)
+    return _loaded(case.vehicle, changed, overrides)
 
 
 # A study runs the same car on several roads in succession; building a car costs as much as half a minute of road.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import time as clock
 from collections.abc import Iterable, Mapping, Sequence
@@ -19,10 +20,11 @@ from vehicle.model.parameters.paths import assignments, meant
 from vehicle.model.parameters.shipped import FOCUS_FILE, vehicle_file
 from vehicle.model.parameters.vehicle import load_vehicle, overridden
 from vehicle.runs.car import Car
+from vehicle.runs.car.outside_tests import outside_tests
 from vehicle.settings import with_settings
 from vehicle.signals.excitation.road_drive import RoadDrive
 from vehicle.studies.sweeps.case import all_tyre_words
-from vehicle.studies.sweeps.case_evaluation import reason_for_mujoco
+from vehicle.studies.sweeps.case_evaluation import OF_A_RUN, loaded_car, reason_for_mujoco, run_of
 from vehicle.studies.sweeps.case_table import Cases, Combinations, RowChanges
 from vehicle.studies.sweeps.dispatcher import FILL
 from vehicle.studies.sweeps.measure import BatchMeasure, Measure, comfort_measure
@@ -109,6 +111,18 @@ class SweepPlan:
             if reason := reason_for_mujoco(self.cases[number * count], measure):
                 where = f"outside the valid range of the reduced engine on {name}, at least for the first car"
                 return (f"{where}: {reason}{_difference(reason)}; --engine mujoco runs the complete model",)
+        return ()
+
+    def range_notes(self) -> tuple[str, ...]:
+        """Return messages on the first car and the first input on which its dampers leave the range of their tests."""
+        count = len(self.cases.changes)
+        with contextlib.suppress(*OF_A_RUN):  # the row of the case has the error message
+            if not any(damper.law.tested for damper in loaded_car(self.cases[0]).vehicle.composition.dampers):
+                return ()
+            for number, (source, _) in enumerate(self.cases.inputs):
+                run = run_of(replace(self.cases[number * count], engine="reduced"))
+                if texts := outside_tests(replace(run, skip=self.skip)):
+                    return tuple(f"first car on {source.name}: {text}" for text in texts)
         return ()
 
     def run(self, **changed: Any) -> SweepTable:
