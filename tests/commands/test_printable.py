@@ -43,6 +43,7 @@ def test_errors_and_nested_commands_are_printed_once_escaped(capsys):
 
 def test_a_bar_still_returns_to_the_begin_of_its_line(capsys, monkeypatch):
     def job() -> None:
+        assert isinstance(sys.stderr, PrintableStream)
         monkeypatch.setattr(sys.stderr.stream, "isatty", lambda: True, raising=False)
         line = ProgressLine("work")
         line(1.0)

@@ -55,7 +55,9 @@ def run_command(job: Callable[[], None], *, debug: bool = False) -> int:
         return _exit_code(job, previous, lost, debug=debug)
 
 
-def _exit_code(job: Callable[[], None], previous: Mapping[int, Any], lost: io.StringIO | None, *, debug: bool) -> int:
+def _exit_code(
+    job: Callable[[], None], previous: Mapping[signal.Signals, Any], lost: io.StringIO | None, *, debug: bool
+) -> int:
     """Run the job; see `run_command`.
 
     Args:

@@ -168,7 +168,7 @@ def test_absurd_values_change_nothing(bench, value, capsys, caplog):
 def test_values_of_a_wrong_type_are_ignored_in_a_line_each(bench, capfd, caplog):
     """Also for other properties than the value, and for lists and check boxes."""
     view = bench.page.view
-    wrong = ["text", None, [1.0], {"a": 1}, {}, [[]], b"\x1b[2J\n", True]
+    wrong: list[object] = ["text", None, [1.0], {"a": 1}, {}, [[]], b"\x1b[2J\n", True]
     with bench.client() as client:
         for handle in (bench.slider, view.kind, view.larger, view.playing):
             kept = handle.value
