@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 import shlex
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -195,6 +196,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.errors import SimulationError
     from vehicle.runs.car import Car
     from vehicle.runs.output.run_files import save_last_state, write_run
+    from vehicle.runs.output.run_size import run_size
 
     car = Car.load(options.vehicle, overrides)
     wheel = CORNERS[options.wheel] if options.wheel else car.vehicle.shaker_wheel
@@ -212,6 +214,9 @@ def _job(options: argparse.Namespace) -> None:
             print(f"controller  {file} runs as native code with all your rights")
     road = None if drive is None else drive.summary(signal)
     signal = signal if drive is None else replace(signal, source=drive.name)
+    count, rate = len(channels or car.vehicle.channels), car.vehicle.solver.record_rate
+    if size := run_size(output, signal.duration, rate, count, [options.time_format, *options.formats]):
+        print(f"notice: {size}", file=sys.stderr, flush=True)
     with output_folder(output, force=options.force, protect=inputs) as folder:
         try:
             progress = ProgressLine("simulation", enabled=not options.quiet)

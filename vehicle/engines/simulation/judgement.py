@@ -41,8 +41,8 @@ def require_samples(samples: float, channels: int) -> None:
     if needed > 0.5 * there:
         raise ConfigurationError(
             f"solver.record_rate: {channels} channels of {samples:.3g} samples need {needed / 1e9:.3g} GB, must "
-            f"be at most {0.5 * there / 1e9:.3g} GB, half the memory of this machine; lower the rate, or cut the "
-            "record into parts"
+            f"be at most {0.5 * there / 1e9:.3g} GB, half the memory of this machine; lower the rate, record "
+            "fewer channels, or cut the record into parts"
         )
 
 
