@@ -135,7 +135,9 @@ def test_parameters_are_converted_by_their_declared_units(tmp_path):
     plain = started(controller_fmu(tmp_path / "si.fmu"))
     for body, wheel in speeds():
         # The coefficient has no unit, so it is as large as in N s/mm.
-        assert called(scaled.address, body, wheel) == pytest.approx(1e-3 * called(plain.address, body, wheel), rel=1e-12)
+        assert called(scaled.address, body, wheel) == pytest.approx(
+            1e-3 * called(plain.address, body, wheel), rel=1e-12
+        )
     scaled.close()
     plain.close()
 
