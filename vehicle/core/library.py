@@ -112,8 +112,8 @@ def _compiled(stamp: str) -> Path:
             # The first line of a compiler says only from where a file is included.
             fault = next((line for line in lines if "error" in line), lines[0])
             raise MissingPartError(
-                f"the core cannot be compiled with {' '.join(compiler)}: {fault}; correct vehicle/core/source if you have "
-                "changed it, otherwise set the environment variable CC to the command of another C compiler"
+                f"the core cannot be compiled with {' '.join(compiler)}: {fault}; correct vehicle/core/source if you "
+                "have changed it, otherwise set the environment variable CC to the command of another C compiler"
             ) from None
         library.replace(kept)
     return kept

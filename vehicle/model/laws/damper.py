@@ -155,8 +155,8 @@ def _friction_laws() -> dict[str, type[Friction]]:
         ]
         if left_out := [key for key in own if key not in NUMBERS.get(name, {})]:
             raise ConfigurationError(
-                f"friction law {name}: NUMBERS lacks {', '.join(left_out)}, so a damper without these would run with other "
-                f"values; add them with their units to NUMBERS[{name!r}] in vehicle/model/parameters/force_elements.py"
+                f"friction law {name}: NUMBERS lacks {', '.join(left_out)}, so a damper without these would run with "
+                f"other values; add them with their units to NUMBERS[{name!r}] in vehicle/model/parameters/force_elements.py"
             )
     return laws
 

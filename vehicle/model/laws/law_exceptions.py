@@ -51,8 +51,8 @@ def exceptions_of_laws(title: str = "") -> Iterator[Callable[[], None]]:
             raise error
         name = title or _title_of(function)
         message = (
-            f"{name}: the function raises {type(error).__name__}: {error}; correct it: it is called with (memory, x, v), "
-            "a friction law with (memory, friction, v), and must return a number"
+            f"{name}: the function raises {type(error).__name__}: {error}; correct it: it is called with (memory, x, "
+            "v), a friction law with (memory, friction, v), and must return a number"
         )
         raise ConfigurationError(message) if title else SimulationError(f"{message}; the run is discarded")
 

@@ -204,11 +204,12 @@ def _require_no_mean_about(force: PlacedForce, wheel: PlacedWheel, spinning: set
         return
     moment = arm * force.mean * (-1.0 if force.against in spinning else 1.0)
     contact, way = abs(moment) / (wheel.center[2] - wheel.patch[2]), "x" if moment > 0.0 else "-x"
+    patch = f"{wheel.paths[1].rpartition('.')[2]}_{wheel.name}"
     remedy = (
         f"set on={hub}, which carries the wheel"
         if any(force.force)
         else f"for steady {'braking' if moment > 0.0 else 'driving'} set mean=0 and add two forces of the mean "
-        f"{contact:.4g} N: along {way} on {hub} at {wheel.paths[1].rpartition('.')[2]}_{wheel.name}, and opposite on body"
+        f"{contact:.4g} N: along {way} on {hub} at {patch}, and opposite on body"
     )
     raise ConfigurationError(
         f"{force.path}.mean: found {force.mean:g} {force.unit}, a mean moment of {moment:.4g} N m about the axle of "

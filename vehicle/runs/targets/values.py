@@ -223,6 +223,6 @@ _VALUES = {
 
 if set(_VALUES) != set(QUANTITIES):
     raise ConfigurationError(
-        f"figures: {', '.join(sorted(set(_VALUES) ^ set(QUANTITIES)))} is in one of two tables only; add it to QUANTITIES "
-        "of vehicle/runs/targets/figure.py and to _VALUES of vehicle/runs/targets/values.py"
+        f"figures: {', '.join(sorted(set(_VALUES) ^ set(QUANTITIES)))} is in one of two tables only; add it to "
+        "QUANTITIES of vehicle/runs/targets/figure.py and to _VALUES of vehicle/runs/targets/values.py"
     )
