@@ -156,7 +156,7 @@ def _friction_laws() -> dict[str, type[Friction]]:
         if left_out := [key for key in own if key not in NUMBERS.get(name, {})]:
             raise ConfigurationError(
                 f"friction law {name}: NUMBERS lacks {', '.join(left_out)}, so a damper without these would run with "
-                f"other values; add them with their units to NUMBERS[{name!r}] in vehicle/model/parameters/force_elements.py"
+                f"other values; add them with units to NUMBERS[{name!r}] of vehicle/model/parameters/force_elements.py"
             )
     return laws
 

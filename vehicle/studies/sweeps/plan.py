@@ -29,7 +29,7 @@ from vehicle.studies.sweeps.case_table import Cases, Combinations, RowChanges
 from vehicle.studies.sweeps.dispatcher import FILL
 from vehicle.studies.sweeps.measure import BatchMeasure, Measure, comfort_measure
 from vehicle.studies.sweeps.sweep import sweep_cases
-from vehicle.studies.sweeps.sweep_inputs import Source, common_start, file_of, inputs_of
+from vehicle.studies.sweeps.sweep_inputs import Source, common_start, file_of, inputs_of, require_speed_of_roads
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
 from vehicle.studies.sweeps.sweep_table import SweepTable
 
@@ -144,6 +144,8 @@ def plan_sweep(
     each = _one_of_each_path(changes)
     require_paths(vehicle, car.overrides, each)
     sources = inputs_of(car, inputs)
+    if any(text.partition("=")[0].strip().endswith("speed") for text in each):
+        require_speed_of_roads(sources, changes)
     start = common_start(sources, settings.skip)
     cases = Cases(changes, sources, engine=settings.engine, vehicle=vehicle, fixed=car.overrides)
     idle = _idle_notes(vehicle, car.overrides, changes)
