@@ -21,7 +21,11 @@ def test_no_parameter_is_silent(name):
     assert found.silent == [] and len(found.acting) > len(found.refused)
 
 
-STANDING = {"front.bushings.tyre.stiffness.x": 2e5, "front.bushings.tyre.damping.y": 100.0}
+STANDING = {
+    "front.bushings.tyre.stiffness.x": 2e5,
+    "front.bushings.tyre.damping.y": 100.0,
+    "front.bushings.tyre.rotational_stiffness": 0.0,
+}
 ROLLING = {"driving.hold_frequency": 0.1, "front.bushings.tyre.slip_stiffness": 7e4, "front.bushings.tyre.trail": 0.02}
 
 

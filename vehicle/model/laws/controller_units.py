@@ -67,7 +67,7 @@ def conversion_of(path: Path, variable: Any, description: Any, unit: str) -> Con
     if not declared:
         return Conversion()
     base = next((each.baseUnit for each in description.unitDefinitions if each.name == declared), None)
-    found = f"controller {path}: {variable.name} has the unit {declared!r}"
+    fault = f"controller {path}: {variable.name} has the unit {declared!r}"
     if base is None:
         spelled = find_unit(declared)
         if spelled is not None and spelled.si == unit:
@@ -75,13 +75,13 @@ def conversion_of(path: Path, variable: Any, description: Any, unit: str) -> Con
         if declared == unit or (unit == "N s/m" and declared in DAMPING) or (unit == "-" and declared == "1"):
             return Conversion()
         raise DataError(
-            f"{found} without a BaseUnit in its model description, so its factor to {unit} is not known; define the "
+            f"{fault} without a BaseUnit in its model description, so its factor to {unit} is not known; define the "
             f"unit there, or export the variable in {unit}"
         )
     exponents = {name: power for name in ("kg", "m", "s", "A", "K", "mol", "cd") if (power := getattr(base, name))}
     if exponents != EXPONENTS[unit] or not base.factor > 0.0:
         powers = " ".join(f"{name}^{power}" for name, power in exponents.items()) or "no dimension"
-        raise DataError(f"{found}, {base.factor:g} {powers}, must be a unit of {unit}; export the variable in {unit}")
+        raise DataError(f"{fault}, {base.factor:g} {powers}, must be a unit of {unit}; export the variable in {unit}")
     # The offset does not count in differences.
     return Conversion(base.factor, 0.0 if base.offset == 0.0 or _is_relative(path, variable) else base.offset)
 
@@ -99,7 +99,7 @@ def _is_relative(path: Path, variable: Any) -> bool:
 
 
 def converting(address: int, conversions: Sequence[Conversion], *, to_fmu: bool) -> Any:
-    """Return a function of type `TRANSFER` around the one of an FMU that converts the values.
+    """Return a function of type `TRANSFER` that converts values and calls the function of an FMU.
 
     Args:
         address: of the function that sets or gets the values.

@@ -1,6 +1,6 @@
 """Exceptions in force laws that a user brings as Python functions: the run that calls them fails.
 
-C calls such a function through ctypes or numba, which passes an exception to `sys.unraisablehook`, returns 0, and lets
+C calls the function through ctypes or numba, which passes an exception to `sys.unraisablehook`, returns 0, and lets
 the run continue. So a hook collects the first exception, and the run is discarded.
 """
 
@@ -65,7 +65,7 @@ def exceptions_of_laws(title: str = "") -> Iterator[Callable[[], None]]:
 
 
 def _title_of(function: Any) -> str:
-    """Return the title of the law with a Python function; of all laws if none of ctypes has it."""
+    """Return the title of the law with a Python function; of all laws for a function of numba."""
     # The object of ctypes refers to the Python function, without an attribute for it.
     titles = [title for title, law in FUNCTIONS.items() if any(part is function for part in gc.get_referents(law))]
     return " or ".join(titles or FUNCTIONS)

@@ -167,20 +167,20 @@ def require_speed_once(texts: Iterable[str], speed: float) -> bool:
     Raises:
         ConfigurationError: a text gives another speed, so that the plates and the tyres would have different ones.
     """
-    found = False
+    agrees = False
     for text in texts:
         path, _, value = (part.strip() for part in text.partition("="))
         if path not in ("driving.speed", "speed"):
             continue
         with contextlib.suppress(ValueError):
-            found = float(value) == 0.0 or math.isclose(float(value), speed, rel_tol=SAME_SPEED)
-        if not found:
+            agrees = float(value) == 0.0 or math.isclose(float(value), speed, rel_tol=SAME_SPEED)
+        if not agrees:
             road = "its recorded speed" if math.isnan(speed) else f"{3.6 * speed:.4g} km/h of --speed, {speed:.4g} m/s"
             raise ConfigurationError(
                 f"{text.strip()}: the speed of the car is given twice, also by the road with {road}; leave "
                 "driving.speed out and set --speed, or set --tyre standing for tyres that do not roll"
             )
-    return found
+    return agrees
 
 
 def tyre_words(cars: Iterable[Driving]) -> str:

@@ -75,10 +75,10 @@ def _by_part(vehicle: Vehicle) -> dict[str, tuple[bool, str]]:
     """Return numbers of rods and of parts with an inertia, and forces that are left out: path to (idle, condition)."""
     off = {}
     for part in vehicle.composition.parts:
-        # The inertia of a rod is computed from its radius, so only the vehicle file tells both apart.
-        given = value_at(vehicle.table, f"{part.path}.inertia") is not None
-        off[f"{part.path}.radius"] = (given, f"a part without {part.path}.inertia")
-        off[f"{part.path}.products"] = (not given, f"{part.path}.inertia")
+        # The inertia of a rod is computed from its radius, so the vehicle file is read.
+        has_inertia = value_at(vehicle.table, f"{part.path}.inertia") is not None
+        off[f"{part.path}.radius"] = (has_inertia, f"a part without {part.path}.inertia")
+        off[f"{part.path}.products"] = (not has_inertia, f"{part.path}.inertia")
     for name, table in vehicle.table.get("force", {}).items():
         if table.get("enabled", True) is False:
             off[f"force.{name}."] = (True, f"force.{name}.enabled = true")
@@ -88,16 +88,16 @@ def _by_part(vehicle: Vehicle) -> dict[str, tuple[bool, str]]:
 
 
 def _by_state(vehicle: Vehicle) -> dict[str, tuple[bool, str]]:
-    """Return the parameters that act on rolling tyres only, or on standing ones only: path to (idle, condition)."""
+    """Return the parameters of rolling and of standing tyres: path to (idle, condition)."""
     rolling, road = vehicle.driving.rolling, "rolling tyres: --road with --speed, or driving.speed"
     off = {"driving.hold_": (not rolling, road)}
     for connection in vehicle.composition.connections:
         if isinstance(connection.law, Tyre):
             for key in ROLLING:
                 off[f"{connection.path}.{key}"] = (not rolling, road)
-            for key in ("stiffness", "damping"):
-                for axis in AXES[:2]:
-                    off[f"{connection.path}.{key}.{axis}"] = (rolling, "standing tyres: --tyre standing")
+            level = [f"{key}.{axis}" for key in ("stiffness", "damping") for axis in AXES[:2]]
+            for key in (*level, "rotational_stiffness"):
+                off[f"{connection.path}.{key}"] = (rolling, "standing tyres: --tyre standing")
     for axle in {wheel.axle for wheel in vehicle.composition.wheels}:
         for table in WHEEL_FORCES:
             for side in ("", *(f"{side}." for side in SIDE_SIGN)):
