@@ -108,7 +108,6 @@ def converting(address: int, conversions: Sequence[Conversion], *, to_fmu: bool)
     """
     transfer: Callable[..., int] = TRANSFER(address)
 
-    @TRANSFER
     def convert(instance: Any, references: Any, count: int, values: Any, size: int) -> int:
         if to_fmu:
             in_units = [each.to_unit(values[index]) for index, each in enumerate(conversions)]
@@ -118,4 +117,4 @@ def converting(address: int, conversions: Sequence[Conversion], *, to_fmu: bool)
             values[index] = each.to_si(values[index])
         return status
 
-    return convert
+    return TRANSFER(convert)

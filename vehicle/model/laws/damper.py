@@ -150,10 +150,10 @@ def _friction_laws() -> dict[str, type[Friction]]:
                 f"friction law {name}: the record of a damper has no {', '.join(missing)}, but only "
                 f"{', '.join(RECORD.names or ())}; add them to RECORD of vehicle/model/laws/damper.py, and to `pack`"
             )
-        own = [KEYS.get(entry.name, entry.name) for entry in dataclasses.fields(law)][
+        needed = [KEYS.get(entry.name, entry.name) for entry in dataclasses.fields(law)][
             len(dataclasses.fields(Friction)) :
         ]
-        if left_out := [key for key in own if key not in NUMBERS.get(name, {})]:
+        if left_out := [key for key in needed if key not in NUMBERS.get(name, {})]:
             raise ConfigurationError(
                 f"friction law {name}: NUMBERS lacks {', '.join(left_out)}, so a damper without these would run with "
                 f"other values; add them with units to NUMBERS[{name!r}] of vehicle/model/parameters/force_elements.py"

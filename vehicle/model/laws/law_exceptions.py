@@ -34,19 +34,19 @@ def exceptions_of_laws(title: str = "") -> Iterator[Callable[[], None]]:
     Raises:
         SimulationError: a law raised an exception or returned no number; a ConfigurationError at registration.
     """
-    before, first = sys.unraisablehook, list[Any]()
+    previous_hook, exceptions = sys.unraisablehook, list[Any]()
 
     def collect(unraisable: Any) -> None:
         # ctypes: "Exception ignored on calling ctypes callback function"; numba: object "<numba.ccallback 'f'>".
         if "callback" not in f"{unraisable.err_msg} {unraisable.object}":
-            before(unraisable)
-        elif not first:
-            first.append((unraisable.exc_value, unraisable.object))
+            previous_hook(unraisable)
+        elif not exceptions:
+            exceptions.append((unraisable.exc_value, unraisable.object))
 
     def check() -> None:
-        if not first:
+        if not exceptions:
             return
-        error, function = first[0]
+        error, function = exceptions[0]
         if isinstance(error, KeyboardInterrupt):
             raise error
         name = title or _title_of(function)
@@ -60,7 +60,7 @@ def exceptions_of_laws(title: str = "") -> Iterator[Callable[[], None]]:
     try:
         yield check
     finally:
-        sys.unraisablehook = before
+        sys.unraisablehook = previous_hook
         check()
 
 
