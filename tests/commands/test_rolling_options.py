@@ -3,17 +3,21 @@
 import argparse
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from vehicle.commands import modes, shaker
+from vehicle import Car, optimise, road
+from vehicle.commands import fmu, modes, orders, shaker
 from vehicle.commands.road import road_drive
+from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.driving import Driving, tyre_words
 from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.signals.excitation.road_drive import RoadDrive
 from vehicle.studies.sweeps.case import SignalFile, all_tyre_words, drivings
 from vehicle.studies.sweeps.case_table import table_cases
+from vehicle.studies.sweeps.plan import plan_sweep
 
 ROAD = ["--road", "A", "--speed", "72", "--duration", "3", "--engine", "reduced", "--quiet"]
 
@@ -28,7 +32,7 @@ def drive(vehicle: str, **given: object) -> tuple[str, ...]:
 def test_tyres_roll_on_a_road_by_default() -> None:
     assert drive("sedan") == ("driving.speed=20.0",)
     assert drive("sedan", tyre="standing") == ()
-    assert drive("sedan", overrides=["driving.speed=10"]) == drive("sedan", overrides=["speed=10"]) == ()
+    assert drive("sedan", overrides=["driving.speed=20"]) == drive("sedan", overrides=["speed=0"]) == ()
     # On blocks behind, as on its rig.
     assert drive("focus") == ()
     assert drive("focus", tyre="rolling") == ("driving.speed=20.0",)
@@ -80,9 +84,19 @@ def test_modes_at_a_speed(capsys: pytest.CaptureFixture[str]) -> None:
     [
         (["--input", "low.csv", "--tyre", "rolling"], "--tyre: belongs to a road"),
         (
-            [*ROAD, "--tyre", "standing", "--set", "driving.speed=3", "--vehicle", "sedan"],
+            [*ROAD, "--tyre", "standing", "--set", "driving.speed=20", "--vehicle", "sedan"],
             "--tyre standing and --set driving.speed",
         ),
+        (
+            [*ROAD, "--vehicle", "sedan", "--set", "driving.speed=1"],
+            "driving.speed=1: the speed of the car is given twice, also by the road with 72 km/h of --speed, 20 m/s",
+        ),
+        ([*ROAD, "--rpm", "800", "--set", "crank.rpm=900"], "--rpm and --set crank.rpm=900: both set crank.rpm; leave"),
+        (
+            [*ROAD[:6], "--timestep", "1e-3", "--set", "timestep=5e-4"],
+            "--timestep and --set timestep=5e-4: both set solver.",
+        ),
+        ([*ROAD, "--no-forces", "--set", "apply_forces=true"], "--no-forces and --set apply_forces=true: both set"),
         ([*ROAD, "--tyre", "rolling"], "also stands on the ground without wheels"),
     ],
 )
@@ -91,3 +105,36 @@ def test_what_does_not_go_together_is_refused(
 ) -> None:
     assert shaker.main([*words, "--output", str(tmp_path / "out")]) == 2
     assert message in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("command", "words"),
+    [
+        (modes, ["--vehicle", "sedan", "--speed", "80"]),
+        (orders, ["--vehicle", "sedan", "--speed", "60:80:10"]),
+        (fmu, ["sedan", "--speed", "80"]),
+    ],
+)
+def test_a_speed_that_is_given_twice_is_refused(
+    command: Any, words: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert command.main([*words, "--set", "driving.speed=1"]) == 2
+    assert "--speed and --set driving.speed=1: both set driving.speed; leave" in capsys.readouterr().err
+
+
+def test_studies_over_the_speed_of_a_road_are_refused() -> None:
+    car, ride = Car.load("sedan"), road("A", 80, duration=3)
+    message = r"driving\.speed=1.*: the speed of the car is given twice, also by the road with 80 km/h"
+    with pytest.raises(ConfigurationError, match=message):
+        plan_sweep(car, {"driving.speed": [1.0, 20.0]}, ride)
+    with pytest.raises(ConfigurationError, match=message):
+        optimise(
+            car.with_({"driving.speed": 22.2}),
+            {"driving.speed": (1.0, 20.0), "body.mass": (1100.0, 1300.0)},
+            ride,
+            ["weighted"],
+        )
+    with pytest.raises(ConfigurationError, match=message):
+        car.with_({"driving.speed": 1.0}).run(ride)
+    # The same speed, rounded, and standing tyres do not contradict the road.
+    plan_sweep(car, {"driving.speed": [0.0, 22.2]}, ride)

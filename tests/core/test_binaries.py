@@ -54,8 +54,20 @@ def test_without_library_and_compiler_it_is_said(monkeypatch, tmp_path):
     monkeypatch.setenv("CC", "false")
     with pytest.raises(
         MissingPartError,
-        match=r"the core cannot be compiled with false: .*; set the "
+        match=r"the core cannot be compiled with false: .*; correct vehicle/core/source .* set the "
         r"environment variable CC to",
+    ):
+        library.core.__wrapped__()
+    compiler = tmp_path / "compiler"
+    compiler.write_text(
+        "#!/bin/sh\necho 'In file included from march.c:20:' >&2\n"
+        "echo \"laws.h:12:3: error: 'x' undeclared\" >&2\nexit 1\n"
+    )
+    compiler.chmod(0o700)
+    monkeypatch.setenv("CC", str(compiler))
+    with pytest.raises(
+        MissingPartError,
+        match=r"compiler: laws\.h:12:3: error: 'x' undeclared; correct vehicle/core/source if you have changed",
     ):
         library.core.__wrapped__()
 

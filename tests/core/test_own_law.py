@@ -1,13 +1,14 @@
 """A damper law of the user's own: a C function by its address, in both engines, a batch and the linear system."""
 
 import ctypes
+from typing import Any
 
 import numpy as np
 import pytest
 
 from scenarios.signals.random_road import random_road
 from tests.documentation.pages import blocks
-from vehicle import Car, Road, register_law, sweep
+from vehicle import Car, Road, register_friction, register_law, sweep
 from vehicle.engines.reduced.batch_simulation import COARSE_STEP, simulate_batch
 from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.errors import ConfigurationError, SimulationError
@@ -129,6 +130,62 @@ def test_a_force_that_is_no_number_ends_the_run(engine):
         car_with("broken").run(ROAD, engine=engine, skip=0.5)
 
 
+def raising(memory, x, v):
+    if abs(v) > 0.05:
+        raise ValueError("no point above 0.05 m/s")
+    return 2250.0 * v
+
+
+def dividing(memory, x, v):
+    return 2250.0 * v / (abs(v) < 0.05)
+
+
+def worded(memory, x, v):
+    return 2250.0 * v if abs(v) < 0.05 else "2250"
+
+
+RAISING: dict[str, tuple[Any, str]] = {
+    "raising": (raising, "ValueError: no point above 0.05 m/s"),
+    "dividing": (dividing, "ZeroDivisionError: "),
+    "worded": (worded, "TypeError: must be real number, not str"),
+}
+KEPT = {word: LAW(function) for word, (function, _) in RAISING.items()}
+
+
+@pytest.mark.parametrize("engine", ["reduced", "mujoco"])
+@pytest.mark.parametrize("word", RAISING)
+def test_an_exception_in_a_law_ends_the_run(word, engine, capfd):
+    register_law(word, KEPT[word])
+    with pytest.raises(SimulationError) as raised:
+        car_with(word).run(ROAD, engine=engine, skip=0.5)
+    assert f"damper law '{word}': the function raises {RAISING[word][1]}" in str(raised.value)
+    assert "the run is discarded" in str(raised.value)
+    assert capfd.readouterr().err == ""
+
+
+def test_an_exception_in_a_law_ends_its_runs_of_a_sweep(capfd):
+    register_law("raising", KEPT["raising"])
+    ride = Road("C", speed=80.0, duration=3.0)
+    table = sweep(car_with(), {"front.damper.function": ["line", "raising"]}, ride, engine="reduced", jobs=1)
+    ((case, reason),) = table.failed
+    assert "raising" in str(case) and "damper law 'raising': the function raises ValueError" in reason
+    assert np.isfinite(table.column("unweighted")[0])
+    assert capfd.readouterr().err == ""
+
+
+def test_an_exception_in_a_friction_law_ends_the_run():
+    def limit(memory, friction, v):
+        if 0.03 < abs(v) < 0.09:
+            raise KeyError("v")
+        return friction
+
+    function = LAW(limit)
+    register_friction("raising", function)
+    for engine in ("reduced", "mujoco"):
+        with pytest.raises(SimulationError, match=r"friction law 'raising': the function raises KeyError: 'v'"):
+            car_with("line", **{"front.damper.friction_function": "raising"}).run(ROAD, engine=engine, skip=0.5)
+
+
 def test_laws_that_are_refused():
     def refused(name, force, match):
         with pytest.raises(ConfigurationError, match=match):
@@ -137,6 +194,8 @@ def test_laws_that_are_refused():
     refused("spring", lambda memory, x, v: 2000.0 * v + 1e4 * x, "must be zero at every displacement")
     refused("motor", lambda memory, x, v: -2000.0 * v, "falls with velocity, by 2000 N s/m")
     refused("nothing", lambda memory, x, v: float("nan"), "not a finite number")
+    refused("memory", lambda x, v: 2000.0 * v, r"'memory': the function raises TypeError: .* but 3 were given")
+    refused("none", lambda memory, x, v: None, "TypeError: must be real number, not NoneType")
     refused("two words", lambda memory, x, v: v, "a name must consist of letters")
     refused("line", lambda memory, x, v: 1.0 * v, "belongs to another function")
     assert register_law("line", line).viscous == 2250.0  # the same again

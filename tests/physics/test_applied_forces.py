@@ -177,6 +177,28 @@ def test_a_mean_force_is_in_equilibrium_and_moves_nothing():
     assert energies_of(run).work_in == pytest.approx(0.0, abs=1e-6)
 
 
+def test_steady_braking_of_a_rolling_wheel_shifts_the_load_of_the_axles():
+    """M/R at the contact, taken by the body at its centre of gravity: M h/(R L) from the rear to the front axle."""
+    bare = Car.load("sedan", {"driving.speed": 30.0})
+    wheels = {wheel.name: wheel for wheel in bare.vehicle.composition.wheels}
+    radius, base = wheels["fl"].center[2] - wheels["fl"].patch[2], wheels["rl"].patch[0] - wheels["fl"].patch[0]
+    contact, height = 500.0 / radius, bare.vehicle.body.cog[2] - wheels["fl"].patch[2]
+    pair = {"b.on": "knuckle_fl", "b.at": "tyre_patch_fl", "b.force": [1, 0, 0], "b.mean": contact}
+    pair |= {"c.on": "body", "c.force": [-1, 0, 0], "c.mean": contact}
+    car = bare.with_({f"force.{key}": value for key, value in pair.items()})
+    more = {wheel: car.static.tyre_load[wheel] - load for wheel, load in bare.static.tyre_load.items()}
+    assert more["fl"] + more["fr"] == pytest.approx(-more["rl"] - more["rr"], rel=1e-6)
+    validated(
+        "Applied forces", "load that steady braking by 500 N m at one wheel shifts from the rear to the front axle",
+        more["fl"] + more["fr"], contact * height / base, rel=1e-3,
+        source="closed form: M h/(R L)", unit="N",
+    )  # fmt: skip
+    for engine in ("mujoco", "reduced"):
+        run = car.run(level(car, 0.5), engine=engine)
+        assert max(np.max(np.abs(run[name])) for name in car.vehicle.acceleration_channels) < 1e-6
+        assert run["tyre_fl_force_z"][-1] == pytest.approx(car.static.tyre_load["fl"], rel=1e-6)
+
+
 def test_a_variant_with_another_imbalance_is_the_loaded_car():
     base = {"front.imbalance.radius": 0.2, "driving.speed": 30.0}
     variant = Car.load("sedan", {**base, "front.imbalance.mass": 0.01}).with_({"front.imbalance.mass": 0.03})

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from vehicle.commands.command_line import command
 from vehicle.commands.destination import output_file_of
-from vehicle.commands.options import VEHICLE_HELP, command_parser, message_options, output_options, set_option
+from vehicle.commands.options import VEHICLE_HELP, command_parser, message_options, output_options, set_once, set_option
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.shipped import vehicle_file
@@ -64,7 +64,11 @@ def _job(options: argparse.Namespace) -> None:
         raise ConfigurationError(f"--step {options.step:g}: must be {shortest:g} to {longest:g} ms")
     if options.speed is not None and not 0.0 <= options.speed <= HIGHEST_SPEED:
         raise ConfigurationError(f"--speed {options.speed:g}: must be 0 to {HIGHEST_SPEED:g} km/h")
-    rolling = [] if options.speed is None else [f"driving.speed={options.speed / 3.6!r}"]
+    rolling = (
+        []
+        if options.speed is None
+        else set_once(options.overrides, "--speed", [f"driving.speed={options.speed / 3.6!r}"])
+    )
     car = Car.load(options.car, [*options.overrides, *rolling])
     inputs = () if options.car is None else (options.car,)
     path = output_file_of(options, Path(f"{car.vehicle.name}.fmu"), ending=".fmu", protect=inputs)

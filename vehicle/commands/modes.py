@@ -18,6 +18,7 @@ from vehicle.commands.options import (
     film_name,
     finite_numbers,
     message_options,
+    set_once,
     vehicle_options,
 )
 from vehicle.commands.parser import Parser
@@ -100,7 +101,11 @@ def _job(options: argparse.Namespace) -> None:
                 else "exists; give --force"
             )
             raise ConfigurationError(f"--uff {options.uff}: {mend}")
-    speed = [] if options.speed is None else [f"driving.speed={options.speed / 3.6!r}"]
+    speed = (
+        []
+        if options.speed is None
+        else set_once(options.overrides, "--speed", [f"driving.speed={options.speed / 3.6!r}"])
+    )
     car = Car.load(options.vehicle, [*options.overrides, *speed])
     if options.decoupling is not None:
         print(_decoupling(options, car))

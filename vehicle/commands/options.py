@@ -2,6 +2,7 @@
 
 import argparse
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -78,6 +79,26 @@ def set_option(parser: argparse._ActionsContainer) -> None:
         help="change one parameter, for example damper.coulomb_friction=93.75. A vector is [x, y, z]; one "
         "component of it ends with its axis: bushings.tyre.stiffness.z=2e5. May be repeated",
     )
+
+
+def set_once(overrides: Sequence[str], flag: str, texts: Sequence[str]) -> list[str]:
+    """Return the texts "path=value" that an option sets in the car.
+
+    Args:
+        overrides: texts of --set.
+        flag: option, for the message.
+        texts: texts of the option.
+
+    Raises:
+        ConfigurationError: --set gives one of these parameters another value.
+    """
+    for text in texts:
+        path = text.partition("=")[0]
+        for other in overrides:
+            key = other.partition("=")[0].strip().removeprefix("*.")
+            if other.strip() != text and (path == key or path.endswith(f".{key}")):
+                raise ConfigurationError(f"{flag} and --set {other.strip()}: both set {path}; leave one of them out")
+    return list(texts)
 
 
 def output_options(parser: Parser, path: Path | None, *, default: str = "", metavar: str = "DIR") -> None:

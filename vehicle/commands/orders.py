@@ -16,6 +16,7 @@ from vehicle.commands.options import (
     command_parser,
     extra_output_options,
     message_options,
+    set_once,
     setting_options,
     vehicle_options,
 )
@@ -102,6 +103,8 @@ def job(options: argparse.Namespace) -> None:
 
     folder = None if options.output is None else output_folder_of(options, options.output)
     driving = [f"driving.speed={speeds[0] / 3.6!r}"] if rpm and speeds else []
+    set_once(options.overrides, "--speed", driving or (["driving.speed="] if speeds else []))
+    set_once(options.overrides, "--rpm", ["crank.rpm="] if rpm else [])
     car = Car.load(options.vehicle, [*options.overrides, *driving])
     asked_channels = ",".join(options.channel or ["seat rail z"]).split(",")
     channels = order_points_at(

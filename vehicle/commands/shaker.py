@@ -32,6 +32,7 @@ from vehicle.commands.options import (
     message_options,
     output_options,
     report_option,
+    set_once,
     setting_options,
     vehicle_options,
 )
@@ -155,12 +156,13 @@ def _job(options: argparse.Namespace) -> None:
                 "--rpm has no effect with --no-forces, which leaves out the forces of the crankshaft; leave "
                 "out one of them"
             )
-        options.overrides = [*options.overrides, "apply_forces=false"]
+        options.overrides = [*options.overrides, *set_once(options.overrides, "--no-forces", ["apply_forces=false"])]
     if options.rpm is not None and options.rpm.count(":") == 2:
         steady_points(options)
         return
     drive = None
-    overrides = options.overrides = [*options.overrides, *crank_overrides(options)]
+    crank = set_once(options.overrides, "--rpm" if options.rpm else "--channel rpm", crank_overrides(options))
+    overrides = options.overrides = [*options.overrides, *crank]
     if drives_on_road(options):
         from vehicle.commands.road import class_or_profile, road_drive
         from vehicle.model.parameters.vehicle import load_vehicle
@@ -189,9 +191,11 @@ def _job(options: argparse.Namespace) -> None:
         require_film()
     report_name = None if options.report is None else report_path(options, output)
     if options.timestep is not None:
-        overrides.append(f"solver.timestep={options.timestep!r}")
+        overrides += set_once(overrides, "--timestep", [f"solver.timestep={options.timestep!r}"])
     if options.controller is not None or options.trust:
-        overrides += _controller_overrides(options)
+        overrides += set_once(
+            overrides, "--controller" if options.controller else "--trust", _controller_overrides(options)
+        )
 
     from vehicle.errors import SimulationError
     from vehicle.runs.car import Car

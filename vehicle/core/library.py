@@ -108,10 +108,12 @@ def _compiled(stamp: str) -> Path:
         try:
             compile_core(compiler, platform_name().split("-")[0], library, ["-Wno-psabi", *shared], ["-shared", "-lm"])
         except (OSError, subprocess.CalledProcessError) as error:
-            message = getattr(error, "stderr", "") or str(error)
+            lines = (getattr(error, "stderr", "") or str(error)).strip().splitlines()
+            # The first line of a compiler says only from where a file is included.
+            fault = next((line for line in lines if "error" in line), lines[0])
             raise MissingPartError(
-                f"the core cannot be compiled with {' '.join(compiler)}: {message.strip().splitlines()[0]}; set "
-                "the environment variable CC to the command of another C compiler"
+                f"the core cannot be compiled with {' '.join(compiler)}: {fault}; correct vehicle/core/source if you "
+                "have changed it, otherwise set the environment variable CC to the command of another C compiler"
             ) from None
         library.replace(kept)
     return kept

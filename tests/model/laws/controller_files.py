@@ -36,6 +36,8 @@ def controller_fmu(
     token: str = TOKEN,
     platform: str | None = None,
     form: str = "CoSimulation",
+    units: Mapping[str, str] | None = None,
+    definitions: str = "",
 ) -> Path:
     """Write an FMU of the skyhook library.
 
@@ -47,6 +49,8 @@ def controller_fmu(
         token: text that the library compares.
         platform: folder of the library; that of Linux by default.
         form: type of the FMU.
+        units: attributes of variables by name, as 'unit="mm/s"'.
+        definitions: elements Unit of the model description.
     """
     causalities = [*((name, "input") for name in inputs), *((name, "parameter") for name in parameters)]
     causalities.append((output, "output"))
@@ -55,12 +59,12 @@ def controller_fmu(
     for name, causality in causalities:
         reference = references.get(name, NUMBERS["coefficient"])
         variability = "fixed" if causality == "parameter" else "continuous"
-        start = "" if causality == "output" else ' start="0"'
+        start = ("" if causality == "output" else ' start="0"') + f" {(units or {}).get(name, '')}"
         head = f'name="{name}" valueReference="{reference}" causality="{causality}" variability="{variability}"'
         rows.append(
             f"<ScalarVariable {head}><Real{start}/></ScalarVariable>" if second else f"<Float64 {head}{start}/>"
         )
-    of_output = len(rows) if second else NUMBERS["coefficient"]
+    of_output = len(rows) if second else references.get(output, NUMBERS["coefficient"])
     structure = f'<Outputs><Unknown index="{of_output}"/></Outputs>' if second else (
         f'<Output valueReference="{of_output}"/>'
     )  # fmt: skip
@@ -69,6 +73,7 @@ def controller_fmu(
     )
     text = (
         f'<?xml version="1.0" encoding="UTF-8"?>\n<fmiModelDescription {identity}><{form} modelIdentifier="skyhook"/>'
+        f"{definitions and f'<UnitDefinitions>{definitions}</UnitDefinitions>'}"
         f"<ModelVariables>{''.join(rows)}</ModelVariables><ModelStructure>{structure}</ModelStructure>"
         "</fmiModelDescription>"
     )

@@ -98,6 +98,65 @@ def test_values_and_times_of_the_sensors(tmp_path, sensor, wanted):
     controller.close()
 
 
+MILLIMETRES = (
+    '<Unit name="mm/s"><BaseUnit m="1" s="-1" factor="0.001"/></Unit>'
+    '<Unit name="shifted"><BaseUnit m="1" s="-1" factor="0.001" offset="0.5"/></Unit>'
+    '<Unit name="N.s/mm"><BaseUnit kg="1" s="-1" factor="1000"/></Unit>'
+)
+
+
+@VERSIONS
+@pytest.mark.parametrize(
+    ("units", "wanted"),
+    [
+        ({"damper_velocity": 'unit="mm/s"'}, lambda v: 1e3 * v),
+        ({"damper_velocity": 'unit="shifted"'}, lambda v: 1e3 * (v - 0.5)),
+        ({"damper_velocity": 'unit="shifted" relativeQuantity="true"'}, lambda v: 1e3 * v),
+        ({"damper_velocity": 'unit="km/h"'}, lambda v: 3.6 * v),
+        ({"damper_velocity": 'unit="m/s"', "coefficient": 'unit="N.s/mm"'}, lambda v: 1e3 * v),
+        ({"coefficient": 'unit="N s/m"', "wheel_velocity": 'unit="mm/s"'}, lambda v: v),
+    ],
+)
+def test_variables_are_converted_by_their_declared_units(tmp_path, version, units, wanted):
+    # The output is the input itself.
+    path = controller_fmu(
+        tmp_path / "units.fmu", version, inputs=("wheel_velocity", "damper_velocity"), units=units,
+        references={**NUMBERS, "coefficient": NUMBERS["damper_velocity"]}, definitions=MILLIMETRES,
+    )  # fmt: skip
+    controller = started(path)
+    found = [called(controller.address, body, wheel) for body, wheel in speeds()]
+    np.testing.assert_allclose(found, wanted(-np.diff(speeds()).ravel()), rtol=1e-12, atol=1e-12)
+    controller.close()
+
+
+def test_parameters_are_converted_by_their_declared_units(tmp_path):
+    units = dict.fromkeys(PARAMETERS, 'unit="N.s/mm"')
+    scaled = started(controller_fmu(tmp_path / "scaled.fmu", units=units, definitions=MILLIMETRES))
+    plain = started(controller_fmu(tmp_path / "si.fmu"))
+    for body, wheel in speeds():
+        # The coefficient has no unit, so it is as large as in N s/mm.
+        assert called(scaled.address, body, wheel) == pytest.approx(
+            1e-3 * called(plain.address, body, wheel), rel=1e-12
+        )
+    scaled.close()
+    plain.close()
+
+
+@pytest.mark.parametrize(
+    ("attribute", "text"),
+    [
+        ('unit="furlong/h"', "has the unit 'furlong/h' without a BaseUnit in its model description"),
+        ('unit="mm"', "has the unit 'mm' without a BaseUnit"),
+        ('unit="N.s/mm"', "has the unit 'N.s/mm', 1000 kg^1 s^-1, must be a unit of m/s"),
+    ],
+)
+def test_a_unit_of_another_dimension_is_refused(tmp_path, attribute, text):
+    path = controller_fmu(tmp_path / "bad.fmu", units={"body_velocity": attribute}, definitions=MILLIMETRES)
+    with pytest.raises(DataError) as caught:
+        read_controller(path, digest(path))
+    assert text in str(caught.value)
+
+
 def test_the_coefficient_stays_within_the_damper(tmp_path):
     # Without parameters the gain of the FMU is 1000, and its limits are wider than those of the damper.
     path = controller_fmu(tmp_path / "wide.fmu", parameters=())

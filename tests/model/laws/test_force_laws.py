@@ -12,11 +12,12 @@ from tests.core.laws import friction_limit
 from tests.validation import validated
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.coulomb import Coulomb
-from vehicle.model.laws.damper import damper_law, pack
+from vehicle.model.laws.damper import _friction_laws, damper_law, pack
 from vehicle.model.laws.elastomer import Kelvin, Maxwell
 from vehicle.model.laws.friction import Clamped
 from vehicle.model.laws.law import Parallel
 from vehicle.model.laws.stribeck import Stribeck
+from vehicle.model.parameters.force_elements import NUMBERS
 from vehicle.model.parameters.vehicle import load_vehicle
 
 STRIBECK = {
@@ -213,3 +214,16 @@ def test_bad_parameters_are_refused_by_name(law, values, message):
     with pytest.raises(ConfigurationError) as caught:
         law(**values)
     assert str(caught.value) == message
+
+
+def test_a_law_whose_numbers_no_damper_must_have_is_refused_at_import(monkeypatch):
+    for name in ("stribeck_friction", "stribeck_exponent"):
+        monkeypatch.setitem(
+            NUMBERS, "stribeck", {key: unit for key, unit in NUMBERS["stribeck"].items() if key != name}
+        )
+        with pytest.raises(ConfigurationError, match=f"friction law stribeck: NUMBERS lacks {name}, so a damper"):
+            _friction_laws()
+        monkeypatch.undo()
+    monkeypatch.delitem(NUMBERS, "stribeck")
+    with pytest.raises(ConfigurationError, match="NUMBERS lacks stribeck_friction, stribeck_velocity, stribeck_exp"):
+        _friction_laws()

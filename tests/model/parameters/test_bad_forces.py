@@ -122,8 +122,41 @@ def test_a_force_that_cannot_act_in_a_run_is_refused():
         car_with(**shake, frequency=50.0).with_({"solver.timestep": 1e-3}).run(smooth)
     with pytest.raises(ConfigurationError, match="moves no plate, and sedan has no force that shakes it; add a force"):
         Car.load("sedan").run(smooth)
-    with pytest.raises(ConfigurationError, match="no equilibrium"):
-        Car.load("sedan", {"driving.speed": 30.0, "force.a.joint": "spin_fr", "force.a.mean": 10.0})
     stored = {"body.superelement": "trimmed_body.toml", "force.a.on": "body", "force.a.force": [0, 0, 1]}
     with pytest.raises(DataError, match="no node at the attachment"):
         _ = Car.load("focus", {**stored, "force.a.at": [2.0, 0.4, 1.0]}).model
+
+
+ABOUT_THE_AXLE: dict[str, tuple[dict[str, object], str]] = {
+    "moment on the tyre": (
+        {"on": "tyre_fl", "moment": [0, 1, 0], "mean": 500.0},
+        "for steady braking set mean=0 and add two forces of the mean 1639 N: along x on knuckle_fl at tyre_patch_fl",
+    ),
+    "brake between knuckle and disc": (
+        {"on": "knuckle_fl", "against": "brake_disc_fl", "moment": [0, 1, 0], "mean": 100.0},
+        "a mean moment of -100 N m about the axle of wheel fl",
+    ),
+    "torque in the joint": ({"joint": "spin_rr", "mean": 10.0}, "a mean moment of 10 N m about the axle of wheel rr"),
+    "force off the axle": (
+        {"on": "tyre_fl", "at": "tyre_patch_fl", "force": [1, 0, 0], "mean": 100.0},
+        "a mean moment of -30.5 N m about the axle of wheel fl, which turns freely, so there is no equilibrium; "
+        "set on=knuckle_fl",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", ABOUT_THE_AXLE)
+def test_a_mean_moment_about_the_axle_of_a_rolling_wheel_is_refused(case):
+    force, said = ABOUT_THE_AXLE[case]
+    table = {f"force.a.{key}": value for key, value in force.items()}
+    with pytest.raises(ConfigurationError) as raised:
+        Car.load("sedan", {"driving.speed": 30.0, **table})
+    assert "force.a.mean: found " in str(raised.value) and said in str(raised.value)
+    if "joint" not in force:
+        Car.load("sedan", table)
+
+
+def test_mean_forces_on_a_rolling_wheel_without_moment_about_its_axle_are_taken():
+    for force in ({"moment": [1, 0, 0]}, {"force": [1, 0, 0]}, {"moment": [0, 1, 0], "against": "brake_disc_fl"}):
+        table = {f"force.a.{key}": value for key, value in {"on": "tyre_fl", "mean": 100.0, **force}.items()}
+        Car.load("sedan", {"driving.speed": 30.0, **table})

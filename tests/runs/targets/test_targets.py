@@ -1,5 +1,6 @@
 """Targets: every figure equals the value of its run elsewhere; verdict, error, inputs, and wrong files."""
 
+import runpy
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
@@ -11,7 +12,8 @@ from tests.validation import validated
 from vehicle import Car, road
 from vehicle.errors import ConfigurationError
 from vehicle.runs.output.run_obstacle import obstacle_values
-from vehicle.runs.targets.figure import QUANTITIES, Figure
+from vehicle.runs.targets import values
+from vehicle.runs.targets.figure import QUANTITIES, Figure, Quantity
 from vehicle.runs.targets.values import Histories, value_of
 from vehicle.runs.targets.verdict import (
     MET,
@@ -255,3 +257,9 @@ def test_what_a_run_does_not_have(on_road):
 def test_shipped_targets():
     figures = read_targets("ride")
     assert len(figures) >= 10 and all(each.source for each in figures.values())
+
+
+def test_a_kind_of_figure_in_one_of_two_tables_is_refused_at_import(monkeypatch):
+    monkeypatch.setitem(QUANTITIES, "kurtosis", Quantity(meaning="kurtosis of a channel [-]"))
+    with pytest.raises(ConfigurationError, match="figures: kurtosis is in one of two tables only; add it"):
+        runpy.run_path(values.__file__)

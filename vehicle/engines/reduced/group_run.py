@@ -31,6 +31,7 @@ from vehicle.engines.simulation.recorded_acceleration import AHEAD, WEIGHTS
 from vehicle.engines.simulation.recording import Statistics
 from vehicle.model.laws.controller_fmu import controllers
 from vehicle.model.laws.damper import require_friction_laws
+from vehicle.model.laws.law_exceptions import exceptions_of_laws
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.signals.excitation.signal import Signal
 
@@ -216,7 +217,7 @@ class GroupRun:
             for damper, law in zip(matrices.damper_names, self.dampers[0], strict=True)
             if law.controlled
         ]
-        with controllers(self.feedback.settings, controls, self.timestep) as check:
+        with controllers(self.feedback.settings, controls, self.timestep) as check, exceptions_of_laws():
             self._step_blocks(reading, y, peaks, table, rows_of_cars)
             check()
         return [

@@ -6,7 +6,7 @@ through.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
@@ -15,13 +15,14 @@ import mujoco
 from vehicle.engines.simulation.damper_force import fill_sensors
 from vehicle.engines.simulation.rows import Rows
 from vehicle.errors import SimulationError
+from vehicle.model.laws.law_exceptions import exceptions_of_laws
 
 if TYPE_CHECKING:
     from vehicle.engines.simulation.compiled import CompiledRows
 
 
 @contextmanager
-def installed(rows: Rows, compiled: CompiledRows | None = None) -> Iterator[None]:
+def installed(rows: Rows, compiled: CompiledRows | None = None) -> Iterator[Callable[[], None]]:
     """Install the callbacks of one simulation for the time of a `with` block.
 
     Callbacks are global to the process. Installing them while others are installed is an error, they act on a single
@@ -32,8 +33,11 @@ def installed(rows: Rows, compiled: CompiledRows | None = None) -> Iterator[None
         compiled: callbacks of the core, installed in place of the Python functions; they act on attached states, and
             are detached from them at the end.
 
+    Yields:
+        Function that raises the first exception in a law of the user, see `exceptions_of_laws`.
+
     Raises:
-        SimulationError: other callbacks are installed already.
+        SimulationError: other callbacks are installed already, or a law of the user raised an exception.
     """
     if mujoco.get_mjcb_control() is not None:
         raise SimulationError(
@@ -59,7 +63,8 @@ def installed(rows: Rows, compiled: CompiledRows | None = None) -> Iterator[None
     # MuJoCo would print warnings and append them to a file in the working folder; the run reads the counters instead.
     _write_log(log, console=False, file=False)
     try:
-        yield
+        with exceptions_of_laws() as check_laws:
+            yield check_laws
     finally:
         _write_log(log, console=written[0], file=written[1])
         mujoco.set_mjcb_control(None)

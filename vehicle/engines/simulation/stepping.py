@@ -99,7 +99,7 @@ def simulate(
     laws = {damper.name: damper.law.controlled for damper in car.vehicle.composition.dampers}
     names = [rows.laws.dampers[index] for index in rows.layout.controls.dampers]
     controls = [(name, control) for name in names if (control := laws[name]) is not None]
-    with controllers(rows.layout.controls.laws, controls, step) as check, installed(rows, compiled):
+    with controllers(rows.layout.controls.laws, controls, step) as check, installed(rows, compiled) as check_laws:
         started = clock.perf_counter()
         index = 0
         while index <= count:
@@ -122,6 +122,7 @@ def simulate(
                     recorder.after_step(loop, moved=moved)
             if index == count or recorder.filled == CHUNK:
                 check()
+                check_laws()
                 _check_state(model, data, recorder, every * step)
                 recorder.flush(block.motion, index - offset, every)
                 if progress is not None:

@@ -12,6 +12,7 @@ returns the damper coefficient c that holds over this step. T is the control per
     body_acceleration  (vb(t_k) - vb(t_k - T)) / T, mean over the last communication step; 0 in the first [m/s2]
     wheel_acceleration likewise of vw
 
+Variables with a unit in the model description are converted (`controller_units.py`); others are in SI.
 The core calls the functions of the FMU by their addresses (`controller.c`). After a failed call the controller is not
 called again in this run, and the last coefficient holds; the engine then raises. Each instance has its own copy of the
 library, so that a library with global variables serves several dampers. An instance is made at the beginning of a run
@@ -38,6 +39,7 @@ from vehicle.core.library import core
 from vehicle.core.records import Packed, packed
 from vehicle.core.trusted_code import trusted
 from vehicle.errors import ConfigurationError, DataError, MissingPartError, SimulationError
+from vehicle.model.laws.controller_units import UNITS_OF_CONTROL, Conversion, conversion_of, converting
 from vehicle.model.parameters.semi_active_damper import CONTROLLER_PARAMETERS, FMU, SemiActiveDamper
 from vehicle.signals.formats.unpacked_size import require_archive
 
@@ -47,8 +49,13 @@ LARGEST = 200e6
 REALS = ("Real", "Float64")
 """Types of the variables in FMI 2.0 and 3.0."""
 
-SENSORS = ("body_velocity", "wheel_velocity", "damper_velocity", "body_acceleration", "wheel_acceleration")
-"""Names of the inputs of a controller FMU, in the order of their values in the core."""
+UNITS_OF_SENSORS = dict.fromkeys(("body_velocity", "wheel_velocity", "damper_velocity"), "m/s") | dict.fromkeys(
+    ("body_acceleration", "wheel_acceleration"), "m/s2"
+)
+"""Names of the inputs of a controller FMU, in the order of their values in the core, and their units."""
+
+SENSORS = tuple(UNITS_OF_SENSORS)
+"""Names of the inputs."""
 
 COEFFICIENT = "coefficient"
 """Name of the output of a controller FMU [N s/m]."""
@@ -80,6 +87,7 @@ class ControllerFile:
         sensors: index in `SENSORS` of each input. inputs: value references of the inputs.
         output: value reference of the coefficient.
         parameters: value references of the parameters with a name in `CONTROLLER_PARAMETERS`.
+        conversions: conversion between its declared unit and SI of each variable of these, by name.
     """
 
     path: Path
@@ -89,6 +97,13 @@ class ControllerFile:
     inputs: tuple[int, ...]
     output: int
     parameters: Mapping[str, int]
+    conversions: Mapping[str, Conversion]
+
+    @property
+    def in_si(self) -> bool:
+        """True if all inputs and the output are in SI."""
+        names = (*(SENSORS[index] for index in self.sensors), COEFFICIENT)
+        return all(self.conversions[name] == Conversion() for name in names)
 
 
 def read_controller(path: Path, digest: str | None) -> ControllerFile:
@@ -100,8 +115,8 @@ def read_controller(path: Path, digest: str | None) -> ControllerFile:
 
     Raises:
         ConfigurationError: the file is missing, has another digest, or is not in the user's list of trusted code.
-        DataError: the file is too large, no FMU for co-simulation, its variables have other names, or it has no
-            library for this platform.
+        DataError: the file is too large, no FMU for co-simulation, its variables have other names or units, or it has
+            no library for this platform.
         MissingPartError: FMPy is not installed.
     """
     fmpy = _fmpy()
@@ -155,6 +170,13 @@ def _with_variables(path: Path, content: bytes, description: Any) -> ControllerF
             f"among {', '.join(SENSORS)} and an output {COEFFICIENT} [N s/m], all real numbers; rename the "
             "variables in the tool that made the controller"
         )
+    parameters = {
+        name: numbers[name].valueReference
+        for name in CONTROLLER_PARAMETERS
+        if name in numbers and numbers[name].causality == "parameter"
+    }
+    units = {name: UNITS_OF_SENSORS[name] for name in inputs} | {COEFFICIENT: "N s/m"}
+    units |= {name: UNITS_OF_CONTROL[name] for name in parameters}
     return ControllerFile(
         path=path,
         content=content,
@@ -162,11 +184,8 @@ def _with_variables(path: Path, content: bytes, description: Any) -> ControllerF
         sensors=tuple(SENSORS.index(name) for name in inputs),
         inputs=tuple(numbers[name].valueReference for name in inputs),
         output=numbers[COEFFICIENT].valueReference,
-        parameters={
-            name: numbers[name].valueReference
-            for name in CONTROLLER_PARAMETERS
-            if name in numbers and numbers[name].causality == "parameter"
-        },
+        parameters=parameters,
+        conversions={name: conversion_of(path, numbers[name], description, unit) for name, unit in units.items()},
     )
 
 
@@ -196,6 +215,7 @@ class Controller:
         self.record: Packed | None = None
         self.folder = tempfile.mkdtemp(prefix="controller-")
         self.slave: Any = None
+        self.converted: tuple[Any, ...] = ()
         try:
             self._start(control)
         except Exception as error:
@@ -215,7 +235,8 @@ class Controller:
         )
         if file.parameters:
             write = slave.setReal if second else slave.setFloat64
-            write([*file.parameters.values()], [getattr(control, name) for name in file.parameters])
+            values = [file.conversions[name].to_unit(getattr(control, name)) for name in file.parameters]
+            write([*file.parameters.values()], values)
         if second:
             slave.setupExperiment(startTime=0.0)
             slave.enterInitializationMode()
@@ -226,6 +247,12 @@ class Controller:
             *("fmi3SetFloat64", "fmi3DoStep", "fmi3GetFloat64"),
         )  # fmt: skip
         functions = [ctypes.cast(getattr(slave.dll, name), ctypes.c_void_p).value or 0 for name in names]
+        if not file.in_si:
+            inputs = [file.conversions[SENSORS[index]] for index in file.sensors]
+            write_inputs = converting(functions[0], inputs, to_fmu=True)
+            read_output = converting(functions[2], [file.conversions[COEFFICIENT]], to_fmu=False)
+            self.converted = write_inputs, read_output
+            functions[::2] = [ctypes.cast(each, ctypes.c_void_p).value or 0 for each in self.converted]
         record = self.record = packed(
             "Controller",
             {

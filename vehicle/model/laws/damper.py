@@ -25,7 +25,7 @@ from vehicle.model.laws.friction import Friction
 from vehicle.model.laws.friction_by_address import OwnFriction, friction_by_address
 from vehicle.model.laws.law import Constant, ForceLaw, Parallel
 from vehicle.model.laws.law_by_address import law_by_address
-from vehicle.model.parameters.force_elements import FRICTION_LAWS, Damper
+from vehicle.model.parameters.force_elements import FRICTION_LAWS, NUMBERS, Damper
 
 RECORD = np.dtype(
     [
@@ -129,11 +129,16 @@ def damper_law(damper: Damper) -> Parallel:
     return Parallel(laws=(viscous_law(damper), Constant(value=-damper.gas_force), friction))
 
 
+KEYS = {"static_limit": "stribeck_friction"}
+"""Parameter of a damper by the name in `RECORD` where both differ."""
+
+
 def _friction_laws() -> dict[str, type[Friction]]:
     """Return the classes of the friction laws by their names.
 
     Raises:
-        ConfigurationError: the record of a damper lacks a parameter of a law, which would fail in the middle of a run.
+        ConfigurationError: the record of a damper lacks a parameter of a law, which would fail in the middle of a run,
+            or `NUMBERS` does not require it, so that a damper without it would run with a placeholder.
     """
     modules = {name: importlib.import_module(f"vehicle.model.laws.{name}") for name in FRICTION_LAWS}
     laws: dict[str, type[Friction]] = {}
@@ -144,6 +149,14 @@ def _friction_laws() -> dict[str, type[Friction]]:
             raise ConfigurationError(
                 f"friction law {name}: the record of a damper has no {', '.join(missing)}, but only "
                 f"{', '.join(RECORD.names or ())}; add them to RECORD of vehicle/model/laws/damper.py, and to `pack`"
+            )
+        needed = [KEYS.get(entry.name, entry.name) for entry in dataclasses.fields(law)][
+            len(dataclasses.fields(Friction)) :
+        ]
+        if left_out := [key for key in needed if key not in NUMBERS.get(name, {})]:
+            raise ConfigurationError(
+                f"friction law {name}: NUMBERS lacks {', '.join(left_out)}, so a damper without these would run with "
+                f"other values; add them with units to NUMBERS[{name!r}] of vehicle/model/parameters/force_elements.py"
             )
     return laws
 

@@ -20,6 +20,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.laws.friction import Friction
 from vehicle.model.laws.law import Numbers
 from vehicle.model.laws.law_by_address import CALL, checked_address, missing, taken
+from vehicle.model.laws.law_exceptions import exceptions_of_laws, register_function
 
 TRIED = (0.0, 1e-3, -1e-3, 0.1, -0.1, 1.0, -1.0)
 """Velocities at which a limit is tested [m/s]."""
@@ -54,7 +55,8 @@ class FrictionByAddress:
         """
         record, pairs = self.call.memory, np.broadcast(friction, velocity)
         function = CALL(record.function)
-        values = [function(record.memory, float(limit), float(v)) for limit, v in pairs]
+        with exceptions_of_laws():
+            values = [function(record.memory, float(limit), float(v)) for limit, v in pairs]
         return np.maximum(np.reshape(values, pairs.shape), 0.0)
 
 
@@ -97,20 +99,23 @@ def register_friction(name: str, function: Any, memory: int = 0) -> FrictionByAd
         The law, with its limit for arrays.
 
     Raises:
-        ConfigurationError: the name is not valid or belongs to another function, there is no address, or the limit is
-            negative or not finite between -1 and 1 m/s.
+        ConfigurationError: the name is not valid or belongs to another function, there is no address, the function
+            raises an exception, or the limit is negative or not finite between -1 and 1 m/s.
     """
     address, earlier = checked_address(name, function), _LAWS.get(name)
     call = packed("Call", {"function": address, "memory": memory})
     if earlier is not None and bytes(earlier.call.memory) != bytes(call.memory):
         raise taken("friction law", name)
+    title = f"friction law {name!r}"
     for velocity in TRIED:
-        limit = CALL(address)(memory, USUAL, velocity)
+        with exceptions_of_laws(title):
+            limit = CALL(address)(memory, USUAL, velocity)
         if not 0.0 <= limit < np.inf:
             raise ConfigurationError(
-                f"friction law {name!r}: found a limit of {limit:.4g} N at {velocity:g} m/s, must be finite and "
+                f"{title}: found a limit of {limit:.4g} N at {velocity:g} m/s, must be finite and "
                 "at least 0 in both directions, because the simulation adds the sign"
             )
+    register_function(title, function)
     return _LAWS.setdefault(name, FrictionByAddress(name=name, call=call, kept=function))
 
 

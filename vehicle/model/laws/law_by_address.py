@@ -9,8 +9,8 @@ central difference.
 
 The linear system contains D. Both engines call the function several times in a step for the remainder R = F - D v
 (`own_laws` of `vehicle/core/source/march.c`, `own_dampers` of `dampers.h`): second order, exact for a line. So the
-function must not depend on the order of its calls, and it must not raise an exception. A vehicle file has its name:
-the address is valid in this process only.
+function must not depend on the order of its calls. A run whose law raises an exception fails (`law_exceptions.py`). A
+vehicle file has its name: the address is valid in this process only.
 
 Source of the integration: Hairer and Wanner, Solving Ordinary Differential Equations II, section IV.7 (linearly
 implicit methods).
@@ -27,6 +27,7 @@ import numpy as np
 from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.law import Numbers
+from vehicle.model.laws.law_exceptions import exceptions_of_laws, register_function
 
 RECORD = np.dtype(
     [
@@ -77,6 +78,10 @@ class LawByAddress:
             velocity: v [m/s].
             displacement: x [m]; both broadcast together.
         """
+        with exceptions_of_laws():
+            return self._force(velocity, displacement)
+
+    def _force(self, velocity: Numbers, displacement: Numbers = 0.0) -> Vector:
         function, pairs = CALL(self.address), np.broadcast(displacement, velocity)
         return np.array([function(self.memory, float(x), float(v)) for x, v in pairs]).reshape(pairs.shape)
 
@@ -108,16 +113,18 @@ def register_law(name: str, function: Any, memory: int = 0) -> LawByAddress:
         The law, with its force and slope for arrays.
 
     Raises:
-        ConfigurationError: the name is not valid or belongs to another function, there is no address, or the force is
-            not finite, not zero at rest or falls at rest.
+        ConfigurationError: the name is not valid or belongs to another function, there is no address, the function
+            raises an exception, or the force is not finite, not zero at rest or falls at rest.
     """
     address = checked_address(name, function)
     earlier = _LAWS.get(name)
     if earlier is not None and (earlier.address, earlier.memory) != (address, memory):
         raise taken("damper law", name)
     law = LawByAddress(name=name, address=address, memory=memory, viscous=0.0, kept=function)
-    at_rest = law.force(0.0, np.array([0.0, *STROKES]))
-    ends = law.force(np.array([-STEP, STEP]))
+    title = f"damper law {name!r}"
+    with exceptions_of_laws(title):
+        at_rest = law._force(0.0, np.array([0.0, *STROKES]))
+        ends = law._force(np.array([-STEP, STEP]))
     if not (np.isfinite(at_rest).all() and np.isfinite(ends).all()):
         raise ConfigurationError(f"damper law {name!r}: the force at rest or at {STEP:.3g} m/s is not a finite number")
     largest = float(np.max(np.abs(at_rest)))
@@ -132,6 +139,7 @@ def register_law(name: str, function: Any, memory: int = 0) -> LawByAddress:
             f"damper law {name!r}: the force falls with velocity, by {-viscous:.4g} N s/m at rest; it must have "
             "the sign of the velocity, positive in extension"
         )
+    register_function(title, function)
     _LAWS[name] = LawByAddress(name=name, address=address, memory=memory, viscous=viscous, kept=function)
     return _LAWS[name]
 

@@ -1,5 +1,6 @@
 """Driving state of a car: speed and hold of the course; templates with rolling or fixed wheels."""
 
+import contextlib
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
@@ -58,6 +59,9 @@ class Driving(Validated):
 
 
 STANDING = Driving()
+
+SAME_SPEED = 2e-3
+"""Relative difference of a speed in m/s that was rounded from km/h: 22.2 for 80."""
 
 
 HIGHEST_RPM = 10000.0
@@ -151,6 +155,32 @@ class Crank(Validated):
 def crank_of(table: Mapping[str, Any]) -> Crank | None:
     """Return the crankshaft of a vehicle file; None if it has none. Errors: see `build`."""
     return build(Crank, convert(dict, table["crank"], "crank"), "crank") if "crank" in table else None
+
+
+def require_speed_once(texts: Iterable[str], speed: float) -> bool:
+    """Return True if texts "path=value" give the speed of the car, which an input gives too: 0, or the same speed.
+
+    Args:
+        texts: changes of the car.
+        speed: speed of the road [m/s]; NaN for a speed that varies.
+
+    Raises:
+        ConfigurationError: a text gives another speed, so that the plates and the tyres would have different ones.
+    """
+    agrees = False
+    for text in texts:
+        path, _, value = (part.strip() for part in text.partition("="))
+        if path not in ("driving.speed", "speed"):
+            continue
+        with contextlib.suppress(ValueError):
+            agrees = float(value) == 0.0 or math.isclose(float(value), speed, rel_tol=SAME_SPEED)
+        if not agrees:
+            road = "its recorded speed" if math.isnan(speed) else f"{3.6 * speed:.4g} km/h of --speed, {speed:.4g} m/s"
+            raise ConfigurationError(
+                f"{text.strip()}: the speed of the car is given twice, also by the road with {road}; leave "
+                "driving.speed out and set --speed, or set --tyre standing for tyres that do not roll"
+            )
+    return agrees
 
 
 def tyre_words(cars: Iterable[Driving]) -> str:

@@ -177,10 +177,6 @@ def _torque(path: str, table: Mapping[str, Any], targets: ForceTargets, law: App
         raise ConfigurationError(f"{path}.joint: {joint!r} is not a hinge or slide; the most similar name is {near}")
     if targets.joints[joint] == "hinge":
         _require_torque(path, law)
-    if law.mean and joint.startswith("spin_"):
-        raise ConfigurationError(
-            f"{path}.mean: found {law.mean:g} N m on a wheel that turns freely, so there is no equilibrium; set 0"
-        )
     return PlacedForce(
         name=path.partition(".")[2],
         joint=joint,

@@ -14,6 +14,7 @@ from vehicle.model.parameters.composition import PlacedWheel
 from vehicle.model.parameters.driving import ROUND
 from vehicle.model.parameters.force_elements import Tyre
 from vehicle.model.parameters.hardpoints import Point
+from vehicle.model.parameters.placed_force import PlacedForce
 from vehicle.model.parameters.rigid_part import Load
 from vehicle.names import AXES
 
@@ -165,6 +166,8 @@ def require_rolling(vehicle: Vehicle) -> None:
                     f"{path}: is on {', '.join(sorted(parts & spinning))}, which turns with the rolling wheel; put it "
                     "on the hub"
                 )
+        for force in car.forces:
+            _require_no_mean_about(force, wheel, spinning, tyre.moving)
         for part in car.parts:
             if part.name not in spinning:
                 continue
@@ -175,3 +178,40 @@ def require_rolling(vehicle: Vehicle) -> None:
                     f"{part.path}: turns with the wheel, so it must be round about the axle: inertia.x = "
                     "inertia.z, no products, and an offset only along y"
                 )
+
+
+def _require_no_mean_about(force: PlacedForce, wheel: PlacedWheel, spinning: set[str], hub: str) -> None:
+    """Check that a force has no mean moment M about the axle of a rolling wheel, which nothing at rest balances.
+
+    A steady M drives or brakes the wheel: the road exerts M/R along x at the contact, and the car takes its reaction.
+
+    Args:
+        force: applied force.
+        wheel: rolling wheel.
+        spinning: parts that turn with the wheel.
+        hub: part that carries the wheel.
+
+    Raises:
+        ConfigurationError: M is not zero.
+    """
+    x, _, z = (a - b for a, b in zip(force.at, wheel.center, strict=True))
+    arm = force.moment[1] + z * force.force[0] - x * force.force[2]
+    if force.joint:
+        arm = float(force.joint == f"spin_{wheel.name}")
+    elif (force.on in spinning) == (force.against in spinning):
+        return
+    if abs(arm * force.mean) <= ROUND * abs(force.mean):
+        return
+    moment = arm * force.mean * (-1.0 if force.against in spinning else 1.0)
+    contact, way = abs(moment) / (wheel.center[2] - wheel.patch[2]), "x" if moment > 0.0 else "-x"
+    patch = f"{wheel.paths[1].rpartition('.')[2]}_{wheel.name}"
+    remedy = (
+        f"set on={hub}, which carries the wheel"
+        if any(force.force)
+        else f"for steady {'braking' if moment > 0.0 else 'driving'} set mean=0 and add two forces of the mean "
+        f"{contact:.4g} N: along {way} on {hub} at {patch}, and opposite on body"
+    )
+    raise ConfigurationError(
+        f"{force.path}.mean: found {force.mean:g} {force.unit}, a mean moment of {moment:.4g} N m about the axle of "
+        f"wheel {wheel.name}, which turns freely, so there is no equilibrium; {remedy}"
+    )

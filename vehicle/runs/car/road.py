@@ -9,6 +9,7 @@ from pathlib import Path
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.compose import APPLY_FORCES
+from vehicle.model.parameters.driving import require_speed_once
 from vehicle.model.parameters.force_elements import Tyre
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.model.parameters.wheel_forces import WHEEL_FORCES
@@ -56,8 +57,8 @@ class Road(RoadSettings):
         """Return the drive of a car over the road, with the wheels where the car has them.
 
         Args:
-            overrides: texts "path=value" with which the car was loaded; driving.speed and one_sided among them decide
-                on the tyres.
+            overrides: texts "path=value" with which the car was loaded; driving.speed, which must be that of the road
+                or 0, and one_sided among them decide on the tyres.
 
         Raises:
             ConfigurationError: a value out of range or of another type of road, or a car that cannot roll.
@@ -117,7 +118,8 @@ class Road(RoadSettings):
 
         For a car that is on blocks too, standing tyres are the default. NaN means the mean speed of a recorded drive.
         """
-        if any(text.partition("=")[0].strip() in ("driving.speed", "speed") for text in overrides):
+        speed = math.nan if isinstance(self.speed, str) else float(self.speed) / 3.6
+        if require_speed_once(overrides, speed):
             if self.tyre is not None:
                 raise ConfigurationError(
                     f"--tyre {self.tyre} and --set driving.speed exclude each other; leave one of them out"
@@ -130,7 +132,7 @@ class Road(RoadSettings):
         )
         if self.tyre == "standing" or (self.tyre is None and on_blocks):
             return 0.0 if vehicle.driving.rolling else None
-        return math.nan if isinstance(self.speed, str) else float(self.speed) / 3.6
+        return speed
 
 
 road = Road

@@ -287,7 +287,7 @@ def summarise(
                 [
                     *([body.report] if body.repaired else []),
                     *mass_difference(run.car.trimmed_body, vehicle.body, body_loads(vehicle)),
-                    *idle_parameters(vehicle, run.car.overrides),
+                    *idle_parameters(vehicle, run.car.overrides, statistics.engine),
                     *body_notices(vehicle, run.car.overrides),
                     *run.signal.notices,
                     *([motion_notice] if motion_notice else []),

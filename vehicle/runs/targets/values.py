@@ -219,3 +219,10 @@ _VALUES = {
     "tyre_load": _tyre_load,
     "travel": _travel,
 }
+"""Function of each kind of figure."""
+
+if set(_VALUES) != set(QUANTITIES):
+    raise ConfigurationError(
+        f"figures: {', '.join(sorted(set(_VALUES) ^ set(QUANTITIES)))} is in one of two tables only; add it to "
+        "QUANTITIES of vehicle/runs/targets/figure.py and to _VALUES of vehicle/runs/targets/values.py"
+    )

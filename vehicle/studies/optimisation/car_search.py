@@ -35,7 +35,7 @@ from vehicle.studies.optimisation.trials import NO_TOLERANCES, Spread, Trials, b
 from vehicle.studies.optimisation.variables import problem_of, require_bounds, toleranced
 from vehicle.studies.sweeps.case_evaluation import evaluate
 from vehicle.studies.sweeps.executors import StandingExecutor, process_pool
-from vehicle.studies.sweeps.sweep_inputs import Source, common_start, file_of, inputs_of
+from vehicle.studies.sweeps.sweep_inputs import Source, common_start, file_of, inputs_of, require_speed_of_roads
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -111,6 +111,10 @@ def plan_search(
     measure = ride_measure(vehicle, tuple(criterion.number for criterion in criteria), start)
     criteria = tuple(replace(criterion, unit=measure.units[criterion.number]) for criterion in criteria)
     problem = problem_of(vehicle, _ranges(vary), criteria, names)
+    # Both ends of a range: a search over the speed of a road gives it twice.
+    require_speed_of_roads(
+        sources, [[f"{each.path}={end!r}" for end in (each.low, each.high)] for each in _ranges(vary)]
+    )
     require_bounds(file, car.overrides, problem)
     spread = NO_TOLERANCES
     tolerances = settings.tolerances

@@ -23,13 +23,13 @@ from vehicle.runs.car import Car
 from vehicle.runs.car.outside_tests import outside_tests
 from vehicle.settings import with_settings
 from vehicle.signals.excitation.road_drive import RoadDrive
-from vehicle.studies.sweeps.case import all_tyre_words
+from vehicle.studies.sweeps.case import all_tyre_words, overrides_of
 from vehicle.studies.sweeps.case_evaluation import OF_A_RUN, loaded_car, reason_for_mujoco, run_of
 from vehicle.studies.sweeps.case_table import Cases, Combinations, RowChanges
 from vehicle.studies.sweeps.dispatcher import FILL
 from vehicle.studies.sweeps.measure import BatchMeasure, Measure, comfort_measure
 from vehicle.studies.sweeps.sweep import sweep_cases
-from vehicle.studies.sweeps.sweep_inputs import Source, common_start, file_of, inputs_of
+from vehicle.studies.sweeps.sweep_inputs import Source, common_start, file_of, inputs_of, require_speed_of_roads
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
 from vehicle.studies.sweeps.sweep_table import SweepTable
 
@@ -144,10 +144,13 @@ def plan_sweep(
     each = _one_of_each_path(changes)
     require_paths(vehicle, car.overrides, each)
     sources = inputs_of(car, inputs)
+    if any(text.partition("=")[0].strip().endswith("speed") for text in each):
+        require_speed_of_roads(sources, changes)
     start = common_start(sources, settings.skip)
     cases = Cases(changes, sources, engine=settings.engine, vehicle=vehicle, fixed=car.overrides)
-    idle = _idle_notes(vehicle, car.overrides, changes)
-    if idle and _all_idle(vehicle, car.overrides, each):
+    states = {(*car.overrides, *overrides_of(source)) for source in sources}
+    idle = tuple(set.intersection(*(set(_idle_notes(vehicle, state, changes, settings.engine)) for state in states)))
+    if idle and all(_all_idle(vehicle, state, each, settings.engine) for state in states):
         raise ConfigurationError(f"vary: every run would be the same car: {'; '.join(idle)}")
     return SweepPlan(
         cases=cases,
@@ -225,7 +228,9 @@ def require_paths(vehicle: Path | None, overrides: Sequence[str], changes: Seque
         raise ConfigurationError(str(error).replace("--set ", "varied parameter ", 1)) from None
 
 
-def _idle_notes(file: Path | None, overrides: Sequence[str], changes: Sequence[Sequence[str]]) -> tuple[str, ...]:
+def _idle_notes(
+    file: Path | None, overrides: Sequence[str], changes: Sequence[Sequence[str]], engine: str
+) -> tuple[str, ...]:
     """Return a message for each varied parameter without effect; empty if laws vary, which may switch it on."""
     each = _one_of_each_path(changes)
     first = _values(each)
@@ -234,16 +239,16 @@ def _idle_notes(file: Path | None, overrides: Sequence[str], changes: Sequence[S
         if any(old != new and (old[:1].isalpha() or new[:1].isalpha()) for old, new in different):
             return ()
     try:
-        return idle_parameters(load_vehicle(file, [*overrides, *each]), each)
+        return idle_parameters(load_vehicle(file, [*overrides, *each]), each, engine)
     except ConfigurationError:
         return ()  # the row contains the reason
 
 
-def _all_idle(file: Path | None, overrides: Sequence[str], change: Sequence[str]) -> bool:
+def _all_idle(file: Path | None, overrides: Sequence[str], change: Sequence[str], engine: str) -> bool:
     """Return True if no parameter that a variation sets has an effect, on none of the axles that a path means."""
     vehicle = load_vehicle(file, [*overrides, *change])
     return all(
-        idle_parameters(vehicle, [f"{whole}={text.partition('=')[2]}"])
+        idle_parameters(vehicle, [f"{whole}={text.partition('=')[2]}"], engine)
         for text in change
         for whole in meant(vehicle.table, text.partition("=")[0].strip())
     )

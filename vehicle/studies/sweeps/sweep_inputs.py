@@ -1,15 +1,18 @@
 """Inputs of a sweep from files, names of shipped files, roads and signals."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from vehicle.errors import ConfigurationError, DataError
+from vehicle.model.parameters.driving import require_speed_once
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
 from vehicle.signals.excitation.evaluation_start import evaluation_start
 from vehicle.signals.excitation.input_files import find_input
+from vehicle.signals.excitation.recorded_road import RecordedDrive
 from vehicle.signals.excitation.road_drive import RoadDrive
 from vehicle.signals.excitation.signal import Signal
 from vehicle.studies.sweeps.case import Input, SignalFile, signal_of
@@ -50,6 +53,20 @@ def inputs_of(car: Car, sources: Source | Sequence[Source]) -> list[Input]:
                 "at least 125 Hz; run `python -m vehicle shaker`, whose results end at that frequency"
             )
     return [_tagged(entry, inputs) for entry in inputs]
+
+
+def require_speed_of_roads(inputs: Sequence[Input], changes: Iterable[Sequence[str]]) -> None:
+    """Check that no variation gives the car another speed than its road; errors: see `require_speed_once`.
+
+    Args:
+        inputs: inputs of the runs.
+        changes: texts "path=value" of each variation.
+    """
+    roads = [source for source in inputs if isinstance(source, RoadDrive | RecordedDrive)]
+    if roads:
+        texts = list(dict.fromkeys(text for change in changes for text in change))
+        for road in roads:
+            require_speed_once(texts, road.speed / 3.6 if isinstance(road, RoadDrive) else math.nan)
 
 
 def _tagged(source: Input, others: Sequence[Input]) -> Input:
