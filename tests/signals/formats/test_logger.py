@@ -121,7 +121,10 @@ def test_accelerations_and_velocities_are_integrated(tmp_path, order):
         ("time,z [mm]\n" + "0.01,1.5\n" * 3, "has no times; set --rate HZ, or the channel of the times with"),
         ("time [s],z [mm]\n" + "0.5,1.5\n" * 3, "times must increase"),
         ("time [s],z [mm]\n0,0,1,5\n0,1,1,5\n0,2,1,5\n0,3,1,6\n", "are the commas decimal commas"),
-        ("time [s],z [mm]\n0.1,1.5\n0.2,1.5\n0.3,1.5\n0.4,1.5\n0.5,1.5\n0.6,x\n", "column 'z' is 'x', must be"),
+        (
+            "time [s],z [mm]\n0.1,1.5\n0.2,1.5\n0.3,1.5\n0.4,1.5\n0.5,1.5\n0.6,x\n",
+            r"1 missing values \('x' in line 7 is no number\)",
+        ),
         ("time [s],z [mm]\n0.1,1.5\n0.2,1.5\n0.3,1.5\n0.4,1.5\n0.5,1.5\n0.6\n", "the file is truncated"),
         ("time [s];z [mm]\n0,1;1.000,5\n0,2;1,5\n0,3;1,5\n", "no table of numbers|separate thousands"),
         (

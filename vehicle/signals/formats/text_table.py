@@ -57,6 +57,8 @@ def find_table(path: Path, lines: Sequence[str]) -> TextTable:
             for start in range(min(TEXT_LINES, len(lines))):
                 kinds = _shape(lines, start, delimiter, allowed)
                 if kinds is not None:
+                    while start and _is_first_row(lines[start - 1], delimiter, kinds):
+                        start -= 1
                     return TextTable(start=start, delimiter=delimiter, kinds=kinds)
     for start in range(min(TEXT_LINES, len(lines))):
         following = [line for line in lines[start : start + AGREEING] if line.strip()]
@@ -65,6 +67,17 @@ def find_table(path: Path, lines: Sequence[str]) -> TextTable:
     raise DataError(
         f"{path}: found no table of numbers in the first {TEXT_LINES} lines; must be rows of numbers, separated "
         "by ';', tab, ',' or blanks, with a line of names and units above"
+    )
+
+
+def _is_first_row(line: str, delimiter: str, columns: Sequence[Kind]) -> bool:
+    """Return True if a line above a table is a row of it: a column of texts may begin with numbers, or the reverse."""
+    kinds = kinds_of(line, delimiter)
+    return (
+        bool(delimiter)
+        and len(kinds) == len(columns)
+        and kinds[0] == columns[0] in ("number", "clock")
+        and sum(cell in (column, "missing") for cell, column in zip(kinds, columns, strict=True)) * 2 >= len(columns)
     )
 
 
@@ -153,8 +166,6 @@ def settled_kinds(path: Path, rows: Sequence[str], table: TextTable, names: Sequ
     Raises:
         DataError: rows of different sensors alternate in the table.
     """
-    if all(column_kind == "number" for column_kind in table.kinds):
-        return table.kinds
     sampled = [cells_of(row, table.delimiter) for row in _spread(rows)]
     settled: list[Kind] = []
     for column, settled_kind in enumerate(table.kinds):
@@ -167,7 +178,7 @@ def settled_kinds(path: Path, rows: Sequence[str], table: TextTable, names: Sequ
         texts = sum(_kind(cell, table.delimiter) == "text" for cell in cells)
         if settled_kind == "missing":
             settled_kind = "number" if "number" in kinds or not kinds else "clock" if kinds == {"clock"} else "text"
-        elif settled_kind == "clock" and texts > len(cells) // 2:
+        elif settled_kind in ("clock", "number") and texts > len(cells) // 2:
             settled_kind = "text"
         settled.append(settled_kind)
     _check_alternation(path, rows, settled, table.delimiter, names)
