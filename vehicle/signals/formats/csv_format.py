@@ -15,7 +15,7 @@ from vehicle.signals.formats.clock_text import clock_seconds, epoch_seconds, is_
 from vehicle.signals.formats.csv_table import decimal_points, logged
 from vehicle.signals.formats.frf_file import FREQUENCY, RANDOM_ERROR, SUFFIXES, read_frf
 from vehicle.signals.formats.heads import FREQUENCY_NAME, TIME_NAME, Heads, cells_of, read_heads
-from vehicle.signals.formats.own_times import own_times, time_pairs, with_own_raster
+from vehicle.signals.formats.own_times import is_time, own_times, time_pairs
 from vehicle.signals.formats.spectrum_columns import joined
 from vehicle.signals.formats.table import Header
 from vehicle.signals.formats.text import Text, read_text
@@ -78,7 +78,9 @@ def read_lines(path: Path, text: Text, format_name: str) -> Measurement:
     header = Header(path=path, line=start + 1, cells=heads.names, delimiter=delimiter or " ")
     rows, points = decimal_points(numbers, rows, header)
     notices += points
-    pairs = {} if "clock" in kinds else time_pairs(heads.names, heads.units, [each == "number" for each in kinds])
+    heads_of = zip(kinds, heads.names, heads.units, strict=True)
+    columns = [("time" if is_time(*head) else "channel") if each == "number" else each for each, *head in heads_of]
+    pairs = {} if "clock" in kinds else time_pairs(columns)
     remarks_of: dict[int, str] = {}
     values = logged(numbers, rows, header, -1 if pairs else _key(heads, kinds), remarks_of)
     own = own_times(path, heads.names, heads.units, pairs, values.T) if pairs else {}
@@ -106,7 +108,6 @@ def read_lines(path: Path, text: Text, format_name: str) -> Measurement:
         for index, name in enumerate(heads.names)
         if kinds[index] == "number" and (index not in axis.columns or (axis.values is None and not own))
     )
-    channels = tuple(with_own_raster(channel) for channel in channels)
     if axis.kind == "frequency":
         channels = joined(channels)
     if axis.values is None:

@@ -25,18 +25,16 @@ _CLOCKS = re.compile(r"gps|gnss|utc|local|system|device|log|epoch|unix|elapsed|r
 """Beginning of words for the clocks of a logger, which count the same rows."""
 
 
-def time_pairs(names: Sequence[str], units: Sequence[str], numeric: Sequence[bool]) -> dict[int, int]:
+def time_pairs(columns: Sequence[str]) -> dict[int, int]:
     """Return the time column of each channel of a table in which every time column has channels of its own.
 
     Args:
-        names, units: heads of all columns.
-        numeric: True for columns of numbers.
+        columns: "time", "channel", or another word for a column that is neither.
 
     Returns:
         Column of a channel -> column of its times; empty unless time columns and channels take turns.
     """
-    times = [n for n, name in enumerate(names) if numeric[n] and is_time(name, units[n])]
-    channels = [n for n in range(len(names)) if numeric[n] and n not in times]
+    times, channels = ([n for n, each in enumerate(columns) if each == word] for word in ("time", "channel"))
     if len(times) < 2 or not channels:
         return {}
     before = {n: max((t for t in times if t < n), default=-1) for n in channels}
@@ -80,7 +78,10 @@ def own_times(
     zero = 0.0
     if epoch_seconds(first[np.isfinite(first)], "s") is not None:  # counts since 1970
         zero = min(float(np.nanmin(columns[time])) * factors[time] for time in times)
-    seconds = {time: (columns[time] - zero / factors[time]) * factors[time] for time in times}
+    origins = {
+        time: columns[time].dtype.type(zero / factors[time]) for time in times
+    }  # counts of ns need whole numbers
+    seconds = {time: (columns[time] - origins[time]) * factors[time] for time in times}
     for channel, time in pairs.items():
         lost = np.flatnonzero(~np.isfinite(seconds[time]) & np.isfinite(columns[channel]))
         if lost.size:

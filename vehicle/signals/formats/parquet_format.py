@@ -11,7 +11,9 @@ from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel, Measurement
 from vehicle.signals.formats.clock_text import epoch_seconds
 from vehicle.signals.formats.heads import TIME_NAME, split_head
+from vehicle.signals.formats.mixed_sources import SAMPLED, check_alternation
 from vehicle.signals.formats.optional_library import extra, reading
+from vehicle.signals.formats.own_times import is_time, own_times, time_pairs
 from vehicle.signals.formats.units import seconds_in
 from vehicle.signals.formats.unpacked_size import require_unpacked
 
@@ -37,16 +39,25 @@ def read(path: Path) -> Measurement:
             require_unpacked(path, needed, path.stat().st_size)
             skipped = [field.name for n, field in enumerate(fields) if n not in wanted]
             table = file.read(columns=[fields[n].name for n in wanted])
+            named = [each.name for each in fields if arrow.is_dictionary(each.type) or "string" in str(each.type)]
+            first = next(file.iter_batches(SAMPLED, columns=named), None) if named else None
+            texts = {} if first is None else first.to_pydict()
             program = str(file.metadata.created_by or "")
         columns = [(name, *_column(table.column(n))) for n, name in enumerate(table.column_names)]
+    for name, cells in texts.items():
+        check_alternation(path, name, ["" if cell is None else str(cell) for cell in cells])
     if skipped:
         notices.append(f"columns without numbers are ignored: {', '.join(map(repr, skipped[:12]))}")
-    axis, key, start = _axis(columns, notices)
     heads = [split_head(name) for name, *_ in columns]
+    names, units = [name for name, _ in heads], [of or unit for (_, unit), (*_, of) in zip(heads, columns, strict=True)]
+    timed = [bool(of) or is_time(*head) for head, (*_, of) in zip(heads, columns, strict=True)]
+    pairs = time_pairs(["time" if time else "channel" for time in timed])
+    own = own_times(path, names, units, pairs, [values for _, values, _ in columns]) if pairs else {}
+    axis, key, start = _axis(columns, notices) if not own else (None, -1, "")
     channels = [
-        Channel(name=text, values=np.asarray(columns[index][1], dtype=np.float64), unit=unit, axis=axis)
+        Channel(name=text, values=np.asarray(columns[index][1], dtype=np.float64), unit=unit, axis=own.get(index, axis))
         for index, (text, unit) in enumerate(heads)
-        if index != key
+        if index != key and not (own and timed[index])
     ]
     if not channels or not rows:
         raise DataError(

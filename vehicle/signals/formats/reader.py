@@ -10,6 +10,8 @@ from vehicle.signals.formats.channel import Measurement
 from vehicle.signals.formats.clock import check_increasing, check_stamps, check_uniform, without_rounding
 from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.formats import recognised_format
+from vehicle.signals.formats.mixed_sources import check_cycles
+from vehicle.signals.formats.own_times import with_own_raster
 from vehicle.signals.formats.table import TIME, Record, Wanted, key_column, name_and_unit
 from vehicle.signals.formats.table_file import read_table
 
@@ -41,7 +43,9 @@ def read_record(path: str | Path, databases: Sequence[Path] = ()) -> Measurement
         )
     read = recognised.function("reader", "read")
     measurement: Measurement = read(file, databases) if databases else read(file)
-    return measurement if measurement.sha256 else replace(measurement, sha256=digest(file))
+    check_cycles(measurement)
+    channels = tuple(with_own_raster(channel) for channel in measurement.channels)
+    return replace(measurement, channels=channels, sha256=measurement.sha256 or digest(file))
 
 
 def read(file: str | Path, databases: Sequence[Path] = ()) -> Measurement:
