@@ -91,7 +91,7 @@ def command_for(measurement: Measurement, file: str, databases: Sequence[Path] =
         note = f" ({empty[0].remark})" if empty[0].remark else ""
         return "", f"{', '.join(channel.name for channel in empty[:4])}: no values{note}"
     if any(channel.kind == "frequency" for channel in measurement.channels):
-        return "", "responses: python -m vehicle compare RUN --measured FILE --map knuckle_fr_acc_z=NAME"
+        return "", _responses(measurement)
     if not measurement.channels:
         return "", "the file has only nodes, no channels"
     if histories:
@@ -102,6 +102,16 @@ def command_for(measurement: Measurement, file: str, databases: Sequence[Path] =
     if any(channel.function in NOT_OVER_TIME for channel in measurement.channels):
         return "", "the channels are over distance or angle, not over time; export them over time"
     return "", "the file has no time channel; set --rate HZ, or --channel time=NAME"
+
+
+def _responses(measurement: Measurement) -> str:
+    """Return what to do with channels over frequency: the command that compares responses, or why there is none."""
+    from vehicle.signals.records.measured_frf import is_response, response_fault
+
+    faults = [response_fault(channel) for channel in measurement.channels if is_response(channel)]
+    if "" in faults:
+        return "responses: python -m vehicle compare RUN --measured FILE --map knuckle_fr_acc_z=NAME"
+    return faults[0] if faults else "coherences without their responses; export the responses too"
 
 
 def comparison_for(measurement: Measurement, file: str, command: str) -> tuple[str, dict[str, str]]:

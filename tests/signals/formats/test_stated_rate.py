@@ -11,9 +11,9 @@ VALUES = np.sin(np.arange(1500.0))
 
 RATES = {
     "sample_rate": 100.0, "SampleRate": np.array([100]), "Sampling_Frequency": np.float32(100.0), "fs": 100,
-    "Fs [Hz]": 100, "sampling_rate_hz": np.array([[100.0]]), "fs_kHz": 0.1, "samplerate": "100 Hz", "SamplingFreq": b"100", "dt": 0.01,
-    "dt_ms": 10.0, "sample_interval": np.array([0.01]), "SamplingPeriod": "10 ms", "time_step": 0.01,
-    "Abtastrate": "100", "wf_increment": 0.01, "samples_per_second": 100,
+    "Fs [Hz]": 100, "sampling_rate_hz": np.array([[100.0]]), "fs_kHz": 0.1, "samplerate": "100 Hz", "dt": 0.01,
+    "SamplingFreq": b"100", "dt_ms": 10.0, "sample_interval": np.array([0.01]), "SamplingPeriod": "10 ms",
+    "time_step": 0.01, "Abtastrate": "100", "wf_increment": 0.01, "samples_per_second": 100,
 }  # fmt: skip
 
 
@@ -104,7 +104,7 @@ def test_a_long_frame_of_pandas_whose_texts_are_not_readable(tmp_path):
         frame["axis1"].attrs["kind"] = "timedelta64"
         frame["block0_items"], frame["block0_values"] = [b"acc_mps2"], VALUES[:, None]
         frame["block1_items"] = [b"sensor"]
-        frame.create_dataset("block1_values", data=[np.zeros(8, np.uint8)], dtype=h5py.vlen_dtype(np.uint8))
+        frame.create_dataset("block1_values", (1,), h5py.vlen_dtype(np.uint8))  # of pickled objects
     with pytest.raises(DataError, match="3 rows for each time, and the column 'sensor' is not readable"):
         read(tmp_path / "long.h5")
 
