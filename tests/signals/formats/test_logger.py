@@ -129,7 +129,7 @@ def test_accelerations_and_velocities_are_integrated(tmp_path, order):
         ("time [s];z [mm]\n0,1;1.000,5\n0,2;1,5\n0,3;1,5\n", "no table of numbers|separate thousands"),
         (
             "time [s],z [mm]\n0.1,x\n" + "0.2,1.5\n" * 6,
-            r"log\.csv:2: the line mixes names and numbers: '0\.1', 'x'; repair",
+            r"1 missing values \('x' in line 2 is no number\), the first at 0\.1 s",
         ),
         ("nothing\nhere\n", "no table of numbers"),
     ],
@@ -192,7 +192,7 @@ def test_a_chosen_channel_is_judged_by_its_own_unit_and_time(tmp_path):
 def test_formats_that_are_not_read_are_named(tmp_path, head):
     path = tmp_path / "foreign.raw"
     path.write_text(head + "x" * 50)
-    with pytest.raises(DataError, match=r"(FAMOS|TDM|Dewesoft), not supported; export "):
+    with pytest.raises(DataError, match=r"(FAMOS|TDM of DIAdem|Dewesoft), not supported; export "):
         read_record(path)
 
 

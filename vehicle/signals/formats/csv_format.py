@@ -15,7 +15,7 @@ from vehicle.signals.formats.clock_text import clock_seconds, epoch_seconds, is_
 from vehicle.signals.formats.csv_table import decimal_points, logged
 from vehicle.signals.formats.frf_file import FREQUENCY, RANDOM_ERROR, SUFFIXES, read_frf
 from vehicle.signals.formats.heads import FREQUENCY_NAME, TIME_NAME, Heads, cells_of, read_heads
-from vehicle.signals.formats.own_times import is_time, own_times, time_pairs
+from vehicle.signals.formats.own_times import is_time, own_times, time_pairs, with_own_rasters
 from vehicle.signals.formats.spectrum_columns import joined
 from vehicle.signals.formats.table import Header
 from vehicle.signals.formats.text import Text, read_text
@@ -108,8 +108,7 @@ def read_lines(path: Path, text: Text, format_name: str) -> Measurement:
         for index, name in enumerate(heads.names)
         if kinds[index] == "number" and (index not in axis.columns or (axis.values is None and not own))
     )
-    if axis.kind == "frequency":
-        channels = joined(channels)
+    channels = joined(channels) if axis.kind == "frequency" else tuple(with_own_rasters(channels))
     if axis.values is None:
         notices += _rates_above(lines[:start])
     above = [line.strip(' \t#;,"') for line in lines[: heads.first] if not line.strip('" ').lower().startswith("sep=")]

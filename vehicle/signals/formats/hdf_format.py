@@ -13,7 +13,7 @@ from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel, Measurement, even_step, uniform_axis
 from vehicle.signals.formats.heads import split_head, time_key
-from vehicle.signals.formats.matlab_format import channels_of
+from vehicle.signals.formats.matlab_format import with_tables
 from vehicle.signals.formats.mixed_sources import SAMPLED, check_alternation
 from vehicle.signals.formats.optional_library import extra, reading
 from vehicle.signals.formats.packed_values import attribute_text, unpacked
@@ -54,12 +54,13 @@ def read(path: Path) -> Measurement:
             names = [name for name in file if not name.startswith("#") and name not in objects]
             variables = {name: _matlab(file, file[name], h5py) for name in names}
             variables = {name: item for name, item in variables.items() if item is not None}
-            channels, notices = channels_of(variables, path, objects)
             program = "MATLAB 7.3"
         else:
-            notices = []
+            variables, objects, notices = None, {}, []
             channels, start = _walk(path, file, h5py, notices)
             program = _attribute(file, "program")
+    if variables is not None:
+        channels, notices, start = with_tables(variables, path, objects)
     if not channels:
         raise DataError(f"{path}: contains no numeric array; export the channels as arrays of numbers")
     return Measurement(

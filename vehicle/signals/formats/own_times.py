@@ -100,27 +100,34 @@ def _factor(units: Sequence[str], time: int, times: Sequence[int]) -> float:
     return seconds_in(units[time] or units[times[0]])
 
 
-def with_own_raster(channel: Channel) -> Channel:
-    """Return a channel at the times of its values if these alone are regular: the table has rows of another raster.
+def with_own_rasters(channels: Sequence[Channel]) -> list[Channel]:
+    """Return the channels of a table, each at the times of its values if rows of other rasters lie between them.
 
-    A lost sample leaves a gap in the regular times, so that channel is returned with its missing value. Rows without a
-    time belong to other channels, see `own_times`.
+    Rows in which a channel is blank and another is not, and between which its own times are regular, are rows of that
+    other one. A lost sample leaves a gap in the regular times, so that channel is returned with its missing value. Rows
+    without a time belong to other channels, see `own_times`.
     """
-    if channel.axis is None or channel.kind != "time" or np.iscomplexobj(channel.values):
+    return [_with_own_raster(channel, channels) for channel in channels]
+
+
+def _with_own_raster(channel: Channel, channels: Sequence[Channel]) -> Channel:
+    """Return a channel at the times of its values if these are regular; see `with_own_rasters`."""
+    if channel.axis is None or channel.kind != "time":
         return channel
     timed = ~np.isnan(channel.axis)
-    axis = channel.axis[timed]
-    if not timed.all():
-        channel = replace(channel, values=channel.values[timed], axis=axis)
-    rows = np.flatnonzero(~np.isnan(channel.values))
+    axis, values = channel.axis[timed], channel.values[timed]
+    whole = channel if timed.all() else replace(channel, values=values, axis=axis)
+    rows = np.flatnonzero(~np.isnan(values))
     if rows.size < 3 or rows[-1] - rows[0] + 1 == rows.size:
-        return channel
+        return whole
+    blank = np.isnan(channel.values)
+    others = (other.values for other in channels if other.axis is channel.axis and other is not channel)
     time = axis[rows]
     steps = np.diff(time)
-    if not (steps > 0.0).all():
-        return channel
-    blank = 1.0 - rows.size / (rows[-1] - rows[0] + 1)
-    jittered = blank >= BLANK_SHARE and float(steps.max()) <= UNEVEN * float(np.median(steps))
+    if not any(np.isfinite(other[blank]).any() for other in others) or not (steps > 0.0).all():
+        return whole
+    share = 1.0 - rows.size / (rows[-1] - rows[0] + 1)
+    jittered = share >= BLANK_SHARE and float(steps.max()) <= UNEVEN * float(np.median(steps))
     if not (is_uniform(time) or clock_of_rounded(time) is not None or jittered):
-        return channel
-    return replace(channel, values=channel.values[rows], axis=time)
+        return whole
+    return replace(channel, values=values[rows], axis=time)

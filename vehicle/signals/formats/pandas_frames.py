@@ -18,6 +18,7 @@ from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel
 from vehicle.signals.formats.heads import split_head, time_key
 from vehicle.signals.formats.mixed_sources import rows_at_once
+from vehicle.signals.formats.own_times import with_own_rasters
 from vehicle.signals.formats.packed_values import attribute_text
 from vehicle.signals.formats.units import seconds_in
 
@@ -80,7 +81,7 @@ def frame_channels(path: Path, name: str, group: Any) -> tuple[list[Channel], st
         channels.insert(
             0, Channel(name=_text(index.attrs.get("name")) or "index", values=index_values, axis=axis, place=name)
         )
-    return channels, start
+    return with_own_rasters(channels), start
 
 
 def _index(index: Any) -> tuple[Vector | None, str, Vector | None]:

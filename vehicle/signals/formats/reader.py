@@ -11,7 +11,6 @@ from vehicle.signals.formats.clock import check_increasing, check_stamps, check_
 from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.formats import recognised_format
 from vehicle.signals.formats.mixed_sources import check_cycles
-from vehicle.signals.formats.own_times import with_own_raster
 from vehicle.signals.formats.table import TIME, Record, Wanted, key_column, name_and_unit
 from vehicle.signals.formats.table_file import read_table
 
@@ -39,13 +38,12 @@ def read_record(path: str | Path, databases: Sequence[Path] = ()) -> Measurement
     if databases and not recognised.databases:
         raise ConfigurationError(
             f"{path}: is a file of the format {recognised.name}, but --dbc decodes logs of a CAN bus (MDF, "
-            ".asc, .trc, candump); leave --dbc out"
+            "BLF, .asc, .trc, candump); leave --dbc out"
         )
     read = recognised.function("reader", "read")
     measurement: Measurement = read(file, databases) if databases else read(file)
     check_cycles(measurement)
-    channels = tuple(with_own_raster(channel) for channel in measurement.channels)
-    return replace(measurement, channels=channels, sha256=measurement.sha256 or digest(file))
+    return measurement if measurement.sha256 else replace(measurement, sha256=digest(file))
 
 
 def read(file: str | Path, databases: Sequence[Path] = ()) -> Measurement:

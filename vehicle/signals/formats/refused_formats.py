@@ -11,13 +11,6 @@ SIGNATURES = {
     b"DEWESOFT": ("Dewesoft", "UFF 58, MAT or MDF4"),
     b"$OP2": ("Nastran OP2", "UFF 55 or CSV"),
     b"CDF": ("netCDF of the classic form", "netCDF-4, as `nccopy -k nc4 IN.nc OUT.nc` does"),
-    b"LOGG": (
-        "log of a CAN bus (Vector BLF)",
-        (
-            "MDF4 or ASC, for example with `python -m can.logconvert IN.blf OUT.asc` of python-can, and give it "
-            "with --dbc FILE"
-        ),
-    ),
     b"ULog\x01\x12\x35": ("PX4 ULog", "CSV, for example with `ulog2csv FILE` of pyulog"),
 }
 """First bytes of a file -> name of the format, and alternative for the export."""
