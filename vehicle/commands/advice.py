@@ -241,10 +241,10 @@ def _plates(
     moves = [(number, channel) for number, channel in displacements if is_plate(channel)]
     if not moves:
         number, channel = displacements[0]
-        names = ", ".join(repr(each.name) for _, each in displacements[:4])
+        shown = ", ".join(repr(each.name) for _, each in displacements[:4])
         option = shlex.join(["--channel", f"{wheel_of(channel.name) or SHAKER_WHEEL}={_pick(measurement, number)}"])
         return "", (
-            f"a displacement, but the name {names} does not say that it is the motion of a plate under a wheel (plate, "
+            f"a displacement, but the name {shown} does not say that it is the motion of a plate under a wheel (plate, "
             f"shaker, poster, actuator, Stempel ...); if it is, set {option} of the command shaker"
         )
     wheels: dict[str, int] = {}

@@ -8,7 +8,6 @@ import pytest
 from tests.advice import advised
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.runs.car import Car
-from vehicle.signals.analysis.samples import Complex
 from vehicle.signals.excitation.measured_road import read_road
 from vehicle.signals.formats import rpc_format
 from vehicle.signals.formats.channel import Channel, uniform_axis
@@ -81,7 +80,7 @@ def test_limits_of_each_channel_find_a_damaged_scale(tmp_path):
 def test_a_transmissibility_in_any_spelling(tmp_path, unit):
     """H of displacements; the acceleration per displacement is -w^2 H."""
     frequency = np.linspace(1.0, 40.0, 50)
-    ratio: Complex = 1.0 / (1.0 - (frequency / 15.0) ** 2 + 0.1j)
+    ratio = 1.0 / (1.0 - (frequency / 15.0) ** 2 + 0.1j)
     table = np.column_stack([frequency, ratio.real, ratio.imag])
     heads = f"Frequency [Hz],H real [{unit}],H imag [{unit}]"
     np.savetxt(tmp_path / "h.csv", table, "%.9g", ",", header=heads, comments="")

@@ -83,7 +83,7 @@ def read_lines(path: Path, text: Text, format_name: str) -> Measurement:
     pairs = {} if "clock" in kinds else time_pairs(columns)
     remarks_of: dict[int, str] = {}
     values = logged(numbers, rows, header, -1 if pairs else _key(heads, kinds), remarks_of)
-    own = own_times(path, heads.names, heads.units, pairs, values.T) if pairs else {}
+    own = own_times(path, heads.names, heads.units, pairs, list(values.T)) if pairs else {}
     if pairs and not own:
         values = logged(numbers, rows, header, _key(heads, kinds), remarks_of)
     axis = _axis(path, heads, kinds, values, texts, numbers)

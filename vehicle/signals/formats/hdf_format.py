@@ -46,17 +46,18 @@ AXES = "axes"
 def read(path: Path) -> Measurement:
     """Read the structures of a MATLAB file, or all numeric arrays of another HDF5 file; errors: see `read_record`."""
     h5py = extra("h5py", "hdf5", "an HDF5 file (MAT 7.3)")
-    start = ""
+    start, notices = "", list[str]()
+    variables: dict[str, Any] | None = None
+    objects: dict[str, str] = {}
     with reading(path, "HDF5", "it may be truncated; export it again"), h5py.File(path, "r") as file:
         require_unpacked(path, _size(file, h5py), path.stat().st_size)
         if any("MATLAB_class" in item.attrs for item in file.values()):
             objects = {name: matlab_class for name, item in file.items() if (matlab_class := _object_class(item))}
             names = [name for name in file if not name.startswith("#") and name not in objects]
-            variables = {name: _matlab(file, file[name], h5py) for name in names}
-            variables = {name: item for name, item in variables.items() if item is not None}
+            read_variables = {name: _matlab(file, file[name], h5py) for name in names}
+            variables = {name: item for name, item in read_variables.items() if item is not None}
             program = "MATLAB 7.3"
         else:
-            variables, objects, notices = None, {}, []
             channels, start = _walk(path, file, h5py, notices)
             program = _attribute(file, "program")
     if variables is not None:
