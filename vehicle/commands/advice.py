@@ -105,7 +105,7 @@ def command_for(measurement: Measurement, file: str, databases: Sequence[Path] =
 
 
 def _responses(measurement: Measurement) -> str:
-    """Return what to do with channels over frequency: the command that compares responses, or why there is none."""
+    """Return the command for channels over frequency, or the reason for the lack of a command."""
     from vehicle.signals.records.measured_frf import is_response, response_fault
 
     faults = [response_fault(channel) for channel in measurement.channels if is_response(channel)]

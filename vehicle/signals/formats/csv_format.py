@@ -83,11 +83,11 @@ def read_lines(path: Path, text: Text, format_name: str) -> Measurement:
     pairs = {} if "clock" in kinds else time_pairs(columns)
     remarks_of: dict[int, str] = {}
     values = logged(numbers, rows, header, -1 if pairs else _key(heads, kinds), remarks_of)
-    own = own_times(path, heads.names, heads.units, pairs, list(values.T)) if pairs else {}
-    if pairs and not own:
+    own_axes = own_times(path, heads.names, heads.units, pairs, list(values.T)) if pairs else {}
+    if pairs and not own_axes:
         values = logged(numbers, rows, header, _key(heads, kinds), remarks_of)
     axis = _axis(path, heads, kinds, values, texts, numbers)
-    if own:
+    if own_axes:
         axis = axis._replace(values=None, columns=tuple(sorted(set(pairs.values()))))
     notices += axis.notices
     text_columns = [name for name, column_type, n in zip(heads.names, kinds, range(len(kinds)), strict=True)
@@ -99,14 +99,14 @@ def read_lines(path: Path, text: Text, format_name: str) -> Measurement:
             name=name,
             values=np.ascontiguousarray(values[:, index]),
             unit=heads.units[index],
-            axis=own.get(index, axis.values),
+            axis=own_axes.get(index, axis.values),
             kind="frequency" if axis.kind == "frequency" else "time",
             function="time history" if axis.kind == "time" else "spectrum",
             place=heads.sources[index],
             remark=axis.remark if index in axis.columns else remarks_of.get(index, ""),
         )
         for index, name in enumerate(heads.names)
-        if kinds[index] == "number" and (index not in axis.columns or (axis.values is None and not own))
+        if kinds[index] == "number" and (index not in axis.columns or (axis.values is None and not own_axes))
     )
     channels = joined(channels) if axis.kind == "frequency" else tuple(with_own_rasters(channels))
     if axis.values is None:

@@ -37,7 +37,7 @@ NO_VALUES = "This is a netCDF dimension but not a netCDF variable"
 """Begin of the attribute NAME of an array that netCDF writes for a dimension alone; its numbers have no meaning."""
 
 STARTS = ("start", "t0", "start_time", "starting_time", "wf_start_offset")
-"""Names of the time of the first sample [s], beside a rate."""
+"""Names of the time of the first sample [s], next to a rate."""
 
 AXES = "axes"
 """Name of the group with the uneven axes, under the names of their channels."""

@@ -62,9 +62,9 @@ def with_tables(
     others = {name: class_name for name, class_name in objects.items() if name not in tables}
     if not tables:
         return (*channels_of(variables, path, objects), "")
-    rest = {name: value for name, value in variables.items() if name not in tables}
+    arrays = {name: value for name, value in variables.items() if name not in tables}
     try:
-        channels, notices = channels_of(rest, path, others)
+        channels, notices = channels_of(arrays, path, others)
     except DataError:  # tables alone
         channels, notices = (), []
     try:

@@ -51,8 +51,8 @@ def table_channels(path: Path, tables: Mapping[str, str]) -> tuple[list[Channel]
                 check_alternation(path, column, cells)
             if texts:
                 notices.append(f"columns without numbers are ignored: {', '.join(map(repr, texts))}")
-            found, start = typed_channels(path, columns, notices, name)
-            channels += found
+            of_table, start = typed_channels(path, columns, notices, name)
+            channels += of_table
             starts.append(start)
     return channels, notices, next(filter(None, starts), "")
 
@@ -62,7 +62,7 @@ def _columns(path: Path, name: str, table: Any) -> tuple[list[TypedColumn], dict
     properties = table.properties
     timetable = table.classname == "timetable"
     record = properties["any"].ravel()[0] if timetable else properties
-    about = record if timetable else properties["props"].ravel()[0]
+    settings = record if timetable else properties["props"].ravel()[0]
     rows = int(np.ravel(record["numRows" if timetable else "nrows"])[0])
     label = "varNames" if timetable else "varnames"
     original = "varNamesOrig" if timetable else "VariableNamesOriginal"
@@ -72,9 +72,9 @@ def _columns(path: Path, name: str, table: Any) -> tuple[list[TypedColumn], dict
         ("use" + original[0].upper() + original[1:], original),
         ("use" + longer[0].upper() + longer[1:], longer),
     ):
-        if flag in (about.dtype.names or ()) and np.any(about[flag]):
-            heads = _texts(about[key])
-    units = _texts(about["varUnits" if timetable else "VariableUnits"])
+        if flag in (settings.dtype.names or ()) and np.any(settings[flag]):
+            heads = _texts(settings[key])
+    units = _texts(settings["varUnits" if timetable else "VariableUnits"])
     columns: list[TypedColumn] = []
     texts: dict[str, list[str]] = {}
     if timetable:
@@ -159,12 +159,12 @@ def _first_texts(values: Any, rows: int) -> list[str]:
     return []
 
 
-def _strings(words: Any) -> list[str]:
+def _strings(codes: Any) -> list[str]:
     """Return a string array of MATLAB from its words of 64 bits: version, dimensions, sizes, lengths, then UTF-16."""
-    dimensions = int(words[1])
-    sizes = [int(size) for size in words[2 : 2 + dimensions]]
+    dimensions = int(codes[1])
+    sizes = [int(size) for size in codes[2 : 2 + dimensions]]
     count = int(np.prod(sizes))
-    lengths = [int(length) for length in words[2 + dimensions : 2 + dimensions + count]]
-    text = words[2 + dimensions + count :].astype("<u8").tobytes().decode("utf-16-le", "replace")
+    lengths = [int(length) for length in codes[2 + dimensions : 2 + dimensions + count]]
+    text = codes[2 + dimensions + count :].astype("<u8").tobytes().decode("utf-16-le", "replace")
     ends = np.cumsum(lengths)
     return [text[end - length : end] for end, length in zip(ends.tolist(), lengths, strict=True)]

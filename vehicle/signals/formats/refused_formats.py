@@ -59,8 +59,8 @@ def refuse(head: Head) -> None:
     """
     path, data, ending = head.path, head.data, head.path.suffix.lower()
     if (names := zip_names(head)) is not None:
-        known = (CONTAINERS.get(Path(name).suffix.lower()) or CONTAINERS.get(name) for name in names)
-        name, instead = next(filter(None, known), ENDINGS.get(ending, ("", "")))
+        contents = (CONTAINERS.get(Path(name).suffix.lower()) or CONTAINERS.get(name) for name in names)
+        name, instead = next(filter(None, contents), ENDINGS.get(ending, ("", "")))
         shown = ", ".join(names[:4])
         if name:
             raise DataError(f"{path}: {name}, in a ZIP archive ({shown}), not supported; export {instead}")

@@ -1,4 +1,4 @@
-"""Sampling rate that a file states beside its values: an attribute or a number, as "sample_rate" or "dt_ms"."""
+"""Sampling rate in a file: an attribute or a single number, as "sample_rate" or "dt_ms"."""
 
 import re
 from collections.abc import Mapping
@@ -17,7 +17,7 @@ STEPS = re.compile(
 """Names of a rate and of a step, in small letters, without signs and without a unit at the end."""
 
 UNSURE = re.compile(r"delta|step|increment|x?incr(ement)?|xdelta|xstep|rate|frequency|freq|deltax|dx|spacing")
-"""Names that may be those of a rate or step of another quantity; they are shown to the user."""
+"""Names of a rate or step of any quantity, which are shown to the user."""
 
 _UNITS = {"hz": "Hz", "khz": "kHz", "s": "s", "sec": "s", "seconds": "s", "ms": "ms", "us": "us", "ns": "ns"}
 _NUMBER = re.compile(r"\s*(?P<number>[+-]?\d+\.?\d*(?:[eE][+-]?\d+)?)\s*(?P<unit>[A-Za-z]*)\s*")
@@ -30,8 +30,8 @@ def stated_step(numbers: Mapping[str, Any]) -> tuple[float | None, str]:
         numbers: name to value: a number, an array of one number, or a text with number and unit, as "100 Hz".
 
     Returns:
-        The step; None if no name is that of a rate or step, or if several contradict each other. The remark names a
-        number that may be the step, or the contradiction; empty without one.
+        The step; None if no name is that of a rate or step, or if several contradict each other. The remark contains a
+        possible step, or the contradiction; empty without a remark.
     """
     steps: dict[str, float] = {}
     unsure = ""

@@ -21,7 +21,7 @@ class TypedColumn(NamedTuple):
         head: name, with or without a unit.
         values: numbers, (n,), NaN if missing; whole numbers for counts since 1970.
         of_time: unit of a date or duration, as "us"; empty for numbers.
-        unit: unit of the column beside its name; empty if missing.
+        unit: unit of the column in addition to its name; empty if missing.
     """
 
     head: str
@@ -31,7 +31,7 @@ class TypedColumn(NamedTuple):
 
 
 def typed_channels(
-    path: Path, columns: Sequence[TypedColumn], notices: list[str], place: str = ""
+    path: Path, columns: Sequence[TypedColumn], notices: list[str], table: str = ""
 ) -> tuple[list[Channel], str]:
     """Return the channels of a table with their times, and the start of dates; adds notices.
 
@@ -42,18 +42,20 @@ def typed_channels(
     timed = [bool(column.of_time) or is_time(*head) for column, head in zip(columns, heads, strict=True)]
     pairs = time_pairs(["time" if each else "channel" for each in timed])
     units = [column.of_time or unit for column, (_, unit) in zip(columns, heads, strict=True)]
-    own = own_times(path, [name for name, _ in heads], units, pairs, [each.values for each in columns]) if pairs else {}
-    axis, key, start = (None, -1, "") if own else _axis(columns, heads, notices)
+    times = (
+        own_times(path, [name for name, _ in heads], units, pairs, [each.values for each in columns]) if pairs else {}
+    )
+    axis, key, start = (None, -1, "") if times else _axis(columns, heads, notices)
     channels = [
         Channel(
             name=name,
             values=np.asarray(columns[index].values, dtype=np.float64),
             unit=unit,
-            axis=own.get(index, axis),
-            place=place,
+            axis=times.get(index, axis),
+            place=table,
         )
         for index, (name, unit) in enumerate(heads)
-        if index != key and not (own and timed[index])
+        if index != key and not (times and timed[index])
     ]
     return with_own_rasters(channels), start
 

@@ -42,7 +42,7 @@ AXES = {
 
 ACCELERATION = {"acc", "accel", "acceleration", "accelerations", "accelerometer", "beschleunigung", "beschl", "a"}
 DIRECTION = {"axis", "achse", "dir", "direction", "richtung", "along"}
-"""Words of which one beside a letter declares an axis: "acc_x", "X-Richtung"."""
+"""Words that declare an axis next to a letter: "acc_x", "X-Richtung"."""
 
 SEAT = {"seat", "sitz", "sitzkissen", "sitzfläche", "sitzflaeche", "fahrersitz", "beifahrersitz", "rücksitz",
         "ruecksitz", "sitzschiene"}  # fmt: skip
@@ -53,13 +53,13 @@ ENGINE = {"engine", "motor", "powertrain"}
 
 CUSHION = {"driver", "fahrer", "cushion", "kissen", "pad", "surface"}
 CENTRE = {"center", "centre", "mitte", "carrier", "block"}
-"""Words that may stand beside those of a seat, and of a knuckle or engine."""
+"""Further words in names of a seat, and of a knuckle or engine."""
 
 OTHER_SEAT = {"passenger", "beifahrer", "beifahrersitz", "rücksitz", "ruecksitz", "rear", "hinten"}
 """Words for seats other than the driver's, which is that of the model."""
 
 PLACES = SEAT | RAIL | KNUCKLE | ENGINE | {"floor", "boden", "roof", "dach", "body", "cab", "cabin"}
-"""Words for points; a letter beside one is an axis: "Seat Z left", "z_seat"."""
+"""Words for points; a letter next to a point is an axis: "Seat Z left", "z_seat"."""
 
 NEUTRAL = {"raw", "filt", "filtered", "signal", "sensor", "channel", "ch", "kanal", "can", "rx", "tx", "imu", "dcu",
            "ecu", "daq", "mux", "node", "in", "of", "on", "at", "the"}  # fmt: skip
@@ -76,7 +76,7 @@ PLATE_MOTION = {"displacement", "disp", "displ", "position", "pos", "motion", "h
                 "servo", "post", "four", "wheel", "rad", "road", "test", "rig", "stand", "ist", "actual", "measured",
                 "act", "feedback", "fbk", "fb", "response", "meas", "mess", "gemessen", "input", "mts", "servotest",
                 "instron", "moog", "zylinder", "cylinder"}  # fmt: skip
-"""Words that may stand beside those of a plate; "ride", "damper", "tyre" are not among them."""
+"""Further words in names of a plate; "ride", "damper", "tyre" are not among them."""
 
 DEFAULT_PLATE = re.compile(r"(plate_)?displacement(_[fr][lr])?|plate_[fr][lr]_displacement")
 """Names of the program's own files of plates."""
@@ -110,7 +110,7 @@ class Token(NamedTuple):
 
 
 class Mention(NamedTuple):
-    """Letter or word of an axis in a name; `declared`: at its end or beside a word that makes it an axis."""
+    """Letter or word of an axis in a name; `declared`: at the end of the name or next to a word for axes."""
 
     axis: str
     begin: int
@@ -221,7 +221,7 @@ def _is_neutral(token: Token) -> bool:
 
 
 def _significant(text: str) -> set[str]:
-    """Return the words of a name that say which point it is; codes of sensors, as "MP12", are left out."""
+    """Return the words for the point in a name, without codes of sensors, as "MP12"."""
     tokens = tokens_of(text)
     along = [(mention.begin, mention.end) for mention in _mentions(text)]
     return {
@@ -237,9 +237,9 @@ def _significant(text: str) -> set[str]:
 def _is_point(channel: Channel, needed: Collection[str], allowed: Collection[str]) -> bool:
     """Return True if the name, or the name with its place, has a needed word and otherwise only allowed ones."""
     for text in (channel.name, f"{channel.name} {channel.place}"):
-        words = _significant(text)
-        if not words.isdisjoint(needed):
-            return words <= {*needed, *allowed}
+        terms = _significant(text)
+        if not terms.isdisjoint(needed):
+            return terms <= {*needed, *allowed}
     return False
 
 
@@ -254,7 +254,7 @@ def of_wheel_or_engine(channel: Channel) -> bool:
 
 
 def by_point(channels: Sequence[tuple[int, Channel]]) -> list[list[tuple[int, Channel]]]:
-    """Group numbered channels by their points: by the words beside the axis, by their numbers where these repeat it."""
+    """Group numbered channels by points: by the words other than the axis, and by numbers if an axis repeats."""
     groups: dict[tuple[str, ...], list[tuple[int, Channel]]] = {}
     for pair in channels:
         groups.setdefault(_point(pair[1], numbers=False), []).append(pair)
