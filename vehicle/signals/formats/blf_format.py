@@ -1,6 +1,6 @@
 """Read logs of a CAN bus in BLF, the binary form of Vector: python-can reads the frames, this program decodes them.
 
-python-can leaves out what it does not know, and stops at the end of a truncated file. Here warnings of it, bytes that
+python-can skips objects of unknown types, and stops at the end of a truncated file. Here warnings of it, bytes that
 it leaves, and a size other than that in the header refuse the file, and frames without data are counted.
 
 Source: Vector, BLF (binlog); python-can, `can/io/blf.py`.

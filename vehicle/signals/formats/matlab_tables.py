@@ -127,7 +127,7 @@ def _row_times(path: Path, name: str, times: Any, rows: int) -> TypedColumn:
 
 
 def _numbers(values: Any) -> tuple[Any, str] | None:
-    """Return numbers, and the unit of a duration (ms) or of a date (us since 1970); None for other values."""
+    """Return numbers, and the unit of a duration (ms) or date (us since 1970); None for texts and other objects."""
     properties = getattr(values, "properties", None)
     if properties is not None:
         if values.classname == "duration":

@@ -21,7 +21,7 @@ def check_alternation(path: Path, name: str, texts: Sequence[str]) -> None:
     """Check that a column of texts, as a marker, is no name of alternating sensors.
 
     Args:
-        texts: cells of the first `SAMPLED` rows; empty for missing ones.
+        texts: cells of the first `SAMPLED` rows; empty texts for missing cells.
 
     Raises:
         DataError: the texts alternate.
@@ -38,7 +38,7 @@ def check_cycles(measurement: Measurement) -> None:
     """Check that no channel counts sensors: the same k different whole numbers at each k equal times.
 
     Raises:
-        DataError: a channel is such a count.
+        DataError: a channel counts sensors.
     """
     for channel in measurement.channels:
         time, values = channel.axis, channel.values

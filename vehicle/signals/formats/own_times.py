@@ -15,18 +15,18 @@ from vehicle.signals.formats.heads import TIME_NAME
 from vehicle.signals.formats.units import seconds_in
 
 EQUAL_SPANS = 0.01
-"""Maximum relative difference of the spans of two clocks of the same rows, as of a logger and of a satellite [-]."""
+"""Maximum relative difference of the spans of two clocks of the same rows, for example logger and satellite [-]."""
 
 BLANK_SHARE, UNEVEN = 0.3, 1.5
-"""Minimum share of blank cells, and maximum step over the median step, of a jittered channel with its own raster [-]:
-a lost sample makes a step of 2."""
+"""Minimum share of blank cells [-], and maximum step over the median step [-], of a jittered channel among
+rasters: a lost sample makes a step of 2."""
 
 _CLOCKS = re.compile(r"gps|gnss|utc|local|system|device|log|epoch|unix|elapsed|rel|abs|pc|host|daq|ecu", re.IGNORECASE)
 """Beginning of words for the clocks of a logger, which count the same rows."""
 
 
 def time_pairs(columns: Sequence[str]) -> dict[int, int]:
-    """Return the time column of each channel of a table in which every time column has channels of its own.
+    """Return the time column of each channel, if every time column of a table has channels.
 
     Args:
         columns: "time", "channel", or another word for a column that is neither.

@@ -159,7 +159,7 @@ def _check_values(path: Path, head: dict[str, str], number: int, values: np.ndar
     """Reject numbers that are not finite or far beyond the limits in the header (wrong scale).
 
     Args:
-        constant: True if the limits say nothing about the channel; then only a notice is returned.
+        constant: True if the limits are a constant of the writer; then only a notice is returned.
     """
     if not np.isfinite(values).all() or np.abs(values).max() > LARGEST:
         raise DataError(

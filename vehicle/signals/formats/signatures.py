@@ -44,7 +44,7 @@ def is_npz(head: Head) -> bool:
 
 
 def zip_names(head: Head) -> list[str] | None:
-    """Return the names in a ZIP archive, none if it is damaged; None for another file."""
+    """Return the names in a ZIP archive, none if it is damaged; None without the signature of ZIP."""
     if not head.data.startswith(b"PK"):
         return None
     try:

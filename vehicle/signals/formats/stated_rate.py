@@ -67,7 +67,7 @@ def stated_step(numbers: Mapping[str, Any]) -> tuple[float | None, str]:
 
 
 def number_of(value: Any) -> tuple[float | None, str]:
-    """Return a number and its unit from a number, an array of one number, or a text; None for other values."""
+    """Return a number and its unit from a number, an array of one number, or a text; None without a number."""
     array = np.ravel(np.asarray(value))
     if array.size != 1:
         return None, ""

@@ -1,4 +1,4 @@
-"""Channels of a table whose columns have types: numbers, dates and durations, and units of their own."""
+"""Channels of a table whose columns have types: numbers, dates and durations, with units."""
 
 from collections.abc import Sequence
 from pathlib import Path

@@ -63,7 +63,7 @@ PLACES = SEAT | RAIL | KNUCKLE | ENGINE | {"floor", "boden", "roof", "dach", "bo
 
 NEUTRAL = {"raw", "filt", "filtered", "signal", "sensor", "channel", "ch", "kanal", "can", "rx", "tx", "imu", "dcu",
            "ecu", "daq", "mux", "node", "in", "of", "on", "at", "the"}  # fmt: skip
-"""Words that say nothing about point or direction."""
+"""Words without a point or a direction."""
 
 PLATE = {"plate", "platte", "shaker", "poster", "actuator", "aktuator", "aktor", "stempel", "stößel", "stoessel", "ram",
          "rüttler", "ruettler", "prüfstand", "pruefstand", "prüfstempel", "pruefstempel", "prüfzylinder", "hydropuls",
@@ -154,7 +154,7 @@ def axis_of(channel: Channel) -> str:
 
 
 def _mentions(name: str) -> list[Mention]:
-    """Return the mentions of axes in a name; those in brackets, as "(y axis of sensor)", only if they stand alone."""
+    """Return the mentions of axes in a name; axes in brackets count only if the bracket contains nothing else."""
     text = _BRACKETS.sub(lambda match: " " * len(match[0]), name)
     mentions = []
     for run in re.finditer(r"[^\W_]+", text):  # "accz", "ACCX1", "zAccel"
@@ -184,7 +184,7 @@ def _axis_word(word: str) -> str:
 
 
 def _is_letter(tokens: Sequence[Token], at: int) -> bool:
-    """Return True if a letter x, y or z stands for itself, as in "AccX", "Z1"; not in "0x1F", "x1000", "4x", "xDCU"."""
+    """Return True if a letter x, y or z is a word, as in "AccX", "Z1"; not in "0x1F", "x1000", "4x", "xDCU"."""
     token = tokens[at]
     before = tokens[at - 1] if at else None
     after = tokens[at + 1] if at + 1 < len(tokens) else None
@@ -214,7 +214,7 @@ def _is_declared(tokens: Sequence[Token], at: int) -> bool:
 
 
 def _is_neutral(token: Token) -> bool:
-    """Return True for numbers, letters, units, sides, and words that say nothing about point or direction."""
+    """Return True for numbers, letters, units, sides, and words without a point or a direction."""
     word = token.text
     sides = word in PAIRS or (word in (*FRONT, *REAR, *LEFT, *RIGHT) and word != "back")  # of a seat: its back
     return word[0].isdigit() or len(word) == 1 or sides or word in NEUTRAL or find_unit(word) is not None
@@ -235,7 +235,7 @@ def _significant(text: str) -> set[str]:
 
 
 def _is_point(channel: Channel, needed: Collection[str], allowed: Collection[str]) -> bool:
-    """Return True if the name, or the name with its place, has a needed word and otherwise only allowed ones."""
+    """Return True if the name, or the name with its place, has a needed word and otherwise allowed words only."""
     for text in (channel.name, f"{channel.name} {channel.place}"):
         terms = _significant(text)
         if not terms.isdisjoint(needed):
@@ -283,9 +283,9 @@ def of_receiver(channels: Sequence[Channel]) -> bool:
 
 
 def is_plate(channel: Channel) -> bool:
-    """Return True if the name of a displacement says that it is the motion of a plate under a wheel.
+    """Return True if the name of a displacement contains a word for the plate under a wheel.
 
-    A ride height, the travel of a suspension or the deflection of a tyre is the motion of a part against another one.
+    A ride height, the travel of a suspension or the deflection of a tyre is a relative motion of two parts.
     """
     default = DEFAULT_PLATE.fullmatch(channel.name.strip().rstrip(".").lower())
     return channel.quantity == "displacement" and (default is not None or _is_point(channel, PLATE, PLATE_MOTION))
