@@ -66,10 +66,10 @@ def test_the_comparison_of_a_file_of_many_channels_is_short(tmp_path, capsys):
     """Of 61 channels 25 fit the car; the command has plates and vertical accelerations (it runs at the teardown)."""
     time = np.arange(3600) / 400.0
     points = [*(f"Hub {wheel}" for wheel in ("VL", "VR", "HL", "HR")), "Motor", "Fahrersitz", "Sitzschiene"]
-    names = [f"Weg {wheel}" for wheel in ("VL", "VR", "HL", "HR")] + [
+    names = [f"Stempel {wheel}" for wheel in ("VL", "VR", "HL", "HR")] + [
         f"{point} {axis}" for point in points for axis in "xyz"
     ]
-    columns = [(name, "mm" if "Weg" in name else "g", sine(time, 0.1, 2.0 + k)) for k, name in enumerate(names)]
+    columns = [(name, "mm" if "Stempel" in name else "g", sine(time, 0.1, 2.0 + k)) for k, name in enumerate(names)]
     columns += [(f"Spare {number}", "V", time) for number in range(61 - len(columns))]
     written(tmp_path / "a.csv", time, columns)
     assert inspect([str(tmp_path / "a.csv")]) == 0
@@ -122,8 +122,8 @@ def case(folder, kind):
     if kind == "plates":
         noise = np.random.default_rng(1).standard_normal((2, time.size)).cumsum(axis=1)
         noise = 0.3 * (noise - noise.mean(axis=1, keepdims=True)) / noise.std(axis=1, keepdims=True)
-        written(path, time, [("Oil", "V", time), ("Weg VR", "mm", noise[0]), ("Weg VL", "mm", noise[1])])
-        return path, ["shaker", "fr=Weg VR", "fl=Weg VL"]
+        written(path, time, [("Oil", "V", time), ("Stempel VR", "mm", noise[0]), ("Stempel VL", "mm", noise[1])])
+        return path, ["shaker", "fr=Stempel VR", "fl=Stempel VL"]
     if kind == "jitter":
         time = jittered()
         written(path, time, [("Sitz Z", "g", 1.0 + sine(time, 0.1, 3.0)), ("Hub Z", "g", sine(time, 0.1, 8.0))])

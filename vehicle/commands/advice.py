@@ -14,12 +14,13 @@ from vehicle.signals.formats.channel import NOT_OVER_TIME, ROAD_PROFILE
 from vehicle.signals.formats.text import LARGEST
 from vehicle.signals.records.channel_words import (
     axis_of,
+    by_point,
+    is_plate,
     main_channels,
     map_options,
-    may_be_plate,
+    of_receiver,
     of_wheel_or_engine,
     on_seat,
-    point_of,
     suggested_channels,
     wheel_of,
 )
@@ -69,14 +70,13 @@ def command_for(measurement: Measurement, file: str, databases: Sequence[Path] =
             "vehicle file (docs/vehicle-file.md shows where)"
         )
     empty = [channel for _, channel in (*by["displacement"], *by["acceleration"]) if not _has_values(channel)]
-    plates, accelerations = (
+    displacements, accelerations = (
         [(number, channel) for number, channel in by[quantity] if _has_values(channel)]
         for quantity in ("displacement", "acceleration")
     )
-    moves = [(number, channel) for number, channel in plates if may_be_plate(channel, measurement.channels)]
     reasons = []
-    if moves:
-        command, why = _plates(measurement, files, moves, by["velocity"])
+    if displacements:
+        command, why = _plates(measurement, files, displacements, by["velocity"])
         if command:
             return command, why
         reasons.append(why)
@@ -87,18 +87,11 @@ def command_for(measurement: Measurement, file: str, databases: Sequence[Path] =
         reasons.append(why)
     if reasons:
         return "", reasons[0]
-    if plates:
-        names = ", ".join(channel.name for _, channel in plates[:4])
-        return (
-            "",
-            f"{names}: probably no motion of a plate or road, but a height above the sea, a distance or the "
-            "travel of a spring; choose another channel",
-        )
     if empty:
         note = f" ({empty[0].remark})" if empty[0].remark else ""
         return "", f"{', '.join(channel.name for channel in empty[:4])}: no values{note}"
     if any(channel.kind == "frequency" for channel in measurement.channels):
-        return "", "responses: python -m vehicle compare RUN --measured FILE --map knuckle_fr_acc_z=NAME"
+        return "", _responses(measurement)
     if not measurement.channels:
         return "", "the file has only nodes, no channels"
     if histories:
@@ -109,6 +102,16 @@ def command_for(measurement: Measurement, file: str, databases: Sequence[Path] =
     if any(channel.function in NOT_OVER_TIME for channel in measurement.channels):
         return "", "the channels are over distance or angle, not over time; export them over time"
     return "", "the file has no time channel; set --rate HZ, or --channel time=NAME"
+
+
+def _responses(measurement: Measurement) -> str:
+    """Return the command for channels over frequency, or the reason for the lack of a command."""
+    from vehicle.signals.records.measured_frf import is_response, response_fault
+
+    faults = [response_fault(channel) for channel in measurement.channels if is_response(channel)]
+    if "" in faults:
+        return "responses: python -m vehicle compare RUN --measured FILE --map knuckle_fr_acc_z=NAME"
+    return faults[0] if faults else "coherences without their responses; export the responses too"
 
 
 def comparison_for(measurement: Measurement, file: str, command: str) -> tuple[str, dict[str, str]]:
@@ -221,21 +224,29 @@ def _clock(*channels: Channel) -> tuple[str, ...]:
 
 
 def _plates(
-    measurement: Measurement, files: list[str], moves: list[Numbered], speeds: list[Numbered]
+    measurement: Measurement, files: list[str], displacements: list[Numbered], speeds: list[Numbered]
 ) -> tuple[str, str]:
     """Return the command for displacements: shaker plates, or a road with a recorded speed."""
     from vehicle.signals.excitation.recorded_road import NAMES
     from vehicle.signals.records.common_span import overlap
 
-    plain = {channel.name.strip().rstrip(".").lower() for _, channel in moves}
-    if len(speeds) == 1 and any(plain & set(NAMES[side]) for side in NAMES):
+    of_tracks = {name for names in NAMES.values() for name in names}
+    tracks = [channel for _, channel in displacements if channel.name.strip().rstrip(".").lower() in of_tracks]
+    if len(speeds) == 1 and tracks and not of_receiver(measurement.channels):
         speed = _pick(measurement, speeds[0][0])
         arguments = ["shaker", "--vehicle", "focus_road", "--road", *files, "--speed", f"channel:{speed}"]
-        displacements = [channel for _, channel in moves if channel.name.strip().rstrip(".").lower() in
-                   {name for names in NAMES.values() for name in names}]  # fmt: skip
-        same = [channel for _, channel in speeds if channel.axis is displacements[0].axis]  # others are interpolated
-        command, why = _first(measurement, [[*arguments, *_clock(*displacements, *same)]])
+        same = [channel for _, channel in speeds if channel.axis is tracks[0].axis]  # others are interpolated
+        command, why = _first(measurement, [[*arguments, *_clock(*tracks, *same)]])
         return command, "drives over the recorded road at the recorded speed" if command else f"a road, but: {why}"
+    moves = [(number, channel) for number, channel in displacements if is_plate(channel)]
+    if not moves:
+        number, channel = displacements[0]
+        shown = ", ".join(repr(each.name) for _, each in displacements[:4])
+        option = shlex.join(["--channel", f"{wheel_of(channel.name) or SHAKER_WHEEL}={_pick(measurement, number)}"])
+        return "", (
+            f"a displacement, but the name {shown} does not say that it is the motion of a plate under a wheel (plate, "
+            f"shaker, poster, actuator, Stempel ...); if it is, set {option} of the command shaker"
+        )
     wheels: dict[str, int] = {}
     for number, channel in moves:
         wheel = wheel_of(channel.name)
@@ -254,7 +265,7 @@ def _plates(
     names = {measurement.channels[number - 1].name: wheel for wheel, number in wheels.items()}
     roles = {"displacement": SHAKER_WHEEL, **{f"displacement_{wheel}": wheel for wheel in wheels}}
     picks = []
-    if any(roles.get(name) != wheel for name, wheel in names.items()) or len(moves) > len(wheels):
+    if any(roles.get(name) != wheel for name, wheel in names.items()) or len(displacements) > len(wheels):
         for wheel, number in wheels.items():
             picks += ["--channel", f"{wheel}={_pick(measurement, number)}"]
     clock = _clock(*(measurement.channels[number - 1] for number in wheels.values()))
@@ -271,13 +282,11 @@ def _accelerations(measurement: Measurement, files: list[str], those: list[Numbe
     from vehicle.signals.records.common_span import overlap
 
     seats = [pair for pair in those if on_seat(pair[1])]
-    points: dict[tuple[str, ...], list[Numbered]] = {}
-    for pair in seats or [pair for pair in those if not of_wheel_or_engine(pair[1])]:
-        points.setdefault(point_of(pair[1]), []).append(pair)
+    points = by_point(seats or [pair for pair in those if not of_wheel_or_engine(pair[1])])
     if not points:
         return "", "accelerations of wheels or engine only; comfort needs an acceleration of a seat or of the floor"
     # The first of the points with the most axes.
-    of_point = max(points.values(), key=lambda pairs: len({axis_of(channel) for _, channel in pairs}))
+    of_point = max(points, key=lambda pairs: len({axis_of(channel) for _, channel in pairs} - {""}))
     axes: dict[str, int] = {}
     for number, channel in of_point:
         axis = axis_of(channel)
@@ -285,7 +294,12 @@ def _accelerations(measurement: Measurement, files: list[str], those: list[Numbe
         if axis and axis not in axes and all(overlap(channel, other) for other in assigned):
             axes[axis] = number
     if not axes:
-        axes = {"z": of_point[0][0]}
+        number, channel = of_point[0]
+        option = shlex.join(["--channel", f"z={_pick(measurement, number)}"])
+        return "", (
+            f"an acceleration, but the name {channel.name!r} states no single direction; if it is vertical, set "
+            f"{option} of the command comfort, else x= or y="
+        )
     chosen = [measurement.channels[number - 1] for number in axes.values()]
     rate = chosen[0].rate or 0.0
     length = chosen[0].values.size / rate if rate else 0.0

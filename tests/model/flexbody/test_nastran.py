@@ -105,7 +105,11 @@ def test_nodes_and_names_may_be_given(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("DMIG,KAAX,0,6,2", "DMIG,KAAX,0,9,2", "the matrix form is 9, must be 6 (symmetric) or 1 (square)"),
+        (
+            "DMIG,KAAX,0,6,2",
+            "DMIG,KAAX,0,9,2",
+            "KAAX is another matrix: the matrix form is 9, must be 6 (symmetric) or 1 (square)",
+        ),
         ("DMIG,KAAX,0,6,2", "DMIG,KAAX,0,6,4", "the number type is 4, must be 1 or 2 (real)"),
         ("DMIG,KAAX,0,6,2,0\n", "", "matrix column comes before the header line of its"),
         ("DMIG,KAAX,1,1,,1,1,", "DMIG,KAAX,1,1,,1,0,", "component 0 of 1, must be 1 to 6. Component 0 is a scalar"),
@@ -122,6 +126,53 @@ def test_broken_punch_files_are_refused(tmp_path, old, new, message):
     path.write_text(text.replace(old, new, 1))
     with pytest.raises(DataError, match=re.escape(message)):
         read_matrices(path, None, None, None)
+
+
+LOAD = f"""\
+DMIG    PAX            0       9       2       0                       1
+DMIG*   PAX             {1:16d}{1:16d}
+*       {1:16d}{3:16d} 1.000000000D+00
+"""
+
+
+@pytest.mark.parametrize("head", ["9       2", "2       2", "6       3"])
+def test_a_matrix_of_another_form_beside_k_and_m_is_not_read(tmp_path, head):
+    path = punch(tmp_path / "job.pch", "large")
+    plain = read_matrices(path, None, None, None)
+    path.write_text(path.read_text() + LOAD.replace("9       2", head))
+    with_load = read_matrices(path, None, None, None)
+    np.testing.assert_array_equal(with_load.stiffness.toarray(), plain.stiffness.toarray())
+    with pytest.raises(DataError, match=r"found DMIG matrices KAAX, MAAX, .* PAX is another matrix: the"):
+        read_matrices(path.with_name("job.pch:PAX"), None, None, None)
+
+
+@pytest.mark.parametrize("support", [0.0, 1e6])
+def test_ten_digits_of_a_stiff_element_are_no_support(tmp_path, support):
+    """An element of 3.1e12 N/m along x between two nodes; entries of ten digits leave a rigid motion some N/m.
+
+    A spring to the ground of 1 MN/m is refused: its stiffness is above that of the rounding.
+    """
+    box = body()
+    direction = box.positions[1] - box.positions[0]
+    axis = int(np.argmax(np.abs(direction)))
+    ends = [int(np.flatnonzero((box.node == node) & (box.direction == axis))[0]) for node in (0, 1)]
+    element = scipy.sparse.lil_matrix(box.stiffness.shape)
+    element[np.ix_(ends, ends)] = np.pi * 1e12 * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    element[ends[0], ends[0]] += support
+    stiff = replace(box, stiffness=(box.stiffness + element).tocsc())
+    lines = [*grids(box, "large"), *dmig("KAAX", box, stiff.stiffness, "large"), *dmig("MAAX", box, box.mass, "large")]
+    (tmp_path / "job.pch").write_text("\n".join([*lines, ""]))
+    matrices = read_matrices(tmp_path / "job.pch", None, None, None)
+    assert matrices.rounding == pytest.approx(0.5e-9)
+    rigid = matrices.mass_properties()
+    found, limit = matrices.rigid_frequency(rigid), matrices.rounding_frequency(rigid)
+    if support:
+        with pytest.raises(DataError, match="the body is not free"):
+            matrices.require_free(found, 20.0, limit)
+    else:
+        with pytest.raises(DataError, match="the body is not free"):
+            matrices.require_free(found, 20.0)
+        matrices.require_free(found, 20.0, limit)
 
 
 def test_the_command_reads_a_punch_file(tmp_path, capsys):

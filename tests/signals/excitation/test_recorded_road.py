@@ -261,7 +261,7 @@ def test_a_damaged_surface_is_refused(tmp_path):
     with pytest.raises(DataError, match=r"has a height of 3.* m, must be at most 10000 m; .* line ends"):
         read_road(path, 1.5)
     path.write_bytes(whole.replace(b"$KD_Def", b"$ROAD_CRG_MODS\nSCALE_Z_GRID = 2\n$KD_Def"))
-    with pytest.raises(DataError, match=r"ROAD_CRG_MODS\) are not supported"):
+    with pytest.raises(DataError, match=r"ROAD_CRG_MODS\) changes the surface"):
         read_surface(path)
     # Lost bytes within a number: "2.002 2.014" became 6805 m in a surface of 2 m.
     lost = grid.copy()

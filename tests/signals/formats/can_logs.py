@@ -1,6 +1,7 @@
 """The same frames of a CAN bus in every container that the readers know."""
 
 from collections.abc import Sequence
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import NamedTuple
 
@@ -123,9 +124,32 @@ def mf4(path: Path, frames: Sequence[Frame], *, constant: Sequence[str] = ()) ->
         file.save(path, overwrite=True)
 
 
+def blf(path: Path, frames: Sequence[Frame]) -> None:
+    """Write frames with python-can."""
+    from can import BLFWriter, Message
+
+    with BLFWriter(str(path)) as file:
+        for one in frames:
+            size = len(one.data)
+            file.on_message_received(Message(
+                timestamp=1.7e9 + one.time, arbitration_id=one.identifier, is_extended_id=one.extended, data=one.data,
+                channel=one.bus - 1, is_rx=one.way == "Rx", is_fd=size > 8, dlc=size))  # fmt: skip
+
+
+def dated(frames: Sequence[Frame]) -> str:
+    """Return what `candump -x -t A` prints: the date and time of day of each frame."""
+    lines = []
+    for line in screen(frames).splitlines():
+        stamp, rest = line.strip().removeprefix("(").split(")", 1)
+        date = datetime.fromtimestamp(float(stamp), tz=UTC)
+        lines.append(f" ({date:%Y-%m-%d %H:%M:%S}.{date.microsecond:06d}){rest}")
+    return "\n".join(lines) + "\n"
+
+
 CONTAINERS = {
     "candump.log": candump,
     "screen.log": screen,
+    "dated.log": dated,
     "hex.asc": asc,
     "dec.asc": lambda frames: asc(frames, base="dec"),
     "relative.asc": lambda frames: asc(frames, times="relative"),
@@ -135,15 +159,16 @@ CONTAINERS = {
     "2.0.trc": lambda frames: trc(frames, "2.0"),
     "2.1.trc": lambda frames: trc(frames, "2.1"),
     "raw.mf4": mf4,
+    "bus.blf": blf,
 }
-"""File name to function from frames to text; for MF4, from path and frames."""
+"""File name to function from frames to text; for MF4 and BLF, from path and frames."""
 
 
 def write_log(folder: Path, name: str, frames: Sequence[Frame]) -> Path:
     """Write frames in a container of `CONTAINERS`."""
     path = folder / name
-    if name.endswith(".mf4"):
-        mf4(path, frames)
+    if name.endswith((".mf4", ".blf")):
+        (mf4 if name.endswith(".mf4") else blf)(path, frames)
     else:
         path.write_text(CONTAINERS[name](frames))  # type: ignore[operator]
     return path

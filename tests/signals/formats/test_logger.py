@@ -121,12 +121,15 @@ def test_accelerations_and_velocities_are_integrated(tmp_path, order):
         ("time,z [mm]\n" + "0.01,1.5\n" * 3, "has no times; set --rate HZ, or the channel of the times with"),
         ("time [s],z [mm]\n" + "0.5,1.5\n" * 3, "times must increase"),
         ("time [s],z [mm]\n0,0,1,5\n0,1,1,5\n0,2,1,5\n0,3,1,6\n", "are the commas decimal commas"),
-        ("time [s],z [mm]\n0.1,1.5\n0.2,1.5\n0.3,1.5\n0.4,1.5\n0.5,1.5\n0.6,x\n", "column 'z' is 'x', must be"),
+        (
+            "time [s],z [mm]\n0.1,1.5\n0.2,1.5\n0.3,1.5\n0.4,1.5\n0.5,1.5\n0.6,x\n",
+            r"1 missing values \('x' in line 7 is no number\)",
+        ),
         ("time [s],z [mm]\n0.1,1.5\n0.2,1.5\n0.3,1.5\n0.4,1.5\n0.5,1.5\n0.6\n", "the file is truncated"),
         ("time [s];z [mm]\n0,1;1.000,5\n0,2;1,5\n0,3;1,5\n", "no table of numbers|separate thousands"),
         (
             "time [s],z [mm]\n0.1,x\n" + "0.2,1.5\n" * 6,
-            r"log\.csv:2: the line mixes names and numbers: '0\.1', 'x'; repair",
+            r"1 missing values \('x' in line 2 is no number\), the first at 0\.1 s",
         ),
         ("nothing\nhere\n", "no table of numbers"),
     ],
@@ -189,7 +192,7 @@ def test_a_chosen_channel_is_judged_by_its_own_unit_and_time(tmp_path):
 def test_formats_that_are_not_read_are_named(tmp_path, head):
     path = tmp_path / "foreign.raw"
     path.write_text(head + "x" * 50)
-    with pytest.raises(DataError, match=r"(FAMOS|TDM|Dewesoft), not supported; export "):
+    with pytest.raises(DataError, match=r"(FAMOS|TDM of DIAdem|Dewesoft), not supported; export "):
         read_record(path)
 
 

@@ -226,8 +226,12 @@ def _points(file: Path, path: str, key: str) -> dict[str, Any]:
                 f"must have {needed}")  # fmt: skip
         return header.cells.index(HEADS[key])
 
+    def columns(header: Header) -> list[int]:
+        return [header.cells.index(head) for head in heads.values()]
+
     try:
-        table = read_table(file, Wanted(needed=needed, key=column, remedy="repair or remove the row"))
+        wanted = Wanted(needed=needed, key=column, remedy="repair or remove the row", columns=columns)
+        table = read_table(file, wanted)
     except VehicleError as error:
         # A file of a test bench may have another format and other units.
         try:

@@ -15,6 +15,7 @@ from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.model.parameters.wheel_forces import WHEEL_FORCES
 from vehicle.settings import documented
 from vehicle.signals.excitation.iso_road import Side
+from vehicle.signals.excitation.measured_road import read_road
 from vehicle.signals.excitation.obstacle import is_obstacle
 from vehicle.signals.excitation.recorded_road import PREFIX, RecordedDrive
 from vehicle.signals.excitation.road_drive import LEVEL, RoadDrive
@@ -66,9 +67,13 @@ class Road(RoadSettings):
         # A single letter is a class, even if a file of this name exists.
         # Tyres and brakes of a car that stands shake nothing, and are no forces.
         kinds, acts = {*vehicle.composition.kinds.values()}, vehicle.table.get(APPLY_FORCES, True)
-        if self.road == LEVEL and not vehicle.composition.forces and not (acts and kinds & {*WHEEL_FORCES.values()}):
+        shaken = vehicle.composition.forces or (acts and kinds & {*WHEEL_FORCES.values()})
+        track = 2.0 * sum(abs(wheel.patch[1]) for wheel in vehicle.composition.wheels) / len(vehicle.composition.wheels)
+        file = None if isinstance(self.speed, str) else self.file
+        if not shaken and (self.road == LEVEL or (file is not None and read_road(file, track).level)):
             raise ConfigurationError(
-                f"--road {LEVEL}: moves no plate, and {vehicle.name} has no force that shakes it; add a force, "
+                f"--road {self.road}: {'' if file is None else 'is level, '}moves no plate, and {vehicle.name} has no "
+                "force that shakes it; add a force, "
                 "for example --set front.imbalance.mass=0.02 --set front.imbalance.radius=0.2, or a section "
                 "[force.NAME]"
                 + (
@@ -86,7 +91,7 @@ class Road(RoadSettings):
             road=road,
             speed=self.speed,
             wheels=_wheel_positions(vehicle),
-            track=2.0 * sum(abs(wheel.patch[1]) for wheel in wheels) / len(wheels),
+            track=track,
             radius=sum(wheel.center[2] - wheel.patch[2] for wheel in wheels) / len(wheels),
             driving=driving,
             lifting=lifting_tyres(vehicle, overrides) if isinstance(road, str) and is_obstacle(road) else (),

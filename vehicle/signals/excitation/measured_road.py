@@ -89,6 +89,11 @@ class MeasuredRoad:
         return float(self.distance[-1] - self.distance[0])
 
     @property
+    def level(self) -> bool:
+        """True if both tracks are level within 1 nm."""
+        return bool(max(np.ptp(self.left), np.ptp(self.right)) < 1e-9)
+
+    @property
     def repeats(self) -> bool:
         """False: a measured road is not periodic."""
         return False

@@ -3,12 +3,13 @@
 Every line is a data frame, a line of the header, or counted by its form: no line is dropped without a word. python-can
 reads the same formats, but drops unknown lines silently and takes relative times of .asc as absolute times.
 
-Sources: Vector, CAN ASC logging file format; PEAK, CAN TRC file format; can-utils, `candump -L` and `candump -t a`.
+Sources: Vector, CAN ASC logging file format; PEAK, CAN TRC file format; can-utils, `candump -L`, `-t a` and `-t A`.
 """
 
 import re
 from collections import Counter
 from collections.abc import Callable, Sequence
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import NamedTuple
 
@@ -16,7 +17,7 @@ from vehicle.errors import DataError
 from vehicle.signals.formats.can_decoder import decode
 from vehicle.signals.formats.can_frames import FD_LENGTHS, IDENTIFIER_BITS, Source, frames_of
 from vehicle.signals.formats.channel import Measurement
-from vehicle.signals.formats.signatures import can_log_type
+from vehicle.signals.formats.signatures import DUMP_TIME, can_log_type
 from vehicle.signals.formats.text import read_text
 
 _ASC_TIME = re.compile(r"\s*(?P<time>\d+\.\d+)\s+(?P<event>\S.*)")
@@ -29,11 +30,13 @@ _ASC_FD = re.compile(
     r"(?P<code>[0-9A-Fa-f]+)\s+(?P<length>\d+)(?P<data>(?:\s+[0-9A-Fa-f]{1,3}\b)*)"
 )
 _DUMP = re.compile(
-    r"\s*\((?P<time>\d+\.\d+)\)\s+(?P<bus>\S+)\s+(?P<id>[0-9A-Fa-f]{8}|[0-9A-Fa-f]{3})#(?:#[0-9A-Fa-f])?"
+    rf"\s*\((?P<time>{DUMP_TIME})\)"
+    r"\s+(?P<bus>\S+)\s+(?P<id>[0-9A-Fa-f]{8}|[0-9A-Fa-f]{3})#(?:#[0-9A-Fa-f])?"
     r"(?P<data>(?:[0-9A-Fa-f]{2}\.?)*)(?:\s+(?P<way>[RT])\S*)?\s*"
 )
 _SCREEN = re.compile(
-    r"\s*\((?P<time>\d+\.\d+)\)\s+(?P<bus>\S+)\s+(?:(?P<way>[RT])X\s\S\s\S\s+)?(?P<id>[0-9A-Fa-f]{8}|[0-9A-Fa-f]{3})\s+"
+    rf"\s*\((?P<time>{DUMP_TIME})\)"
+    r"\s+(?P<bus>\S+)\s+(?:(?P<way>[RT])X\s\S\s\S\s+)?(?P<id>[0-9A-Fa-f]{8}|[0-9A-Fa-f]{3})\s+"
     r"\[(?P<length>\d+)\](?P<data>(?:\s+[0-9A-Fa-f]{2}\b)*)(?:\s+'.*')?\s*"
 )
 _TRC_1 = re.compile(
@@ -108,7 +111,14 @@ def _row(match: re.Match[str], bus: str, extended: bool, length: int | None, sca
         return "error frame" if identifier & _ERROR_FLAG else "identifier above 29 bits"
     data = bytes.fromhex(re.sub(r"[\s.]", "", groups["data"]))
     source = Source(bus, {"R": "Rx", "T": "Tx"}.get((groups["way"] or " ")[0], ""), identifier, extended)
-    return _Row(source, float(groups["time"]) * scale, data, len(data) if length is None else length)
+    return _Row(source, _seconds(groups["time"]) * scale, data, len(data) if length is None else length)
+
+
+def _seconds(text: str) -> float:
+    """Return a time stamp [s]; a date and time of day, as `candump -t A` writes them, after 1970."""
+    if text[4:5] != "-":
+        return float(text)
+    return datetime.fromisoformat(text).replace(tzinfo=UTC).timestamp()
 
 
 def _form(line: str, default: str) -> str:

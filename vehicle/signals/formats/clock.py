@@ -1,11 +1,10 @@
 """Check time stamps: increasing, uniform, or rounded from a uniform clock; suggest options for other times."""
 
 import numpy as np
-import scipy
 
 from vehicle.arrays import Vector
 from vehicle.errors import DataError
-from vehicle.signals.formats.stamps import StampClock, stamp_clock
+from vehicle.signals.formats.stamps import StampClock, smallest_spread, stamp_clock
 from vehicle.signals.formats.table import Table
 
 PAUSE = 0.5
@@ -16,6 +15,10 @@ LONGEST_GAP = 0.010
 
 UNIFORM_TOLERANCE = 1e-3
 """Maximum |dt - median dt| / median dt of a uniform record [-]."""
+
+FLOAT_ERROR, MANY = 0.3, 50
+"""Maximum difference from a decimal [last digits] in a record of at least so many stamps: microseconds since 1970 are
+stored to 0.24 us, and stamps that are no decimals reach 0.5."""
 
 LARGEST_QUANTUM = 0.25
 """Maximum unit of the last decimal of rounded time stamps over the time step [-]: limit of an identifiable clock."""
@@ -80,25 +83,20 @@ def clock_of_rounded(time: Vector) -> tuple[float, int] | None:
         Rate f [Hz] and number of decimals; None if no clock fits or q exceeds `LARGEST_QUANTUM` steps.
     """
     count = np.arange(time.size)
-    step = float(time[-1] - time[0]) / (time.size - 1)
     for decimals in range(2, 10):
         digits = (time - time[0]) * 10.0**decimals
-        if np.max(np.abs(digits - np.rint(digits))) < 0.01:  # tolerance for floating-point error
+        error = float(np.max(np.abs(digits - np.rint(digits))))
+        if error < (FLOAT_ERROR if decimals == 6 and time.size >= MANY else 0.01):
             break
     else:
         return None
     quantum = 10.0**-decimals
+    time = np.rint(digits) * quantum
+    step = float(time[-1] - time[0]) / (time.size - 1)
     if quantum > LARGEST_QUANTUM * step:
         return None
-    # The spread about a clock is convex in its step; the optimal step is within q / T of the mean step.
-    half_width = quantum / (time.size - 1)
-    best = scipy.optimize.minimize_scalar(
-        lambda trial: np.ptp(time - count * trial),
-        bounds=(step - half_width, step + half_width),
-        options={"xatol": 1e-6 * half_width},
-    )
-    for rate in (float(round(1.0 / step)), 1.0 / float(best.x)):
-        if rate > 0.0 and np.ptp(time - count / rate) <= (1.0 + 1e-3) * quantum:
+    for rate in (float(round(1.0 / step)), 1.0 / smallest_spread(time, quantum)):
+        if rate > 0.0 and np.ptp(time - count / rate) <= (1.0 + 1e-3 + 4.0 * error) * quantum:
             return rate, decimals
     return None
 

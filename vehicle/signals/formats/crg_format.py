@@ -1,6 +1,7 @@
 """Read OpenCRG road surfaces (ASAM OpenCRG 1.2): heights on a grid along a reference line, as text or binary."""
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -26,6 +27,9 @@ STEEPEST = 2.0
 """Maximum height of a step between two rows of a road [m], a wall that no wheel climbs; larger steps come from lost
 bytes. On a line the road may be twice as high as long."""
 
+_MOVES = re.compile(r"ref(point|line)_(offset_|rotcenter_)?(x|y|z|phi)|refpoint_[uv](_offset|_fraction)?")
+"""Modifiers that move a road as a whole: a shift, a rotation in the plane, a constant height."""
+
 _SECTION = re.compile(r"long section(?P<at> at v\s*=\s*(?P<v>[-+.\deE]+))?.*", re.IGNORECASE)
 
 
@@ -38,12 +42,14 @@ class Surface:
         v: lateral positions, positive to the left [m], (k,), increasing.
         z: heights [m], (n, k); NaN outside the road.
         curved: True if the reference line is curved; it is used as a straight line.
+        moved: names of the modifiers that move the road as a whole.
     """
 
     u: Vector
     v: Vector
     z: Vector
     curved: bool
+    moved: tuple[str, ...] = ()
 
     def height(self, v: float) -> Vector:
         """Return the heights [m], (n,), of the track at v [m], linear between sections; NaN outside the road."""
@@ -62,7 +68,7 @@ def read_surface(path: Path) -> Surface:
     and the banking b, each constant or a channel.
 
     Raises:
-        DataError: not an OpenCRG file, damaged, with modifiers, or with a reference to another file.
+        DataError: not an OpenCRG file, damaged, with modifiers of the surface, or with a reference to another file.
 
     Source: ASAM OpenCRG 1.2.0, file format; compared with its C library.
     """
@@ -73,8 +79,7 @@ def read_surface(path: Path) -> Surface:
             raise DataError(f"{path}: refers to another file ($ROAD_CRG_FILE) and contains no heights; use that file")
         raise DataError(f"{path}: no line $$$$ before the numbers; use a complete OpenCRG file")
     sections = _header(data[: end.start()].decode("latin-1"))
-    if any(sections.get("ROAD_CRG_MODS", ())):
-        raise DataError(f"{path}: modifiers ($ROAD_CRG_MODS) are not supported; save the modified road instead")
+    moved = _modifiers(path, sections.get("ROAD_CRG_MODS", ()))
     numbers = _parameters(path, sections.get("ROAD_CRG", ()))
     definition = sections.get("KD_DEFINITION", ())
     number_format = next((line[2:6].upper() for line in definition if line.startswith("#:")), "")
@@ -126,6 +131,7 @@ def read_surface(path: Path) -> Surface:
         v=v,
         z=table[:, longs] + rise[:, None] + banking[:, None] * v[None, :],
         curved=np.unique(heading[np.isfinite(heading)]).size > 1,
+        moved=moved,
     )
 
 
@@ -155,6 +161,7 @@ def road_words(surface: Surface) -> str:
         f"height every {step:.4g} m along the road and {surface.v.size} sections across (v to the left)"
         + (f"; {outside} points are missing" if outside else "")
         + ("; its curved reference line is used as a straight line" if surface.curved else "")
+        + (f"; {', '.join(surface.moved)} move the road as a whole and are ignored" if surface.moved else "")
     )
 
 
@@ -173,8 +180,26 @@ def _header(text: str) -> dict[str, list[str]]:
     return sections
 
 
-def _parameters(path: Path, lines: list[str] | tuple[str, ...]) -> dict[str, float]:
-    """Return the parameters of the section $ROAD_CRG."""
+def _modifiers(path: Path, lines: Sequence[str]) -> tuple[str, ...]:
+    """Return the names of the modifiers that move the road as a whole: a car drives over the same heights.
+
+    Raises:
+        DataError: a modifier that changes the surface.
+    """
+    moved = []
+    for name, value in _parameters(path, lines, "ROAD_CRG_MODS").items():
+        if _MOVES.fullmatch(name):
+            moved.append(name)
+        elif not (name.startswith("scale_") and value == 1.0):
+            raise DataError(
+                f"{path}: the modifier {name} = {value:g} ($ROAD_CRG_MODS) changes the surface and is not supported; "
+                "save the modified road instead"
+            )
+    return tuple(moved)
+
+
+def _parameters(path: Path, lines: Sequence[str], section: str = "ROAD_CRG") -> dict[str, float]:
+    """Return the parameters of a section."""
     parameters = {}
     for line in lines:
         name, sign, value = line.partition("=")
@@ -182,7 +207,7 @@ def _parameters(path: Path, lines: list[str] | tuple[str, ...]) -> dict[str, flo
             try:
                 parameters[name.strip().lower()] = float(value)
             except ValueError:
-                raise DataError(f"{path}: {line!r} in $ROAD_CRG: must be a number") from None
+                raise DataError(f"{path}: {line!r} in ${section}: must be a number") from None
     return parameters
 
 

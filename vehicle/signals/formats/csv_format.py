@@ -15,6 +15,7 @@ from vehicle.signals.formats.clock_text import clock_seconds, epoch_seconds, is_
 from vehicle.signals.formats.csv_table import decimal_points, logged
 from vehicle.signals.formats.frf_file import FREQUENCY, RANDOM_ERROR, SUFFIXES, read_frf
 from vehicle.signals.formats.heads import FREQUENCY_NAME, TIME_NAME, Heads, cells_of, read_heads
+from vehicle.signals.formats.own_times import is_time, own_times, time_pairs, with_own_rasters
 from vehicle.signals.formats.spectrum_columns import joined
 from vehicle.signals.formats.table import Header
 from vehicle.signals.formats.text import Text, read_text
@@ -77,8 +78,17 @@ def read_lines(path: Path, text: Text, format_name: str) -> Measurement:
     header = Header(path=path, line=start + 1, cells=heads.names, delimiter=delimiter or " ")
     rows, points = decimal_points(numbers, rows, header)
     notices += points
-    values = logged(numbers, rows, header, _key(heads, kinds))
+    heads_of = zip(kinds, heads.names, heads.units, strict=True)
+    columns = [("time" if is_time(*head) else "channel") if each == "number" else each for each, *head in heads_of]
+    pairs = {} if "clock" in kinds else time_pairs(columns)
+    remarks_of: dict[int, str] = {}
+    values = logged(numbers, rows, header, -1 if pairs else _key(heads, kinds), remarks_of)
+    own_axes = own_times(path, heads.names, heads.units, pairs, list(values.T)) if pairs else {}
+    if pairs and not own_axes:
+        values = logged(numbers, rows, header, _key(heads, kinds), remarks_of)
     axis = _axis(path, heads, kinds, values, texts, numbers)
+    if own_axes:
+        axis = axis._replace(values=None, columns=tuple(sorted(set(pairs.values()))))
     notices += axis.notices
     text_columns = [name for name, column_type, n in zip(heads.names, kinds, range(len(kinds)), strict=True)
             if column_type != "number" and n not in axis.columns]  # fmt: skip
@@ -89,17 +99,16 @@ def read_lines(path: Path, text: Text, format_name: str) -> Measurement:
             name=name,
             values=np.ascontiguousarray(values[:, index]),
             unit=heads.units[index],
-            axis=axis.values,
+            axis=own_axes.get(index, axis.values),
             kind="frequency" if axis.kind == "frequency" else "time",
             function="time history" if axis.kind == "time" else "spectrum",
             place=heads.sources[index],
-            remark=axis.remark if index in axis.columns else "",
+            remark=axis.remark if index in axis.columns else remarks_of.get(index, ""),
         )
         for index, name in enumerate(heads.names)
-        if kinds[index] == "number" and (index not in axis.columns or axis.values is None)
+        if kinds[index] == "number" and (index not in axis.columns or (axis.values is None and not own_axes))
     )
-    if axis.kind == "frequency":
-        channels = joined(channels)
+    channels = joined(channels) if axis.kind == "frequency" else tuple(with_own_rasters(channels))
     if axis.values is None:
         notices += _rates_above(lines[:start])
     above = [line.strip(' \t#;,"') for line in lines[: heads.first] if not line.strip('" ').lower().startswith("sep=")]

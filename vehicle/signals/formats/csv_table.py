@@ -2,6 +2,7 @@
 
 import csv
 import io
+import itertools
 import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -17,6 +18,9 @@ from vehicle.signals.formats.text import LARGEST, Text, read_text
 
 ROWS_AT_ONCE = 4096
 """Number of rows written at once, to limit the memory for the text of a long table."""
+
+TITLE_LINES = 400
+"""Maximum number of lines above a header."""
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?", re.ASCII)
@@ -41,12 +45,23 @@ def read(path: Path, wanted: Wanted) -> Table:
     if not head:
         raise DataError(f"{path}: contains only comments; must have the columns {wanted.needed} in a header line and "
             "one row per sample")  # fmt: skip
-    delimiter = next((sign for sign in (";", "\t") if sign in first), ",")
-    header = Header(path=path, line=head, cells=tuple(_split(first, delimiter)), delimiter=delimiter)
-    key = wanted.key(header)
-    notices = list(text.notices)
-    if delimiter != ",":
-        notices.append(f"delimiter {delimiter!r} accepted; ',' is the usual one")
+    header, notices = _header(path, head, first), list(text.notices)
+    try:
+        key = wanted.key(header)
+    except DataError:
+        below = _header_below(path, itertools.islice(numbered, TITLE_LINES))
+        if below is None:
+            raise
+        try:
+            key = wanted.key(below)
+        except DataError:
+            below = None
+        if below is None:
+            raise
+        header, head = below, below.line
+        notices.append(f"the lines above the header in line {head} are skipped")
+    if header.delimiter != ",":
+        notices.append(f"delimiter {header.delimiter!r} accepted; ',' is the usual one")
     parsed = _plain(text, header)
     if parsed is None:
         lines = text.lines
@@ -59,6 +74,25 @@ def read(path: Path, wanted: Wanted) -> Table:
         values = fast(rows, header)
         parsed = careful(numbers, rows, header, key, wanted) if values is None else values, np.array(numbers)
     return Table(header=header, key=key, values=parsed[0], lines=parsed[1], notices=tuple(notices), sha256=text.sha256)
+
+
+def _header(path: Path, number: int, line: str) -> Header:
+    """Return the cells of a header line, and the delimiter."""
+    delimiter = next((sign for sign in (";", "\t") if sign in line), ",")
+    return Header(path=path, line=number, cells=tuple(_split(line, delimiter)), delimiter=delimiter)
+
+
+def _header_below(path: Path, lines: Iterable[tuple[int, str]]) -> Header | None:
+    """Return the header below lines of a title: the line directly above the first row of numbers; None without one."""
+    above: Header | None = None
+    for number, line in lines:
+        if _is_comment(line):
+            continue
+        header = _header(path, number, line)
+        if any(map(_NUMBER.fullmatch, header.cells)):
+            return above if above is not None and len(above.cells) == len(header.cells) else None
+        above = header
+    return None
 
 
 def _plain(text: Text, header: Header) -> tuple[Vector, NDArray[np.int64]] | None:
@@ -205,26 +239,36 @@ def fast_with_gaps(rows: list[str], header: Header, key: int) -> Vector | None:
     return values
 
 
-def logged(numbers: list[int], rows: list[str], header: Header, key: int = -1) -> Vector:
-    """Parse the numbers of a logger as fast as their cells allow, (rows, columns), NaN for missing values."""
+def logged(
+    numbers: list[int], rows: list[str], header: Header, key: int = -1, texts: dict[int, str] | None = None
+) -> Vector:
+    """Parse the numbers of a logger as fast as their cells allow, (rows, columns), NaN for missing values.
+
+    Args:
+        numbers, rows, header, key: see `careful`.
+        texts: receives the first text among the numbers of a column, and its line; None refuses texts.
+    """
     values = fast(rows, header)
     values = fast_with_gaps(rows, header, key) if values is None else values
     wanted = Wanted(needed="", key=lambda _: key, missing="mark")
-    return careful(numbers, rows, header, key, wanted) if values is None else values
+    return careful(numbers, rows, header, key, wanted, texts) if values is None else values
 
 
-def careful(numbers: list[int], rows: list[str], header: Header, key: int, wanted: Wanted) -> Vector:
+def careful(
+    numbers: list[int], rows: list[str], header: Header, key: int, wanted: Wanted, texts: dict[int, str] | None = None
+) -> Vector:
     """Parse numbers cell by cell, (rows, columns), NaN for missing values if `Wanted.missing` allows.
 
     Args:
         rows, header: see `fast_with_gaps`.
         key: index of the column of times or frequencies; -1 for none.
         wanted: requirements on the table.
+        texts: see `logged`.
 
     Raises:
         DataError: a non-numeric cell, or a row with another number of cells.
     """
-    width = len(header.cells)
+    width, used = len(header.cells), None if wanted.columns is None else wanted.columns(header)
     values: Vector = np.full((len(rows), width), np.nan)
     for index, (line, row) in enumerate(zip(numbers, rows, strict=True)):
         cells = _split(row, header.delimiter)
@@ -236,9 +280,14 @@ def careful(numbers: list[int], rows: list[str], header: Header, key: int, wante
                 values[index, column] = number
                 continue
             where = f"{header.path}:{line}:{column + 1}: column {header.cells[column]!r}"
+            if used is not None and column not in used and column != key:
+                continue
             if np.isfinite(number) and wanted.missing != "mark":
                 raise DataError(f"{where} is {cell!r}, must be a number up to {LARGEST:g}; repair the cell")
             if not (_MISSING.fullmatch(cell) or _SPREADSHEET_ERROR.match(cell) or not np.isnan(number)):
+                if texts is not None and column != key:
+                    texts.setdefault(column, f"{cell!r} in line {line} is no number")
+                    continue
                 raise DataError(f"{where} is {cell!r}, must be a number with a decimal point, such as -1.25e-4")
             if column == key:
                 stamp = "time stamp" if header.cells[column].lower().startswith("time") else "frequency"

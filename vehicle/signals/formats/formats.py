@@ -68,6 +68,7 @@ FORMATS = (
     Format(name="mat", recognise=signatures.is_matlab, reader="matlab_format", writer="matlab_format"),
     Format(name="lvm", recognise=signatures.starting(b"LabVIEW Measurement"), reader="lvm_format"),
     Format(name="can", recognise=signatures.is_can_log, reader="can_format", databases=True),
+    Format(name="blf", recognise=signatures.starting(b"LOGG"), reader="blf_format", databases=True),
     Format(name="vbo", recognise=signatures.is_vbo, reader="vbo_format"),
     Format(name="crg", recognise=signatures.is_crg, reader="crg_format"),
     Format(name="uff", recognise=signatures.is_uff, reader="uff_format", writer="uff_writer"),

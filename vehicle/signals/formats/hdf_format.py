@@ -13,10 +13,12 @@ from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel, Measurement, even_step, uniform_axis
 from vehicle.signals.formats.heads import split_head, time_key
-from vehicle.signals.formats.matlab_format import channels_of
+from vehicle.signals.formats.matlab_format import with_tables
+from vehicle.signals.formats.mixed_sources import SAMPLED, check_alternation
 from vehicle.signals.formats.optional_library import extra, reading
 from vehicle.signals.formats.packed_values import attribute_text, unpacked
 from vehicle.signals.formats.pandas_frames import frame_channels
+from vehicle.signals.formats.stated_rate import number_of, stated_step
 from vehicle.signals.formats.units import seconds_in
 from vehicle.signals.formats.unpacked_size import require_unpacked
 
@@ -34,6 +36,9 @@ LONG_UNITS = {"days": 86400.0, "hours": 3600.0, "minutes": 60.0}
 NO_VALUES = "This is a netCDF dimension but not a netCDF variable"
 """Begin of the attribute NAME of an array that netCDF writes for a dimension alone; its numbers have no meaning."""
 
+STARTS = ("start", "t0", "start_time", "starting_time", "wf_start_offset")
+"""Names of the time of the first sample [s], next to a rate."""
+
 AXES = "axes"
 """Name of the group with the uneven axes, under the names of their channels."""
 
@@ -41,20 +46,22 @@ AXES = "axes"
 def read(path: Path) -> Measurement:
     """Read the structures of a MATLAB file, or all numeric arrays of another HDF5 file; errors: see `read_record`."""
     h5py = extra("h5py", "hdf5", "an HDF5 file (MAT 7.3)")
-    start = ""
+    start, notices = "", list[str]()
+    variables: dict[str, Any] | None = None
+    objects: dict[str, str] = {}
     with reading(path, "HDF5", "it may be truncated; export it again"), h5py.File(path, "r") as file:
         require_unpacked(path, _size(file, h5py), path.stat().st_size)
         if any("MATLAB_class" in item.attrs for item in file.values()):
             objects = {name: matlab_class for name, item in file.items() if (matlab_class := _object_class(item))}
             names = [name for name in file if not name.startswith("#") and name not in objects]
-            variables = {name: _matlab(file, file[name], h5py) for name in names}
-            variables = {name: item for name, item in variables.items() if item is not None}
-            channels, notices = channels_of(variables, path, objects)
+            read_variables = {name: _matlab(file, file[name], h5py) for name in names}
+            variables = {name: item for name, item in read_variables.items() if item is not None}
             program = "MATLAB 7.3"
         else:
-            notices = []
             channels, start = _walk(path, file, h5py, notices)
             program = _attribute(file, "program")
+    if variables is not None:
+        channels, notices, start = with_tables(variables, path, objects)
     if not channels:
         raise DataError(f"{path}: contains no numeric array; export the channels as arrays of numbers")
     return Measurement(
@@ -83,7 +90,7 @@ def _walk(path: Path, file: Any, h5py: Any, notices: list[str]) -> tuple[tuple[C
         for name, item in group.items():
             label = f"{prefix}{name}"
             if isinstance(item, h5py.Dataset):
-                all_channels.extend(_arrays(label, item, notices))
+                all_channels.extend(_arrays(path, label, item, h5py, notices))
             elif item.attrs.get("pandas_type") is not None:
                 channels, start = frame_channels(path, label, item)
                 all_channels.extend(channels)
@@ -132,12 +139,14 @@ def _matlab(file: Any, variable: Any, h5py: Any) -> Any:
     return np.asarray(values).T
 
 
-def _arrays(name: str, dataset: Any, notices: list[str]) -> list[Channel]:
+def _arrays(path: Path, name: str, dataset: Any, h5py: Any, notices: list[str]) -> list[Channel]:
     """Return the channels of an array: its columns, or its rows if these are at least `LONG` times longer."""
     if name.startswith(f"{AXES}/") or dataset.size is None or dataset.size < 2:
         return []
     if dataset.dtype.names is not None:
-        return _fields(name, dataset, notices)
+        return _fields(path, name, dataset, notices)
+    if h5py.check_string_dtype(dataset.dtype) is not None and dataset.ndim == 1:
+        check_alternation(path, name, [attribute_text(cell) for cell in dataset[:SAMPLED]])
     if (
         dataset.dtype.kind not in "fiuc"
         or dataset.ndim not in (1, 2)
@@ -152,14 +161,17 @@ def _arrays(name: str, dataset: Any, notices: list[str]) -> list[Channel]:
             notices.append(f"array {name!r} of {len(values)} x {values.shape[1]}: each row is a channel")
         values, index_text = values.T, "({},:)"
     values = values.reshape(len(values), -1)
-    step, start = dataset.attrs.get("step"), float(dataset.attrs.get("start", 0.0))
+    step = number_of(dataset.attrs.get("step", ""))[0]
+    start = number_of(dataset.attrs.get("start", 0.0))[0] or 0.0
     axis_quantity = _attribute(dataset, "kind")
-    axis = uniform_axis(len(values), float(step), start) if step is not None and step > 0.0 and axis_quantity else None
+    axis = uniform_axis(len(values), step, start) if step is not None and step > 0.0 and axis_quantity else None
     stored_axis = dataset.file.get(f"{AXES}/{name}")
     if getattr(stored_axis, "shape", None) == (len(values),) and axis_quantity:
         axis = np.asarray(stored_axis[()], dtype=np.float64)
     if axis is None:
         axis = _coordinate(dataset, len(values))
+    if axis is None and dataset.dtype.kind != "c" and not axis_quantity:
+        axis = _stated_axis(name, dataset, len(values), notices)
     label = _attribute(dataset, "name") or name
     unit = _attribute(dataset, "unit") or _attribute(dataset, "units")
     return [
@@ -195,7 +207,27 @@ def _coordinate(dataset: Any, count: int) -> Vector | None:
     return times - times[0] if since else times
 
 
-def _fields(name: str, dataset: Any, notices: list[str]) -> list[Channel]:
+def _stated_axis(name: str, dataset: Any, count: int, notices: list[str]) -> Vector | None:
+    """Return times [s] from a rate or step among the attributes and single numbers of an array or its groups."""
+    item = dataset
+    while True:
+        numbers = dict(item.attrs)
+        if item is not dataset:
+            numbers |= {key: inner[()] for key, inner in item.items() if getattr(inner, "size", None) == 1}
+            if "rate" in getattr(item.get("starting_time"), "attrs", {}):  # NWB, TimeSeries
+                numbers |= {"sample_rate": item["starting_time"].attrs["rate"], "start": item["starting_time"][()]}
+        step, remark = stated_step(numbers)
+        if remark:
+            notices.append(f"array {name!r}: {remark}")
+        if step is not None:
+            start = next((number_of(numbers[key])[0] for key in STARTS if key in numbers), None)
+            return uniform_axis(count, step, start or 0.0)
+        if remark or item.name == "/":
+            return None
+        item = item.parent
+
+
+def _fields(path: Path, name: str, dataset: Any, notices: list[str]) -> list[Channel]:
     """Return the fields of a record array as channels; a time field becomes their axis."""
     if dataset.ndim != 1:
         notices.append(f"array {name!r} is ignored: it has records in {dataset.ndim} dimensions, must be one dimension")
@@ -203,6 +235,8 @@ def _fields(name: str, dataset: Any, notices: list[str]) -> list[Channel]:
     table = dataset[()]
     numeric = [field for field in table.dtype.names if table[field].dtype.kind in "fiu" and table[field].ndim == 1]
     others = [field for field in table.dtype.names if field not in numeric]
+    for field in others:
+        check_alternation(path, field, [attribute_text(cell) for cell in table[field][:SAMPLED]])
     if others:
         notices.append(f"fields of {name!r} without numbers are ignored: {', '.join(map(repr, others))}")
     heads = {field: split_head(field) for field in numeric}

@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 
 from vehicle.arrays import Vector
-from vehicle.errors import DataError
+from vehicle.errors import DataError, MissingPartError
 from vehicle.signals.formats.channel import Channel, Measurement, check_length, clock_step, even_step, uniform_axis
 from vehicle.signals.formats.matlab_elements import COMPRESSED, MATRIX, check_matrix, object_name
 from vehicle.signals.formats.matlab_structures import columns_of, is_structure, structure_channels, word
+from vehicle.signals.formats.matlab_tables import TABLES, table_channels
 from vehicle.signals.formats.optional_library import reading
 from vehicle.signals.formats.units import find_ratio, find_unit
 from vehicle.signals.formats.unpacked_size import require_unpacked
@@ -34,14 +35,45 @@ def read(path: Path) -> Measurement:
     texts = [str(warning.message).split("\n")[0] for warning in caught]
     warned = [text for text in texts if 'variable name "None"' not in text]  # of objects, which have no name
     program = variables.get("__header__", b"")
-    channels, notices = channels_of(variables, path, objects)
+    channels, notices, start = with_tables(variables, path, objects)
     return Measurement(
         path=path,
         format="mat",
         channels=channels,
+        start=start,
         program=(program.decode("latin-1") if isinstance(program, bytes) else str(program)).strip()[:80],
         notices=(*warned, *notices),
     )
+
+
+def with_tables(
+    variables: Mapping[str, Any], path: Path, objects: Mapping[str, str]
+) -> tuple[tuple[Channel, ...], list[str], str]:
+    """Return the channels of MATLAB variables and of tables and timetables, notices, and the start of dates.
+
+    Args:
+        variables, objects: see `channels_of`.
+
+    Raises:
+        DataError: no channels, or a damaged table without other channels.
+        MissingPartError: the file has tables and no other channels, and mat-io is not installed.
+    """
+    tables = {name: class_name for name, class_name in objects.items() if class_name in TABLES}
+    others = {name: class_name for name, class_name in objects.items() if name not in tables}
+    if not tables:
+        return (*channels_of(variables, path, objects), "")
+    arrays = {name: value for name, value in variables.items() if name not in tables}
+    try:
+        channels, notices = channels_of(arrays, path, others)
+    except DataError:  # tables alone
+        channels, notices = (), []
+    try:
+        of_tables, said, start = table_channels(path, tables)
+    except (MissingPartError, DataError) as error:
+        if not channels:
+            raise
+        return channels, [*notices, f"ignored: {', '.join(tables)}: {error}"], ""
+    return (*of_tables, *channels), [*said, *notices], start
 
 
 def channels_of(

@@ -93,5 +93,7 @@ def _missing(dataset: Any, packed: NDArray[Any], values: NDArray[Any]) -> Mask:
 
 
 def attribute_text(value: Any) -> str:
-    """Return an attribute as text; empty for a missing attribute."""
+    """Return an attribute as text, also of an array of length one; empty for a missing attribute."""
+    if isinstance(value, np.ndarray) and value.size == 1:
+        value = value.reshape(-1)[0]
     return value.decode("utf-8", "replace") if isinstance(value, bytes) else "" if value is None else str(value)

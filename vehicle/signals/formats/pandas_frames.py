@@ -17,6 +17,8 @@ from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel
 from vehicle.signals.formats.heads import split_head, time_key
+from vehicle.signals.formats.mixed_sources import rows_at_once
+from vehicle.signals.formats.own_times import with_own_rasters
 from vehicle.signals.formats.packed_values import attribute_text
 from vehicle.signals.formats.units import seconds_in
 
@@ -42,13 +44,15 @@ def frame_channels(path: Path, name: str, group: Any) -> tuple[list[Channel], st
         )
     index = group["axis1" if frame_type == "frame" else "index"]
     columns: dict[str, Vector] = {}
+    unreadable: list[str] = []
     if frame_type == "series":
         title = _text(group.attrs.get("name")) or name
         columns[title] = _numbers(group["values"])
     else:
-        for number in range(int(group.attrs.get("nblocks", 0))):
+        for number in range(int(np.ravel(group.attrs.get("nblocks", 0))[0])):
             block = group[f"block{number}_values"]
             if block.dtype.kind not in "fiub":
+                unreadable += [_text(item_name) for item_name in group[f"block{number}_items"][()]]
                 continue
             values = np.asarray(block[()])
             values = values if block.attrs.get("transposed", True) else values.T
@@ -64,6 +68,11 @@ def frame_channels(path: Path, name: str, group: Any) -> tuple[list[Channel], st
     heads = {column: split_head(column) for column in columns}
     if axis is None and (key := time_key(heads)) is not None:
         axis = columns.pop(key) * seconds_in(heads[key][1])
+    if axis is not None and unreadable and (rows := rows_at_once(axis)) > 1:
+        raise DataError(
+            f"{path}: {name!r} has {rows} rows for each time, and the column {unreadable[0]!r} is not readable without "
+            "pandas: probably the names of sensors; write one column per sensor"
+        )
     channels = [
         Channel(name=heads[column][0], values=values, unit=heads[column][1], axis=axis, place=name)
         for column, values in columns.items()
@@ -72,7 +81,7 @@ def frame_channels(path: Path, name: str, group: Any) -> tuple[list[Channel], st
         channels.insert(
             0, Channel(name=_text(index.attrs.get("name")) or "index", values=index_values, axis=axis, place=name)
         )
-    return channels, start
+    return with_own_rasters(channels), start
 
 
 def _index(index: Any) -> tuple[Vector | None, str, Vector | None]:

@@ -6,13 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from vehicle.arrays import Vector
 from vehicle.errors import DataError
-from vehicle.signals.formats.channel import Channel, Measurement
-from vehicle.signals.formats.clock_text import epoch_seconds
-from vehicle.signals.formats.heads import TIME_NAME, split_head
+from vehicle.signals.formats.channel import Measurement
+from vehicle.signals.formats.mixed_sources import SAMPLED, check_alternation
 from vehicle.signals.formats.optional_library import extra, reading
-from vehicle.signals.formats.units import seconds_in
+from vehicle.signals.formats.typed_columns import TypedColumn, typed_channels
 from vehicle.signals.formats.unpacked_size import require_unpacked
 
 
@@ -37,17 +35,16 @@ def read(path: Path) -> Measurement:
             require_unpacked(path, needed, path.stat().st_size)
             skipped = [field.name for n, field in enumerate(fields) if n not in wanted]
             table = file.read(columns=[fields[n].name for n in wanted])
+            named = [each.name for each in fields if arrow.is_dictionary(each.type) or "string" in str(each.type)]
+            first = next(file.iter_batches(SAMPLED, columns=named), None) if named else None
+            texts = {} if first is None else first.to_pydict()
             program = str(file.metadata.created_by or "")
         columns = [(name, *_column(table.column(n))) for n, name in enumerate(table.column_names)]
+    for name, cells in texts.items():
+        check_alternation(path, name, ["" if cell is None else str(cell) for cell in cells])
     if skipped:
         notices.append(f"columns without numbers are ignored: {', '.join(map(repr, skipped[:12]))}")
-    axis, key, start = _axis(columns, notices)
-    heads = [split_head(name) for name, *_ in columns]
-    channels = [
-        Channel(name=text, values=np.asarray(columns[index][1], dtype=np.float64), unit=unit, axis=axis)
-        for index, (text, unit) in enumerate(heads)
-        if index != key
-    ]
+    channels, start = typed_channels(path, [TypedColumn(*column) for column in columns], notices)
     if not channels or not rows:
         raise DataError(
             f"{path}: contains no column with numbers, only "
@@ -72,23 +69,3 @@ def _column(column: Any) -> tuple[Any, str]:
         column = column.cast("float64")
     values = np.asarray(column.to_numpy())
     return values if unit and values.dtype.kind == "i" else values.astype(np.float64), unit
-
-
-def _axis(columns: list[tuple[str, Any, str]], notices: list[str]) -> tuple[Vector | None, int, str]:
-    """Return times [s], index of their column, and start, from dates, durations, or a column named time with a unit."""
-    for index, (name, values, unit) in enumerate(columns):
-        epoch = epoch_seconds(values, unit) if unit else None
-        if epoch is not None:
-            notices.append(f"column {name!r} contains dates: the time begins at {epoch[1]}")
-            return epoch[0], index, epoch[1]
-    for index, (name, values, unit) in enumerate(columns):
-        text, unit_in_name = split_head(name)
-        factor = seconds_in(unit or unit_in_name)
-        if (unit or TIME_NAME.fullmatch(text)) and factor:
-            return values * factor, index, ""
-    for index, (name, values, _) in enumerate(columns):
-        epoch = epoch_seconds(values, "") if TIME_NAME.fullmatch(split_head(name)[0]) else None
-        if epoch is not None:
-            notices.append(f"column {name!r} counts {epoch[2]} since 1970: the time begins at {epoch[1]}")
-            return epoch[0], index, epoch[1]
-    return None, -1, ""

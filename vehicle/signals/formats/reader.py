@@ -10,6 +10,7 @@ from vehicle.signals.formats.channel import Measurement
 from vehicle.signals.formats.clock import check_increasing, check_stamps, check_uniform, without_rounding
 from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.formats import recognised_format
+from vehicle.signals.formats.mixed_sources import check_cycles
 from vehicle.signals.formats.table import TIME, Record, Wanted, key_column, name_and_unit
 from vehicle.signals.formats.table_file import read_table
 
@@ -37,10 +38,11 @@ def read_record(path: str | Path, databases: Sequence[Path] = ()) -> Measurement
     if databases and not recognised.databases:
         raise ConfigurationError(
             f"{path}: is a file of the format {recognised.name}, but --dbc decodes logs of a CAN bus (MDF, "
-            ".asc, .trc, candump); leave --dbc out"
+            "BLF, .asc, .trc, candump); leave --dbc out"
         )
     read = recognised.function("reader", "read")
     measurement: Measurement = read(file, databases) if databases else read(file)
+    check_cycles(measurement)
     return measurement if measurement.sha256 else replace(measurement, sha256=digest(file))
 
 

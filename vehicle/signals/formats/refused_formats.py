@@ -1,21 +1,16 @@
 """Reject recognised but unsupported formats: the error names the format and an alternative for the export."""
 
+from pathlib import Path
+
 from vehicle.errors import DataError
-from vehicle.signals.formats.signatures import Head
+from vehicle.signals.formats.signatures import Head, zip_names
 
 SIGNATURES = {
     b"|CF,": ("FAMOS", "UFF 58, MAT or CSV"),
-    b"<usi:tdm": ("TDM", "TDMS or CSV"),
+    b"<usi:tdm": ("TDM of DIAdem", "TDMS or CSV"),
     b"DEWESOFT": ("Dewesoft", "UFF 58, MAT or MDF4"),
     b"$OP2": ("Nastran OP2", "UFF 55 or CSV"),
     b"CDF": ("netCDF of the classic form", "netCDF-4, as `nccopy -k nc4 IN.nc OUT.nc` does"),
-    b"LOGG": (
-        "log of a CAN bus (Vector BLF)",
-        (
-            "MDF4 or ASC, for example with `python -m can.logconvert IN.blf OUT.asc` of python-can, and give it "
-            "with --dbc FILE"
-        ),
-    ),
     b"ULog\x01\x12\x35": ("PX4 ULog", "CSV, for example with `ulog2csv FILE` of pyulog"),
 }
 """First bytes of a file -> name of the format, and alternative for the export."""
@@ -38,6 +33,17 @@ ENDINGS = {
 }
 """File extension -> name of the format, and alternative, for binary files without a known signature."""
 
+CONTAINERS = {
+    ".tdm": ("TDM of DIAdem", SIGNATURES[b"<usi:tdm"][1]),
+    ".tdx": ("TDM of DIAdem", SIGNATURES[b"<usi:tdm"][1]),
+    ".atfx": ("ATFX", "UFF 58 or MAT"),
+    "content.xml": ("spreadsheet of OpenDocument", "XLSX or CSV"),
+    "modelDescription.xml": ("FMU, which is a model and no measurement", "the results of its simulation"),
+    "simulink/blockdiagram.xml": ("Simulink model, which is no measurement", "the logged signals as MAT or CSV"),
+    "word/document.xml": ("text document", "CSV"),
+}
+"""Extension or name of a file in a ZIP archive -> name of the format, and alternative for the export."""
+
 EBML_SIGNATURE = b"\x1aE\xdf\xa3"
 TEXT_ENDINGS = (".csv", ".txt", ".asc")
 
@@ -52,6 +58,13 @@ def refuse(head: Head) -> None:
         DataError: a known but unsupported format, or binary data.
     """
     path, data, ending = head.path, head.data, head.path.suffix.lower()
+    if (names := zip_names(head)) is not None:
+        contents = (CONTAINERS.get(Path(name).suffix.lower()) or CONTAINERS.get(name) for name in names)
+        name, instead = next(filter(None, contents), ENDINGS.get(ending, ("", "")))
+        shown = ", ".join(names[:4])
+        if name:
+            raise DataError(f"{path}: {name}, in a ZIP archive ({shown}), not supported; export {instead}")
+        raise DataError(f"{path}: ZIP archive of {shown}, not supported; unpack it, and use a file in it")
     if data.startswith(EBML_SIGNATURE):
         if b"mide" in data[:64]:
             raise DataError(

@@ -67,14 +67,14 @@ def read(path: Path) -> Measurement:
         notices.append(f"SAMPLES is missing in the header: {padding_notice}")
     step, remark = clock_step(step)
     axis = uniform_axis(samples, step)
-    channel_list = []
+    channel_list, constant = [], _same_limits(head, channels)
     for index in range(channels):
         with np.errstate(invalid="ignore"):
             values = table[:, index, :].reshape(-1)[:samples].astype(np.float64)
         number = index + 1
         if number_type == "i2":
             values *= _number(path, head, f"SCALE.CHAN_{number}")
-        _check_values(path, head, number, values)
+        notices += _check_values(path, head, number, values, constant)
         channel_list.append(
             Channel(
                 name=head.get(f"DESC.CHAN_{number}", f"channel {number}"),
@@ -141,31 +141,48 @@ def _number(path: Path, head: dict[str, str], key: str) -> float:
     return value
 
 
-def _check_values(path: Path, head: dict[str, str], number: int, values: np.ndarray) -> None:
-    """Reject numbers that are not finite or far beyond the limits in the header (wrong scale)."""
+def _limits(head: dict[str, str], number: int) -> tuple[float, float] | None:
+    """Return the limits of a channel in the header; None if missing."""
+    try:
+        return float(head[f"LOWER_LIMIT.CHAN_{number}"]), float(head[f"UPPER_LIMIT.CHAN_{number}"])
+    except (KeyError, ValueError):
+        return None
+
+
+def _same_limits(head: dict[str, str], channels: int) -> bool:
+    """Return True if the limits are a constant of the writer: +-1, or equal for all of several channels."""
+    limits = {_limits(head, number) for number in range(1, channels + 1)}
+    return limits == {(-1.0, 1.0)} or (channels > 1 and len(limits) == 1)
+
+
+def _check_values(path: Path, head: dict[str, str], number: int, values: np.ndarray, constant: bool) -> tuple[str, ...]:
+    """Reject numbers that are not finite or far beyond the limits in the header (wrong scale).
+
+    Args:
+        constant: True if the limits are a constant of the writer; then only a notice is returned.
+    """
     if not np.isfinite(values).all() or np.abs(values).max() > LARGEST:
         raise DataError(
             f"{path}: channel {number} contains numbers that are not finite or above 1e30; is the keyword FORMAT "
             "wrong? export it again"
         )
-    limits = []
-    for key in ("LOWER_LIMIT", "UPPER_LIMIT"):
-        try:
-            limits.append(abs(float(head[f"{key}.CHAN_{number}"])))
-        except (KeyError, ValueError):
-            return
+    limits = _limits(head, number)
+    if limits is None:
+        return ()
     largest = float(np.abs(values).max())
     try:  # nCode writes limits of 1 for any channel, and its largest and smallest value elsewhere
         extremes = [abs(float(word)) for word in head[f"NCODE_STAT1_CHAN_{number}"].split(",")[:2]]
     except (KeyError, ValueError):
         extremes = [0.0]
-    if abs(max(extremes) - largest) < 0.01 * largest:
-        return
-    if max(limits) > 0.0 and largest > 2.0 * max(limits):
-        raise DataError(
-            f"{path}: channel {number} reaches {largest:g}, but its limit in the header is {max(limits):g}; the "
-            "keyword SCALE is damaged or used in another sense; export it in floating point"
-        )
+    limit = max(map(abs, limits))
+    if abs(max(extremes) - largest) < 0.01 * largest or not 0.0 < 2.0 * limit < largest:
+        return ()
+    if constant:
+        return (f"channel {number} reaches {largest:g}; the limit {limit:g} in the header is that of all channels",)
+    raise DataError(
+        f"{path}: channel {number} reaches {largest:g}, but its limit in the header is {limit:g}; the "
+        "keyword SCALE is damaged or used in another sense; export it in floating point"
+    )
 
 
 def write(path: Path, channels: tuple[Channel, ...], description: str) -> None:

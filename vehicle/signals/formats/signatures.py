@@ -10,6 +10,9 @@ from pathlib import Path
 HEAD_BYTES = 4096
 """Number of bytes read at the beginning of a file to recognise its format."""
 
+DUMP_TIME = r"(?:\d{4}-\d\d-\d\d[ T]\d\d:\d\d:)?\d+\.\d+"
+"""Pattern of a time stamp of candump: seconds, or date and time of day."""
+
 HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _VBOX = re.compile(rb"^\[(header|column names)\]\s*$", re.IGNORECASE | re.MULTILINE)
 
@@ -35,19 +38,25 @@ def starting(*signatures: bytes) -> Callable[[Head], bool]:
 
 
 def is_npz(head: Head) -> bool:
-    """Return True for a ZIP archive that is not a workbook; the reader reports a damaged archive."""
-    return head.data.startswith(b"PK") and not is_xlsx(head)
+    """Return True for a ZIP archive of arrays, or a damaged one, which the reader reports."""
+    names = zip_names(head)
+    return names is not None and (not names or any(name.endswith(".npy") for name in names))
+
+
+def zip_names(head: Head) -> list[str] | None:
+    """Return the names in a ZIP archive, none if it is damaged; None without the signature of ZIP."""
+    if not head.data.startswith(b"PK"):
+        return None
+    try:
+        with zipfile.ZipFile(head.path) as archive:
+            return archive.namelist()
+    except (zipfile.BadZipFile, OSError, NotImplementedError, ValueError):
+        return []
 
 
 def is_xlsx(head: Head) -> bool:
     """Return True for a ZIP archive with the folder of an Excel workbook."""
-    if not head.data.startswith(b"PK"):
-        return False
-    try:
-        with zipfile.ZipFile(head.path) as archive:
-            return any(name.startswith("xl/") for name in archive.namelist())
-    except (zipfile.BadZipFile, OSError, NotImplementedError, ValueError):
-        return False
+    return any(name.startswith("xl/") for name in zip_names(head) or ())
 
 
 def is_hdf5(head: Head) -> bool:
@@ -96,7 +105,7 @@ def can_log_type(text: str) -> str:
     ):
         return "trc"
     frame = r"[0-9A-Fa-f]{3,8}(#|\s+\[\d+\])"
-    return "candump" if re.match(rf"\s*\(\d+\.\d+\)\s+\S+\s+([RT]X\s\S\s\S\s+)?{frame}", text) else ""
+    return "candump" if re.match(rf"\s*\({DUMP_TIME}\)\s+\S+\s+([RT]X\s\S\s\S\s+)?{frame}", text) else ""
 
 
 def _is_matlab_4(head: Head) -> bool:

@@ -130,19 +130,34 @@ def _coarse_unit(time: Vector, steps: Vector) -> StampClock | None:
     multiples, counts = np.unique(np.rint(steps / unit), return_counts=True)
     if multiples[np.argmax(counts)] > 0.0 and counts.max() > (1.0 - ROUNDED_SHARE) * steps.size:
         return None  # few other steps may be lost samples, or rows that were written twice
-    count, mean = np.arange(time.size), float(time[-1] - time[0]) / (time.size - 1)
+    count = np.arange(time.size)
 
     def excess(step: float) -> float:
         return float(np.ptp(time - count * step)) - (1.0 + SAME) * unit
 
     half = 2.0 * unit / (time.size - 1)
-    options = {"xatol": 1e-6 * half}
-    best = float(scipy.optimize.minimize_scalar(excess, bounds=(mean - half, mean + half), options=options).x)
+    best = smallest_spread(time, unit)
     if excess(best) > 0.0 or best - 2.0 * half <= 0.0:
         return None
     # The spread is convex in the step, and one unit more than the best at a distance of unit / (n - 1).
     shortest, longest = (float(scipy.optimize.brentq(excess, best, best + sign * 2.0 * half)) for sign in (-1.0, 1.0))
     return _round_clock(1.0 / best, 1.0 / longest, 1.0 / shortest, f"are written in units of {unit:.4g} s")
+
+
+def smallest_spread(time: Vector, unit: float) -> float:
+    """Return the step T [s] of the clock with the smallest spread of t_k - k T, for stamps (n,) written in a unit [s].
+
+    The spread is convex in T, and T is within one unit / (n - 1) of the mean step. The deviation from the mean step is
+    the unknown: a search in T itself ends at the rounding error of T.
+    """
+    last = time.size - 1
+    count = np.arange(time.size) / last
+    mean = float(time[-1] - time[0]) / last
+    residual = (time - time[0] - mean * np.arange(time.size)) / unit
+    best = scipy.optimize.minimize_scalar(
+        lambda trial: np.ptp(residual - count * trial), bounds=(-2.0, 2.0), options={"xatol": 1e-6}
+    )
+    return mean + float(best.x) * unit / last
 
 
 def _unit(time: Vector) -> float | None:

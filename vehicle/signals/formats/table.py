@@ -1,7 +1,7 @@
 """Tables with named columns, as returned by the readers of table formats, and records over uniform time."""
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -60,12 +60,15 @@ class Wanted:
             must have equal length; "empty": NaN for an empty cell (undefined value), error for other texts; "mark":
             NaN for all missing values.
         remedy: remedy for a missing value, for messages.
+        columns: function from the header to the indices of the columns that are used; NaN for a text in another one.
+            None for all columns.
     """
 
     needed: str
     key: Callable[[Header], int]
     missing: Literal["refuse", "fill", "empty", "mark"] = "refuse"
     remedy: str = "repair the cell or cut the record"
+    columns: Callable[[Header], Collection[int]] | None = None
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

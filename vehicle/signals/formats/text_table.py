@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from pathlib import Path
 from typing import Literal
 
 from vehicle.errors import DataError
 from vehicle.signals.formats.clock_text import is_clock
 from vehicle.signals.formats.heads import NUMBER, NUMBER_WITH_COMMA, cells_of
+from vehicle.signals.formats.mixed_sources import SAMPLED, check_alternation
 
 TEXT_LINES = 400
 """Maximum number of lines above the numbers."""
@@ -16,14 +16,8 @@ TEXT_LINES = 400
 AGREEING = 4
 """Number of consistent lines that mark the beginning of the table."""
 
-SAMPLED = 200
-"""Number of rows, spread over the file, that determine the type of a column whose first cells are empty or texts."""
-
 SAME_SHAPE = 0.9
 """Minimum share of consistent sampled rows in a table with text columns [-]."""
-
-LARGEST_KINDS = 64
-"""Maximum number of different texts of a column that distinguishes sources of rows; more are remarks."""
 
 DELIMITERS = (";", "\t", ",", "")
 
@@ -57,6 +51,8 @@ def find_table(path: Path, lines: Sequence[str]) -> TextTable:
             for start in range(min(TEXT_LINES, len(lines))):
                 kinds = _shape(lines, start, delimiter, allowed)
                 if kinds is not None:
+                    while start and _is_first_row(lines[start - 1], delimiter, kinds):
+                        start -= 1
                     return TextTable(start=start, delimiter=delimiter, kinds=kinds)
     for start in range(min(TEXT_LINES, len(lines))):
         following = [line for line in lines[start : start + AGREEING] if line.strip()]
@@ -65,6 +61,17 @@ def find_table(path: Path, lines: Sequence[str]) -> TextTable:
     raise DataError(
         f"{path}: found no table of numbers in the first {TEXT_LINES} lines; must be rows of numbers, separated "
         "by ';', tab, ',' or blanks, with a line of names and units above"
+    )
+
+
+def _is_first_row(line: str, delimiter: str, columns: Sequence[Kind]) -> bool:
+    """Return True if a line above a table is a row of it: a column of texts may begin with numbers, or the reverse."""
+    kinds = kinds_of(line, delimiter)
+    return (
+        bool(delimiter)
+        and len(kinds) == len(columns)
+        and kinds[0] == columns[0] in ("number", "clock")
+        and sum(cell in (column, "missing") for cell, column in zip(kinds, columns, strict=True)) * 2 >= len(columns)
     )
 
 
@@ -153,8 +160,6 @@ def settled_kinds(path: Path, rows: Sequence[str], table: TextTable, names: Sequ
     Raises:
         DataError: rows of different sensors alternate in the table.
     """
-    if all(column_kind == "number" for column_kind in table.kinds):
-        return table.kinds
     sampled = [cells_of(row, table.delimiter) for row in _spread(rows)]
     settled: list[Kind] = []
     for column, settled_kind in enumerate(table.kinds):
@@ -167,30 +172,14 @@ def settled_kinds(path: Path, rows: Sequence[str], table: TextTable, names: Sequ
         texts = sum(_kind(cell, table.delimiter) == "text" for cell in cells)
         if settled_kind == "missing":
             settled_kind = "number" if "number" in kinds or not kinds else "clock" if kinds == {"clock"} else "text"
-        elif settled_kind == "clock" and texts > len(cells) // 2:
+        elif settled_kind in ("clock", "number") and texts > len(cells) // 2:
             settled_kind = "text"
         settled.append(settled_kind)
-    _check_alternation(path, rows, settled, table.delimiter, names)
+    head = [cells_of(row, table.delimiter) for row in rows[:SAMPLED]]
+    for column, settled_kind in enumerate(settled):
+        if settled_kind == "text":
+            check_alternation(path, names[column], [row[column] for row in head if column < len(row)])
     return tuple(settled)
-
-
-def _check_alternation(
-    path: Path, rows: Sequence[str], kinds: Sequence[Kind], delimiter: str, names: Sequence[str]
-) -> None:
-    """Reject a table with alternating rows of different sensors, named in a text column."""
-    head = [cells_of(row, delimiter) for row in rows[:SAMPLED]]
-    for column, column_kind in enumerate(kinds):
-        texts = [row[column] for row in head if column < len(row)]
-        texts = [text for text in texts if text]  # a source has a name; a remark may be missing
-        different = sorted(set(texts))
-        changes = sum(1 for text, next_text in pairwise(texts) if text != next_text)
-        alternates = changes > max(1 + 0.1 * len(texts), 1.5 * len(different))  # excludes texts that change rarely
-        if column_kind == "text" and 1 < len(different) <= LARGEST_KINDS and alternates:
-            shown = ", ".join(map(repr, different[:4]))
-            raise DataError(
-                f"{path}: the table mixes rows of different sources: column {names[column]!r} alternates between "
-                f"{shown}; write one file per source"
-            )
 
 
 def with_remarks(lines: list[str], table: TextTable) -> tuple[list[str], TextTable, list[str]]:

@@ -60,7 +60,7 @@ _TABLE = {
 }
 
 UNITS = {text: Unit(*kind, factor) for kind, units in _TABLE.items() for text, factor in units.items()}
-"""Plain spelling -> unit. Case matters: m differs from M; g is gravity, in which sensors are calibrated."""
+"""Plain spelling -> unit. g is gravity, in which sensors are calibrated."""
 
 QUANTITIES = {kind[0]: kind[1] for kind in _TABLE}
 """Quantity -> SI unit."""
@@ -88,6 +88,9 @@ _SPELLINGS = {
     **dict.fromkeys(("PSI",), "psi"),
 }
 """Spellings of loggers -> spelling in `_TABLE`."""
+
+_SMALL = {text.lower(): text for text in UNITS if text not in ("nm", "Nm", "h")}
+"""Spelling in small letters -> spelling of the table, for units all in capitals. NM is a moment or a length."""
 
 _SECONDS_SQUARED = re.compile(r"/(s|sec)(\^2|²|\*\*2|\^\(2\)|/s|/sec)$")
 _NEGATIVE = re.compile(r"[ .·*]?s(\^-|\^\(-|-|⁻)(?P<power>[12¹²])\)?$")
@@ -117,6 +120,8 @@ def find_unit(text: str) -> Unit | None:
         text: unit in the file; with a number, as in "12.5 mm", the value 1 in the file means that number.
     """
     entry = UNITS.get(plain_unit(text))
+    if entry is None and text.isupper():
+        entry = UNITS.get(_SMALL.get(plain_unit(text.lower()).lower(), ""))
     scaled = _SCALED.fullmatch(text.strip()) if entry is None else None
     if scaled is None:
         return entry

@@ -96,10 +96,17 @@ def read_acceleration(path: str | Path, point: str | None = None, choice: Choice
     file = Path(path)
     axes = [axis if point is None else f"{point}_acc_{axis}" for axis in AXES]
     needed = f"time [s], {', '.join(f'{name} [m/s2]' for name in axes)} (or [g])"
-    if choice is not None or not is_table(file):
-        record = _chosen(file, choice or Choice(), axes)
+    plain = choice is None and is_table(file)
+    if plain:
+        try:
+            record = read_columns(file, needed)
+        except DataError as error:  # perhaps of a column that is not needed
+            try:
+                record, plain = _chosen(file, Choice(), axes), False
+            except DataError:
+                raise error from None
     else:
-        record = read_columns(file, needed)
+        record = _chosen(file, choice or Choice(), axes)
     # A record of z only is common; any other missing axis is accepted only if `choice` assigns axes.
     present = [name for name in axes if name in record.channels]
     partial = present == axes[2:] or (choice is not None and bool({*AXES} & {*choice.channels}))
@@ -135,7 +142,7 @@ def read_acceleration(path: str | Path, point: str | None = None, choice: Choice
             )
         xyz[axis] = values
     # `choose` checks its channels before they are filtered.
-    channel_notices = faults(xyz, record.time, moving=list(xyz)) if choice is None and is_table(file) else []
+    channel_notices = faults(xyz, record.time, moving=list(xyz)) if plain else []
     notices = (*record.notices, *events, *channel_notices, *_notices(xyz, 1.0 / record.step))
     return Record(
         time=record.time, channels=xyz, units=dict.fromkeys(xyz, "m/s2"), notices=notices, highest=record.highest

@@ -197,7 +197,8 @@ def choose(measurement: Measurement, choice: Choice) -> Chosen:
             channels[role] = channel = replace(channel, unit=unit, remark="")
         where = f"{path}: channel {index + 1} {channel.name!r}"
         if find_unit(channel.unit) is None:
-            fault = f"the unknown unit {channel.unit!r}" if channel.unit else channel.remark or "no unit"
+            remark = f" ({channel.remark})" if channel.remark else ""
+            fault = f"the unknown unit {channel.unit!r}" if channel.unit else f"no unit{remark}"
             raise DataError(f"{where} has {fault}; set --unit {role}=UNIT to one of {allowed_units()}")
         if channel.kind != "time" or np.iscomplexobj(channel.values) or channel.function in NOT_OVER_TIME:
             raise DataError(f"{where} is a {channel.function}, must be a time history; choose another channel")
@@ -290,9 +291,9 @@ def _part(path: Path, block: Block, choice: Choice, notices: list[str]) -> tuple
                 f"{f' ({channel.remark})' if channel.remark else ''}; choose another channel"
             )
         if missing:
-            at = time[np.flatnonzero(~np.isfinite(samples))[0]]
-            raise DataError(f"{path}: {role}: {missing} missing values, the first at {at:.6g} s; exclude them with "
-                            "--from and --to, or repair the file")  # fmt: skip
+            at, remark = time[np.flatnonzero(~np.isfinite(samples))[0]], channels[role].remark
+            raise DataError(f"{path}: {role}: {missing} missing values{f' ({remark})' if remark else ''}, the first at "
+                            f"{at:.6g} s; exclude them with --from and --to, or repair the file")  # fmt: skip
     time = _uniform(path, time, notices)
     motions = {role: samples for role, samples in values.items() if channels[role].quantity in MOTIONS}
     notices += faults(motions, time, moving=[role for role in motions if channels[role].quantity == "acceleration"])

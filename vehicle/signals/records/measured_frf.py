@@ -132,6 +132,15 @@ def _named_channels(measurement: Measurement, role: ResponseName, wanted: str) -
     return sorted(named, key=lambda pair: pair[0].input)
 
 
+def response_fault(channel: Channel) -> str:
+    """Return the reason why a channel over frequency is no response of a motion to a motion; empty if it is one."""
+    try:
+        _acceleration_per_displacement(channel, f"channel {channel.name!r}", "ROLE")
+    except DataError as error:
+        return str(error)
+    return ""
+
+
 def _acceleration_per_displacement(channel: Channel, where: str, name: str) -> tuple[Complex, str]:
     """Convert a response to m/s2 per m; return the values and a message on the conversion."""
     if channel.axis is None:
@@ -142,7 +151,8 @@ def _acceleration_per_displacement(channel: Channel, where: str, name: str) -> t
             "named real and imag, or magnitude and phase"
         )
     unit = find_ratio(channel.unit)
-    upper, _, lower = (unit.quantity if unit is not None else "").partition("/")
+    quantity = unit.quantity if unit is not None else ""
+    upper, _, lower = ("displacement/displacement" if quantity == "strain" else quantity).partition("/")
     if unit is None:
         raise DataError(
             f"{where} has {f'the unknown unit {channel.unit!r}' if channel.unit else channel.remark or 'no unit'}; "

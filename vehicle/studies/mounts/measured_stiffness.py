@@ -62,7 +62,7 @@ def read_stiffness(path: Path) -> MeasuredStiffness:
         ConfigurationError: the file does not exist.
         DataError: a missing or unknown column or unit, a value out of range, or too few points.
     """
-    table = read_table(path, Wanted(needed=NEEDED, key=_frequency))
+    table = read_table(path, Wanted(needed=NEEDED, key=_frequency, columns=_columns))
     columns = {name: _column(table, name) for name in UNITS}
     frequency, amplitude = columns["frequency"], columns["amplitude"]
     rows, lines = len(frequency), len(np.unique(frequency))
@@ -77,8 +77,12 @@ def read_stiffness(path: Path) -> MeasuredStiffness:
 
 def _frequency(header: Header) -> int:
     """Return the index of the frequency column; check that all columns exist once, with a known unit."""
-    columns = [_index(header, name) for name in UNITS]
-    return columns[0]
+    return _columns(header)[0]
+
+
+def _columns(header: Header) -> list[int]:
+    """Return the indices of the columns of `UNITS`; errors: see `_index`."""
+    return [_index(header, name) for name in UNITS]
 
 
 def _index(header: Header, name: str) -> int:

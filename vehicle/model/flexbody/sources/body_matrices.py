@@ -18,6 +18,13 @@ _RIGID_MOTION = 1e-3
 """Maximum frequency of a rigid motion over that of the first elastic mode [1]. Matrix entries with seven digits give
 1e-4; ground springs, or elements that resist a rotation, 0.01 and more."""
 
+_LARGEST_ROUNDED = 0.05
+"""Maximum frequency of a rigid motion that rounding explains, over that of the first elastic mode [1]: 0.25 % of its
+stiffness."""
+
+_FEWEST_DIGITS, _MOST_DIGITS = 7, 13
+"""Digits of the entries of a file that are seen as rounded: fewer may be round numbers, more have no effect."""
+
 DIRECTIONS = 9
 """Number of directions per node: three displacements, three rotations, three amplitudes inside an element."""
 
@@ -88,6 +95,8 @@ class BodyMatrices(BodyNodes):
 
     stiffness: Any
     mass: Any
+    rounding: float = 0.0
+    """Largest relative rounding error of the entries of K in their file."""
 
     def __post_init__(self) -> None:
         size = len(self.node)
@@ -201,17 +210,32 @@ class BodyMatrices(BodyNodes):
         values = scipy.linalg.eigvalsh(motions.T @ (self.stiffness @ motions), motions.T @ (self.mass @ motions))
         return float(np.sqrt(max(0.0, values[-1], -values[0])) / (2.0 * np.pi))
 
-    def require_free(self, rigid_frequency: float, first_elastic: float) -> None:
+    def rounding_frequency(self, rigid: MassProperties) -> float:
+        """Return the frequency that the rounded entries of K may give to a rigid motion [Hz].
+
+        Errors of at most d |k_ij|, uniform and independent, give a motion r the stiffness r' E r of the standard
+        deviation d (2/3 sum_ij (k_ij r_i r_j)^2)^0.5. Three of it, and twice as much for motions that combine
+        the six, are the limit.
+        """
+        unit = self.rigid_motions(rigid.cog)
+        motions = np.linalg.solve(np.linalg.cholesky(unit.T @ (self.mass @ unit)), unit.T).T
+        squares = np.einsum("ij,ij->j", motions**2, self.stiffness.multiply(self.stiffness) @ motions**2)
+        stiffness = 6.0 * self.rounding * float(np.sqrt(2.0 / 3.0 * squares.max()))
+        return float(np.sqrt(stiffness) / (2.0 * np.pi))
+
+    def require_free(self, rigid_frequency: float, first_elastic: float, rounding_frequency: float = 0.0) -> None:
         """Check that the stiffness does not resist rigid motions.
 
         Args:
             rigid_frequency: highest frequency of a rigid motion [Hz].
             first_elastic: frequency of the first elastic mode [Hz].
+            rounding_frequency: frequency that the rounding of the entries explains [Hz], see the method.
 
         Raises:
             DataError: the stiffness resists rigid motions; the message contains their frequency.
         """
-        if rigid_frequency > _RIGID_MOTION * first_elastic:
+        rounded = min(rounding_frequency, _LARGEST_ROUNDED * first_elastic)
+        if rigid_frequency > max(_RIGID_MOTION * first_elastic, rounded):
             raise DataError(
                 f"stiffness: the body is not free: its rigid motions have {rigid_frequency:.3g} Hz instead of 0, "
                 f"its first elastic mode {first_elastic:.4g} Hz. Either it is supported, or nodes and matrices "
@@ -219,3 +243,17 @@ class BodyMatrices(BodyNodes):
                 "CalculiX expands shells and beams to solids). Export the matrices of the free body; with "
                 "CalculiX, use solid elements."
             )
+
+
+def rounding_of(matrix: Any) -> float:
+    """Return the largest relative rounding error of the entries of a matrix as written in its file; 0 if unknown.
+
+    Entries of n decimal digits are whole multiples of 10^(1 - n) of their magnitude, with errors of half of that.
+    """
+    entries = np.abs(matrix.data[matrix.data != 0.0])
+    magnitude = np.floor(np.log10(entries))
+    for digits in range(1, _MOST_DIGITS + 1):
+        whole = entries * 10.0 ** (digits - 1 - magnitude)
+        if np.all(np.abs(whole - np.rint(whole)) <= 1e-6 + 1e-15 * whole):
+            return 0.5 * 10.0 ** (1 - digits) if digits >= _FEWEST_DIGITS else 0.0
+    return 0.0

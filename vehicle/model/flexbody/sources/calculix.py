@@ -7,7 +7,7 @@ import numpy as np
 
 from vehicle.arrays import Indices
 from vehicle.errors import DataError
-from vehicle.model.flexbody.sources.body_matrices import BodyMatrices
+from vehicle.model.flexbody.sources.body_matrices import BodyMatrices, rounding_of
 from vehicle.model.flexbody.sources.deck import Deck, read_deck
 from vehicle.model.flexbody.sources.text_matrices import (
     coordinate_matrix,
@@ -83,6 +83,7 @@ def assembled(
         return BodyMatrices(
             stiffness=stiffness,
             mass=mass,
+            rounding=rounding_of(stiffness),
             nodes=tuple(str(number) for number in numbers),
             positions=np.array([positions[int(number)] for number in numbers]),
             node=np.array([index[int(number)] for number in identity]),

@@ -79,7 +79,7 @@ def free_modes(body: BodyMatrices, up_to: float) -> FreeModes:
             "matrices, or raise --up-to."
         )
     rigid_frequency = body.rigid_frequency(rigid)
-    body.require_free(rigid_frequency, float(np.sqrt(elastic[0])) / (2.0 * np.pi))
+    body.require_free(rigid_frequency, float(np.sqrt(elastic[0])) / (2.0 * np.pi), body.rounding_frequency(rigid))
     kept = elastic <= limit
     missed = modes_below(body, limit) - 6 - int(kept.sum())
     if missed > 0:

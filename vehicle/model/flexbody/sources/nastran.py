@@ -30,10 +30,12 @@ class BulkData:
 
     Attributes:
         matrices: matrix name -> stored entries, (node, component, node, component) -> value.
+        others: name of a matrix of another form or type, as a load vector -> why it is neither K nor M.
         positions: node number -> position, in the unit of the file.
     """
 
     matrices: dict[str, dict[tuple[int, int, int, int], float]]
+    others: dict[str, str]
     positions: dict[int, Point]
 
 
@@ -73,14 +75,15 @@ def read_bulk_data(path: Path) -> BulkData:
     """Read the DMIG matrices and GRID points of a file.
 
     Raises:
-        DataError: an entry is damaged, a matrix complex, a point scalar, or a position in a local coordinate system.
+        DataError: an entry is damaged, a point scalar, or a position in a local coordinate system.
     """
     matrices: dict[str, dict[tuple[int, int, int, int], float]] = {}
+    others: dict[str, str] = {}
     positions: dict[int, Point] = {}
     for number, name, fields in entries(path):
         try:
             if name == "DMIG":
-                _dmig(matrices, fields)
+                _dmig(matrices, others, fields)
             elif name == "GRID":
                 if fields[1] not in ("", "0"):
                     raise ValueError(f"the position is in coordinate system {fields[1]}; use the basic system for GRID")
@@ -90,7 +93,7 @@ def read_bulk_data(path: Path) -> BulkData:
                 positions[int(fields[0])] = (x, y, z)
         except (ValueError, IndexError) as error:
             raise DataError(f"{path}, line {number}: {name} {fields[0]}: {error}.") from error
-    return BulkData(matrices=matrices, positions=positions)
+    return BulkData(matrices=matrices, others=others, positions=positions)
 
 
 def is_bulk_data(path: Path) -> bool:
@@ -116,9 +119,10 @@ def dmig_pair(path: Path, data: BulkData, names: tuple[str, str]) -> tuple[Any, 
     for letter, name in zip("KM", names, strict=True):
         candidates = [name.upper()] if name else [key for key in data.matrices if key.startswith(letter)]
         if len(candidates) != 1 or candidates[0] not in data.matrices:
+            others = "".join(f"{other} is another matrix: {fault}. " for other, fault in data.others.items())
             raise DataError(
                 f"{path}: found DMIG matrices {', '.join(data.matrices) or 'none'}, must be two, with names that "
-                f"begin with K and M. For other names give {path.name}:NAME and --mass {path.name}:NAME."
+                f"begin with K and M. {others}For other names give {path.name}:NAME and --mass {path.name}:NAME."
             )
         chosen.append(data.matrices[candidates[0]])
     rows = sorted({matrices for matrix in chosen for key in matrix for matrices in (key[:2], key[2:])})
@@ -132,14 +136,19 @@ def dmig_pair(path: Path, data: BulkData, names: tuple[str, str]) -> tuple[Any, 
     return matrices[0], matrices[1], node, component - 1
 
 
-def _dmig(matrices: dict[str, dict[tuple[int, int, int, int], float]], fields: list[str]) -> None:
+def _dmig(
+    matrices: dict[str, dict[tuple[int, int, int, int], float]], others: dict[str, str], fields: list[str]
+) -> None:
     name = fields[0].upper()
     if fields[1] == "0":  # the head of a matrix: form, type
         if int(fields[2]) not in (_SQUARE, _SYMMETRIC):
-            raise ValueError(f"the matrix form is {fields[2]}, must be 6 (symmetric) or 1 (square)")
-        if int(fields[3]) not in (1, 2):
-            raise ValueError(f"the number type is {fields[3]}, must be 1 or 2 (real)")
-        matrices.setdefault(name, {})
+            others[name] = f"the matrix form is {fields[2]}, must be 6 (symmetric) or 1 (square)"
+        elif int(fields[3]) not in (1, 2):
+            others[name] = f"the number type is {fields[3]}, must be 1 or 2 (real)"
+        else:
+            matrices.setdefault(name, {})
+        return
+    if name in others:
         return
     if name not in matrices:
         raise ValueError(
