@@ -215,7 +215,9 @@ class Controller:
         )
         if file.parameters:
             write = slave.setReal if second else slave.setFloat64
-            write([*file.parameters.values()], [getattr(control, name) for name in file.parameters])
+            values = {reference: getattr(control, name) for name, reference in file.parameters.items()}
+            values = {reference: value for reference, value in values.items() if value is not None}
+            write([*values], [*values.values()])
         if second:
             slave.setupExperiment(startTime=0.0)
             slave.enterInitializationMode()

@@ -5,6 +5,7 @@ the last name, as in "front.bushings.suspension_mount.stiffness.z". The end of a
 "suspension_mount.stiffness.z". A vehicle file may define further names in the table `alias`.
 """
 
+import contextlib
 import difflib
 import re
 import tomllib
@@ -13,6 +14,7 @@ from pathlib import PurePath
 from typing import Any
 
 from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.alternatives import NAMING, replaced_by
 from vehicle.model.parameters.quantity import PATH_PATTERN, field_quantity
 from vehicle.model.parameters.tested_range import StaleRanges
 from vehicle.model.parameters.toml_file import as_table, copy_table, literal
@@ -184,7 +186,15 @@ def override(table: Mapping[str, Any], assignments: Iterable[str], optional: Opt
     """
     result: dict[str, Any] = copy_table(table)
     ranges = StaleRanges()
-    for assignment in assignments:
+    texts = list(assignments)
+    names = [text.partition("=")[0].strip() for text in texts]
+    for name in (name for name in names if name.rpartition(".")[2] in NAMING):
+        with contextlib.suppress(ConfigurationError):
+            for owner, _, key in (path.rpartition(".") for path in meant(result, name, optional)):
+                # Only values of the car are replaced; those that the user sets too are refused as given twice.
+                for old in replaced_by({key}, owner) & set(value_at(result, owner) or {}) - _keys(names):
+                    del value_at(result, owner)[old]
+    for assignment in texts:
         name, separator, text = (part.strip() for part in assignment.partition("="))
         if not separator or not name:
             raise ConfigurationError(
@@ -200,6 +210,11 @@ def override(table: Mapping[str, Any], assignments: Iterable[str], optional: Opt
             ranges.note(path, changed=value_at(result, path) != before)
     ranges.remove_from(result)
     return result
+
+
+def _keys(paths: Iterable[str]) -> set[str]:
+    """Return the keys that paths set: the last, or that of a vector before its component."""
+    return {key for path in paths for key in path.split(".")[-2:]}
 
 
 def _set(table: dict[str, Any], path: str, assignment: str, text: str) -> None:
