@@ -3,8 +3,9 @@
 A key of the base that is excluded would otherwise count as given by the user too, or take precedence over the new key.
 """
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from fnmatch import fnmatchcase
+from typing import Any
 
 LAW = ("force", "velocity", "displacement", "stiffness", "table", "table_x", "table_y", "table_z")
 """Keys of a force law as numbers, in place of which `curve` names a file."""
@@ -40,6 +41,25 @@ def replaced_by(above: Collection[str], path: str) -> set[str]:
     if "curve" in above:
         return excluded | {*LAW} | ({"damping", "rotational_stiffness"} if is_bushing(path.split(".")) else set())
     return excluded if set(LAW).isdisjoint(above) else {*excluded, "curve"}
+
+
+def remove_excluded(table: Mapping[str, Any], paths: Iterable[str], overrides: Iterable[str]) -> None:
+    """Remove the values of a car that a new value excludes from a vehicle file in place.
+
+    Args:
+        table: the file.
+        paths: whole paths of the new value.
+        overrides: paths of all values that the user sets; those remain, and the car refuses both as given twice.
+    """
+    kept = {key for path in overrides for key in path.split(".")[-2:]}  # the last key, or that before a component
+    for path in paths:
+        *parents, name = path.split(".")
+        law: Any = table
+        for key in parents:
+            law = law.get(key) if isinstance(law, Mapping) else None
+        if isinstance(law, dict):
+            for key in (replaced_by({name}, ".".join(parents)) & set(law)) - kept:
+                del law[key]
 
 
 def is_bushing(names: Sequence[str]) -> bool:

@@ -14,7 +14,7 @@ from pathlib import PurePath
 from typing import Any
 
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.alternatives import NAMING, replaced_by
+from vehicle.model.parameters.alternatives import NAMING, remove_excluded
 from vehicle.model.parameters.quantity import PATH_PATTERN, field_quantity
 from vehicle.model.parameters.tested_range import StaleRanges
 from vehicle.model.parameters.toml_file import as_table, copy_table, literal
@@ -190,10 +190,7 @@ def override(table: Mapping[str, Any], assignments: Iterable[str], optional: Opt
     names = [text.partition("=")[0].strip() for text in texts]
     for name in (name for name in names if name.rpartition(".")[2] in NAMING):
         with contextlib.suppress(ConfigurationError):
-            for owner, _, key in (path.rpartition(".") for path in meant(result, name, optional)):
-                # Only values of the car are replaced; those that the user sets too are refused as given twice.
-                for old in replaced_by({key}, owner) & set(value_at(result, owner) or {}) - _keys(names):
-                    del value_at(result, owner)[old]
+            remove_excluded(result, meant(result, name, optional), names)
     for assignment in texts:
         name, separator, text = (part.strip() for part in assignment.partition("="))
         if not separator or not name:
@@ -210,11 +207,6 @@ def override(table: Mapping[str, Any], assignments: Iterable[str], optional: Opt
             ranges.note(path, changed=value_at(result, path) != before)
     ranges.remove_from(result)
     return result
-
-
-def _keys(paths: Iterable[str]) -> set[str]:
-    """Return the keys that paths set: the last, or that of a vector before its component."""
-    return {key for path in paths for key in path.split(".")[-2:]}
 
 
 def _set(table: dict[str, Any], path: str, assignment: str, text: str) -> None:
