@@ -28,7 +28,7 @@ from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.signals.analysis.ride_comfort import MEANING, UNWEIGHTED, WEIGHTED
 from vehicle.studies.sweeps.case import all_tyre_words
 from vehicle.studies.sweeps.case_table import table_cases
-from vehicle.studies.sweeps.indices import SobolIndices, sobol_indices, sobol_sample
+from vehicle.studies.sweeps.indices import LEAST_BASE, SobolIndices, sobol_indices, sobol_sample
 from vehicle.studies.sweeps.sobol_sweep import index_lines
 from vehicle.studies.sweeps.sweep import sweep
 
@@ -66,22 +66,24 @@ RANGES = (
 DURATION_S = 20.0
 """Evaluated part of each run [s]; with the lead every run is 30 s."""
 
-BASE, QUICK_BASE = 1024, 2
-"""Base points; each takes as many runs as there are parameters, and two."""
+BASE, QUICK_PARAMETERS = 1024, 2
+"""Base points, each of which takes as many runs as there are parameters, and two; and the parameters of a quick study,
+which takes the fewest base points that have indices."""
 
 SEED = 2006
 """Seed of the sample."""
 
 
-def points_of(base: int) -> Matrix:
+def points_of(base: int, ranges: Sequence[Range] = RANGES) -> Matrix:
     """Return the points of the runs of some base points; (base (parameters + 2), parameters)."""
-    return sobol_sample(RANGES, base, seed=SEED)
+    return sobol_sample(ranges, base, seed=SEED)
 
 
 def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     """Run the sample, draw the indices of both comfort values into the folder, and return the findings."""
     duration, lead = (2.0, 1.0) if options.quick else (DURATION_S, LEAD_S)
-    points = points_of(QUICK_BASE if options.quick else BASE)
+    ranges, base = (RANGES[:QUICK_PARAMETERS], LEAST_BASE) if options.quick else (RANGES, BASE)
+    points = points_of(base, ranges)
     road = RoadInput(
         name=f"{options.road} road",
         rms=ROAD_RMS[options.road],
@@ -91,7 +93,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
         lower_band_edge=ROAD_EDGE_HZ,
         wheel=runs.wheel,
     )
-    engine, paths = chosen_engine(options.engine), [parameter.path for parameter in RANGES]
+    engine, paths = chosen_engine(options.engine), [parameter.path for parameter in ranges]
     cases = table_cases(paths, points.tolist(), [road], engine=engine, vehicle=runs.vehicle, fixed=runs.overrides)
     (folder / "sweep").mkdir(exist_ok=True)
     table = sweep(cases, RoadMeasure(lead=lead, wheel=runs.wheel), jobs=runs.jobs, folder=folder / "sweep")
@@ -102,7 +104,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     notes, indices = [f"{caption[0].upper()}{caption[1:]}; {len(table.failed)} failed."], {}
     for name, file in ((UNWEIGHTED, "indices.png"), (WEIGHTED, "weighted_indices.png")):
         comfort = table.column(name)
-        indices[name] = sobol_indices(RANGES, comfort)
+        indices[name] = sobol_indices(ranges, comfort)
         draw_indices(folder / file, indices[name], f"{name} {caption}")
         notes.append(
             f"{name}, {MEANING[name]}: {np.nanmean(comfort):.3f} +- {np.nanstd(comfort):.3f} m/s2 (mean and scatter). "
@@ -114,7 +116,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
         title="Global sensitivity of comfort",
         claims=[],
         tyres=all_tyre_words(cases),
-        notes=[*notes, range_table(runs.car().vehicle, RANGES), *([QUICK_NOTE] if options.quick else [])],
+        notes=[*notes, range_table(runs.car().vehicle, ranges), *([QUICK_NOTE] if options.quick else [])],
         data={"caption": caption, **{name: plain(each) for name, each in indices.items()}},
     )
 

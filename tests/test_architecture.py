@@ -83,7 +83,7 @@ ROOMS: dict[str, set[str]] = {
     "replication": {"car", "excitation", "formats", "output", "records", "reduced", "rendering", "threads"},
     "sweeps": {"analysis", "car", "excitation", "flexbody", "formats", "notebook", "output"}
     | {"parameters", "reduced", "rendering", "report", "simulation", "threads"},
-    "tuning": {"analysis", "car", "excitation", "formats", "output", "parameters", "records", "reduced"}
+    "tuning": {"analysis", "car", "excitation", "flexbody", "formats", "output", "parameters", "records", "reduced"}
     | {"rendering", "report", "threads"},
     "optimisation": {"analysis", "car", "formats", "output", "parameters", "rendering", "sweeps", "targets"},
     "commands": {"analysis", "assembly", "bench", "car", "comparison", "core", "dampers", "design", "excitation"}

@@ -12,11 +12,12 @@ import pytest
 from tests.validation import validated
 from vehicle import Car
 from vehicle.__main__ import main
+from vehicle.digits import number
 from vehicle.engines.linear.first_order import first_order
 from vehicle.engines.linear.natural_modes import natural_modes
 from vehicle.errors import VehicleError
 from vehicle.runs.car.order_points import OrderPoints, order_points
-from vehicle.runs.report.order_page import order_points_sentences
+from vehicle.runs.report.order_page import order_points_sentences, order_rows
 
 IMBALANCE = {"front.right.imbalance.mass": 0.004, "front.right.imbalance.radius": 0.2}
 NO_FRICTION = {f"{axle}.damper.coulomb_friction": 0.0 for axle in ("front", "rear")}
@@ -56,18 +57,39 @@ def test_a_peak_lies_at_a_named_mode():
     car = Car.load("focus_road", {"force.a.on": "engine", "force.a.moment": [0, 1, 0]})
     natural = natural_modes(first_order(car.matrices.system, stuck=True)).frequency
     # The engine pitches below the range, and makes most of the amplitude; a mode of the body makes its peak.
-    ((largest, mode),) = found.parts
+    ((mode, largest),) = found.parts
     assert max(np.min(np.abs(natural - each.frequency)) for each in (largest, mode)) < 1e-6
     assert largest.name.startswith("engine pitch") and largest.share > 1.0 > mode.share > 0.2
     assert abs(mode.frequency - frequency) < 2.0 * mode.damping_ratio * frequency
     (sentence,) = order_points_sentences(found)
-    assert f"largest part, {100.0 * largest.share:.0f} %, others act against it: {largest.name}, natural" in sentence
+    assert mode.resonant and not largest.resonant and largest.name not in sentence
     assert f"; in resonance, {100.0 * mode.share:.0f} %: {mode.name}, natural frequency " in sentence
     assert "no damper slips" in sentence and "dampers that stick would give" in sentence
     # The spectrum of the map has the amplitude of the order in its line, within the scallop of a Hann window.
     point = 3
     line = int(np.argmin(np.abs(found.frequency - 2.0 * found.turns[point])))
     assert 0.84 < found.spectrum[point, line] / np.abs(found.amplitude[0, point]) < 1.01
+
+
+def test_rounding_is_no_result_and_limits_have_the_friction_that_acts():
+    """Order 2 has no force; of the rack, which its friction holds or not, both limits enclose the run."""
+    imbalance = {"front.right.imbalance.mass": 0.06, "front.right.imbalance.radius": 0.2}
+    car = Car.load("sedan_steering", imbalance)
+    found = order_points(car, "steering wheel rim y", speed=[90.0], orders=[1, 2], duration=4.0)
+    size = float(np.abs(found.amplitude[0, 0]))
+    assert found.stuck[0, 0] < size < found.free[0, 0] and found.frictions == "dampers and bushings"
+    row, none = order_rows(found)
+    assert none[:3] == ("2", f"< {number(float(found.floor[0]), 1)}", "–") and row[0] == "1"
+    # The limit without friction is a car whose bushings have none.
+    guides = {f"steering.bushings.rack_guide_{side}.friction_force.y": 0.0 for side in ("right", "left")}
+    without = order_points(car.with_(guides), "steering wheel rim y", speed=[90.0], orders=[1], duration=4.0)
+    assert without.free[0, 0] == pytest.approx(found.free[0, 0], rel=1e-6)
+    assert without.stuck[0, 0] == pytest.approx(found.free[0, 0], rel=0.05)  # locked dampers
+    # Where an unimportant harmonic is below the accuracy, no peak of it is named.
+    weak = Car.load("sedan", {"force.a.on": "engine", "force.a.moment": [0, 1, 0], "force.a.angle": "crank",
+                              "force.a.harmonics": [[2.0, 40.0, 0.0], [4.0, 1e-5, 0.0]]})  # fmt: skip
+    (sentence,) = order_points_sentences(order_points(weak, rpm=[900.0], orders=[2, 4], duration=4.0))
+    assert sentence.startswith("Order 2 ")
 
 
 REFUSED: dict[str, tuple[dict[str, float], dict[str, Any], str]] = {
@@ -108,7 +130,7 @@ def test_the_command_writes_table_pictures_and_report(tmp_path, capsys):
     assert data["parts"]["3"] == [] and "channels" not in data
     part = data["parts"]["1"][0]
     share = f"{100.0 * part['share']:.0f} %"
-    assert f"largest part, {share}: {part['name']}, natural frequency " in said
+    assert f"no mode is in resonance, largest part, {share}: {part['name']}, natural frequency " in said
     assert [row["amplitude"] for row in rows] == pytest.approx(table[:, 3].tolist(), rel=1e-6)
     assert rows[0]["stuck"] is not None and rows[-1]["stuck"] is None  # no force has order 3
 

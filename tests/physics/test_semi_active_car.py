@@ -47,6 +47,21 @@ def test_without_range_it_is_the_passive_damper():
             )
 
 
+def test_a_law_needs_its_own_gains_alone():
+    """A skyhook asked for the gain of a groundhook, which it has not."""
+    table = "{law='LAW', minimum_damping=500, maximum_damping=4000, control_period=2e-3, GAINS}"
+
+    def control(law, gains):
+        return ["front.damper.control=" + table.replace("LAW", law).replace("GAINS", gains)]
+
+    for law, gains in (("skyhook", "skyhook_damping=2500"), ("groundhook", "groundhook_damping=2500"),
+                       ("hybrid_on_off", "skyhook_share=0.5"), ("skyhook_on_off", "delay=0.0")):  # fmt: skip
+        assert load_vehicle(Path("sedan"), control(law, gains)).damper.controlled is not None
+    for law, lacking in (("hybrid", "groundhook_damping"), ("groundhook", "groundhook_damping")):
+        with pytest.raises(ConfigurationError, match=rf"control\.{lacking}: missing; law = {law} needs it"):
+            load_vehicle(Path("sedan"), control(law, "skyhook_damping=2500"))
+
+
 def test_engines_agree_with_a_control(skyhook):
     stepped, reduced = skyhook["mujoco"], skyhook["reduced"]
     moving = stepped.time > 0.5

@@ -25,8 +25,8 @@ def test_quick(tmp_path, capsys):
     files = {path.name for path in folder.iterdir()}
     assert {"results.md", "results.json", "sweep", "indices.png", "weighted_indices.png"} <= files
     content = json.loads((folder / "results.json").read_text(encoding="utf-8"))
-    assert "24 runs" in content["caption"] and "engine reduced" in content["caption"]
+    assert "256 runs" in content["caption"] and "engine reduced" in content["caption"]
     for name in ("unweighted", "weighted"):
-        assert np.all(np.isfinite(content[name]["total"])) and len(content[name]["total"]) == 10
+        assert np.all(np.isfinite(content[name]["total"])) and len(content[name]["total"]) == 2
     assert content["weighted"]["total"] != content["unweighted"]["total"]
     assert "; 0 failed." in (folder / "results.md").read_text(encoding="utf-8")

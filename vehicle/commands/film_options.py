@@ -38,7 +38,8 @@ def film_options(parser: Parser, content: str) -> argparse._ActionsContainer:
         "--slow-motion",
         type=float,
         metavar="N",
-        help="play N times slower; default: 1, or more if a wheel moves faster than 15 Hz",
+        help="play N times slower; default: 1, at least 4 for a bump or an obstacle, and more if a wheel moves faster "
+        "than 15 Hz; --video-start and --video-duration do not change it",
     )
     film.add_argument(
         "--exaggeration", type=float, metavar="N", help="show the motion N times larger; default: chosen by the program"

@@ -55,8 +55,8 @@ def parser() -> Parser:
         "--sobol",
         type=int,
         metavar="N",
-        help="Sobol indices of comfort with N base points, a power of two; each parameter is uniform between the "
-        "bounds of --vary PATH=LOW:HIGH; N times (parameters + 2) runs on each input",
+        help="Sobol indices of comfort with N base points, a power of two, at least 64; each parameter is uniform "
+        "between the bounds of --vary PATH=LOW:HIGH; N times (parameters + 2) runs on each input",
     )
     parser.add_argument(
         "--cases",
@@ -104,7 +104,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.studies.sweeps.store import ROWS
     from vehicle.studies.sweeps.sweep_page import sweep_page
     from vehicle.studies.sweeps.sweep_picture import PICTURE, can_be_drawn, draw_ranked
-    from vehicle.studies.sweeps.sweep_ranking import ranked_cars, ranking_lines
+    from vehicle.studies.sweeps.sweep_ranking import measure_lines, ranked_cars, ranking_lines
     from vehicle.studies.sweeps.sweep_table import read_variations
 
     if options.cases is not None and any(
@@ -163,8 +163,9 @@ def _job(options: argparse.Namespace) -> None:
             write_whole(folder / SOBOL, lambda path: write_indices(path, indices))
         effects = effects_of(table, parameters, share, without, shift) if parameters else None
         # Read before the folder of the rows gets its name.
+        measured = [] if options.measure is None else measure_lines(table)
         cars, failed = None if ranges or parameters or listed else ranked_cars(table), table.failed
-        results = None if listed is None else case_results(table, list(listed.cars))
+        results = None if listed is None else case_results(table, listed)
         if results is not None:
             write_whole(folder / CASES, lambda path: write_cases(path, results))
         drawn = cars is not None and can_be_drawn(cars)
@@ -199,8 +200,8 @@ def _job(options: argparse.Namespace) -> None:
             f"{output}: {len(plan.cases)} runs, {len(failed)} failed, tyres {plan.tyres}, evaluated from "
             f"{plan.skip:g} s on; table.csv, {more}sweep.json, rows.jsonl, timing.csv"
         )
-        if cars is not None:
-            print("\n".join(ranking_lines(cars)))
+        if cars is not None or measured:
+            print("\n".join(measured if cars is None else ranking_lines(cars)))
         if indices is not None:
             print("\n".join(index_lines(indices)))
         if results is not None:

@@ -59,8 +59,11 @@ def test_a_bump_is_shown_with_the_time_around_it(car):
     assert chosen.reason == "the event" and chosen.slow == EVENT_SLOW
     assert chosen.start == pytest.approx(12.0 - 1.0 / 6.0 - BEFORE_EVENT, abs=0.05)
     assert chosen.start + chosen.length == pytest.approx(12.0 + 1.0 / 6.0 + AFTER_EVENT, abs=0.05)
-    # What is given is kept.
+    # What is given is kept, and does not change the rest: a film of the same event is as slow.
     assert choose_excerpt(recording, "fl", HUB, SLIP, start=1.0).start == 1.0
+    for given in ({"start": 11.8}, {"duration": 2.0}, {"start": 11.8, "duration": 2.0}):
+        film = choose_excerpt(recording, "fl", HUB, SLIP, **given)
+        assert film.slow == EVENT_SLOW and film.length == pytest.approx(given.get("duration", 10.0) / EVENT_SLOW)
     assert choose_excerpt(recording, "fl", HUB, SLIP, duration=8.0, slow=2.0).length == 4.0
 
 

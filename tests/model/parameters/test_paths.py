@@ -7,12 +7,41 @@ import numpy as np
 import pytest
 
 from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.base_car import vehicle_table
 from vehicle.model.parameters.force_elements import Hydromount
-from vehicle.model.parameters.paths import assignments, full_path, overrides_of, unit_of, value_of
+from vehicle.model.parameters.paths import assignments, full_path, override, overrides_of, unit_of, value_of
 from vehicle.model.parameters.ranges import Range
 from vehicle.model.parameters.toml_file import as_table
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.car import Car
+
+
+@pytest.mark.parametrize(
+    ("below", "above", "merged"),
+    [
+        ("[crank]\nrpm = 900", '[crank]\nfile = "speed.csv"', {"crank": {"file": "speed.csv"}}),
+        ('[crank]\nfile = "speed.csv"\nchannel = "n"', "[crank]\nrpm = 900", {"crank": {"rpm": 900}}),
+        ("[crank]\nrpm = 900", "[crank]\nend_rpm = 2000", {"crank": {"rpm": 900, "end_rpm": 2000}}),
+        ("[force.a]\non = 'hub'\nforce = [0, 0, 1]\nfrequency = 2", "[force.a]\nmoment = [0, 1, 0]\nangle = 'crank'",
+         {"force": {"a": {"on": "hub", "moment": [0, 1, 0], "angle": "crank"}}}),
+        ("[force.a]\nharmonics = [[1, 2, 3]]\nangle = 'crank'", "[force.a]\nfile = 'f.csv'",
+         {"force": {"a": {"file": "f.csv"}}}),
+        ("[rear.nonuniformity]\nrfv = [[1, 9, 0]]\nlfv = [[1, 9, 0]]", "[rear.nonuniformity]\nrunout = [[1, 1e-4, 0]]",
+         {"rear": {"nonuniformity": {"runout": [[1, 1e-4, 0]], "lfv": [[1, 9, 0]]}}}),
+    ],
+)  # fmt: skip
+def test_a_key_replaces_the_one_of_the_base_that_excludes_it(below, above, merged, tmp_path):
+    (tmp_path / "below.toml").write_text(below)
+    (tmp_path / "above.toml").write_text(f'base = "below.toml"\n{above}')
+    assert vehicle_table(tmp_path / "above.toml") == merged
+
+
+def test_an_override_replaces_the_key_that_excludes_it_but_not_another_override():
+    table = {"crank": {"file": "speed.csv", "channel": "n"}}
+    optional = ["crank.rpm", "crank.file"]
+    assert override(table, ["crank.rpm=900"], lambda: optional) == {"crank": {"rpm": 900}}
+    both = override({"crank": {"rpm": 900}}, ["crank.file='a'", "crank.rpm=800"], lambda: optional)
+    assert both == {"crank": {"rpm": 800, "file": "a"}}  # refused by the car, as given twice
 
 
 def test_values_arrive_where_their_paths_say(car):

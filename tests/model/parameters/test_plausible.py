@@ -191,3 +191,55 @@ def test_parameters_without_effect_are_said():
     )
     changes = ["damper.friction_law=stribeck", "damper.coulomb_friction=65", "damper.stribeck_velocity=0.05"]
     assert idle_parameters(load_vehicle(None, changes), changes) == ()
+
+
+CAB = """mirrored = false
+joint = [{ kind = "free", child = ["cab"] }]
+connection = [
+  { name = "cab_fl", moving = "cab", carrier = "body", at = "fl" },
+  { name = "cab_fr", moving = "cab", carrier = "body", at = "fr" },
+  { name = "cab_rear", moving = "cab", carrier = "body", at = "rear" },
+]
+[hardpoints]
+cog = "centre of gravity of the cab"
+fl = "mount"
+fr = "mount"
+rear = "mount"
+[parts]
+cab = { shape = "none", points = ["cog"] }
+"""
+TRUCK = """base = "sedan"
+name = "truck"
+[cab]
+template = "cab"
+hardpoints = { cog = [1.6, 0.0, 1.1], fl = [1.0, -0.6, 0.9], fr = [1.0, 0.6, 0.9], rear = [2.4, 0.0, 0.9] }
+parts.cab = { mass = 600.0, inertia = [180, 190, 150] }
+"""
+
+
+def test_mass_limits_belong_to_the_place_of_a_part(tmp_path):
+    """A cab of 600 kg was refused, since it is not drawn as an engine; a hub of 600 kg stays refused."""
+    (tmp_path / "cab.toml").write_text(CAB)
+    mount = "stiffness = [4e5, 4e5, 6e4], damping = [2e3, 2e3, 2e3], rotational_stiffness = 100"
+    mounts = "".join(f"bushings.cab_{name} = {{ {mount} }}\n" for name in ("fl", "fr", "rear"))
+    file = tmp_path / "truck.toml"
+    file.write_text(TRUCK + mounts)
+    car = load_vehicle(file)
+    assert next(part for part in car.composition.parts if part.name == "cab").numbers.mass == 600.0
+    for path, limit in (("front.parts.knuckle", "150"), ("engine.parts.engine", "1000"), ("cab.parts.cab", "5000")):
+        with pytest.raises(ConfigurationError, match=rf"{path}\.mass: found 6000 kg, must be 0?\.?\d+ to {limit} kg"):
+            load_vehicle(file, [f"{path}.mass=6000"])
+
+
+def test_a_guide_on_the_world_is_no_support(tmp_path):
+    """Without vertical stiffness it carries nothing, and was refused as a car that would tip over."""
+    guide = "moving = 'body'\ncarrier = 'world'\nat = [2.0, 0.0, 0.8]\ndamping = [1e3, 1e3, 0.0]\n"
+    guide += "stiffness = [1e5, 1e5, 0.0]\nrotational_stiffness = 0.0\n"
+    file = tmp_path / "guided.toml"
+    loads = []
+    for ground in ("", "ground = true\n"):
+        file.write_text(f'base = "sedan"\nname = "guided"\n[connection.guide]\n{guide}{ground}')
+        static = Car.load(file).static
+        assert static.support_load == {}
+        loads.append(static.tyre_load)
+    assert loads[0] == pytest.approx(Car.load("sedan").static.tyre_load, rel=1e-3) and loads[1] == loads[0]

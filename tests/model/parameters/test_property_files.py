@@ -1,9 +1,12 @@
 """Property files of Adams Car in a vehicle file: numbers, units, signs, sources, and files that are refused."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from tests.property_file_set import BUMP, CURVES, DAMPER, DAMPING, FILES, FRONT_TABLES, property_file, write_car
+from vehicle import Car
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.parameter_list import parameter_list
 from vehicle.model.parameters.vehicle import load_vehicle
@@ -103,6 +106,43 @@ def test_a_file_over_a_base_names_a_file_alone(tmp_path):
     assert numbers(file, "front.damper.force") == [-900.0, 1100.0]
     assert sources["front.damper.force"].startswith("other.dpr")
     assert sources["front.main_spring.stiffness"].startswith("front.spr")
+
+
+def test_a_file_replaces_the_numbers_of_the_base_and_numbers_its_file(tmp_path):
+    """Keys of the base counted as given by the user beside the file: "without force in the same section"."""
+    write_car(tmp_path)
+    (tmp_path / "bench.csv").write_text("velocity [m/s],force [N]\n-1,-2000\n0,0\n1,1000\n")
+    (tmp_path / "spring.csv").write_text("displacement [m],force [N]\n-0.2,-9000\n-0.1,-3000\n0,0\n0.1,3000\n")
+    (tmp_path / "numbers.toml").write_text(
+        'base = "vehicle.toml"\n[front.damper]\nvelocity = [-1, 0, 1]\nforce = [-900, 0, 700]\n'
+        "[front.damper.stop]\ndisplacement = [-0.06, -0.05, 1]\nforce = [-500, 0, 0]\n"
+        "[front.main_spring]\nstiffness = 2e4\n"
+        "[front.bushings.arm_front]\nstiffness = [1e6, 1e6, 1e6]\ndamping = [9, 9, 9]\nrotational_stiffness = 7\n"
+    )
+    over_files, base = numbers(tmp_path / "numbers.toml", "front"), numbers(tmp_path / "vehicle.toml", "front")
+    assert over_files["damper"]["force"] == [-900, 0, 700] and over_files["damper"]["stop"]["force"] == [-500, 0, 0]
+    assert over_files["main_spring"] == {"stiffness": 2e4}
+    assert "table_x" not in over_files["bushings"]["arm_front"]
+    (tmp_path / "files.toml").write_text(
+        'base = "numbers.toml"\n[front.damper]\ncurve = "bench.csv"\n[front.main_spring]\ncurve = "spring.csv"\n'
+        + FRONT_TABLES["damper"].partition("[front.damper.stop]")[2].join(["[front.damper.stop]", "\n"])
+        + FRONT_TABLES["bushings.arm_front"]
+    )
+    over_numbers = numbers(tmp_path / "files.toml", "front")
+    assert over_numbers["damper"]["velocity"] == [-1.0, 0.0, 1.0]
+    assert over_numbers["damper"]["force"] == [-2000.0, 0.0, 1000.0]
+    assert over_numbers["damper"]["stop"] == base["damper"]["stop"]
+    assert over_numbers["main_spring"]["table"]["force"][0] == -9000.0
+    assert over_numbers["bushings"]["arm_front"] == base["bushings"]["arm_front"]
+
+
+def test_a_file_of_an_override_replaces_the_numbers_of_the_car(tmp_path):
+    (tmp_path / "bench.csv").write_text("velocity [m/s],force [N]\n-1,-2000\n0,0\n1,1000\n")
+    words = ["front.damper.viscous_law=table", f'front.damper.curve="{tmp_path / "bench.csv"}"']
+    damper = load_vehicle(Path("sedan"), words).table["front"]["damper"]
+    assert damper["force"] == [-2000.0, 0.0, 1000.0] and "curve" not in damper
+    varied = Car.load("sedan").with_(words)
+    assert varied.vehicle.table["front"]["damper"]["force"] == damper["force"]
 
 
 def test_a_spring_of_a_test_bench_is_a_table(tmp_path):

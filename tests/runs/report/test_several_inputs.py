@@ -38,7 +38,10 @@ def test_a_run_is_compared_on_its_input_and_an_input_is_not_rated(reported):
     rated = [any(word in part for word in (", better)", ", worse)")) for part in (told[first:second], told[second:])]
     assert rated == [True, True] and told.count(" against ") == told.count('<p class="answer"') == 2
     alone = str(answer([*runs, on_input(base, "base C", "c.csv")], [{}] * 5))
-    assert "base C is not compared: no other run here is on c.csv" in alone and "base C against" not in alone
+    assert (
+        "m/s² weighted at the seat rail) is not compared: no other run here is on c.csv" in alone
+        and "base C against" not in alone
+    )
     # Only inputs differ: they are compared, and not rated.
     told = str(answer([runs[0], runs[2]], [{}] * 2))
     assert "base B against base A (b.csv" in told and ", better)" not in told and ", worse)" not in told
@@ -92,6 +95,15 @@ def test_a_change_on_one_road_has_the_error_of_the_sweep(on_roads):
     told = str(answer([first, run], [{}] * 2))
     assert re.search(rf"\([+-][\d.]+ ± {number(width, 2)} %, (better|worse|not more than its error)", told)
     assert change_half_width(first, cleat) is change_half_width(cleat, cleat) is change_half_width(first, seed) is None
+
+
+def test_roads_are_not_compared_with_each_other(on_roads):
+    """A report of two roads rated one road against the other, with blue bars; the first run without a partner too."""
+    first, run, cleat, _ = on_roads
+    told = str(answer([cleat, first], [{}] * 2))
+    assert "against" not in told and "<svg" not in told and told.count("is not compared") == 2
+    told = str(answer([cleat, first, run], [{}] * 3))
+    assert "cleat (" in told and told.count("is not compared") == 1 and "B against A (" in told
 
 
 def test_what_a_road_sets_is_no_change_of_the_car(on_roads):

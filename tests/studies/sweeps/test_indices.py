@@ -6,7 +6,7 @@ import pytest
 from tests.validation import validated
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.parameters.ranges import Range
-from vehicle.studies.sweeps.indices import sobol_indices, sobol_sample
+from vehicle.studies.sweeps.indices import LEAST_BASE, sobol_indices, sobol_sample
 
 ANGLES = [Range(path=f"x{i}", low=-np.pi, high=np.pi) for i in range(3)]
 UNIT = [Range(path=f"x{i}", low=0.0, high=2.0) for i in range(3)]
@@ -60,6 +60,41 @@ def test_intervals_of_ishigami_cover_as_stated():
         inside.append(np.abs(sobol.total[[0, 2]] - exact) < sobol.total_error[[0, 2]])
     # 76 of 80 expected; a bootstrap over the points covers all. 69 or fewer: one in a thousand for 95 %.
     assert 70 <= np.sum(inside) <= 79
+
+
+def g_function(x):
+    """Source: Saltelli and Sobol, RESS 50 (1995): product of (|4 x - 2| + a) / (1 + a)."""
+    return np.prod((np.abs(4.0 * x - 2.0) + WEIGHTS) / (1.0 + WEIGHTS), axis=1)
+
+
+WEIGHTS = np.array([0.0, 1.0, 4.5, 9.0])
+SHARES = 1.0 / 3.0 / (1.0 + WEIGHTS) ** 2
+PRODUCT = np.prod(1.0 + SHARES)
+EXACT = np.array([SHARES, SHARES * PRODUCT / (1.0 + SHARES)]) / (PRODUCT - 1.0)
+CUBE = [Range(path=f"x{i}", low=0.0, high=1.0) for i in range(4)]
+
+
+def test_errors_and_intervals_at_the_minimum_base():
+    """At `LEAST_BASE` errors are as its reason states; below it the sample is rejected."""
+    found = [sobol_indices(CUBE, g_function(sobol_sample(CUBE, LEAST_BASE, seed=seed))) for seed in range(60)]
+    errors = np.abs([np.array([each.first, each.total]) - EXACT for each in found])
+    widths = np.array([[each.first_error, each.total_error] for each in found])
+    assert np.quantile(errors.max(axis=(1, 2)), 0.95) < 0.36
+    # 480 intervals: 95 % less three standard deviations of a share of 60 independent samples is 0.92 - 0.03.
+    assert 0.89 < np.mean(errors <= widths) < 0.98
+    assert sum(bool(each.contradictions) for each in found) <= 6  # 5 % of 60, and three
+    for base in (1, 2, 4, 32):
+        with pytest.raises(ConfigurationError, match=f"found {base}, must be at least 64"):
+            sobol_sample(CUBE, base)
+
+
+def test_a_contradiction_is_named():
+    """Values that follow no function of the points: S1 is far below 0, which no independent inputs can give."""
+    points = sobol_sample(CUBE, 64, seed=1)
+    y = g_function(points).reshape(64, 6)
+    y[:, 1] = y[:, 0] - (y[:, 5] - y[:, 0].mean())
+    (words, *_) = sobol_indices(CUBE, y.ravel()).contradictions
+    assert words.startswith("x0: S1 is below 0 beyond the error (S1 -")
 
 
 def test_a_small_sample_has_a_wide_interval():

@@ -36,7 +36,7 @@ def rows_of(path):
 
 
 def test_command_and_python_give_the_indices_of_the_table(inputs, tmp_path, capsys):
-    arguments = ["--engine", "reduced", "--skip", "0.5", "--sobol", "16", "--output", str(tmp_path / "out")]
+    arguments = ["--engine", "reduced", "--skip", "0.5", "--sobol", "64", "--output", str(tmp_path / "out")]
     for file in inputs:
         arguments += ["--input", file]
     for path, (low, high) in BOUNDS.items():
@@ -45,7 +45,7 @@ def test_command_and_python_give_the_indices_of_the_table(inputs, tmp_path, caps
     said = capsys.readouterr().out
     # The mean over both inputs, each over its own mean; the inputs vary slowest in the table.
     comfort = [float(row["weighted [m/s2]"]) for row in rows_of(tmp_path / "out" / "table.csv")]
-    values = np.reshape(comfort, (2, 64))
+    values = np.reshape(comfort, (2, 256))
     expected = sobol_indices(RANGES, (values / values.mean(axis=1, keepdims=True)).mean(axis=0))
     written = {row["parameter"]: row for row in rows_of(tmp_path / "out" / "sobol.csv") if row["value"] == "weighted"}
     for i, path in enumerate(BOUNDS):
@@ -53,7 +53,7 @@ def test_command_and_python_give_the_indices_of_the_table(inputs, tmp_path, caps
         each = (expected.first[i], expected.first_error[i], expected.total[i], expected.total_error[i])
         assert row == pytest.approx(each, rel=1e-5)  # six digits are written
         assert f"{path:<23}  {each[0]:6.3f} {each[1]:6.3f}  {each[2]:6.3f} {each[3]:6.3f}\n" in said
-    found = sobol(Car.load(), BOUNDS, inputs, base=16, engine="reduced", skip=0.5)
+    found = sobol(Car.load(), BOUNDS, inputs, base=64, engine="reduced", skip=0.5)
     assert list(found) == ["weighted", "unweighted"] and found["weighted"].paths == tuple(BOUNDS)
     assert found["weighted"].total == pytest.approx(expected.total, rel=1e-9)
 
@@ -61,16 +61,17 @@ def test_command_and_python_give_the_indices_of_the_table(inputs, tmp_path, caps
 def test_failed_runs_are_left_out_and_counted(inputs):
     """A table of the same form, whose comfort is known."""
 
-    cases = plan_sweep(Car.load(), sobol_changes(RANGES, 16), inputs, SweepSettings(engine="reduced")).cases
+    cases = plan_sweep(Car.load(), sobol_changes(RANGES, 64), inputs, SweepSettings(engine="reduced")).cases
     values = np.array([sum(float(text.partition("=")[2]) for text in case.overrides) for case in cases])
-    values[[3, 64 + 20]] = np.nan
+    values[[3, 256 + 20]] = np.nan
     table: Any = SimpleNamespace(cases=cases, units={"weighted": "m/s2"}, column=lambda name: values)
     (indices,) = comfort_indices(table, RANGES).values()
     # Uniform in widths of 1500 and 200: shares of the variance are those of the squares; the third is an interval.
     exact = np.array([1500.0**2, 200.0**2]) / (1500.0**2 + 200.0**2)
     assert np.all(np.abs(indices.total - exact) < 3.0 * indices.total_error)
-    assert (indices.base, indices.left_out) == (16, 2)
-    assert "2 of 16 base points have a failed run and are left out" in "\n".join(index_lines({"weighted": indices}))
+    assert (indices.base, indices.left_out) == (64, 2)
+    assert "2 of 64 base points have a failed run and are left out" in "\n".join(index_lines({"weighted": indices}))
+    assert indices.contradictions == ()
     table.column = lambda name: np.ones(len(cases))
     with pytest.raises(DataError, match="--sobol: values: all values are equal"):
         comfort_indices(table, RANGES)
@@ -83,8 +84,10 @@ def test_failed_runs_are_left_out_and_counted(inputs):
         (["--vary", "damper.viscous=1500:2000", "--report"], "leave out --table and --report"),
         (["--vary", "damper.viscous=1500:2000", "--vary", "damper.viscous=1:2"], "damper.viscous: given twice"),
         (["--vary", "damper.viscous=1500:2000", "--sobol", "12"], "found 12, must be a power of two"),
+        (["--vary", "damper.viscous=1500:2000", "--sobol", "4"], "found 4, must be at least 64: below, the error of"),
+        (["--vary", "damper.viscous=1500:2000", "--sobol", "32"], "found 32, must be at least 64"),
     ],
 )
 def test_refused(words, message, inputs, capsys):
-    assert main(["--input", inputs[0], "--sobol", "16", *words]) == 2
+    assert main(["--input", inputs[0], "--sobol", "64", *words]) == 2
     assert message in capsys.readouterr().err

@@ -14,7 +14,7 @@ from vehicle.studies.sweeps.case import Case, SignalFile
 from vehicle.studies.sweeps.case_result import Result
 from vehicle.studies.sweeps.sweep_page import sweep_page
 from vehicle.studies.sweeps.sweep_picture import can_be_drawn, draw_ranked
-from vehicle.studies.sweeps.sweep_ranking import ranked_cars, ranking_lines
+from vehicle.studies.sweeps.sweep_ranking import measure_lines, ranked_cars, ranking_lines
 from vehicle.studies.sweeps.sweep_table import SweepTable
 
 UNITS = {"unweighted": "m/s2", "weighted": "m/s2"}
@@ -51,6 +51,28 @@ def test_cars_are_ranked_by_the_mean_over_the_inputs():
     assert lines[1].split() == ["30", "2", "base", "4"] and lines[2].split() == ["10", "3", "+66.67", "%", "6"]
     assert "mean of 2 inputs; change: mean of the changes on each" in "\n".join(lines)
     assert lines[-1] == "most comfortable is the first car: front.spring = 30"
+
+
+def test_loads_are_states_within_which_cars_are_ranked():
+    """The car of the lightest vibration was named by its load, which nobody chooses."""
+    rows = [("50", "30"), ("50", "10"), ("200", "30"), ("200", "10")]
+    table = table_of(rows, ["load.boot.mass", "front.spring"])
+    values = (4.0, 3.0, 1.0, 2.0)
+    results = [Result(values={"unweighted": value, "weighted": value}) for value in values for _ in ("a", "b")]
+    lines = ranking_lines(ranked(replace(table, results=results)))
+    assert lines[-2:] == [
+        "most comfortable with load.boot.mass = 50: front.spring = 10 (-25.00 % weighted against the first)",
+        "most comfortable with load.boot.mass = 200: front.spring = 30 (the first car of this state)",
+    ]
+    alone = ranking_lines(ranked(table_of([("50",), ("200",)], ["load.boot.mass"])))
+    assert alone[-1] == "load.boot.mass: a state of the car is not a choice, so no car is named the most comfortable"
+
+
+def test_another_measure_has_its_table():
+    table = replace(table_of([("30",), ("10",)], ["front.spring"]), units={"weighted": "m/s2"})
+    lines = measure_lines(table)
+    assert lines[0].split() == ["input", "front.spring", "weighted", "[m/s2]"] and len(lines) == 5
+    assert lines[1].split() == [table.cases[0].source.name, "30", "1"]
 
 
 def test_a_loud_input_does_not_outweigh_a_quiet_one():

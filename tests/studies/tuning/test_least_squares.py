@@ -32,6 +32,42 @@ def test_exact_data_give_the_exact_values():
     assert result.unidentified == () and result.at_bound == ()
 
 
+def test_values_that_make_no_model_together_are_left_out():
+    """Each value lies within its bounds; a step of one alone leaves the thin set of possible models.
+
+    As mass and moment of inertia about the origin: I - m r2 must be that of a body. The fit ended at its first step.
+    """
+
+    def build(values):
+        ratio = values["lower"] / values["upper"]
+        if not 0.99 * TRUE["lower"] / TRUE["upper"] < ratio < 1.01 * TRUE["lower"] / TRUE["upper"]:
+            raise ConfigurationError("no real spring")
+        return values
+
+    scale = 1.3
+    start = [Range(path=path, low=0.2 * value, high=5.0 * value, start=scale * value) for path, value in TRUE.items()]
+    result = fit(start, [MeasuredMasses(sigma=0.0)], build)
+    assert {path: result.values[path] / value for path, value in TRUE.items()} == pytest.approx(
+        dict.fromkeys(TRUE, 1.0), rel=1e-6
+    )
+    assert result.converged
+    start[0] = Range(path="lower", low=5e4, high=1e6, start=1.5 * scale * TRUE["lower"])
+    with pytest.raises(ConfigurationError, match=r"^no real spring$"):
+        fit(start, [MeasuredMasses(sigma=0.0)], build)
+
+
+def test_a_fit_that_ends_beside_impossible_models_has_not_converged():
+    def build(values):
+        if values["upper"] > 0.8 * TRUE["upper"]:
+            raise ConfigurationError("no real spring")
+        return values
+
+    start = [Range(path=path, low=0.2 * value, high=5.0 * value, start=0.5 * value) for path, value in TRUE.items()]
+    result = fit(start, [MeasuredMasses(sigma=0.0)], build)
+    assert 0.75 < result.values["upper"] / TRUE["upper"] < 0.8 and not result.converged
+    assert result.message == "the fit ends where trial values make no model (no real spring)"
+
+
 def test_covariance_is_that_of_the_linearised_problem():
     result = fitted(MeasuredMasses(seed=3))
     # Second derivation: analytic perturbation of ln H by central differences, inverse of the normal matrix.

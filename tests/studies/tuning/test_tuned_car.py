@@ -15,6 +15,7 @@ from vehicle.runs.car import Car
 from vehicle.signals.analysis.response_name import parsed_name
 from vehicle.signals.formats.frf_file import FrfData
 from vehicle.signals.formats.table import Record
+from vehicle.studies.tuning.car_fit import tune
 from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.full_steps import SMALL, full_steps
 from vehicle.studies.tuning.least_squares import fit
@@ -120,6 +121,17 @@ def test_a_fit_that_leaves_a_large_error_says_so_first(build, fitted):
     assert answer.startswith("These parameters do not explain the measurement")
     for text in (said, page):
         assert "data determine" not in text and "measurement asks" not in text
+
+
+def test_mass_and_moments_about_the_origin_are_fitted_together(car):
+    """Of the car about the origin a step of one of them alone is no body; the fit was refused at its first step."""
+    true = {"body.mass": 850.0, "body.inertia.ixx": 1090.0, "body.inertia.iyy": 5600.0}
+    start = {"body.mass": 813.0, "body.inertia.ixx": 1000.0, "body.inertia.iyy": 5268.0}
+    ranges = [Range(path=path, low=0.8 * value, high=1.3 * value, start=value) for path, value in start.items()]
+    result = tune(car, ranges, [target_of(car.with_(true), None)])
+    for path, value in true.items():
+        assert result.values[path] == pytest.approx(value, abs=4.0 * result.errors[path])
+        assert result.errors[path] < 0.05 * value
 
 
 def test_parameters_of_a_stuck_damper_are_unidentified(build):

@@ -55,8 +55,9 @@ def choose_excerpt(
 ) -> Excerpt:
     """Choose start, length and slow motion of a film, as far as they are not given.
 
-    A single event, as a bump or an obstacle, is shown from 0.3 s before to 1 s after it. Otherwise the start is that of
-    the window with the largest damper motion of the wheel; without slip, with the largest knuckle motion.
+    The slow motion depends on the record alone, not on a given start or length. A single event, as a bump or an
+    obstacle, is shown from 0.3 s before to 1 s after it. Otherwise the start is that of the window with the largest
+    damper motion of the wheel; without slip, with the largest knuckle motion.
 
     Args:
         recording: recording of the run.
@@ -71,10 +72,10 @@ def choose_excerpt(
         The excerpt, inside the record.
     """
     record = float(recording.time[-1])
-    event = event_of(recording, wheels_of(recording)) if start is None and duration is None else None
+    event = event_of(recording, wheels_of(recording))
     if slow is None:
         slow = max(_slow_motion(recording, hub), 1.0 if event is None else EVENT_SLOW)
-    if event is not None:
+    if event is not None and start is None and duration is None:
         first, last = max(event[0] - BEFORE_EVENT, 0.0), min(event[1] + AFTER_EVENT, record)
         if slow * (last - first) <= USUAL_LENGTH:
             return Excerpt(start=first, length=last - first, slow=slow, reason="the event")

@@ -33,9 +33,9 @@ def plot_order_cuts(
     Args:
         points: speeds; (k,).
         turns: turns per second [Hz]; (k,).
-        curves: amplitudes of the runs, with locked dampers and with dampers without friction; (o, k) each.
+        curves: amplitudes of the runs, with friction that holds and without friction; (o, k) each.
     """
-    names = (("run", "o-"), ("dampers stick", "--"), ("without friction", ":"))
+    names = (("run", "o-"), ("friction holds", "--"), ("without friction", ":"))
     with saved_figure(path, (9.5, 1.4 + 2.4 * len(orders)), title, caption) as figure:
         panels = figure.subplots(len(orders), 1, sharex=True, squeeze=False)[:, 0]
         for row, (axes, order) in enumerate(zip(panels, orders, strict=True)):

@@ -45,7 +45,7 @@ class Take:
     duration: float | None = None
     """length of the film [s], which shows duration / slow of the record at most; 10 s or a single event by default"""
     slow: float | None = None
-    """slow-motion factor, at least 1; by default, real time for motion below 15 Hz (see `choose_excerpt`)"""
+    """slow-motion factor, at least 1; by default, of the whole record (see `choose_excerpt`)"""
     exaggeration: float | None = None
     """factor of all motion; by default, the largest displacement becomes 5 to 8 cm"""
     speed: float | None = None

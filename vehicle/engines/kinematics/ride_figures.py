@@ -146,7 +146,7 @@ def _blocks(car: CarModel, middle: float) -> Iterator[Station]:
         vertical = Support(stiffness=link.law.stiffness[2], damping=link.law.damping[2])
         yield Station(
             x=link.at[0],
-            load=car.static.support_load[link.name],
+            load=car.static.support_load.get(link.name, 0.0),
             vertical=vertical,
             roll=vertical.times((link.at[1] - middle) ** 2),
             roll_centre=link.at[2],

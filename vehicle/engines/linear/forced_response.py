@@ -1,11 +1,12 @@
-"""Linear response of a car to its applied forces: with dampers that stick, or without their friction.
+"""Linear response of a car to its applied forces: with friction that holds, or without friction.
 
     (s^2 M + s C + K + H' diag(K2/(s + 1/tau)) (s e + g)) u = l + B r - H' diag(K2/(s + 1/tau)) v,    Jc u = 0
 
 at each frequency W of the forces, s = jW, with their complex amplitudes in l; see `vehicle.engines.linear.system`. The
 run-outs r of the tyres act by B = Bk + s Bc, Bc without that of slopes, and the velocities of their treads as slips v.
 Without friction the dampers have the slope of their curve at rest: the softest segment, which C contains, counts only
-at the velocities where it lies.
+at the velocities where it lies; and friction elements of bushings, as those of a rack, have no stiffness. Where
+friction holds, both dampers and bushings stick.
 """
 
 from collections.abc import Sequence
@@ -29,7 +30,7 @@ def forced_response(
         matrices: matrices of the car.
         channels: names of acceleration channels.
         dampers: laws of its dampers.
-        stuck: lock the dampers; else they move without friction.
+        stuck: all friction holds, with locked dampers; else dampers and bushings move without friction.
 
     Returns:
         Amplitudes of Re(Z exp(jWt)) [m/s2], (forces, channels, frequencies in the order of `matrices.lines`); their sum
@@ -39,10 +40,20 @@ def forced_response(
     if not stuck:
         slopes = np.array([float(damper_curve(law).slope(0.0)) for law in dampers]) - matrices.viscous
         damping = system.damping + system.slide_rows.T @ (slopes[:, None] * system.slide_rows)
-        matrices = replace(matrices, system=replace(system, damping=damping))
+        matrices = without_bushing_friction(replace(matrices, system=replace(system, damping=damping)))
     frequencies, amplitudes = matrices.lines.frequencies, force_amplitudes(matrices)
     unit = unit_response(matrices, channels, frequencies, np.arange(len(amplitudes)), stuck=stuck)
     return np.asarray(unit * amplitudes[:, None, :])
+
+
+def without_bushing_friction(matrices: CarMatrices) -> CarMatrices:
+    """Return the matrices of a car whose bushings have no friction: K - sum k r r' over their Jenkins elements."""
+    frictions = [law for law in matrices.laws if law.friction]
+    stiffness = matrices.system.stiffness - sum(
+        (float(law.elements[0].sum()) * np.outer(law.row, law.row) for law in frictions), start=np.zeros(())
+    )
+    laws = tuple(law for law in matrices.laws if not law.friction)
+    return replace(matrices, system=replace(matrices.system, stiffness=stiffness), laws=laws)
 
 
 def force_amplitudes(matrices: CarMatrices) -> Complex:

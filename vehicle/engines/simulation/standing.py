@@ -63,7 +63,9 @@ def require_standing(vehicle: Vehicle, rows: Rows, static: StaticTrim) -> None:
     if vehicle.gravity == 0.0:
         return
     loads = {f"tyre {wheel}": load for wheel, load in static.tyre_load.items()}
-    loads |= {name.replace("_", " "): load for name, load in static.support_load.items()}
+    # An element between the car and the world that is no contact with the ground may also hold the car down.
+    contacts = {link.name for link in vehicle.composition.connections if link.ground}
+    loads |= {name.replace("_", " "): load for name, load in static.support_load.items() if name in contacts}
     for name, load in loads.items():
         if load <= 0.0:
             raise ConfigurationError(

@@ -43,7 +43,7 @@ class StaticTrim:
         preload: static force of every constraint row in the axes of its element [N], followed by the static
             torques of the rotations [N m], (rows + 3 m,).
         tyre_load: vertical load of each tyre [N], by wheel.
-        support_load: vertical load of each other ground contact [N], by name.
+        support_load: vertical load of each other ground contact with a vertical stiffness [N], by name.
         residual: maximum displacement due to the remaining forces [m].
     """
 
@@ -263,7 +263,9 @@ def static_loads(rows: Rows, settled: Settled, left: Vector) -> StaticTrim:
     for index, way in rows.directions.items():
         force[index] = way.T @ force[index]
     vertical = force[:, 2]
-    others = [index for index in ground_contacts(rows) if index not in tyres]
+    # A guide on the world without vertical stiffness carries nothing.
+    carries = rows.layout.bushings.stiffness[:, 2] > 0.0
+    others = [index for index in ground_contacts(rows) if index not in tyres and carries[index]]
     return StaticTrim(
         preload=preload,
         tyre_load=dict(zip(wheels_of(rows.model), map(float, vertical[tyres]), strict=True)),

@@ -44,6 +44,17 @@ def about_cog(inertia_about_origin: ArrayLike, mass: float, cog: ArrayLike) -> V
     return np.asarray(np.asarray(inertia_about_origin) - mass * (square * np.eye(3) - np.outer(c, c)))
 
 
+def about_origin(inertia_about_cog: ArrayLike, mass: float, cog: ArrayLike) -> Vector:
+    """Return the tensor about the origin [kg m2], (3, 3): I_0 = I_c + m (|c|^2 1 - c c^T); see `about_cog`."""
+    return about_cog(inertia_about_cog, -mass, cog)
+
+
+def components(inertia: ArrayLike) -> dict[str, float]:
+    """Return moments, and products as integrals, of a tensor [kg m2], (3, 3); the inverse of `inertia_tensor`."""
+    (xx, xy, xz), (_, yy, yz), (*_, zz) = np.asarray(inertia, dtype=float).tolist()
+    return {"ixx": xx, "iyy": yy, "izz": zz, "ixy": -xy, "izx": -xz, "iyz": -yz}
+
+
 def second_moments(inertia: ArrayLike) -> Vector:
     """Return the second moments int r r^T dm = tr(I)/2 1 - I [kg m2], shape (3, 3); positive definite if physical."""
     tensor = np.asarray(inertia, dtype=float)

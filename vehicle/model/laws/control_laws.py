@@ -65,10 +65,10 @@ def pack(control: SemiActiveDamper) -> Vector:
     Without a run, a damper with a controller FMU has its softest setting.
     """
     family = control.law.removesuffix("_on_off")
-    shares = {"skyhook": 1.0, "groundhook": 0.0, "hybrid": control.skyhook_share}
+    shares = {"skyhook": 1.0, "groundhook": 0.0, "hybrid": control.skyhook_share or 0.0}
     sky, ground = (shares[family], 1.0 - shares[family]) if control.law != FMU else (0.0, 0.0)
     if family == control.law:
-        sky, ground = sky * control.skyhook_damping, ground * control.groundhook_damping
+        sky, ground = sky * (control.skyhook_damping or 0.0), ground * (control.groundhook_damping or 0.0)
     limits, times = (control.minimum_damping, control.maximum_damping), (control.control_period, control.delay)
     return np.array([*limits, sky, ground, float(family != control.law), *times, control.rate])
 

@@ -235,8 +235,12 @@ class Controller:
         )
         if file.parameters:
             write = slave.setReal if second else slave.setFloat64
-            values = [file.conversions[name].to_unit(getattr(control, name)) for name in file.parameters]
-            write([*file.parameters.values()], values)
+            values = {
+                reference: file.conversions[name].to_unit(value)
+                for name, reference in file.parameters.items()
+                if (value := getattr(control, name)) is not None
+            }
+            write([*values], [*values.values()])
         if second:
             slave.setupExperiment(startTime=0.0)
             slave.enterInitializationMode()

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.alternatives import replaced_by
 from vehicle.model.parameters.body import MOMENTS
 from vehicle.model.parameters.shipped import CARS, vehicle_file
 from vehicle.model.parameters.tested_range import merged_law
@@ -71,10 +72,12 @@ def with_body(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, A
     return merged
 
 
-def _merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
-    """Return two tables merged key by key; values of `above` take precedence."""
-    merged = merged_law(below, above)
+def _merged(below: Mapping[str, Any], above: Mapping[str, Any], path: str = "") -> dict[str, Any]:
+    """Return two tables merged key by key; values of `above` take precedence, see also `replaced_by`."""
+    replaced = replaced_by(above, path)
+    merged = {key: value for key, value in merged_law(below, above).items() if key in above or key not in replaced}
     for key, value in above.items():
         both = isinstance(value, Mapping) and isinstance(below.get(key), Mapping)
-        merged[key] = _merged(below[key], value) if both and "template" not in value else value
+        inner = f"{path}.{key}" if path else key
+        merged[key] = _merged(below[key], value, inner) if both and "template" not in value else value
     return merged

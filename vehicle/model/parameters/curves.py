@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from vehicle.errors import ConfigurationError, VehicleError
+from vehicle.model.parameters.alternatives import is_bushing
 from vehicle.model.parameters.engine_orders import ORDERS
 
 if TYPE_CHECKING:
@@ -149,7 +150,7 @@ def _numbers(table: Mapping[str, Any], file: Path, path: str) -> tuple[dict[str,
 
     *above, name = path.split(".")[:-1] or [""]
     of_points = name == "stop" or name.startswith("table")
-    bushing = "bushings" in above[-2:] or above[:1] == ["connection"]
+    bushing = is_bushing(above)
     # Only dampers have a law of damping; a table of one side may leave it out.
     damper = "viscous_law" in table
     if not is_property_file(file):

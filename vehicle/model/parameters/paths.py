@@ -5,6 +5,7 @@ the last name, as in "front.bushings.suspension_mount.stiffness.z". The end of a
 "suspension_mount.stiffness.z". A vehicle file may define further names in the table `alias`.
 """
 
+import contextlib
 import difflib
 import re
 import tomllib
@@ -13,6 +14,7 @@ from pathlib import PurePath
 from typing import Any
 
 from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.alternatives import NAMING, remove_excluded
 from vehicle.model.parameters.quantity import PATH_PATTERN, field_quantity
 from vehicle.model.parameters.tested_range import StaleRanges
 from vehicle.model.parameters.toml_file import as_table, copy_table, literal
@@ -184,7 +186,12 @@ def override(table: Mapping[str, Any], assignments: Iterable[str], optional: Opt
     """
     result: dict[str, Any] = copy_table(table)
     ranges = StaleRanges()
-    for assignment in assignments:
+    texts = list(assignments)
+    names = [text.partition("=")[0].strip() for text in texts]
+    for name in (name for name in names if name.rpartition(".")[2] in NAMING):
+        with contextlib.suppress(ConfigurationError):
+            remove_excluded(result, meant(result, name, optional), names)
+    for assignment in texts:
         name, separator, text = (part.strip() for part in assignment.partition("="))
         if not separator or not name:
             raise ConfigurationError(

@@ -21,9 +21,18 @@ from vehicle.names import AXES
 if TYPE_CHECKING:
     from vehicle.model.parameters.vehicle import Vehicle
 
+ENGINE = "engine"
+"""Name of the power unit among the parts."""
 ENGINE_MASS = (20.0, 1000.0, "an electric motor has 30 kg, a large diesel with its gearbox 600 kg")
 PART_MASS = (0.02, 150.0, "mass of a part: a bolt of a link has 0.02 kg, a wheel of a van 50 kg")
+AXLE_MASS = (0.02, 1000.0, "mass of a part across an axle: a rack has 3 kg, the driven beam of a truck 600 kg")
+UNIT_MASS = (
+    0.02,
+    5000.0,
+    "mass of a part outside the axles: a battery has 15 kg, a cab of a truck 600 kg, a box 3000 kg",
+)
 GYRATION = (1e-3, 1.0, "radius of gyration: thicker than a wire, smaller than the car is wide")
+UNIT_GYRATION = (1e-3, 4.0, "radius of gyration: thicker than a wire, not above that of a body 8 m long")
 OFFSET_M = 1.0
 """Maximum offset of a centre of gravity from the mean of the hardpoints of the part [m]."""
 
@@ -56,14 +65,26 @@ def _within(path: str, value: float, unit: str, limits: tuple[float, float, str]
 
 
 def require_parts(vehicle: Vehicle) -> None:
-    """Check mass, inertia and offset of all parts; errors: see `require_plausible`."""
+    """Check mass, inertia and offset of all parts; errors: see `require_plausible`.
+
+    The limits belong to the place of a part: on one side of an axle, across it, or outside the axles.
+    """
+    axles: dict[str, tuple[str, ...]] = {}
+    for wheel in vehicle.composition.wheels:
+        axles[wheel.axle] = (*axles.get(wheel.axle, ()), f"_{wheel.name}")
     for placed in vehicle.composition.parts:
         part, path = placed.numbers, placed.path
         if isinstance(part, Load):
             continue  # checked by its declaration
-        _within(f"{path}.mass", part.mass, "kg", ENGINE_MASS if placed.shape == "engine" else PART_MASS)
+        sides = axles.get(path.partition(".")[0])
+        mass, gyration = UNIT_MASS, UNIT_GYRATION
+        if sides is not None:
+            mass, gyration = PART_MASS if placed.name.endswith(sides) else AXLE_MASS, GYRATION
+        elif placed.name == ENGINE:
+            mass, gyration = ENGINE_MASS, GYRATION
+        _within(f"{path}.mass", part.mass, "kg", mass)
         for axis, moment in zip(AXES, part.inertia or (), strict=True):
-            low, high, why = GYRATION
+            low, high, why = gyration
             limits = (part.mass * low**2, part.mass * high**2, f"{why}, at {part.mass:g} kg")
             _within(f"{path}.inertia.{axis}", moment, "kg m2", limits)
         for axis, offset in zip(AXES, part.offset, strict=True):

@@ -11,6 +11,14 @@ PASSIVE = "passive"
 LAWS = ("skyhook_on_off", "skyhook", "groundhook_on_off", "groundhook", "hybrid_on_off", "hybrid")
 """Names of the laws of `vehicle.model.laws.control_laws`."""
 
+GAINS = {
+    "skyhook": ("skyhook_damping",),
+    "groundhook": ("groundhook_damping",),
+    "hybrid_on_off": ("skyhook_share",),
+    "hybrid": ("skyhook_damping", "groundhook_damping", "skyhook_share"),
+}
+"""Gains that a law needs; the other laws have none."""
+
 FMU = "fmu"
 """Name of the law of a controller in an FMU."""
 
@@ -40,13 +48,6 @@ class SemiActiveDamper:
     )
     minimum_damping: float = quantity("N s/m", "softest setting cmin", at_least=0.0)
     maximum_damping: float = quantity("N s/m", "firmest setting cmax", above=0.0, at_most=1e6)
-    skyhook_damping: float = quantity("N s/m", "damping constant of the skyhook, between body and sky", at_least=0.0)
-    groundhook_damping: float = quantity(
-        "N s/m", "damping constant of the groundhook, between wheel and ground", at_least=0.0
-    )
-    skyhook_share: float = quantity(
-        "-", "share of skyhook in the hybrid law, the rest is groundhook", at_least=0.0, at_most=1.0
-    )
     control_period: float = quantity("s", "time between two settings of the dampers", above=0.0, at_most=1.0)
     delay: float = quantity(
         "s",
@@ -63,11 +64,23 @@ class SemiActiveDamper:
         above=0.0,
         at_most=AT_ONCE,
     )
+    skyhook_damping: float | None = quantity(
+        "N s/m", "damping constant of the skyhook, between body and sky", at_least=0.0, default=None
+    )
+    groundhook_damping: float | None = quantity(
+        "N s/m", "damping constant of the groundhook, between wheel and ground", at_least=0.0, default=None
+    )
+    skyhook_share: float | None = quantity(
+        "-", "share of skyhook in the hybrid law, the rest is groundhook", at_least=0.0, at_most=1.0, default=None
+    )
 
     def __post_init__(self) -> None:
         validate(self)
         if self.law == FMU and self.fmu is None:
             raise ConfigurationError('SemiActiveDamper.fmu: missing; law = fmu needs fmu = "FILE.fmu"')
+        for name in GAINS.get(self.law, ()):
+            if getattr(self, name) is None:
+                raise ConfigurationError(f"SemiActiveDamper.{name}: missing; law = {self.law} needs it")
         if self.maximum_damping < self.minimum_damping:
             raise ConfigurationError(
                 f"SemiActiveDamper.maximum_damping: found {self.maximum_damping!r} N s/m, "

@@ -1,7 +1,7 @@
 """Orders at steady points: a car run at each of several speeds of its crankshaft or of its drive.
 
 Each point is one run at constant speed. Its amplitudes at the orders come from `vehicle.signals.analysis.order_lines`.
-The amplitudes of the linear car with locked dampers and with dampers without friction are its limits
+The amplitudes of the linear car in which all friction holds, and of that without friction, are its limits
 (`vehicle.engines.linear.forced_response`).
 """
 
@@ -16,8 +16,8 @@ import numpy as np
 
 from vehicle.arrays import Complex, Indices
 from vehicle.drawing.notebook.frames import plain_frame
-from vehicle.engines.linear.car_modes import Mode
-from vehicle.engines.linear.forced_response import force_amplitudes, forced_response
+from vehicle.engines.linear.car_modes import Mode, car_modes
+from vehicle.engines.linear.forced_response import force_amplitudes, forced_response, without_bushing_friction
 from vehicle.engines.linear.mode_shares import forced_mode_shares
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.applied_force import CRANK
@@ -38,7 +38,14 @@ SEGMENT = 2.0
 """Length of the Hann windows of the map [s]: lines 1 Hz wide."""
 
 RESONANT = 0.2
-"""Minimum share of a mode in resonance that is named beside the largest share [-]."""
+"""Minimum share of a mode in resonance that is named as the cause of an order [-]."""
+
+LARGEST_SHARE = 1.5
+"""Share of a mode above which it is no cause: others cancel a third of it or more."""
+
+ACCURACY = 1e-5
+"""Smallest amplitude that is a result, over the largest of all accelerations of the linear car by the same forces.
+Orders without a force of a car that sticks, which are rounding, had 2e-6 to 8e-6 of order 1 in both engines."""
 
 NAMED = 8
 """Maximum number of modes that are named."""
@@ -53,12 +60,14 @@ class NamedMode:
         damping_ratio: damping ratio [-].
         name: its main motion.
         share: its share in the amplitude of an order, see `vehicle.engines.linear.mode_shares`; NaN in the map [-].
+        resonant: True if the order lies within its full width at half power around it.
     """
 
     frequency: float
     damping_ratio: float
     name: str
     share: float = math.nan
+    resonant: bool = False
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
@@ -73,14 +82,17 @@ class OrderPoints:
         channel, unit: name and unit of the channel.
         amplitude: complex amplitudes X of Re(X exp(i order angle)); (o, k).
         error: their standard errors; (o, k).
-        stuck, free: amplitudes of the linear car with locked dampers, and with dampers without friction; NaN in an
-            order without a force; (o, k).
+        stuck, free: amplitudes of the linear car in which the friction of dampers and bushings holds, and without their
+            friction; NaN in an order without a force; (o, k).
         slip: largest share of the time in slip of a damper; (k,).
         frequency: frequencies of the map [Hz]; (f,).
         spectrum: amplitude spectrum at each point, for the map; (k, f).
         modes: modes that the forces excite at this channel, in the range of the orders, by frequency.
-        parts: mode with the largest share in each order where that is largest, with the dampers as in most of that
-            run, then a mode in resonance there, if it is another; empty for an order without a force.
+        parts: for each order the mode in resonance where the order is largest, if there is one, then the mode with the
+            largest share there, if it is another; dampers as in most of that run, bushings that hold or slide. Empty
+            for an order without a force.
+        floor: smallest amplitude that is a result, see `ACCURACY` [m/s2]; (k,).
+        frictions: what has friction: "dampers", or "dampers and bushings".
     """
 
     angle: str
@@ -98,6 +110,8 @@ class OrderPoints:
     spectrum: Vector
     modes: tuple[NamedMode, ...]
     parts: tuple[tuple[NamedMode, ...], ...]
+    floor: Vector
+    frictions: str
 
     def __repr__(self) -> str:
         """Return the peak of each order."""
@@ -236,8 +250,8 @@ def order_points_at(
     joined = []
     for channel, each in enumerate(zip(*results, strict=True)):
         tops = (largest[channel, order] for order in range(len(orders)))
-        parts = [_main_modes(there, each[0].channel, each[0].angle, order, slip < 0.5)
-                 for order, (_, there, slip) in zip(orders, tops, strict=True)]  # fmt: skip
+        parts = [_main_modes(there, each[0].channel, each[0].angle, order, size, slip < 0.5)
+                 for order, (size, there, slip) in zip(orders, tops, strict=True)]  # fmt: skip
         joined.append(_joined(each, run, tuple(parts)))
     return tuple(joined)
 
@@ -249,7 +263,7 @@ def _joined(results: Sequence[OrderPoints], run: Run, parts: tuple[tuple[NamedMo
     shown = first.frequency <= highest
     columns: dict[str, Any] = {
         name: np.concatenate([getattr(point, name) for point in results], axis=-1)
-        for name in ("points", "turns", "amplitude", "error", "stuck", "free", "slip")
+        for name in ("points", "turns", "amplitude", "error", "stuck", "free", "slip", "floor")
     }
     return replace(
         first,
@@ -273,12 +287,14 @@ def _point(run: Run, point: float, channel: str, angle: str | None, orders: Sequ
     turns = speed / (2.0 * np.pi)
     lines = order_lines(run.time, run[channel][None], turns, orders, begin=run.skip)
     dampers = [damper.law for damper in vehicle.composition.dampers]
-    limits = []
+    limits, largest = [], 0.0
+    every = [channel, *vehicle.acceleration_channels]
     for stuck in (True, False):
-        of_forces = forced_response(run.car.matrices, [channel], dampers, stuck=stuck)
-        amplitudes = np.abs(of_forces.sum(axis=0)[0])
+        of_forces = forced_response(run.car.matrices, every, dampers, stuck=stuck)
+        amplitudes = np.abs(of_forces.sum(axis=0))
+        largest = max(largest, float(np.max(amplitudes, initial=0.0)))
         columns = [_line(run.car, order * speed) for order in orders]
-        limits.append(np.array([[amplitudes[each[0]] if each.size else np.nan] for each in columns]))
+        limits.append(np.array([[amplitudes[0, each[0]] if each.size else np.nan] for each in columns]))
     frequency, spectrum = _amplitudes(run[channel][run.evaluated], run.recording.timestep)
     return OrderPoints(
         angle=angle_name,
@@ -296,6 +312,8 @@ def _point(run: Run, point: float, channel: str, angle: str | None, orders: Sequ
         spectrum=spectrum[None],
         modes=(),
         parts=(),
+        floor=np.array([ACCURACY * largest]),
+        frictions="dampers and bushings" if any(law.friction for law in run.car.matrices.laws) else "dampers",
     )
 
 
@@ -305,23 +323,32 @@ def _line(car: Car, frequency: float) -> Indices:
     return np.flatnonzero(np.abs(forced - frequency) < 1e-9 * forced)
 
 
-def _main_modes(car: Car, channel: str, angle: str, order: float, stuck: bool) -> tuple[NamedMode, ...]:
-    """Return the mode with the largest share in an order and one in resonance there, see `OrderPoints.parts`."""
+def _main_modes(car: Car, channel: str, angle: str, order: float, size: float, stuck: bool) -> tuple[NamedMode, ...]:
+    """Return the modes that decide an order with an amplitude [m/s2], see `OrderPoints.parts`.
+
+    Friction of bushings holds or not, as gives the amplitude of the linear car that is nearer to that of the run.
+    """
     circular = order * car.vehicle.composition.turning(angle)[1]
     line, frequency = _line(car, circular), circular / (2.0 * np.pi)
     if not line.size:
         return ()
     forces = force_amplitudes(car.matrices)[:, line[0]]
-    result = forced_mode_shares(car.matrices, channel, frequency, forces, stuck=stuck)
+    variants = (car.matrices, without_bushing_friction(car.matrices))
+    results = [forced_mode_shares(each, channel, frequency, forces, stuck=stuck) for each in variants]
+    nearer = int(np.argmin([abs(abs(each.acceleration[0]) - size) for each in results]))
+    matrices, result = variants[nearer], results[nearer]
     natural = np.abs(result.poles) / (2.0 * np.pi)
     width = 2.0 * np.abs(result.poles.real) / (2.0 * np.pi)  # full width at half power
-    near = np.flatnonzero((np.abs(natural - frequency) < width) & (result.shares > RESONANT))
-    modes = car.modes("stuck" if stuck else "sliding", highest=1.01 * float(natural.max()))
-    parts = {}
-    for at in (int(np.argmax(result.shares)), *near[np.argsort(-result.shares[near])][:1].tolist()):
-        mode = min(modes, key=lambda each: abs(each.frequency - natural[at]))
-        parts[at] = _named(mode, float(result.shares[at]))
-    return tuple(parts.values())
+    near = (np.abs(natural - frequency) < width) & (result.shares > RESONANT) & (result.shares < LARGEST_SHARE)
+    chosen = [int(np.argmax(np.where(near, result.shares, -np.inf)))] if near.any() else []
+    chosen = [*dict.fromkeys([*chosen, int(np.argmax(result.shares))])]
+    names = car.geometry.model.superelement.mode_names
+    modes = car_modes(matrices, stuck=stuck, highest=1.01 * float(natural[chosen].max()), names=names)
+    nearest = [min(modes, key=lambda each, at=at: abs(each.frequency - natural[at])) for at in chosen]  # type: ignore[misc]
+    return tuple(
+        replace(_named(mode, float(result.shares[at])), resonant=bool(near[at]))
+        for at, mode in zip(chosen, nearest, strict=True)
+    )
 
 
 def _named(mode: Mode, share: float = math.nan) -> NamedMode:

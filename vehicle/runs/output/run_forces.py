@@ -12,6 +12,7 @@ from vehicle.model.parameters.applied_force import CRANK
 from vehicle.model.parameters.placed_force import PlacedForce
 from vehicle.names import AXES
 from vehicle.runs.car import Run
+from vehicle.runs.car.order_points import ACCURACY
 from vehicle.signals.analysis.order_lines import order_lines
 from vehicle.signals.records.run_summary import ForceSummary, OrderSummary, RunUpSummary
 
@@ -82,6 +83,7 @@ def _run_up(run: Run) -> list[RunUpSummary]:
     except DataError:  # too short
         return []
     tops, rpm = np.argmax(np.abs(cut.amplitude), axis=2), 60.0 * cut.turns
+    floor = ACCURACY * float(np.max(np.abs(cut.amplitude), initial=0.0))
     return [
         {
             "order": order,
@@ -89,6 +91,7 @@ def _run_up(run: Run) -> list[RunUpSummary]:
                 name: float(np.abs(cut.amplitude[row, column, tops[row, column]])) for row, name in enumerate(channels)
             },
             "rpm": {name: float(rpm[tops[row, column]]) for row, name in enumerate(channels)},
+            "floor": floor,
         }
         for column, order in enumerate(orders)
     ]
@@ -110,6 +113,8 @@ def _orders(run: Run) -> list[OrderSummary]:
         name: forced_response(matrices, channels, dampers, stuck=name == "stuck")
         for name in ("stuck", "without_friction")
     }
+    floor = ACCURACY * max(float(np.max(np.abs(each.sum(axis=0)), initial=0.0)) for each in limits.values())
+    frictions = "dampers and bushings" if any(law.friction for law in matrices.laws) else "dampers"
     orders: list[OrderSummary] = []
     for frequency, (order, of) in sorted(angles.items()):
         turns = frequency / (2.0 * np.pi * order)
@@ -127,6 +132,8 @@ def _orders(run: Run) -> list[OrderSummary]:
             "standard_error": dict(zip(channels, np.nan_to_num(lines.error[:, 0]).tolist(), strict=True)),
             "stuck": dict(zip(channels, sums["stuck"], strict=True)),
             "without_friction": dict(zip(channels, sums["without_friction"], strict=True)),
+            "frictions": frictions,
+            "floor": floor,
         }
         ranges = {
             name: phase_ranges(acting, by_force, matrices.lines.frequencies, order) for name, by_force in limits.items()

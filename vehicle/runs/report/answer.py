@@ -63,8 +63,9 @@ def answer(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> Markup:
     compared = references(runs)
     for number_of_run, (run, run_modes, reference) in enumerate(zip(runs, modes, compared, strict=True)):
         if reference is None:
-            if number_of_run and number_of_run not in compared:
-                statements.append(f"{run.name} is not compared: no other run here is on {input_text(run)}.")
+            if number_of_run not in compared:
+                value = f" ({number(_weighted(run))} m/s² weighted at the seat rail)" if _weighted(run) else ""
+                statements.append(f"{run.name}{value} is not compared: no other run here is on {input_text(run)}.")
             continue
         before = runs[reference]
         texts = [_effect(before, run)]
@@ -72,7 +73,7 @@ def answer(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> Markup:
             texts.append(_reason(before, run, modes[reference], run_modes))
         statements.append(" ".join(texts))
         changes[f"{run.name} against {before.name}"] = _changes(before, run)
-    if all(changes.values()):
+    if changes and all(changes.values()):
         title = "Change of comfort and loads"
         caption = "blue: smaller vibration or load, amber: larger; grey: no rating"
         figure = drawing(partial(plot_changes, changes=changes, title=title, caption=caption), title)
@@ -317,12 +318,13 @@ def counterpart(mode: Mode, modes: Sequence[Mode], mass: Vector) -> Mode | None:
 def _changes(first: FinishedRun, run: FinishedRun) -> list[Change]:
     """Return the changes of comfort and loads, in the order of the report."""
     before, after = _numbers(first), _numbers(run)
+    equal_input = input_text(first) == input_text(run)  # otherwise the change is not that of a car
     changes = []
     for label, (old, unit, rated) in before.items():
         if label in after and old > 0.0:
             new = after[label][0]
             values = f"{number(old)} → {number(new)} {unit}".rstrip()
-            changes.append(Change(f"{label}, {values}", 100.0 * (new / old - 1.0), rated))
+            changes.append(Change(f"{label}, {values}", 100.0 * (new / old - 1.0), rated and equal_input))
     return changes
 
 

@@ -10,6 +10,7 @@ from vehicle.engines.linear.path_shares import REST, path_shares
 from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS, point_words
 from vehicle.runs.car.main_mode import mode_of, plate_lines
+from vehicle.runs.car.order_points import RESONANT
 from vehicle.runs.report.findings import damper_state
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.main_band import POINT, MainBand
@@ -44,7 +45,7 @@ OTHER_SIDE = 0.25
 
 
 def strongest(run: FinishedRun, band: MainBand, modes: Sequence[Mode]) -> Mode | None:
-    """Return the mode of the linear car with the largest share in a band of the seat rail.
+    """Return the mode in resonance in a band of the seat rail with the largest share there.
 
     The plates move as in the run, at the lines of its periodogram; the state of the dampers is that of most of the run.
 
@@ -52,8 +53,8 @@ def strongest(run: FinishedRun, band: MainBand, modes: Sequence[Mode]) -> Mode |
         modes: modes of the car in this state of the dampers.
 
     Returns:
-        The mode; None if no plate is recorded, no mode has a positive share, or the one with the largest share cannot
-        cause the band (`MainBand.explained_by`): it only passes the vibration on.
+        The mode; None if no plate is recorded, or no mode that can cause the band (`MainBand.explained_by`) has at
+        least `RESONANT` of it: a mode outside it only passes the vibration on.
     """
     first = round(run.skip / run.recording.timestep)
     system = run.car.matrices.system
@@ -62,9 +63,13 @@ def strongest(run: FinishedRun, band: MainBand, modes: Sequence[Mode]) -> Mode |
         return None
     stuck = damper_state(run) == "stuck"
     result = mode_shares(system, f"{POINT}_acc_{band.axis}", lines.frequency, lines.plates, stuck=stuck)
-    at = int(np.argmax(result.shares))
-    mode = mode_of(modes, result, at) if result.shares[at] > 0.0 else None
-    return mode if mode is not None and band.explained_by(mode.frequency) else None
+    for at in np.argsort(-result.shares).tolist():
+        if result.shares[at] < RESONANT:
+            break
+        mode = mode_of(modes, result, at)
+        if mode is not None and band.explained_by(mode.frequency):
+            return mode
+    return None
 
 
 def paths(run: FinishedRun, axis: str, mode: Mode) -> dict[str, float]:

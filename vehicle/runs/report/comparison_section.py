@@ -62,7 +62,7 @@ def numbers_beside(runs: Sequence[FinishedRun]) -> Markup:
         inputs = [(f"all {len(runs)} runs", *inputs[0][1:])]
     return fill(
         "comparison",
-        first=names[0],
+        first=names[0] if any(each is not None for each in references(runs)) else "",
         many=len(runs) > MANY,
         inputs=inputs,
         figures=figures,

@@ -10,24 +10,27 @@ from vehicle.digits import number
 from vehicle.drawing.rendering.order_plot import plot_campbell, plot_order_cuts
 from vehicle.model.parameters.applied_force import CRANK
 from vehicle.names import channel_words
-from vehicle.runs.car.order_points import NamedMode, OrderPoints
+from vehicle.runs.car.order_points import LARGEST_SHARE, NamedMode, OrderPoints
 from vehicle.runs.report.markup import templates
 from vehicle.runs.report.page import document, head_line
 from vehicle.runs.report.svg_figure import drawing
 
 fill = templates(__file__)
 
-HEADS = ("order", "largest [m/s²]", "at", "frequency [Hz]", "dampers stick [m/s²]", "without friction [m/s²]", "slip")
-
-LARGEST_SHARE = 1.5
-"""Share of a mode above which it is not named: others cancel a third of it or more."""
+HEADS = ("order", "largest [m/s²]", "at", "frequency [Hz]", "friction holds [m/s²]", "without friction [m/s²]", "slip")
 
 
 def order_rows(orders: OrderPoints) -> list[tuple[str, ...]]:
-    """Return a row for each order with the cells of `HEADS`: its largest amplitude, where, and both limits there."""
+    """Return a row for each order with the cells of `HEADS`: its largest amplitude, where, and both limits there.
+
+    An order below the accuracy of the engine at all points has only this bound.
+    """
     rows = []
     for row, order in enumerate(orders.orders):
         top = int(np.argmax(np.abs(orders.amplitude[row])))
+        if not _is_result(orders, row):
+            rows.append((f"{order:g}", f"< {number(float(orders.floor.max()), 1)}", *["–"] * 5))
+            continue
         limits = (number(float(values[row, top])) if np.isfinite(values[row, top]) else "–"
                   for values in (orders.stuck, orders.free))  # fmt: skip
         rows.append(
@@ -43,6 +46,11 @@ def order_rows(orders: OrderPoints) -> list[tuple[str, ...]]:
     return rows
 
 
+def _is_result(orders: OrderPoints, row: int) -> bool:
+    """Return True if an order is above the accuracy of the engine at some point."""
+    return bool(np.any(np.abs(orders.amplitude[row]) > orders.floor))
+
+
 def order_points_sentences(orders: OrderPoints) -> list[str]:
     """Return text on the peak of each order with a force, the largest first."""
     where, sentences = channel_words(orders.channel), []
@@ -50,7 +58,7 @@ def order_points_sentences(orders: OrderPoints) -> list[str]:
     peaks = np.abs(orders.amplitude[np.arange(len(tops)), tops])
     for row in np.argsort(-peaks).tolist():
         top, order = int(tops[row]), float(orders.orders[row])
-        if not np.isfinite(orders.stuck[row, top]):
+        if not np.isfinite(orders.stuck[row, top]) or not _is_result(orders, row):
             continue
         frequency = order * float(orders.turns[top])
         single = len(orders.points) == 1
@@ -63,20 +71,23 @@ def order_points_sentences(orders: OrderPoints) -> list[str]:
             f"Order {order:g}{'' if single else ' is largest'} at {orders.points[top]:g} {orders.point_unit} "
             f"({number(frequency)} Hz{mode}){', the end of the range' if edge and not single else ''}: "
             f"{where} {size} m/s² (amplitude). "
-            f"There {slip}; dampers that stick would give {number(float(orders.stuck[row, top]))} m/s², dampers "
-            f"without friction {number(float(orders.free[row, top]))} m/s²."
+            f"There {slip}; {orders.frictions} that stick would give {number(float(orders.stuck[row, top]))} m/s², "
+            f"{orders.frictions} without friction {number(float(orders.free[row, top]))} m/s²."
         )
     return sentences
 
 
 def _part_words(parts: Sequence[NamedMode]) -> str:
-    """Return text on the mode with the largest share and the one in resonance; empty without one."""
-    text = ""
-    for name, part in zip(("largest part", "in resonance"), parts, strict=False):
-        against = ", others act against it" if part.share > 1.0 else ""
-        share = f"{100.0 * part.share:.0f} %{against}"
-        text += f"; {name}, {share}: {part.name}, natural frequency {number(part.frequency)} Hz"
-    return "; no mode decides, large parts cancel" if parts and parts[0].share > LARGEST_SHARE else text
+    """Return text on the mode in resonance, otherwise on that with the largest share; empty without one."""
+    if not parts:
+        return ""
+    part = parts[0]
+    if part.share > LARGEST_SHARE:
+        return "; no mode decides, large parts cancel"
+    # A share above the whole, which others reduce, would only puzzle.
+    share = f", {100.0 * part.share:.0f} %" if part.share <= 1.0 else ""
+    role = f"in resonance{share}" if part.resonant else f"no mode is in resonance, largest part{share}"
+    return f"; {role}: {part.name}, natural frequency {number(part.frequency)} Hz"
 
 
 def draw_cuts(path: Path, orders: OrderPoints, name: str, caption: str) -> None:

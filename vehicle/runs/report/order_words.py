@@ -4,7 +4,8 @@ from vehicle.digits import number
 from vehicle.names import AXES, channel_words, point_words
 from vehicle.signals.records.run_summary import OrderSummary, RunSummary, RunUpSummary
 
-POINTS = ("seat", "seat_rail")
+POINTS = ("seat_rail", "seat")
+"""Points of the statements, the first of them that is recorded: that of the comfort."""
 
 
 def force_rows(summary: RunSummary) -> list[tuple[str, str]]:
@@ -24,21 +25,31 @@ def force_rows(summary: RunSummary) -> list[tuple[str, str]]:
 
 def order_sentences(summary: RunSummary) -> list[str]:
     """Return text on each frequency of the applied forces: amplitudes at seat or seat rail."""
-    sentences = [_run_up_sentence(line) for line in summary.get("run_up", [])]
+    sentences = [*filter(None, (_run_up_sentence(line) for line in summary.get("run_up", [])))]
     for line in summary.get("orders", []):
         point = next((name for name in POINTS if f"{name}_acc_z" in line["amplitude"]), None)
         if point is not None:
-            size, (stuck, free) = amplitude_words(line, point), _limits(line, point)
+            axis = _axes(line, point)[0]
+            name, frictions = f"{point}_acc_{axis}", line.get("frictions", "dampers")
+            if line["amplitude"][name] <= line.get("floor", 0.0):
+                continue
+            stuck, free = (number(line[limit][name]) for limit in ("stuck", "without_friction"))
             sentences.append(
-                f"Forces at {line_words(line)} shake the {point_words(point)} by {size} (amplitudes). Dampers that "
-                f"stick would give {stuck}, dampers without friction {free} along z.{_chance(line, point)}"
+                f"Forces at {line_words(line)} shake the {point_words(point)} by {amplitude_words(line, point)} "
+                f"(amplitudes). Along {axis} {frictions} that stick would give {stuck} m/s², {frictions} without "
+                f"friction {free} m/s².{_chance(line, name)}"
             )
     return sentences
 
 
 def _run_up_sentence(line: RunUpSummary) -> str:
-    """Return text on the peak of an order in a run-up, at seat or seat rail along z if it is recorded."""
+    """Return text on the peak of an order in a run-up, at seat or seat rail along z if it is recorded.
+
+    It is empty for a peak below the accuracy of the engine.
+    """
     names = [name for point in POINTS if (name := f"{point}_acc_z") in line["peak"]] or [*line["peak"]]
+    if line["peak"][names[0]] <= line.get("floor", 0.0):
+        return ""
     rpm = line["rpm"][names[0]]
     frequency = number(line["order"] * rpm / 60.0)
     return (
@@ -47,17 +58,10 @@ def _run_up_sentence(line: RunUpSummary) -> str:
     )
 
 
-def _limits(line: OrderSummary, point: str) -> tuple[str, str]:
-    """Return the amplitudes along z of the linear car with locked dampers and with dampers without friction [m/s2]."""
-    name = f"{point}_acc_z"
-    return f"{number(line['stuck'][name])} m/s²", f"{number(line['without_friction'][name])} m/s²"
-
-
-def _chance(line: OrderSummary, point: str) -> str:
-    """Return text with the ranges along z over the phases of the wheels; empty for a single wheel."""
+def _chance(line: OrderSummary, name: str) -> str:
+    """Return text with the ranges of a channel over the phases of the wheels; empty for a single wheel."""
     if "stuck_range" not in line or "without_friction_range" not in line:
         return ""
-    name = f"{point}_acc_z"
     stuck, free = (
         f"{number(low)} to {number(high)} m/s²"
         for low, high in (line["stuck_range"][name], line["without_friction_range"][name])
@@ -72,11 +76,19 @@ def line_words(line: OrderSummary) -> str:
 
 
 def amplitude_words(line: OrderSummary, point: str) -> str:
-    """Return the amplitudes of a point by axis, the largest first, with errors above a hundredth."""
+    """Return the amplitudes of a point by axis, the largest first, with errors above a hundredth.
+
+    An axis below the accuracy of the engine is left out.
+    """
     texts = []
-    sizes = {axis: line["amplitude"].get(f"{point}_acc_{axis}", 0.0) for axis in AXES}
-    for axis in sorted(sizes, key=lambda name: -sizes[name]):
-        error = line["standard_error"].get(f"{point}_acc_{axis}", 0.0)
-        doubt = f" ± {number(error, 2)}" if error > 0.01 * sizes[axis] else ""
-        texts.append(f"{number(sizes[axis])}{doubt} m/s² along {axis}")
+    for axis in _axes(line, point):
+        size, error = (line[key].get(f"{point}_acc_{axis}", 0.0) for key in ("amplitude", "standard_error"))
+        doubt = f" ± {number(error, 2)}" if error > 0.01 * size else ""
+        if size > line.get("floor", 0.0):
+            texts.append(f"{number(size)}{doubt} m/s² along {axis}")
     return ", ".join(texts)
+
+
+def _axes(line: OrderSummary, point: str) -> list[str]:
+    """Return the axes of a point, that with the largest amplitude first."""
+    return sorted(AXES, key=lambda axis: -line["amplitude"].get(f"{point}_acc_{axis}", 0.0))

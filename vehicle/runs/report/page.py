@@ -22,6 +22,7 @@ from vehicle.runs.report.film_section import film, film_part
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import templates
 from vehicle.runs.report.modes_section import Modes, as_json, car_modes_of, modes_of, moving_modes
+from vehicle.runs.report.run_input import references
 from vehicle.runs.report.spectra_section import spectra
 from vehicle.runs.report.verdict_section import verdict_section
 from vehicle.runs.targets.figure import Figure
@@ -83,7 +84,10 @@ def report_page(
     if targets is not None:
         parts.insert(0, ("Targets", "targets", verdict_section(targets, runs)))
     first, others = runs[0].name, [run.name for run in runs[1:]]
-    names = f"{' and '.join(others) if len(others) < 4 else f'{len(others)} runs'} against {first}" if others else first
+    against = "against" if set(references(runs)[1:]) == {0} else "and"
+    names = (
+        f"{' and '.join(others) if len(others) < 4 else f'{len(others)} runs'} {against} {first}" if others else first
+    )
     captions = "; ".join(dict.fromkeys(run.caption for run in runs))
     head = head_line(author, project)
     shown = _drawn(runs)

@@ -30,11 +30,11 @@ def references(runs: Sequence[FinishedRun]) -> list[int | None]:
     """Return the number of the run with which each run is compared: the first one on its input.
 
     Returns:
-        None for the first run on an input. If no two runs have the same input, the inputs themselves are compared: the
-        first run is the reference of all others.
+        None for the first run on an input. If no two runs have the same input and all are on a rig, its signals are
+        compared: the first run is the reference of all others. Roads and speeds are nobody's choice.
     """
     inputs = [input_text(run) for run in runs]
-    if len(set(inputs)) == len(inputs):
+    if len(set(inputs)) == len(inputs) and not any(run.summary["input"].get("road") for run in runs):
         return [None, *[0] * (len(runs) - 1)]
     return [None if inputs.index(text) == number else inputs.index(text) for number, text in enumerate(inputs)]
 

@@ -29,7 +29,8 @@ def run_up_peak(frequency: float, damping: float, rate: float, window: float = 0
     """
     b, scale = rate / (2.0 * np.pi * (frequency * damping) ** 2), 2.0 * np.pi * frequency * damping
     # The peak is late by less than a few bandwidths, and by the width of the chirp where that is larger.
-    ends = 3.0 / b + 6.0 / np.sqrt(b) + 3.0 + 0.5 * window * scale
+    # Far above the bandwidth it is that of an undamped mode, at the first maximum of the chirp.
+    ends = 3.0 / b + 6.0 / np.sqrt(b) + 3.0 / (1.0 + b) + 0.5 * window * scale
     time = np.linspace(-ends, ends, 801)
     root = np.sqrt(2j * b)
     amplitude = np.sqrt(np.pi) / root * scipy.special.wofz((b * time + 1j) / root)

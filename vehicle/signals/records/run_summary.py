@@ -135,8 +135,9 @@ class OrderSummary(TypedDict):
     """Amplitude of a channel at a frequency of the applied forces, with the standard error of both: see `order_lines`.
 
     `order` is that of the angle of `of`, "wheels", "crank" or "frequency". `stuck` and `without_friction` are the
-    amplitudes of the linear car with locked dampers and with dampers without friction; the ranges are theirs over the
-    phases of the wheels among each other, if two or more wheels have this order.
+    amplitudes of the linear car in which the friction of dampers and bushings holds, and without their friction; the
+    ranges are theirs over the phases of the wheels among each other, if two or more wheels have this order. `frictions`
+    names what has friction, and amplitudes up to `floor` are below the accuracy of the engine.
     """
 
     order: float
@@ -148,14 +149,20 @@ class OrderSummary(TypedDict):
     without_friction: dict[str, float]
     stuck_range: NotRequired[dict[str, tuple[float, float]]]
     without_friction_range: NotRequired[dict[str, tuple[float, float]]]
+    frictions: NotRequired[str]
+    floor: NotRequired[float]
 
 
 class RunUpSummary(TypedDict):
-    """Largest amplitude of each channel in an order of the crankshaft in a run-up, and its speed [1/min]."""
+    """Largest amplitude of each channel in an order of the crankshaft in a run-up, and its speed [1/min].
+
+    Amplitudes up to `floor` are below the accuracy of the engine.
+    """
 
     order: float
     peak: dict[str, float]
     rpm: dict[str, float]
+    floor: NotRequired[float]
 
 
 class StaticSummary(TypedDict):

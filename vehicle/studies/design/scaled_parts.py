@@ -17,6 +17,7 @@ from typing import Any
 from vehicle.digits import rounded
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.paths import paths, value_at
+from vehicle.model.parameters.plausible import ENGINE
 from vehicle.model.parameters.toml_file import copy_table
 from vehicle.model.parameters.vehicle import vehicle_of
 from vehicle.model.parameters.whole_body import put
@@ -76,7 +77,7 @@ def _exponents(template: TemplateCar, *, powertrain: bool) -> Iterator[tuple[str
     car = template.vehicle.composition
     roots = {template.axle(word) for word in template.wheels}
     if powertrain:
-        roots |= {part.path.split(".")[0] for part in car.parts if part.shape == "engine"}
+        roots |= {part.path.split(".")[0] for part in car.parts if part.name == ENGINE}
     tyres = tuple(f"{path}." for path in template.tyre_paths.values())
     whole = dict.fromkeys(path.removesuffix(path[-2:]) if path[-2:] in (".x", ".y", ".z") else path
                           for path in paths(template.table) if path.split(".")[0] in roots)  # fmt: skip

@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -78,6 +78,12 @@ class CaseFile:
         ]
 
     @property
+    def base_names(self) -> list[str]:
+        """Return for each of `cars` the car without a variant in the same laden state, with which it is compared."""
+        names = ((state, variant) for state in ("", *self.states) for variant in ("", *self.variants))
+        return [state or UNCHANGED for state, _ in names]
+
+    @property
     def cars(self) -> dict[str, tuple[str, ...]]:
         """Return name to texts "path=value" of every laden state with every variant, the unchanged car first."""
         listed = {UNCHANGED: ()} | {
@@ -121,17 +127,19 @@ def read_cases(file: Path) -> CaseFile:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class CaseResults:
-    """Comfort of every car on every input.
+    """Comfort of every car on every input; variants are compared within a laden state, which nobody chooses.
 
     Attributes:
         cars: names of the cars, the unchanged one first.
+        bases: number of the car without a variant in the state of each car.
         inputs: names of the inputs.
         name: comfort value, as "weighted".
         weighted, unweighted: comfort [m/s2], NaN for a failed run; (inputs, cars).
-        errors: standard errors of the changes from the unchanged car, 0 on one event [m/s2]; (inputs, cars).
+        errors: standard errors of the changes from the base of each car, 0 on one event [m/s2]; (inputs, cars).
     """
 
     cars: tuple[str, ...]
+    bases: tuple[int, ...]
     inputs: tuple[str, ...]
     name: str
     weighted: Vector
@@ -144,14 +152,14 @@ class CaseResults:
 
         The last row is that of the mean change.
         """
-        relative = 100.0 * (self.errors / self.weighted[:, :1]).T
+        relative = 100.0 * (self.errors / self.weighted[:, list(self.bases)]).T
         each = [half_width(relative[:, [number]]) for number in range(len(self.inputs))]
         return np.array([*each, half_width(relative)])
 
     @property
     def changes(self) -> Vector:
-        """Return the change of the weighted value from the unchanged car on the same input [%], (inputs, cars)."""
-        return np.asarray(100.0 * (self.weighted / self.weighted[:, :1] - 1.0))
+        """Return the change of the weighted value from the base of each car on the same input [%], (inputs, cars)."""
+        return np.asarray(100.0 * (self.weighted / self.weighted[:, list(self.bases)] - 1.0))
 
     def rows(self, sign: str = "+-") -> list[list[str]]:
         """Return the head and a row for each car as texts: weighted value and change on each input, mean change.
@@ -165,11 +173,12 @@ class CaseResults:
             cells = []
             for value, change in zip(self.weighted[:, number], self.changes[:, number], strict=True):
                 cell = f"{value:.4g}" if math.isfinite(value) else "failed"
-                cells.append(f"{cell} ({change:+.1f} %)" if number and math.isfinite(change) else cell)
+                varied = self.bases[number] != number
+                cells.append(f"{cell} ({change:+.1f} %)" if varied and math.isfinite(change) else cell)
             mean = float(np.mean(self.changes[:, number]))
             error = f" {sign} {widths[number]:.1f}" if widths[number] > 0.0 else ""
             rows.append(
-                [car, *cells, "base" if not number else f"{mean:+.1f}{error} %" if math.isfinite(mean) else "-"]
+                [car, *cells, "base" if not varied else f"{mean:+.1f}{error} %" if math.isfinite(mean) else "-"]
             )
         return rows
 
@@ -185,36 +194,52 @@ class CaseResults:
 
     @property
     def sentence(self) -> str:
-        """Return text on the car with the lowest mean change."""
-        means = np.mean(self.changes, axis=0)
-        if not np.isfinite(means).any():
-            return "No car ran on all inputs."
-        best = int(np.nanargmin(means))
-        if best == 0:
-            return "Over all inputs no car is smoother than the car as it is."
+        """Return text on the variant with the lowest mean change in each laden state."""
+        states = dict.fromkeys(self.bases)
+        if all(self.bases[number] == number for number in range(len(self.cars))):
+            return "The file has no variants; laden states are not a choice, so none is named the smoothest."
+        return " ".join(self._best_in(base, several=len(states) > 1) for base in states)
+
+    def _best_in(self, base: int, *, several: bool) -> str:
+        """Return text on the variant with the lowest mean change in a state; `several` for more than one state."""
+        means, name = np.mean(self.changes, axis=0), self.cars[base]
+        state = f"{name}: " if several else ""
+        variants = [number for number, each in enumerate(self.bases) if each == base and math.isfinite(means[number])]
+        if not variants:
+            return f"{state or 'Result: '}no car ran on all inputs."
+        best = min(variants, key=lambda number: float(means[number]))
+        over = "over all inputs" if len(self.inputs) > 1 else f"on {self.inputs[0]}"
+        if best == base:
+            return f"{state}{over} no variant is smoother than the car as it is."
         doubt = ", not more than its error" if abs(means[best]) <= self.half_widths[-1, best] else ""
-        return (
-            f"Over all inputs the smoothest car is {self.cars[best]!r}: {means[best]:+.1f} % against the car as it is"
-            f"{doubt}."
-        )
+        variant = self.cars[best].removeprefix(f"{name}, ")
+        return f"{state}{over} the smoothest variant is {variant!r}: {means[best]:+.1f} % against no variant{doubt}."
 
 
-def case_results(table: SweptCases, cars: Sequence[str]) -> CaseResults:
+def case_results(table: SweptCases, cases: CaseFile) -> CaseResults:
     """Return the comfort of a sweep over the cars of a file.
 
     Args:
         table: the table, the inputs varying slowest.
-        cars: names of the cars, see `CaseFile.cars`.
+        cases: the file.
     """
+    cars = list(cases.cars)
+    bases = [cars.index(name) for name in cases.base_names]
     name = next(each for each in RANKED_BY if each in table.units)
     inputs = dict.fromkeys(case.source.name for case in table.cases)
+    rows, numbers = list(table.rows()), np.arange(len(table.cases)).reshape(len(inputs), -1).T.tolist()
+    errors = np.zeros((len(cars), len(inputs)))
+    for base in dict.fromkeys(bases):
+        in_state = [number for number, each in enumerate(bases) if each == base]
+        errors[in_state] = change_errors(rows, [numbers[number] for number in in_state], name)[0]
     return CaseResults(
         cars=tuple(cars),
+        bases=tuple(bases),
         inputs=tuple(inputs),
         name=name,
         weighted=table.column(name).reshape(len(inputs), -1),
         unweighted=table.column(name.replace(WEIGHTED, UNWEIGHTED)).reshape(len(inputs), -1),
-        errors=change_errors(table.rows(), np.arange(len(table.cases)).reshape(len(inputs), -1).T.tolist(), name)[0].T,
+        errors=errors.T,
     )
 
 

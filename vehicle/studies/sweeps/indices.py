@@ -33,7 +33,11 @@ CONFIDENCE = 0.95
 SCRAMBLINGS = 16
 """Maximum number of independent scramblings. With 15 degrees of freedom an interval is 9 % wider than with many."""
 POINTS = 4
-"""Minimum number of base points of a scrambling, if there are enough for two scramblings."""
+"""Minimum number of base points of a scrambling."""
+LEAST_BASE = 64
+"""Minimum number of base points. Measured with the Ishigami function, g-functions of 4 and 8 parameters and linear
+functions: 95 % of all errors are below 0.36, and the intervals contain 92 to 96 % of the indices. With 32 points an
+error reaches 0.5, with 16 an interval of +-0.9 is wider than the range of an index, 0 to 1."""
 LEAST_LEFT = 0.5
 """Minimum share of the base points without a failed run."""
 
@@ -50,6 +54,8 @@ class SobolIndices:
         scramblings: number of independent scramblings.
         base: number of base points.
         left_out: number of excluded base points, which have a failed run.
+        contradictions: indices that violate 0 <= S1 <= ST <= 1 beyond their error, in words; the error of each
+            difference is that of the jackknife, at 95 % for all differences together.
     """
 
     paths: tuple[str, ...]
@@ -61,6 +67,7 @@ class SobolIndices:
     scramblings: int
     base: int
     left_out: int
+    contradictions: tuple[str, ...]
 
 
 def sobol_sample(ranges: Sequence[Range], base: int, *, seed: int = 0) -> Vector:
@@ -68,15 +75,21 @@ def sobol_sample(ranges: Sequence[Range], base: int, *, seed: int = 0) -> Vector
 
     Args:
         ranges: parameters with bounds.
-        base: number of base points, a power of two.
+        base: number of base points, a power of two, at least `LEAST_BASE`.
         seed: seed of the scramblings.
 
     Raises:
-        ConfigurationError: `base` is no power of two.
+        ConfigurationError: `base` is no power of two, or too small.
     """
-    if base < 2 or base & (base - 1):
+    if base < 1 or base & (base - 1):
         raise ConfigurationError(
-            f"base points: found {base}, must be a power of two (a Sobol sequence of this length is balanced)"
+            f"base points: found {base}, must be a power of two (a Sobol sequence of this length is balanced), "
+            f"at least {LEAST_BASE}"
+        )
+    if base < LEAST_BASE:
+        raise ConfigurationError(
+            f"base points: found {base}, must be at least {LEAST_BASE}: below, the error of an index, which lies "
+            "between 0 and 1, reaches 0.5 and more"
         )
     count, size, blocks = _scramblings(base), len(ranges), []
     # Children of one seed are independent of each other and of those of every other seed.
@@ -92,6 +105,36 @@ def sobol_sample(ranges: Sequence[Range], base: int, *, seed: int = 0) -> Vector
 def _scramblings(base: int) -> int:
     """Return the number of scramblings of a sample with `base` points."""
     return min(SCRAMBLINGS, max(base // POINTS, 2))
+
+
+def _contradictions(ranges: Sequence[Range], whole: Vector, without: Vector) -> tuple[str, ...]:
+    """Return the violations of 0 <= S1 <= ST <= 1 in words, see `SobolIndices.contradictions`.
+
+    Args:
+        ranges: the parameters.
+        whole: S1 and ST of the sample; (2, p).
+        without: S1 and ST without each scrambling; (replicates, 2, p).
+    """
+
+    def margins(shares: Vector) -> Vector:
+        """Return S1 - 0, ST - S1 and 1 - ST; (..., 3, p)."""
+        first, total = shares[..., 0, :], shares[..., 1, :]
+        return np.stack([first, total - first, 1.0 - total], axis=-2)
+
+    margin, deviation = margins(whole), _deviation(margins(without))
+    level = (1.0 - CONFIDENCE) / margin.size
+    below = margin + scipy.stats.t.ppf(1.0 - level, len(without) - 1) * deviation < 0.0
+    violations = ("S1 is below 0", "S1 is above ST", "ST is above 1")
+    return tuple(
+        f"{ranges[at].path}: {violations[which]} beyond the error (S1 {whole[0, at]:.3f}, ST {whole[1, at]:.3f})"
+        for which, at in zip(*np.nonzero(below), strict=True)
+    )
+
+
+def _deviation(without: Vector) -> Vector:
+    """Return the jackknife standard error of estimates without each replicate; (replicates, ...)."""
+    replicates = len(without)
+    return np.asarray(np.sqrt((replicates - 1) / replicates * np.sum((without - without.mean(axis=0)) ** 2, axis=0)))
 
 
 def sobol_indices(ranges: Sequence[Range], values: npt.ArrayLike) -> SobolIndices:
@@ -118,8 +161,7 @@ def sobol_indices(ranges: Sequence[Range], values: npt.ArrayLike) -> SobolIndice
     whole = _indices(y)
     without = np.array([_indices(y[group != excluded]) for excluded in np.unique(group)])
     replicates = len(without)
-    deviation = np.sqrt((replicates - 1) / replicates * np.sum((without - without.mean(axis=0)) ** 2, axis=0))
-    width = scipy.stats.t.ppf(0.5 + 0.5 * CONFIDENCE, replicates - 1) * deviation
+    width = scipy.stats.t.ppf(0.5 + 0.5 * CONFIDENCE, replicates - 1) * _deviation(without)
     return SobolIndices(
         paths=tuple(r.path for r in ranges),
         first=whole[0],
@@ -132,6 +174,7 @@ def sobol_indices(ranges: Sequence[Range], values: npt.ArrayLike) -> SobolIndice
         scramblings=replicates,
         base=base,
         left_out=left,
+        contradictions=_contradictions(ranges, whole, without),
     )
 
 

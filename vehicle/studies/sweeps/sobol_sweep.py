@@ -49,7 +49,7 @@ def sobol(
         intervals (`first_error`, `total_error`), each (p,).
 
     Raises:
-        ConfigurationError: bounds that do not ascend, `base` is no power of two, and as in `sweep`.
+        ConfigurationError: bounds that do not ascend, `base` is no power of two or too small, and as in `sweep`.
         DataError: half of the base points have a failed run, or no parameter changes the comfort.
 
     Source: Saltelli et al., Comput. Phys. Commun. 181 (2010).
@@ -63,10 +63,10 @@ def sobol_changes(ranges: Sequence[Range], base: int) -> RowChanges:
 
     Args:
         ranges: parameters with bounds.
-        base: number of base points, a power of two.
+        base: number of base points, a power of two, at least `indices.LEAST_BASE`.
 
     Raises:
-        ConfigurationError: `base` is no power of two.
+        ConfigurationError: `base` is no power of two, or too small.
     """
     return RowChanges([each.path for each in ranges], sobol_sample(ranges, base).tolist())
 
@@ -122,8 +122,10 @@ def index_lines(indices: Mapping[str, SobolIndices]) -> list[str]:
         first, total = (each.first[i], each.first_error[i]), (each.total[i], each.total_error[i])
         lines.append(f"{each.paths[i]:<{width}}  {first[0]:6.3f} {first[1]:6.3f}  {total[0]:6.3f} {total[1]:6.3f}")
     left = f"; {each.left_out} of {each.base} base points have a failed run and are left out" if each.left_out else ""
+    warned = [f"warning: {fault}; use {2 * each.base} base points or more" for fault in each.contradictions]
     return [
         *lines,
+        *warned,
         f"shares of the variance of {name!r}: S1 of the parameter alone, ST with all its interactions; +-: half width",
         f"of the 95 % interval, from {each.scramblings} independent samples{left}",
     ]

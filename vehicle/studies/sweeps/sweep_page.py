@@ -77,6 +77,8 @@ def best_sentences(cars: RankedCars) -> list[str]:
         return ", ".join(f"{path} = {cell}" for path, cell in zip(cars.paths, cars.cells[car], strict=True))
 
     base = f"Base car, the first of the sweep: {parameters(0)}: {values(0)}."
+    if states := cars.state_sentences():
+        return [*(f"{text[0].upper()}{text[1:]}." for text in states), base]
     if cars.alike and len(cars.order) > 1:
         return [f"All {len(cars.order)} cars are equally comfortable: the varied parameters have no effect here.", base]
     if cars.best == 0:
@@ -150,7 +152,7 @@ def _runs(results: SweptCases) -> Markup:
 
 def _repeating(cars: RankedCars | None, results: SweptCases, command: str) -> Markup:
     best = ""
-    if cars is not None and cars.paths:
+    if cars is not None and cars.paths and not cars.state_sentences():
         first, cells = results.cases[0], cars.cells[cars.best]
         settings = [f"{path}={cell}" for path, cell in zip(cars.paths, cells, strict=True)]
         base = Car.load(first.vehicle, first.overrides[: first.shared])

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any, Protocol
 
 import numpy as np
@@ -24,6 +25,9 @@ RANKED_BY = (f"{SEAT_PREFIX}{WEIGHTED}", WEIGHTED)
 ROUNDING = 1e-6
 """Relative difference of two comfort values that is rounding: batches run in single precision, whose values move by
 2e-7 if a parameter changes by the last digit."""
+
+STATES = ("load.", "driving.")
+"""Beginnings of paths that nobody chooses: loads and speeds. Cars are ranked within them."""
 
 SHOWN = 12
 """Maximum number of cars in the printed table."""
@@ -100,6 +104,33 @@ class RankedCars:
     def best(self) -> int:
         """Car with the lowest relative value."""
         return self.order[0]
+
+    def by_state(self) -> dict[tuple[str, ...], list[int]]:
+        """Return the cars by the values of their `STATES`, most comfortable first; all under () without states."""
+        columns = [column for column, path in enumerate(self.paths) if path.startswith(STATES)]
+        grouped: dict[tuple[str, ...], list[int]] = {}
+        for car in sorted(self.order):
+            grouped.setdefault(tuple(f"{self.paths[at]} = {self.cells[car][at]}" for at in columns), []).append(car)
+        rank = {car: number for number, car in enumerate(self.order)}
+        return {state: sorted(cars, key=rank.__getitem__) for state, cars in grouped.items()}
+
+    def state_sentences(self) -> list[str]:
+        """Return text on the most comfortable car in each state; empty for a sweep without `STATES`."""
+        grouped = self.by_state()
+        if () in grouped:
+            return []
+        if all(len(cars) == 1 for cars in grouped.values()):
+            names = ", ".join(path for path in self.paths if path.startswith(STATES))
+            return [f"{names}: a state of the car is not a choice, so no car is named the most comfortable"]
+        chosen = [column for column, path in enumerate(self.paths) if not path.startswith(STATES)]
+        sentences = []
+        for state, cars in grouped.items():
+            first, best = min(cars), cars[0]
+            text = ", ".join(f"{self.paths[at]} = {self.cells[best][at]}" for at in chosen)
+            change = 100.0 * (float(self.relative[best]) / float(self.relative[first]) - 1.0)
+            against = "the first car of this state" if best == first else f"{change:+.2f} % weighted against the first"
+            sentences.append(f"most comfortable with {', '.join(state)}: {text} ({against})")
+        return sentences
 
     @property
     def alike(self) -> bool:
@@ -238,10 +269,27 @@ def ranking_lines(cars: RankedCars) -> list[str]:
     definitions = ", ".join(f"{cars.prefix}{name}: {MEANING[name]}" for name in (WEIGHTED, UNWEIGHTED))
     lines.append("; ".join(filter(None, (definitions, f"{cars.point}{over}", cars.error_words))))
     best = ", ".join(f"{path} = {cell}" for path, cell in zip(cars.paths, cars.cells[cars.best], strict=True))
-    if cars.alike and len(cars.order) > 1:
+    if states := cars.state_sentences():
+        lines += states
+    elif cars.alike and len(cars.order) > 1:
         lines.append(f"all {len(cars.order)} cars are equally comfortable: the varied parameters have no effect here")
     elif best and cars.best == 0:
         lines.append(f"most comfortable is the first car: {best}")
     elif best:
         lines.append(f"most comfortable: {best} ({cars.change_text(cars.best)} % weighted{cars.doubt})")
     return lines
+
+
+def measure_lines(table: SweptCases) -> list[str]:
+    """Return the printed table of a sweep of another measure than comfort: parameters and values of the first runs."""
+    base, units = table.cases[0], table.units
+    shared = {text.partition("=")[0] for text in base.overrides[: base.shared]}
+    paths = [path for path in table.paths() if path not in shared]
+    columns = [table.column(name) for name in units]
+    rows = [
+        [case.source.name, *parameter_cells(case, paths), *(number_text(float(each[row]), 4) for each in columns)]
+        for row, case in enumerate(islice(table.cases, SHOWN))
+    ]
+    lines = aligned([["input", *paths, *(f"{name} [{unit}]" for name, unit in units.items())], *rows], left=1)
+    left = len(table.cases) - len(rows)
+    return [*lines, f"and {left} more runs in table.csv"] if left else lines

@@ -93,7 +93,7 @@ class SweepSettings(RunSettings):
 class SobolSettings(SweepSettings):
     """Settings of Sobol indices."""
 
-    base: int = setting("number of base points, a power of two; %(default)s by default", 256)
+    base: int = setting("number of base points, a power of two, at least 64; %(default)s by default", 256)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -13,6 +13,7 @@ from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car import Car
 from vehicle.studies.tuning.fit_result import TuningResult
 from vehicle.studies.tuning.frf_target import FrfTarget
+from vehicle.studies.tuning.inertia_about_cog import about_cog
 from vehicle.studies.tuning.least_squares import fit
 from vehicle.studies.tuning.level_target import LevelTarget
 from vehicle.studies.tuning.measured_targets import MeasuredTarget
@@ -55,9 +56,21 @@ def tune(
     ]
     start = car.with_(overrides_of(car.vehicle, {entry.path: entry.start for entry in ranges}))
     delays = [delay for number, target in enumerate(targets) for delay in delays_of(target, number, start)]
-    return fit(
-        ranges, targets, lambda values: car.with_(overrides_of(car.vehicle, values)), delays=delays, progress=progress
-    )
+
+    def fitted(car: Car, ranges: Sequence[Range], begin: Mapping[str, float]) -> TuningResult:
+        def build(values: Mapping[str, float]) -> Car:
+            return car.with_(overrides_of(car.vehicle, values))
+
+        return fit(ranges, targets, build, delays=delays, begin=begin, progress=progress)
+
+    begin: dict[str, float] = {}
+    if (restatement := about_cog(start, ranges)) is not None:
+        restated, restated_ranges, values_about_origin = restatement
+        first = fitted(restated, restated_ranges, {})
+        begin = {**first.solution, **values_about_origin(first.values)}
+        if not all(entry.low < begin[entry.path] < entry.high for entry in ranges):
+            begin = {}
+    return fitted(car, ranges, begin)
 
 
 def delays_of(target: FrfTarget | LevelTarget | RecordTarget, number: int, start: Car) -> list[DelayRange]:

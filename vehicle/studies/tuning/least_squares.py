@@ -20,7 +20,7 @@ import numpy as np
 import scipy
 
 from vehicle.arrays import Vector
-from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.errors import ConfigurationError, DataError, SimulationError
 from vehicle.model.parameters.ranges import Range, checked_ranges
 from vehicle.studies.tuning.error_sources import lag_shifts, misfit_errors
 from vehicle.studies.tuning.fit_result import RowStatistics, TuningResult, Unknown, target_statistics
@@ -33,10 +33,21 @@ COARSE_STEP, STEP = 0.1, 1e-3
 """Steps of ln(value) for difference quotients. The coarse step is for values far from the minimum, where slips that
 appear and vanish make the sum of squares rough. The fine step leaves a second-order error of a thousandth."""
 
+NEAR_STEP = 1e-5
+"""Step of ln(value) of a fit that begins at a solution in other coordinates: of m r2 in a moment about the origin 1e-3
+is up to a hundredth of the moment about the centre of gravity, and a quotient over it was wrong by 40 %."""
+
+SMALLEST_STEP = 1e-6
+"""Step of ln(value) below which a difference quotient is not halved further where its model is impossible."""
+
 COARSE, FINE = 1e-2, 1e-5
 """Relative changes of the sum of squares at which an iteration ends. The coarse iteration only estimates the sizes of
 the residuals. In a fine iteration the sum of squares then changes by far less than 1, the change due to one standard
 error, for the thousands of values of a measurement."""
+
+FAR = 10.0
+"""Predicted reduction of the sum of squares, over its final tolerance, above which a fit beside impossible models has
+not reached the minimum."""
 
 STEADY = 1.3
 """Maximum factor by which the scales of the rows may change in the last iteration."""
@@ -59,6 +70,7 @@ def fit(
     build: Callable[[Mapping[str, float]], Any],
     *,
     delays: Sequence[DelayRange] = (),
+    begin: Mapping[str, float] | None = None,
     progress: Callable[[int, float], None] | None = None,
 ) -> TuningResult:
     """Fit parameters to measurements by weighted least squares.
@@ -68,6 +80,8 @@ def fit(
         targets: measurements; the weights are estimated from the residuals of each row.
         build: function of {path: value} that returns the model for `Target.response`.
         delays: delays of groups of channels of a `Target`, further unknowns.
+        begin: path to value of a previous fit, within the bounds, at which the iteration begins with `NEAR_STEP`; by
+            default it begins at the start values.
         progress: called with the number of evaluations and the root of the mean square of the weighted residuals.
 
     Returns:
@@ -80,9 +94,11 @@ def fit(
     problem = _Problem((*checked_ranges(parameters), *delays), targets, build, progress)
     start = problem.residuals(np.zeros(len(problem.unknowns)))
     problem.weights = np.ones(start.size)
-    point, answer = problem.solve(np.zeros(len(problem.unknowns)), COARSE)
+    begun = [unknown.coordinate((begin or {}).get(unknown.path, unknown.start)) for unknown in problem.unknowns]
+    problem.step = NEAR_STEP if begin else COARSE_STEP
+    point, answer = problem.solve(np.array(begun), COARSE)
     held: list[Unidentified] = []
-    problem.step = STEP
+    problem.step = NEAR_STEP if begin else STEP
     rounds = 0
     while True:
         raw = problem.residuals(point)
@@ -116,6 +132,10 @@ def _open_directions(jacobian: Vector, parameters: list[Unknown]) -> list[Uniden
         held.append(worst)
         left = [index for index in left if parameters[index].path != worst.path]
     return held
+
+
+class _ImpossibleModelError(ConfigurationError):
+    """The values of a trial, each within its bounds, together make no model."""
 
 
 class _Problem:
@@ -155,8 +175,12 @@ class _Problem:
         parameters = {unknown.path: values[unknown.path] for unknown in self.unknowns if isinstance(unknown, Range)}
         key = tuple(parameters.values())
         if key not in self.responses:
-            model = self.build(parameters)
-            self.responses = {key: [target.response(model) for target in self.targets]}
+            try:
+                model = self.build(parameters)
+                self.responses = {key: [target.response(model) for target in self.targets]}
+            except (ConfigurationError, DataError) as error:
+                # Each value may lie within its bounds, but not all together: a mass beside moments about the origin.
+                raise _ImpossibleModelError(str(error)) if self.evaluations else error from None
             self.evaluations += 1
         return self.responses[key]
 
@@ -209,14 +233,25 @@ class _Problem:
         self.weights = np.repeat(1.0 / np.maximum(scales, minimum), lengths)
 
     def jacobian(self, point: Vector, columns: Sequence[int]) -> Vector:
-        """Return d (weighted residuals) / d u, (n, columns), by forward differences; backward near an upper bound."""
+        """Return d (weighted residuals) / d u, (n, columns), by forward differences.
+
+        They are backward near an upper bound, and smaller where the step would leave the possible models.
+        """
         base, responses = self.residuals(point), self.responses
         table = np.empty((base.size, len(columns)))
         for column, index in enumerate(columns):
             step = self.step if point[index] + self.step < self.bounds(index)[1] else -self.step
-            moved = point.copy()
-            moved[index] += step
-            table[:, column] = (self.residuals(moved) - base) / step * self.weights
+            while True:
+                moved = point.copy()
+                moved[index] += step
+                try:
+                    table[:, column] = (self.residuals(moved) - base) / step * self.weights
+                    break
+                except _ImpossibleModelError as error:
+                    if abs(step) < SMALLEST_STEP:
+                        raise ConfigurationError(f"parameter {self.unknowns[index].path}: {error}") from None
+                    backward = point[index] - abs(step) > self.bounds(index)[0]
+                    step = -step if step > 0.0 and backward else 0.5 * abs(step)
             self.last, self.responses = (point.tobytes(), base), responses
         return table
 
@@ -264,13 +299,18 @@ class _Problem:
             return point
 
         def function(free: Vector) -> Vector:
-            weighted = self.residuals(whole(free)) * self.weights
+            try:
+                weighted = self.residuals(whole(free)) * self.weights
+            except _ImpossibleModelError as error:  # makes the trust region smaller
+                impossible.append(str(error))
+                return np.full(size, np.inf)
             if self.progress is not None:
                 self.progress(self.evaluations, float(np.sqrt(np.mean(weighted**2))))
             return np.concatenate([weighted, regularisation * free])
 
         widths = np.array([self.unknowns[index].half_width for index in self.free])
         regularisation = REGULARISATION / widths
+        size, impossible = self.residuals(start).size + widths.size, list[str]()
         low, high = np.array([self.bounds(index) for index in self.free]).T
         margin = 1e-9 * (high - low)
         answer = scipy.optimize.least_squares(
@@ -284,6 +324,11 @@ class _Problem:
             gtol=None,
             max_nfev=MOST_ITERATIONS,
         )
+        # Beside impossible models the trust region may shrink far from the minimum: the reduction that a full step
+        # predicts is then still large.
+        predicted = np.sum((answer.jac @ np.linalg.lstsq(answer.jac, -answer.fun)[0]) ** 2) if impossible else 0.0
+        if predicted > FAR * tolerance * np.sum(answer.fun**2):
+            return whole(answer.x), (False, f"the fit ends where trial values make no model ({impossible[-1]})")
         return whole(answer.x), (answer.status > 0, str(answer.message))
 
     def result(
