@@ -62,7 +62,7 @@ def require_finite(recording: Recording) -> None:
             )
 
 
-def judge_energy(energies: Energies, rate: float) -> tuple[str, ...]:
+def judge_energy(energies: Energies, rate: float, step: float) -> tuple[str, ...]:
     """Check the energy balance of a run and return warnings.
 
     The residual is relative to the larger of the work of the plates and the dissipated energy: plates that end lower
@@ -71,6 +71,7 @@ def judge_energy(energies: Energies, rate: float) -> tuple[str, ...]:
     Args:
         energies: energy balance of the run.
         rate: rate of the samples in the sums [Hz].
+        step: time step of the run [s].
 
     Raises:
         SimulationError: the residual exceeds `RESIDUAL_FAILED`.
@@ -84,9 +85,13 @@ def judge_energy(energies: Energies, rate: float) -> tuple[str, ...]:
     said = f"energy balance: {missing:.3g} J of {whole} are missing (residual {number(residual, 2)})"
     if rate < BALANCED_RATE:
         return (f"{said}; this says little, because {rate:g} Hz are too few samples a second for the sum",)
+    smaller = f"--set solver.timestep={0.5 * step:g}"
     if residual > RESIDUAL_FAILED:
         raise SimulationError(
             f"{said}, must be at most {RESIDUAL_FAILED:g}: the time steps are too long for the force laws of "
-            "this car. Reduce solver.timestep, or check the parameters that you changed"
+            f"this car. Set a smaller step, as {smaller}, or check the parameters that you changed"
         )
-    return (f"{said}, usual is up to {RESIDUAL_WARNED:g}; check the run with half its solver.timestep",)
+    return (
+        f"{said}, usual is up to {RESIDUAL_WARNED:g}; repeat the run with {smaller}: if the residual falls, the step was "
+        "too long; if it stays, the balance lacks a work, and the channels are as exact as their change with the step",
+    )

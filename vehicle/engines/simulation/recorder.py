@@ -184,6 +184,8 @@ class Recorder:
         residual, ground = state.residual.copy(), b.one_sided
         # A contact that lifts off keeps the energy of its unloaded spring.
         residual[ground, 2] = np.minimum(residual[ground, 2], preload[b.rows[ground, 2]] / b.stiffness[ground, 2])
+        # Static forces of rolling tyres along the road do work over their slip, see `flush`: no potential.
+        residual[e.rolling.tyres, :2] = 0.0
         elastic = 0.5 * np.sum(b.stiffness * residual**2) - np.sum(preload[b.rows] * residual)
         turned, frames = rows.rotation(self.data)
         twist = np.einsum("nji,nj->ni", frames, turned)
@@ -275,13 +277,18 @@ class Recorder:
         # Work of the Jenkins elements of rubber, with the energy that their springs hold.
         loss = loss + np.sum(b.rubber * true_rate[:, e.rubber.elements, e.rubber.axes], axis=1)
         branch = self._branch_force(b.solved, b.branch)
-        # Rolling car: power of slope, moments and course control on all velocities, and of side slip on V psi.
+        # Rolling car: power of slope, moments and course control on all velocities, and of the slip on what is no motion
+        # of the car: side slip V psi, and the velocity of a tread that what turns the wheel adds, half a step later.
         power_in = power_in + b.pushed
-        power_in = power_in + np.sum(branch[:, e.rolling.tyres, 1] * b.heading * e.rolling.speeds, axis=1)
+        rolling = e.rolling.tyres
+        steady = np.zeros((count, len(rolling), 2))
+        steady[:, :, 1] = b.heading * e.rolling.speeds
         if motion.tread.shape[1]:
-            # What turns the wheel adds the velocity of the tread to the slip, half a step after its mean.
-            tread = (motion.tread + 0.5 * self.step * motion.tread_change)[steps]
-            power_in = power_in + np.sum(branch[:, e.tyres, 0] * tread, axis=1)
+            steady[:, :, 0] = (motion.tread + 0.5 * self.step * motion.tread_change)[steps][:, e.rolling.plates]
+        # The static forces along the road, which hold a mean force, do work on the motion of the car alone.
+        held = self.rows.weights.preload[bushings.rows[rolling, :2]]
+        power_in = power_in + np.sum(branch[:, rolling, :2] * steady, axis=(1, 2))
+        power_in = power_in + np.sum(held * (true_rate[:, rolling, :2] - steady), axis=(1, 2))
         present = bushings.branch_stiffness > 0.0
         dashpots = (bushings.branch_stiffness * bushings.branch_time)[present]
         loss = loss + np.sum(branch[:, present] ** 2 / dashpots, axis=1)

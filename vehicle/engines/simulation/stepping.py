@@ -149,7 +149,7 @@ def simulate(
         timestep=step,
         steps=count,
         wall_time=wall,
-        warnings=(*recorder.warnings(), *judge_energy(energies, 1.0 / (every * step))),
+        warnings=(*recorder.warnings(), *judge_energy(energies, 1.0 / (every * step), step)),
         energies=energies,
         notices=recorder.notices(),
     )
