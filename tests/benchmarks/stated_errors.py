@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from vehicle.engines.reduced.second_order import is_main
+from vehicle.engines.reduced.stated_errors import is_main
 from vehicle.engines.simulation.recording import Recording
 from vehicle.errors import VehicleError
 from vehicle.runs.car import Car

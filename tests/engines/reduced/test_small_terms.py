@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from vehicle.engines.linear.displacement_laws import DIFFERENCE_STEP, _about_rest
-from vehicle.engines.reduced.equivalent_damping import equivalent_damping
+from vehicle.engines.reduced.equivalent_damping import equivalent_damping, equivalent_laws
 from vehicle.engines.reduced.plate_samples import plate_samples
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.signal import Signal
@@ -28,6 +28,30 @@ def test_the_equivalent_damping_takes_the_force_without_its_mean(car: Car):
     force = 1000.0 * velocity + 200.0  # a gas force does no work over a stroke that returns
     wanted = 1000.0 * np.var(velocity) / np.mean(velocity**2)
     assert equivalent_damping(car.vehicle.damper, velocity, force) == pytest.approx(wanted)
+
+
+def test_equivalent_spring_and_damper_of_rubber_friction():
+    """Jenkins elements in harmonic motion: their loss 4 F (A - F/k) is that of a damper, pi c w A^2; their stiffness is
+    k (theta - sin(2 theta)/2)/pi with cos(theta) = 1 - 2 F/(k A)."""
+    model = Car.load("sedan_steering").poles
+    samples, interval, period = 4000, 1e-3, 1000
+    stiffness, stroke = model.laws[0].elements
+    amplitude, omega = 3.0 * float(stroke[-1]), 2.0 * np.pi / (period * interval)
+    x, sliders, force = amplitude * np.sin(omega * interval * np.arange(-samples, samples)), 0.0 * stroke, []
+    for each in x:
+        sliders = np.clip(sliders, each - stroke, each + stroke)
+        force.append(-float(stiffness @ sliders))
+    poles, row = len(model.poles), model.law_outputs.poles[0].real
+    state = np.zeros((2 * poles + 8 + model.slope.shape[1] + model.element_forces.shape[1], samples))
+    largest = int(np.argmax(np.abs(row)))
+    state[largest], state[-len(model.laws)] = x[samples:] / row[largest], force[samples:]
+    k, c = equivalent_laws(model, np.fft.rfft(state, axis=1), interval, samples)
+    theta = np.arccos(1.0 - 2.0 * stroke / amplitude)
+    of_elements = stiffness * (theta - 0.5 * np.sin(2.0 * theta)) / np.pi
+    assert k[0] + np.sum(stiffness) == pytest.approx(np.sum(of_elements), rel=1e-3)
+    loss = np.sum(4.0 * stiffness * stroke * (amplitude - stroke))
+    assert c[0] == pytest.approx(loss / (np.pi * omega * amplitude**2), rel=1e-3)
+    assert k[1] == c[1] == 0.0
 
 
 def test_a_breakpoint_near_rest_keeps_the_slopes_of_both_segments():

@@ -49,6 +49,14 @@ class Equations:
             ],
             dtype=int,
         )
+        # Elements of the laws, whose displacement is that of their own coordinate where it is neither of both.
+        self.bushings, self.springs = (
+            np.array([[k, index, axis] for k, (kind, index, axis) in enumerate(elements) if kind == wanted], dtype=int)
+            .reshape(-1, 3)
+            .T
+            for wanted in (BUSHING, SPRING)
+        )
+        self.strained = len(elements)
         self.data = mujoco.MjData(self.model)
         model, layout = self.model, self.rows.layout
         self.start, self.level = self.data.qpos.copy(), self.data.mocap_pos[:, 2].copy()
@@ -63,7 +71,7 @@ class Equations:
         self.shapes = np.array([np.reshape(shape, (3, -1)) for shape in shapes if shape is not None])
 
     def at(self, motions: tuple[Vector, ...]) -> Vector:
-        """Return forces, gaps, branch rates, positions and tyre deflections of motions; (rows, motions).
+        """Return forces, gaps, branch rates, positions, tyre deflections, displacements of laws; (rows, motions).
 
         Args:
             motions: u, u', u'', f_b, z, z', V tan(beta), forces of laws, l; (..., motions) each. On slopes the static
@@ -85,6 +93,7 @@ class Equations:
         gaps, points = np.zeros((size, len(self.joints))), np.zeros((size, *data.site_xpos.shape))
         rates, turns = np.zeros((size, *state.rate.shape)), np.zeros((size, *data.xmat.shape))
         deflections, headings = np.zeros((size, len(level[0]))), np.zeros((size, *state.heading[0].shape))
+        strains, ends = np.zeros((size, self.strained)), np.zeros((size, *state.ends.shape))
         changes, rolling = np.zeros(slope.shape), self.rows.layout.rolling
         static = self.preload[self.rows.layout.bushings.rows[rolling.tyres, 2]]
         preload, preloads = self.rows.weights.preload, np.tile(self.preload, (size, 1))
@@ -112,6 +121,7 @@ class Equations:
             force[k] -= passive
             force[k] -= applied
             rates[k], headings[k], deflections[k] = state.rate, state.heading[0], state.residual[tyres, 2]
+            strains[k, self.bushings[0]], ends[k] = state.residual[self.bushings[1], self.bushings[2]], state.ends
             points[k], turns[k] = sites, matrices
             changes[k, rolling.plates] = state.force[rolling.tyres, 2] / static - 1.0
         modes = self.rows.layout.modes
@@ -126,4 +136,5 @@ class Equations:
         if self.slope.size:
             force += (changes * slope) @ self.slope.T
         force = (force - pull) @ self.basis
-        return np.hstack([force, gaps, rates[:, self.present], points.reshape(size, -1), deflections]).T
+        strains[:, self.springs[0]] = np.linalg.norm(ends[:, 1::2] - ends[:, ::2], axis=2)[:, self.springs[1]]
+        return np.hstack([force, gaps, rates[:, self.present], points.reshape(size, -1), deflections, strains]).T

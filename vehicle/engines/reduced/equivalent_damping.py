@@ -1,4 +1,4 @@
-"""Statistical linearisation of the dampers: FRFs of the car about the motion of a run.
+"""Statistical linearisation of dampers and of laws over displacement: FRFs of the car about the motion of a run.
 
 A damper with the force F(v) is replaced by the viscous damper that minimises the mean square error of the force over
 the record, mean((F - mean F - c v)^2):
@@ -7,7 +7,10 @@ the record, mean((F - mean F - c v)^2):
 
 It dissipates the same energy. A stuck damper is as stiff as the slope of its friction law at rest, and a slipping
 damper as soft as its force over its stroke, so no constant FRF describes both. The poles of the car contain the damping
-constants D already. The remainder acts as forces f = -(c - D) v, so that at each line
+constants D already. A law over displacement, whose tangent at rest the poles contain, has the rest g(x), with
+memory if it is rubber friction: g is replaced by k x + c x', k = mean(g x)/mean(x^2), c = mean(g x')/mean(x'^2).
+
+The remainder acts as forces f = -(c - D) v, so that at each line
 
     v = (I + T_vf (c - D))^-1 T_vz z,    y = T_yz z - T_yf (c - D) v.
 
@@ -37,6 +40,31 @@ def equivalent_damping(law: Damper, velocity: Vector, force: Vector) -> float:
     if power == 0.0:
         return float(damper_law(law).slope(0.0))
     return float(np.mean((force - force.mean()) * velocity)) / power
+
+
+def equivalent_laws(model: PoleModel, state: Complex, interval: float, samples: int) -> Vector:
+    """Return stiffness k [N/m] and damping c [N s/m] of the laws over displacement beyond their tangents; (2, l).
+
+    Both are 0 of a law that stays in the segment of the static equilibrium, or does not move.
+
+    Args:
+        model: the car.
+        state: spectra of the state over a period, see `vehicle.engines.reduced.linear_motion.state_spectra`.
+        interval: sampling interval [s].
+        samples: samples of the period.
+    """
+    s = 2j * np.pi * np.arange(1, state.shape[1]) / (samples * interval)
+    outputs, count = model.law_outputs, len(model.laws)
+    (real, imaginary), inputs = np.split(state[: 2 * len(model.poles), 1:], 2), state[2 * len(model.poles) :, 1:]
+    wheels = outputs.height.shape[1]
+    x = outputs.poles.real @ real - outputs.poles.imag @ imaginary
+    x += outputs.height @ inputs[:wheels] + outputs.velocity @ inputs[wheels : 2 * wheels]
+    end = len(inputs) - model.applied.shape[1]
+    force, result = inputs[end - count : end], np.zeros((2, count))
+    for term, motion in zip(result, (x, s * x), strict=True):
+        level = np.sum(np.abs(motion) ** 2, axis=1)
+        np.divide(np.sum((force * motion.conj()).real, axis=1), level, out=term, where=level > 0.0)
+    return result
 
 
 def linearised_response(

@@ -60,8 +60,7 @@ class MotionRows(NamedTuple):
 
 def input_effects(model: PoleModel) -> Complex:
     """Return the effects of z, z', slopes, forces of dampers and laws, and applied forces on the poles; (p, inputs)."""
-    laws = model.scalar_force[:, model.groups :]
-    return np.hstack([model.height, model.velocity, model.slope, -model.force, -laws, model.applied])
+    return np.hstack([model.height, model.velocity, model.slope, -model.element_forces, model.applied])
 
 
 def motion_rows(model: PoleModel) -> MotionRows:

@@ -105,6 +105,21 @@ class PoleModel:
         """Return the displacements x of the laws over displacement as outputs."""
         return self.scalar_rows.part(slice(self.groups, None))
 
+    @property
+    def element_forces(self) -> Complex:
+        """Return the effects of the forces of all nonlinear elements: dampers, then laws over displacement; (p, e).
+
+        The force of a damper contains those of its Jenkins elements.
+        """
+        return np.hstack([self.force, self.scalar_force[:, self.groups :]])
+
+    @property
+    def element_outputs(self) -> Outputs:
+        """Return the displacements of all nonlinear elements, in the order of `element_forces`, as outputs."""
+        none = np.zeros((self.force.shape[1], self.height.shape[1]))
+        slides = Outputs(poles=self.matrices.system.slide_rows @ self.modal, height=none, velocity=none)
+        return slides + self.law_outputs
+
     def without_forces(self) -> PoleModel:
         """Return the model without applied forces."""
         return replace(self, applied=self.applied[:, :0], matrices=self.matrices.without_forces())

@@ -46,8 +46,8 @@ class QuadraticForms:
         metrics: squares of rotations, their rates, inertia, branch and joint forces over c; (5, P, P).
         projection: coordinates c of the patterns over the state of the linear motion; (P, states).
         forms: B; (P, P, rows): forces along the free motions, gaps, branch rates, positions of the output points,
-            vertical deflections of the tyres.
-        sizes: numbers of rows of each kind; (5,).
+            vertical deflections of the tyres, displacements of the laws.
+        sizes: numbers of rows of each kind; (6,).
         channels: names of the positions.
     """
 
@@ -102,6 +102,7 @@ def quadratic_forms(car: CarModel, model: PoleModel) -> QuadraticForms:
         int(np.count_nonzero(equations.present)),
         len(points),
         len(system.inputs),
+        len(model.laws),
     )
     return QuadraticForms(metrics=metrics, projection=projection, forms=forms, sizes=sizes, channels=points)
 

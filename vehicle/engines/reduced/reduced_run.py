@@ -11,10 +11,12 @@ from vehicle.engines.reduced.group_run import GroupRun, time_steps
 from vehicle.engines.reduced.load_outputs import direct_applied, direct_forces, direct_laws, slope_loads
 from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.engines.reduced.quadratic_forms import QuadraticForms
-from vehicle.engines.reduced.second_order import error_sentence, misses_main, rms_errors_of
+from vehicle.engines.reduced.second_order import rms_errors_of
+from vehicle.engines.reduced.stated_errors import misses_main, said
 from vehicle.engines.reduced.step_factors import car_factors
 from vehicle.engines.reduced.table_layout import DOUBLE
-from vehicle.engines.simulation.recorder import lift_off_notices
+from vehicle.engines.reduced.validity import LARGEST_STATED_ANGLE
+from vehicle.engines.simulation.recorder import lift_off_notices, pulling_tyres
 from vehicle.engines.simulation.recording import Recording
 from vehicle.engines.simulation.tyre_variation import with_run_out
 from vehicle.model.parameters.force_elements import Damper
@@ -85,7 +87,9 @@ def simulate_reduced(
     (validity,) = group.fill(table, [0], [*names, *forces, *tyres, *more])
     time, rows = uniform_time(samples=samples, timestep=interval), [*names, *forces, *tyres, *more]
     record = dict(zip(rows, table[:, 0], strict=True))
-    errors = rms_errors_of(model, forms, dampers, signal, time, record, asked, tyre_load) if forms else {}
+    errors, small = dict[str, float](), frozenset[str]()
+    if forms:
+        errors, small = rms_errors_of(model, forms, dampers, signal, time, record, asked, tyre_load)
     direct = np.hstack([direct_forces(model, loads), direct_laws(model, loads)]) if loads else np.zeros((0, 0))
     for load, row in zip(loads.names, direct, strict=True) if loads else ():
         for force, history in zip(row, table[len(names) :][: len(forces), 0], strict=True):
@@ -102,13 +106,24 @@ def simulate_reduced(
     for stop in stops.names:
         table[names.index(stop.replace("_stop_force", "_force")), 0] += table[names.index(stop), 0]
     histories = dict(zip(asked, table[: len(asked), 0], strict=True))
-    statistics = group.statistics(validity, samples, clock.perf_counter() - started)
     one_sided = [wheel for wheel in inputs if wheel in model.matrices.one_sided]
-    said = error_sentence(errors)
-    if misses_main(errors):
-        statistics = replace(statistics, warnings=(*statistics.warnings, *said), within_validity=False)
-    notices = lift_off_notices(histories, one_sided, tyre_load, record_rate)
-    notices = notices if misses_main(errors) else (*notices, *said)
+    tyre_forces = {
+        wheel: record.get(f"tyre_{wheel}_force_z", np.zeros(0)) for wheel in inputs if wheel not in one_sided
+    }
+    pulled, pulls = (), ()
+    if all(history.size for history in tyre_forces.values()):
+        validity = replace(validity, loads={})
+        pulled, pulls = pulling_tyres(tyre_forces, record_rate)
+    if errors:
+        validity = replace(validity, limit=LARGEST_STATED_ANGLE)
+    statistics = group.statistics(validity, samples, clock.perf_counter() - started)
+    warnings, notices = said(errors, small)
+    notices = (*pulls, *lift_off_notices(histories, one_sided, tyre_load, record_rate), *notices)
+    statistics = replace(
+        statistics,
+        warnings=(*statistics.warnings, *pulled, *warnings),
+        within_validity=statistics.within_validity and not misses_main(errors),
+    )
     return Recording(
         time=time,
         channels=histories,

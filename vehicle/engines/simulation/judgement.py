@@ -92,6 +92,6 @@ def judge_energy(energies: Energies, rate: float, step: float) -> tuple[str, ...
             f"this car. Set a smaller step, as {smaller}, or check the parameters that you changed"
         )
     return (
-        f"{said}, usual is up to {RESIDUAL_WARNED:g}; repeat the run with {smaller}: if the residual falls, the step was "
-        "too long; if it stays, the balance lacks a work, and the channels are as exact as their change with the step",
+        f"{said}, usual is up to {RESIDUAL_WARNED:g}; repeat the run with {smaller}: if the residual falls, the step "
+        "was too long; if it stays, the balance lacks a work, and the channels are as exact as their change shows",
     )

@@ -143,15 +143,16 @@ def simulate(
             "changed parameters, or reduce solver.timestep"
         )
     energies = recorder.energies()
+    pulled, notices = recorder.messages()
     statistics = Statistics(
         engine="mujoco",
         callback="native",
         timestep=step,
         steps=count,
         wall_time=wall,
-        warnings=(*recorder.warnings(), *judge_energy(energies, 1.0 / (every * step), step)),
+        warnings=(*pulled, *judge_energy(energies, 1.0 / (every * step), step)),
         energies=energies,
-        notices=recorder.notices(),
+        notices=notices,
     )
     return recorder.recording(signal, statistics)
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from vehicle.engines.reduced.reduced_run import simulate_reduced
+from vehicle.engines.reduced.stated_errors import error_sentence
 from vehicle.engines.simulation.applied_forces import force_histories, force_notices, require_resolved
 from vehicle.engines.simulation.judgement import require_finite, require_samples
 from vehicle.engines.simulation.recording import Recording
@@ -75,7 +76,7 @@ def simulated_run(
             if engine == "auto":
                 reason = "the motion stayed in the range where the reduced engine is valid"
             return car, recording, reason
-        reason = "; ".join(recording.statistics.warnings)
+        reason = "; ".join(recording.statistics.warnings) or error_sentence(recording.statistics.errors)
     stepped = car.stepped()
     wanted_step, used_step = car.vehicle.solver.timestep, stepped.vehicle.solver.step
     recording = simulate(stepped.model, signal, progress=progress, requested=more)
