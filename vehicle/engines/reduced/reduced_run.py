@@ -12,12 +12,12 @@ from vehicle.engines.reduced.load_outputs import direct_applied, direct_forces, 
 from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.engines.reduced.quadratic_forms import QuadraticForms
 from vehicle.engines.reduced.second_order import rms_errors_of
-from vehicle.engines.reduced.stated_errors import misses_main, said
+from vehicle.engines.reduced.stated_errors import messages, misses_main
 from vehicle.engines.reduced.step_factors import car_factors
 from vehicle.engines.reduced.table_layout import DOUBLE
 from vehicle.engines.reduced.validity import LARGEST_STATED_ANGLE
-from vehicle.engines.simulation.recorder import lift_off_notices, pulling_tyres
 from vehicle.engines.simulation.recording import Recording
+from vehicle.engines.simulation.tyre_contact import lift_off_notices, pulling_tyres
 from vehicle.engines.simulation.tyre_variation import with_run_out
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.names import channel_units, wheel_channels
@@ -41,6 +41,7 @@ def simulate_reduced(
     present_load: bool = True,
     step: float | None = None,
     forms: QuadraticForms | None = None,
+    seated: bool = False,
 ) -> Recording:
     """Simulate a car on its plates in double precision; the recording has neither poses nor an energy balance.
 
@@ -55,6 +56,7 @@ def simulate_reduced(
         present_load: slope forces of rolling tyres by their current load; if False, by their static load and z'.
         step: maximum time step [s]; `LONGEST_STEP` by default.
         forms: second order of the equations of the car, for the errors of its channels; without it they stay unknown.
+        seated: True for a car with a seat, on whose cushion comfort is read too.
     """
     inputs, road = model.matrices.system.inputs, signal
     signal = with_run_out(road, model.matrices.run_out)
@@ -87,9 +89,9 @@ def simulate_reduced(
     (validity,) = group.fill(table, [0], [*names, *forces, *tyres, *more])
     time, rows = uniform_time(samples=samples, timestep=interval), [*names, *forces, *tyres, *more]
     record = dict(zip(rows, table[:, 0], strict=True))
-    errors, small = dict[str, float](), frozenset[str]()
+    errors, read = dict[str, float](), frozenset[str]()
     if forms:
-        errors, small = rms_errors_of(model, forms, dampers, signal, time, record, asked, tyre_load)
+        errors, read = rms_errors_of(model, forms, dampers, signal, time, record, asked, tyre_load, seated)
     direct = np.hstack([direct_forces(model, loads), direct_laws(model, loads)]) if loads else np.zeros((0, 0))
     for load, row in zip(loads.names, direct, strict=True) if loads else ():
         for force, history in zip(row, table[len(names) :][: len(forces), 0], strict=True):
@@ -117,7 +119,7 @@ def simulate_reduced(
     if errors:
         validity = replace(validity, limit=LARGEST_STATED_ANGLE)
     statistics = group.statistics(validity, samples, clock.perf_counter() - started)
-    warnings, notices = said(errors, small)
+    warnings, notices = messages(errors, read)
     notices = (*pulls, *lift_off_notices(histories, one_sided, tyre_load, record_rate), *notices)
     statistics = replace(
         statistics,

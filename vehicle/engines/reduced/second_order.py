@@ -33,7 +33,13 @@ from vehicle.engines.reduced.linear_motion import (
 )
 from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.engines.reduced.quadratic_forms import QuadraticForms
-from vehicle.engines.reduced.stated_errors import comfort_errors, comfort_points, small_axes, weighted_squares
+from vehicle.engines.reduced.stated_errors import (
+    SMALL_FORCE,
+    comfort_axes,
+    comfort_errors,
+    comfort_points,
+    weighted_squares,
+)
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.signals.excitation.signal import Signal
 
@@ -159,8 +165,8 @@ class SecondOrder:
             beyond[count:] = laws[0][:, None] + s * laws[1][:, None]
         strain = _times(self.strain_shifts, gaps)
         strain[count:] = (1.0 + s * tau) * (strain[count:] + strains)
-        own = self.strains * self.element_forces.T
-        change = np.abs((own @ ahead + own.conj() @ back) * beyond)
+        products = self.strains * self.element_forces.T
+        change = np.abs((products @ ahead + products.conj() @ back) * beyond)
         acting = np.flatnonzero(np.max(change, axis=1, initial=0.0) > WEAK_ELEMENT)
         beyond, strain = beyond[acting], strain[acting]
         forces, rows, size = self.element_forces[:, acting], self.strains[acting], len(acting)
@@ -181,8 +187,9 @@ def rms_errors_of(
     record: Mapping[str, Vector],
     names: Sequence[str],
     tyre_load: Mapping[str, float],
+    seated: bool = False,
 ) -> tuple[dict[str, float], frozenset[str]]:
-    """Return the errors RMS(y_1)/RMS(y_1 + y_2) - 1 of a run, and the axes of comfort that are small.
+    """Return the errors RMS(y_1)/RMS(y_1 + y_2) - 1 of a run, and the axes of comfort and forces that matter.
 
     The errors are those of the channels that have a second order, and of the comfort values of points whose axes are
     among them, see `comfort_errors`.
@@ -195,6 +202,7 @@ def rms_errors_of(
         record: all channels of dampers and tyres, "law_<index>" of the laws, and the channels; (n,) each.
         names: names of the channels.
         tyre_load: static tyre loads by wheel [N].
+        seated: True for a car with a seat, on whose cushion comfort is read too.
     """
     damping = np.array(
         [
@@ -214,7 +222,7 @@ def rms_errors_of(
     # Forces count from their mean, which the second order shifts; the static load is a thousand times a weak motion.
     forces = np.array([not name.endswith(("_acc_x", "_acc_y", "_acc_z")) for name in names])
     reference = np.where(forces, [float(channels[name][0]) for name in names], 0.0)[:, None]
-    points = comfort_points(names)
+    points = comfort_points(names, seated)
     sums, weighted, count, start, end = np.zeros((4, len(names))), np.zeros((2, len(points))), 0, None, None
     for first in range(0, time.size, length):
         part = slice(first, min(first + length, time.size))
@@ -242,8 +250,10 @@ def rms_errors_of(
     moving = (linear > 0.0) & (more > 0.0)
     errors = np.sqrt(linear, where=moving, out=np.ones(len(names)))
     errors /= np.sqrt(more, where=moving, out=np.ones(len(names)))
-    found = dict(zip(names, (errors - 1.0).tolist(), strict=True))
-    return found | comfort_errors(points, np.stack([linear, more]), weighted), small_axes(points, names, linear)
+    channel_errors = dict(zip(names, (errors - 1.0).tolist(), strict=True))
+    large = forces & (linear > count * (SMALL_FORCE * max(tyre_load.values())) ** 2)
+    read = comfort_axes(points, names, linear).union(np.array(names)[large].tolist())
+    return channel_errors | comfort_errors(points, np.stack([linear, more]), weighted), read
 
 
 def _faded(coordinates: Vector, count: int, interval: float) -> Vector:

@@ -20,13 +20,25 @@ NAMED = 4
 SMALL_AXIS = 0.1
 """Share of the acceleration of a point below which an axis does not count for a warning: it is 0.5 % of the comfort."""
 
-POINTS = ("seat", "seat_rail", RIM)
-"""Points with a comfort value."""
+SMALL_FORCE = 1e-3
+"""Share of the static tyre load below which the RMS of a force does not count for a warning."""
+
+POINTS = ("seat_rail", RIM)
+"""Points with a comfort value, in addition to the cushion of a car with a seat."""
+
+CUSHION = "seat"
+"""Point on that cushion."""
 
 
-def comfort_points(names: Sequence[str]) -> dict[str, list[int]]:
-    """Return the points with a comfort value whose three axes are among channels, to the indices of these channels."""
-    axes = {point: [f"{point}_acc_{axis}" for axis in AXES] for point in POINTS}
+def comfort_points(names: Sequence[str], seated: bool) -> dict[str, list[int]]:
+    """Return the points with a comfort value whose three axes are among channels, to the indices of these channels.
+
+    Args:
+        names: names of the channels.
+        seated: True for a car with a seat.
+    """
+    points = (*POINTS, CUSHION) if seated else POINTS
+    axes = {point: [f"{point}_acc_{axis}" for axis in AXES] for point in points}
     return {point: [names.index(name) for name in three] for point, three in axes.items() if {*three} <= {*names}}
 
 
@@ -59,13 +71,19 @@ def comfort_errors(points: Mapping[str, list[int]], squares: Vector, weighted: V
     return errors
 
 
-def small_axes(points: Mapping[str, list[int]], names: Sequence[str], squares: Vector) -> frozenset[str]:
-    """Return the axes with less than `SMALL_AXIS` of the acceleration of their point; arguments: see above."""
+def comfort_axes(points: Mapping[str, list[int]], names: Sequence[str], squares: Vector) -> frozenset[str]:
+    """Return the axes of comfort with at least `SMALL_AXIS` of the acceleration of their point.
+
+    Args:
+        points: see `comfort_points`.
+        names: names of the channels.
+        squares: sums of their squares; (channels,).
+    """
     return frozenset(
         names[axis]
         for axes in points.values()
         for axis in axes
-        if squares[axis] < SMALL_AXIS**2 * np.sum(squares[axes])
+        if squares[axis] >= SMALL_AXIS**2 * np.sum(squares[axes])
     )
 
 
@@ -81,18 +99,14 @@ def misses_main(errors: Mapping[str, float]) -> bool:
     return any((is_main(name) or "@" in name) and abs(error) > NAMED_ERROR for name, error in errors.items())
 
 
-def misses_read(errors: Mapping[str, float], small: Collection[str] = ()) -> bool:
+def misses_read(errors: Mapping[str, float], read: Collection[str]) -> bool:
     """Return True if comfort, one of its axes, or a force of a damper or tyre is off by more than `NAMED_ERROR`.
 
     Args:
         errors: stated errors.
-        small: see `small_axes`.
+        read: axes of comfort (`comfort_axes`), and forces above `SMALL_FORCE`.
     """
-    axes = {f"{point}_acc_{axis}" for point in POINTS for axis in AXES}.difference(small)
-    return any(
-        abs(error) > NAMED_ERROR and ("@" in name or name in axes or name.endswith(("_force", "_force_z")))
-        for name, error in errors.items()
-    )
+    return any(abs(error) > NAMED_ERROR and ("@" in name or name in read) for name, error in errors.items())
 
 
 def error_sentence(errors: Mapping[str, float]) -> str:
@@ -116,11 +130,11 @@ def error_sentence(errors: Mapping[str, float]) -> str:
     return f"the linear geometry of the reduced engine makes {', '.join(parts)}" if parts else ""
 
 
-def said(errors: Mapping[str, float], small: Collection[str] = ()) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return a warning if what is read is off, see `misses_read`, else a notice about other channels; at most one."""
+def messages(errors: Mapping[str, float], read: Collection[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return warnings, one if what is read is off (`misses_read`), and notices, one if only other channels are."""
     sentence = error_sentence(errors)
     if not sentence:
         return (), ()
-    if misses_read(errors, small):
+    if misses_read(errors, read):
         return (f"{sentence}{REMEDY}",), ()
     return (), (f"{sentence}{REMEDY} where these channels matter",)

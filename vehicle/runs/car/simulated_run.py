@@ -69,6 +69,7 @@ def simulated_run(
             channels=computed,
             loads=car.load_rows if loads else None,
             forms=car.quadratic_forms if stated else None,
+            seated=car.vehicle.seated,
         )
         require_finite(recording)
         recording = _with_forces(recording, car, names, shown)
