@@ -112,7 +112,7 @@ def simulate_reduced(
     tyre_forces = {
         wheel: record.get(f"tyre_{wheel}_force_z", np.zeros(0)) for wheel in inputs if wheel not in one_sided
     }
-    pulled, pulls = (), ()
+    pulled, pulls = tuple[str, ...](), tuple[str, ...]()
     if all(history.size for history in tyre_forces.values()):
         validity = replace(validity, loads={})
         pulled, pulls = pulling_tyres(tyre_forces, record_rate)
