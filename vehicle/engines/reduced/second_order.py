@@ -6,8 +6,8 @@ that are products of two motions (`quadratic_forms`):
     M u2'' + C u2' + K u2 + H' f_b2 - Jc' l2 = -R_2(u1),    Jc u2 = -g_2(u1),
     f_b2' = K2 (e u2' + g u2 + r_2(u1)) - f_b2/tau,    y_2 = L u2 + y_2(u1).
 
-Every nonlinear element of the poles (`PoleModel.element_forces`: dampers, stops, tables, tyres that lift off, rubber
-friction as of a rack) responds like a spring and a viscous damper of equal energy (`equivalent_damping`). The error of
+Every nonlinear element of the poles (`PoleModel.element_forces`: dampers, stops, tables, one-sided tyres, rubber
+friction) responds like a spring and a viscous damper of equal energy (`equivalent_damping`). The error of
 a channel is that of its RMS without the second order, RMS(y_1)/RMS(y_1 + y_2) - 1: the products need not be independent
 of y_1, so it has either sign. Source: regular perturbation, Nayfeh and Mook, Nonlinear Oscillations, 1979, chapter 2.
 Against MuJoCo: `docs/theory/reduced-engine.md`.

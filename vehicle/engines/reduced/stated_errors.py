@@ -12,7 +12,7 @@ from vehicle.signals.analysis.ride_comfort import RIM, UNWEIGHTED, WEIGHTED
 from vehicle.signals.analysis.seat_value import weighted_axes
 
 NAMED_ERROR = 0.02
-"""Error of an RMS or a comfort value from which on it is named. What is stated is within 0.2 points up to here."""
+"""Error of an RMS or a comfort value above which it is named; stated errors up to 2 % are exact within 0.2 points."""
 
 NAMED = 4
 """Maximum number of channels in a sentence."""

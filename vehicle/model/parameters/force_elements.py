@@ -31,9 +31,6 @@ PULLS = (
 )
 """Effect and remedy in such a warning."""
 
-HARMLESS = "which moves comfort, its axes and the RMS of tyre loads by less than 2 %"
-"""Effect of a small pull, in a notice."""
-
 NUMBERS = {
     "linear": {"viscous": "N s/m"},
     "degressive": {"viscous": "N s/m", "degressive_viscous": "N s/m", "degressive_velocity": "m/s"},
