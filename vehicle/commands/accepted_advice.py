@@ -33,7 +33,7 @@ def accept(options: argparse.Namespace, notices: Iterable[str]) -> None:
 
 
 def retried(error: FindingError, options: argparse.Namespace) -> list[str] | None:
-    """Return the words of a command line with the options of the findings of an error; None if it stands."""
+    """Return the words of a command line with the options of the findings of an error; None without new options."""
     new = [_new(finding, options) for finding in error.findings]
     if not getattr(options, "accept_advice", False) or not any(new):
         return None

@@ -234,7 +234,7 @@ def _settled_part(measured: Measured, simulated: Simulated, times: Vector) -> tu
 
 
 def response_findings(measured: Measured, responses: Sequence[FrfComparison]) -> list[Finding]:
-    """Return the findings on measured FRFs beside those of the run: exchanged channels, signs and units."""
+    """Return the findings on measured FRFs against the run: exchanged channels, signs and units."""
     findings: list[Finding] = []
     exchanged: dict[str, str] = {}
     for plate in dict.fromkeys(each.plate for each in responses):

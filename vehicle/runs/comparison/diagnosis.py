@@ -112,7 +112,7 @@ def _of_channels(measurement: Measurement, choice: Choice) -> list[Finding]:
 
 
 def _beside_car(measurement: Measurement, car: Car, choice: Choice, inverted: Collection[str]) -> list[Finding]:
-    """Return the findings on a record beside a run of a car on its plates."""
+    """Return the findings on a record against a run of a car on its plates."""
     names = (*car.vehicle.channels, *car.vehicle.load_channels)
     without_delays = replace(choice, delays={})
     measured = read_measured(

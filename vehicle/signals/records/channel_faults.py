@@ -61,7 +61,7 @@ OUTLASTS = 5.0
 the longest of such parts has at most 3.2 times the samples of the second longest in 2000 sound records."""
 
 FIRST_STEPS = 3
-"""Number of steps after or before a constant part that tell a motion cut off from one that begins or ends at rest."""
+"""Number of steps after or before a constant part for the test whether a motion is cut off."""
 
 LEAST_CROSSINGS = 10
 """Minimum number of crossings of the mean of a motion that may be cut off: a bump begins and ends at rest."""
@@ -88,7 +88,7 @@ def faults(
         channels: name to unfiltered samples, (n,).
         time: sample times [s], (n,).
         moving: names of channels on the same sensor or body, which stop moving at the same time.
-        rests: names of channels that may begin at rest, as the displacement of a plate.
+        rests: names of channels that may begin at rest, for example the displacement of a plate.
     """
     findings, grouped = [], {name for name in channels if name in moving}
     # The squares of larger values overflow; their readers refuse them.

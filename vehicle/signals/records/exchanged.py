@@ -3,7 +3,7 @@
 Of n measured and n simulated channels of one unit, r_ij is the largest |correlation coefficient| over all lags of
 measured channel i and simulated channel j, so that neither sign nor delay of a sensor matters. The assignment of
 measured to simulated channels with the largest sum of r (Hungarian method) shows exchanged channels; those of one cycle
-are exchanged if each fits its new counterpart clearly better than its own.
+are exchanged if each fits its new counterpart clearly better than the mapped one.
 """
 
 import shlex
@@ -110,7 +110,7 @@ def exchange_finding(exchanged: Mapping[str, str], mapped: Mapping[str, str], *,
     Args:
         exchanged: measured channel -> channel whose motion it contains.
         mapped: channel of the model -> its channel in the file, as for --map.
-        complete: --map must name all channels, because none of them was named.
+        complete: --map must name all channels, because the file was read by their names.
     """
     if not exchanged:
         return []

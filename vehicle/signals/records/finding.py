@@ -94,5 +94,5 @@ def added(arguments: Sequence[str], options: Sequence[str]) -> list[str]:
 
 
 def _role(option: str, value: str) -> str:
-    """Return the role of the value of an option, as of ROLE=VALUE."""
+    """Return the role in the value ROLE=VALUE of an option."""
     return value if option == "--turn" else value.partition("=")[0] if "=" in value else ""

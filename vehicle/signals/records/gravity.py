@@ -1,6 +1,6 @@
 """Gravity in records of accelerometers, as a check of their unit and range.
 
-An accelerometer that measures from 0 Hz on shows the standard gravity as the mean of its vertical axis, or as the
+Accelerometers that measure from 0 Hz on show the standard gravity as the mean of its vertical axis, or as the
 length of the vector of the means of three axes.
 """
 
@@ -52,7 +52,7 @@ def gravity_findings(
 
 
 def axis_of_role(role: str) -> str:
-    """Return the axis of a role, as of "z" and "seat_acc_z"; empty for another name."""
+    """Return the axis of a role, "z" for "z" and "seat_acc_z"; empty for another name."""
     return role[-1] if role in AXES or role[-2:] in {f"_{axis}" for axis in AXES} else ""
 
 

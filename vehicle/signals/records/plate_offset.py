@@ -1,4 +1,4 @@
-"""Constant in the displacement of a plate, as of a sensor at mid stroke: the position of the sensor, no motion."""
+"""Constant in the displacement of a plate, from a sensor at mid stroke: the position of the sensor, no motion."""
 
 from collections.abc import Mapping
 
@@ -23,7 +23,7 @@ def offset_of(z: Vector) -> float:
     """Return the constant to be subtracted from the displacement z of a plate [m], (n,); 0 for a motion from 0.
 
     The mean m is a constant if |m| >= `MANY_TIMES` s, with s the RMS about m, and the record begins nearer to m than to
-    0. A record that begins at rest has its first value as its constant.
+    0. For a record that begins at rest, the constant is its first value.
     """
     mean, motion = float(np.mean(z)), float(np.std(z))
     if not MANY_TIMES * motion <= abs(mean) <= LARGEST_POSITION or not motion > 0.0 or abs(z[0] - mean) >= abs(z[0]):

@@ -1,4 +1,4 @@
-"""Findings on a record beside a run of the car: exchanged channels, clock, delays, signs, units and offsets."""
+"""Findings on a record against a run of the car: exchanged channels, clock, delays, signs, units and offsets."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ LARGEST_OFFSET = 0.3
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BesideRun:
-    """Time histories of a measurement beside those of a run.
+    """Time histories of a measurement compared with a run.
 
     Attributes:
         parts: how each channel fits its counterpart, exchanged channels put right.

@@ -233,7 +233,7 @@ def _histories(
     findings = _findings(
         measured, judged, run, times, target.delays, contained=contained, begin=begin, drift=settings.drift
     )
-    if any(each.options for each in findings if each.kind in ("gravity", "offset")):  # no car has such a mean
+    if any(each.options for each in findings if each.kind in ("gravity", "offset")):  # a car has no mean acceleration
         raise FindingError(path, findings)
     return target, _notices(path, measured, [*more, *findings])
 
@@ -270,7 +270,7 @@ def _findings(
     measured: Measured, record: Record, run: Run, times: Vector, delays: ResponseDelays, *, contained: bool,
     begin: float = 0.0, drift: float = 0.0,
 ) -> tuple[Finding, ...]:  # fmt: skip
-    """Return the findings on a record, also beside a run of the car at the start of the fit.
+    """Return the findings on a record, also against a run of the car at the start of the fit.
 
     The plates of a file have its clock. A delay has no option to be accepted: it is an unknown of the fit, in which the
     parameters of the car are right.
