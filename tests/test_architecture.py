@@ -66,7 +66,7 @@ ROOMS: dict[str, set[str]] = {
     "notebook": {"analysis", "records", "rendering", "simulation"},
     "car": {"handed_down", "analysis", "excitation", "flexbody", "kinematics", "laws", "linear", "notebook"}
     | {"parameters", "records", "reduced", "rendering", "simulation", "threads"},
-    "comparison": {"analysis", "car", "formats", "linear", "records", "rendering", "threads"},
+    "comparison": {"analysis", "car", "excitation", "formats", "linear", "records", "rendering", "threads"},
     "output": {"analysis", "car", "comparison", "excitation", "flexbody", "formats", "linear", "parameters"}
     | {"records", "rendering", "replacement", "simulation"},
     "targets": {"analysis", "car", "output", "parameters", "records", "simulation"},
@@ -83,7 +83,18 @@ ROOMS: dict[str, set[str]] = {
     "replication": {"car", "excitation", "formats", "output", "records", "reduced", "rendering", "threads"},
     "sweeps": {"analysis", "car", "excitation", "flexbody", "formats", "notebook", "output"}
     | {"parameters", "reduced", "rendering", "report", "simulation", "threads"},
-    "tuning": {"analysis", "car", "excitation", "flexbody", "formats", "output", "parameters", "records", "reduced"}
+    "tuning": {
+        "analysis",
+        "car",
+        "comparison",
+        "excitation",
+        "flexbody",
+        "formats",
+        "output",
+        "parameters",
+        "records",
+        "reduced",
+    }
     | {"rendering", "report", "threads"},
     "optimisation": {"analysis", "car", "formats", "output", "parameters", "rendering", "sweeps", "targets"},
     "commands": {"analysis", "assembly", "bench", "car", "comparison", "core", "dampers", "design", "excitation"}

@@ -66,6 +66,7 @@ if TYPE_CHECKING:
     from vehicle.runs.car.run import Run as Run
     from vehicle.runs.comparison.compared_run import compare as compare
     from vehicle.runs.comparison.comparison import Comparison as Comparison
+    from vehicle.runs.comparison.diagnosis import diagnose as diagnose
     from vehicle.runs.comparison.mode_comparison import compare_modes as compare_modes
     from vehicle.runs.output.comparison_files import save_comparison as save_comparison
     from vehicle.runs.output.own_files import save_car as save_car
@@ -128,6 +129,7 @@ _MODULES = {
     "VehicleError": "vehicle.errors",
     "compare": "vehicle.runs.comparison.compared_run",
     "compare_modes": "vehicle.runs.comparison.mode_comparison",
+    "diagnose": "vehicle.runs.comparison.diagnosis",
     "evaluate_comfort": "vehicle.signals.records.record_comfort",
     "fit_damper": "vehicle.studies.dampers.fitted_damper",
     "fit_mount": "vehicle.studies.mounts.mount_fit",

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import argparse
 import shlex
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from vehicle.commands.checked_command import cured_command
 from vehicle.errors import VehicleError
-from vehicle.names import CORNERS
 from vehicle.signals.formats.channel import NOT_OVER_TIME, ROAD_PROFILE
 from vehicle.signals.formats.text import LARGEST
 from vehicle.signals.records.channel_words import (
@@ -17,7 +16,7 @@ from vehicle.signals.records.channel_words import (
     by_point,
     is_plate,
     main_channels,
-    map_options,
+    map_words,
     of_receiver,
     of_wheel_or_engine,
     on_seat,
@@ -27,6 +26,7 @@ from vehicle.signals.records.channel_words import (
 
 if TYPE_CHECKING:
     from vehicle.signals.formats.channel import Channel, Measurement
+    from vehicle.signals.records.finding import Finding
 
 Numbered = tuple[int, "Channel"]
 """Number of a channel in its file, and the channel."""
@@ -41,17 +41,21 @@ LARGEST_CHECKED = 200_000_000
 """Largest file that is read a second time, to see that the command runs [bytes]."""
 
 
-def command_for(measurement: Measurement, file: str, databases: Sequence[Path] = ()) -> tuple[str, str]:
+def command_for(
+    measurement: Measurement, file: str, databases: Sequence[Path] = (), collected: list[Finding] | None = None
+) -> tuple[str, str]:
     """Return the command for a file with its purpose, or the reason for the lack of a command.
 
     Args:
         file: name of the file as typed.
         databases: DBC files that decoded the log of a CAN bus.
+        collected: list to which the findings on the record are added whose options the command contains.
     """
+    collected = [] if collected is None else collected
     if measurement.shapes and not measurement.channels:
-        command, why = _first(measurement, [["compare", "--measured", file]])
+        command, why = _first(measurement, [["compare", "--measured", file]], collected)
         return command, "compares the mode shapes with those of a car" if command else f"mode shapes, but: {why}"
-    road = _road(measurement, file)
+    road = _road(measurement, file, collected)
     if road is not None:
         return road
     files = [file, *(word for database in databases for word in ("--dbc", str(database)))]
@@ -76,12 +80,12 @@ def command_for(measurement: Measurement, file: str, databases: Sequence[Path] =
     )
     reasons = []
     if displacements:
-        command, why = _plates(measurement, files, displacements, by["velocity"])
+        command, why = _plates(measurement, files, displacements, by["velocity"], collected)
         if command:
             return command, why
         reasons.append(why)
     if accelerations:
-        command, why = _accelerations(measurement, files, accelerations)
+        command, why = _accelerations(measurement, files, accelerations, collected)
         if command:
             return command, why
         reasons.append(why)
@@ -114,7 +118,9 @@ def _responses(measurement: Measurement) -> str:
     return faults[0] if faults else "coherences without their responses; export the responses too"
 
 
-def comparison_for(measurement: Measurement, file: str, command: str) -> tuple[str, dict[str, str]]:
+def comparison_for(
+    measurement: Measurement, file: str, command: str, collected: list[Finding] | None = None
+) -> tuple[str, dict[str, str]]:
     """Return the command that compares the accelerations of a file with a run of its plate, and channels left out.
 
     Without plate or acceleration the command is empty. The channels left out are names of measured channels by channel
@@ -122,6 +128,7 @@ def comparison_for(measurement: Measurement, file: str, command: str) -> tuple[s
 
     Args:
         command: command from `command_for`; the comparison uses its run.
+        collected: see `command_for`.
     """
     from vehicle.model.parameters.vehicle import load_vehicle
     from vehicle.signals.records.choice import pick
@@ -138,11 +145,17 @@ def comparison_for(measurement: Measurement, file: str, command: str) -> tuple[s
     mapped_channels = [measurement.channels[pick(measurement, name)] for name in main.values()]
     databases = [word for at, word in enumerate(run_command) if "--dbc" in run_command[max(at - 1, 0) : at + 1]]
     arguments = ["compare", "RUN", "--measured", file, *databases, *_clock(*mapped_channels)]
-    mapped = map_options(suggested)
-    checked = [*arguments, *shlex.split(mapped), *(("--vehicle", str(car)) if car else ())]
-    if _is_checked(measurement) and _refusal(checked):
-        return "", {}
-    return f"{_line(*arguments)} {mapped}", {name: text for name, text in suggested.items() if name not in main}
+    arguments += map_words(main)
+    if _is_checked(measurement):
+        vehicle = ["--vehicle", str(car)] if car else []
+        cured, reason, findings = cured_command(["compare", *vehicle, *arguments[1:]])
+        if reason:
+            return "", {}
+        if collected is not None:
+            kinds = {each.kind for each in collected}
+            collected += [each for each in findings if each.kind not in kinds]
+        arguments = ["compare", *cured[1 + len(vehicle) :]]
+    return _line(*arguments), {name: text for name, text in suggested.items() if name not in main}
 
 
 def _line(*arguments: str) -> str:
@@ -153,15 +166,19 @@ def _is_checked(measurement: Measurement) -> bool:
     return measurement.path.stat().st_size <= LARGEST_CHECKED
 
 
-def _first(measurement: Measurement, candidates: Sequence[list[str]]) -> tuple[str, str]:
-    """Return the first command that accepts its file and "", or "" and the reason why the first does not."""
+def _first(measurement: Measurement, candidates: Sequence[list[str]], collected: list[Finding]) -> tuple[str, str]:
+    """Return the first command that accepts its file and "", or "" and the reason why the first does not.
+
+    The options of the findings on the record are added to the command, and the findings to `collected`.
+    """
     if not _is_checked(measurement):
         return _line(*candidates[0]), ""
     reasons = []
     for arguments in candidates:
-        reason = _refusal(arguments)
+        cured, reason, findings = cured_command(arguments)
         if not reason:
-            return _line(*arguments), ""
+            collected += findings
+            return _line(*cured), ""
         reasons.append(reason)
     return "", reasons[0]
 
@@ -179,7 +196,7 @@ def _has_values(channel: Channel) -> bool:
     return bool(np.isfinite(channel.values).any())
 
 
-def _road(measurement: Measurement, file: str) -> tuple[str, str] | None:
+def _road(measurement: Measurement, file: str, collected: list[Finding]) -> tuple[str, str] | None:
     """Return the command line that drives over a road profile, and a reason if there is none; None for other files."""
     from vehicle.signals.excitation.measured_road import read_road
 
@@ -191,7 +208,7 @@ def _road(measurement: Measurement, file: str) -> tuple[str, str] | None:
     except VehicleError as error:
         return ("", f"not usable as a road for a car of 1.5 m track: {error}") if profile else None
     arguments = ["shaker", "--vehicle", "focus_road", "--road", file, "--speed", "80"]
-    command, why = _first(measurement, [arguments])
+    command, why = _first(measurement, [arguments], collected)
     return command, "drives over the road at 80 km/h" if command else f"a road, but: {why}"
 
 
@@ -224,7 +241,11 @@ def _clock(*channels: Channel) -> tuple[str, ...]:
 
 
 def _plates(
-    measurement: Measurement, files: list[str], displacements: list[Numbered], speeds: list[Numbered]
+    measurement: Measurement,
+    files: list[str],
+    displacements: list[Numbered],
+    speeds: list[Numbered],
+    collected: list[Finding],
 ) -> tuple[str, str]:
     """Return the command for displacements: shaker plates, or a road with a recorded speed."""
     from vehicle.signals.excitation.recorded_road import NAMES
@@ -236,7 +257,7 @@ def _plates(
         speed = _pick(measurement, speeds[0][0])
         arguments = ["shaker", "--vehicle", "focus_road", "--road", *files, "--speed", f"channel:{speed}"]
         same = [channel for _, channel in speeds if channel.axis is tracks[0].axis]  # others are interpolated
-        command, why = _first(measurement, [[*arguments, *_clock(*tracks, *same)]])
+        command, why = _first(measurement, [[*arguments, *_clock(*tracks, *same)]], collected)
         return command, "drives over the recorded road at the recorded speed" if command else f"a road, but: {why}"
     moves = [(number, channel) for number, channel in displacements if is_plate(channel)]
     if not moves:
@@ -270,12 +291,14 @@ def _plates(
             picks += ["--channel", f"{wheel}={_pick(measurement, number)}"]
     clock = _clock(*(measurement.channels[number - 1] for number in wheels.values()))
     arguments = ["shaker", *car, "--input", *files, *picks, *clock]
-    command, why = _first(measurement, [arguments, [*arguments, "--detrend"]])
+    command, why = _first(measurement, [arguments, [*arguments, "--detrend"]], collected)
     purpose = "puts the displacement on the plate of wheel" + ("s " if len(wheels) > 1 else " ") + ", ".join(wheels)
     return (command, purpose + addition) if command else ("", f"a displacement, but: {why}")
 
 
-def _accelerations(measurement: Measurement, files: list[str], those: list[Numbered]) -> tuple[str, str]:
+def _accelerations(
+    measurement: Measurement, files: list[str], those: list[Numbered], collected: list[Finding]
+) -> tuple[str, str]:
     """Return the comfort command for the accelerations of one point."""
     import numpy as np
 
@@ -319,63 +342,9 @@ def _accelerations(measurement: Measurement, files: list[str], those: list[Numbe
     still = all(each.size and abs(float(np.mean(each))) < 1e-3 * float(np.std(each)) for each in values)
     arguments = ["comfort", "--input", *files, *picks, *_clock(*chosen)]
     removed = [*arguments, "--offset", "remove"]
-    command, why = _first(measurement, [arguments, removed] if still else [removed])
+    command, why = _first(measurement, [arguments, removed] if still else [removed], collected)
     which, others = "the seat" if seats else "the point", len(those) - len(axes)
     more = f"; {others} other acceleration{'s are' if others > 1 else ' is'} not used" if others else ""
     if not command:
         return "", f"an acceleration, but: {why}"
     return command, f"gives the comfort of {which} in {', '.join(sorted(axes))}{more}"
-
-
-def _refusal(arguments: Sequence[str]) -> str:
-    """Return the error message of a command (comfort, shaker or compare) for its files; empty if they are accepted."""
-    checks: dict[str, Callable[[Sequence[str]], None]] = {"comfort": _comfort, "shaker": _shaker, "compare": _compare}
-    try:
-        checks[arguments[0]](arguments[1:])
-    except VehicleError as error:
-        return str(error)
-    return ""
-
-
-def _comfort(options_text: Sequence[str]) -> None:
-    from vehicle.commands.comfort import evaluated, parser
-
-    options = parser().parse_args(options_text)
-    evaluated(argparse.Namespace(**{**vars(options), "input": options.inputs[0]}))
-
-
-def _shaker(options_text: Sequence[str]) -> None:
-    from vehicle.commands.input_options import record_choice
-    from vehicle.commands.road import class_or_profile, road_drive
-    from vehicle.commands.shaker import parser, plate_signal
-    from vehicle.model.parameters.vehicle import load_vehicle
-    from vehicle.signals.excitation.evaluation_start import evaluation_start
-
-    options = parser().parse_args(options_text)
-    vehicle = load_vehicle(options.vehicle, options.overrides)
-    if options.road is not None:
-        drive = road_drive(class_or_profile(options.road), options, vehicle)
-        evaluation_start({options.road: drive.signal().duration}, None, drive.skip)
-        return
-    wheel = CORNERS[options.wheel] if options.wheel else vehicle.shaker_wheel
-    plate_signal(options, wheel, record_choice(options, wheel))
-
-
-def _compare(options_text: Sequence[str]) -> None:
-    from vehicle.commands.compare import measured_choice, parser
-    from vehicle.model.parameters.vehicle import load_vehicle
-    from vehicle.signals.formats.reader import read_record
-    from vehicle.signals.records.measured import read_measured
-
-    options = parser().parse_args(options_text)
-    (name,) = options.measured
-    choice = measured_choice(options)
-    measurement = read_record(Path(name), choice.databases)
-    if measurement.shapes and not measurement.channels:
-        from vehicle.runs.car import Car
-        from vehicle.runs.comparison.mode_comparison import compare_modes
-
-        compare_modes(Car.load(options.vehicle, options.overrides), measurement, dict(choice.channels), options.damper)
-        return
-    channels = load_vehicle(options.vehicle, options.overrides).channels
-    read_measured(Path(name), channels, choice, inverted=options.turned, measurement=measurement)

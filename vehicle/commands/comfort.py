@@ -8,12 +8,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from vehicle.commands.accepted_advice import accept
 from vehicle.commands.command_line import command, print_result
 from vehicle.commands.input_options import record_choice, record_options
 from vehicle.commands.options import command_parser, message_options
 from vehicle.commands.parser import Parser
 from vehicle.commands.several_files import each_file, expanded, raise_worst, table_of
 from vehicle.errors import ConfigurationError
+from vehicle.names import AXES
 
 if TYPE_CHECKING:
     from vehicle.signals.records.choice import Choice
@@ -102,7 +104,7 @@ def _picked(options: argparse.Namespace, picks: Sequence[str]) -> tuple[str | No
     if len(points) > 1 or (points and len(picks) > 1):
         raise ConfigurationError("--channel: give one point of a run, or channels as x=NAME, y=NAME and z=NAME")
     channels = argparse.Namespace(**{**vars(options), "picks": [text for text in picks if "=" in text]})
-    return (points[0] if points else None), record_choice(channels, "")
+    return (points[0] if points else None), record_choice(channels, "", known=AXES)
 
 
 def evaluated(options: argparse.Namespace) -> RecordComfort:
@@ -184,6 +186,7 @@ def _job(options: argparse.Namespace) -> None:
         raise_worst(errors, len(results))
         return
     result = evaluated(argparse.Namespace(**{**vars(options), "input": names[0]}))
+    accept(options, result.notices)
     print_result(options, result.summary, result.text())
     for remark in result.notices:
         print(f"notice: {remark}", file=sys.stderr)

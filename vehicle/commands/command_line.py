@@ -18,10 +18,12 @@ from pathlib import Path
 from types import FrameType
 from typing import Any
 
+from vehicle.commands.accepted_advice import retried
 from vehicle.commands.parser import Parser
 from vehicle.commands.printable import printable_streams
 from vehicle.digits import duration
 from vehicle.errors import ConfigurationError, OutputError, VehicleError
+from vehicle.signals.records.finding import FindingError
 from vehicle.threads import prefer_one_thread
 
 INTERRUPTED = 130
@@ -164,8 +166,8 @@ def parse_and_run(parser: Parser, job: Callable[[argparse.Namespace], None], arg
 
     Args:
         parser: with the option --debug.
-        job: work of the command with the parsed options; they also have `words`, the arguments, and `held`, an exit
-            stack that is closed when the command ends.
+        job: work of the command with the parsed options; they also have `words`, the arguments, `held`, an exit
+            stack that is closed when the command ends, and `accepted`, the options that --accept-advice has added.
         arguments: without the program name; those of the process by default.
 
     Returns:
@@ -179,10 +181,19 @@ def parse_and_run(parser: Parser, job: Callable[[argparse.Namespace], None], arg
         for word in typed:
             if "\0" in word:
                 raise ConfigurationError(f"argument {word!r}: contains a NUL character; remove it")
-        with ExitStack() as held:
-            options = parser.parse_args(typed, argparse.Namespace(words=typed, held=held))
-            _put_in_order(typed)
-            job(options)
+        line: list[str] | None = typed
+        accepted: set[tuple[str, str]] = set()
+        while line is not None:
+            with ExitStack() as held:
+                options = parser.parse_args(line, argparse.Namespace(words=line, held=held, accepted=accepted))
+                _put_in_order(typed)
+                try:
+                    job(options)
+                    line = None
+                except FindingError as error:
+                    line = retried(error, options)
+                    if line is None:
+                        raise
 
     # Not from the parsed options: --debug also applies to an error of the parser.
     return run_command(work, debug="--debug" in typed)

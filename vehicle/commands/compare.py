@@ -7,6 +7,7 @@ from collections.abc import Container
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from vehicle.commands.accepted_advice import accept
 from vehicle.commands.clock_options import clock_of, delay_option, drift_option
 from vehicle.commands.command_line import ProgressLine, command, print_result
 from vehicle.commands.destination import output_folder_of
@@ -233,6 +234,7 @@ def _compared(options: argparse.Namespace, output: Path) -> tuple[dict[str, Any]
         if measured.record is None:
             refuse_idle(options, RECORDS)
         comparison = compare(run, measured, delay=delay, drift=drift, window=options.window, bands=edges)
+        accept(options, comparison.notices)
         save_comparison(comparison, output, force=options.force, figures=options.figures, protect=(options.measured,))
         summary, said = comparison.summary(), comparison.text()
     return summary, said

@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from vehicle.commands.accepted_advice import accept
 from vehicle.commands.clock_options import delay_option
 from vehicle.commands.command_line import command
 from vehicle.commands.destination import output_folder_of
@@ -79,6 +80,7 @@ def _job(options: argparse.Namespace) -> None:
     names, choice = _channels(options)
     car = Car.load(options.vehicle, options.overrides)
     drive = replicate_drive(car, options.target, names, **replace(settings, choice=choice).given())
+    accept(options, drive.notices)
     summary = save_drive(drive, output, force=options.force, figures=options.figures, protect=inputs)
     if not options.quiet:
         print(report(summary, output))

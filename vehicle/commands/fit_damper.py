@@ -5,6 +5,7 @@ import shlex
 from functools import partial
 from pathlib import Path
 
+from vehicle.commands.accepted_advice import accept
 from vehicle.commands.command_line import ProgressLine, command, print_result
 from vehicle.commands.destination import output_files_of
 from vehicle.commands.input_options import record_choice, record_options
@@ -64,6 +65,7 @@ def _job(options: argparse.Namespace) -> None:
         pattern=options.pattern,
         progress=ProgressLine("fit       ", enabled=not options.quiet),
     )
+    accept(options, (text for fitted in fits for test in fitted.tests for text in test.notices))
     command_line = f"python -m vehicle fit-damper {shlex.join(options.words)}"
     contents: dict[str, Content] = {
         TABLE: tests_text(fits),

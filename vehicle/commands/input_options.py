@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from vehicle.commands.accepted_advice import advice_option
 from vehicle.commands.options import setting_options
 from vehicle.commands.parser import Condition, Parser
 from vehicle.errors import ConfigurationError
@@ -203,6 +204,7 @@ def record_options(
         metavar="HZ",
         help="resample the record at this rate first [Hz], with an anti-alias filter; for irregular times",
     )
+    advice_option(parser)
     parser.add_argument("--detrend", action="store_true", help="subtract the best straight line (offset and drift)")
     if highpass:
         parser.add_argument(

@@ -14,6 +14,7 @@ from vehicle.commands.several_files import each_file, expanded, raise_worst, tab
 
 if TYPE_CHECKING:
     from vehicle.signals.formats.channel import Channel, Measurement
+    from vehicle.signals.records.finding import Finding
 
 
 SHOWN = 60
@@ -41,10 +42,12 @@ def _job(options: argparse.Namespace) -> None:
 
     def one(name: str) -> dict[str, Any]:
         measurement = read_record(find_input(name), tuple(options.databases))
-        command, reason = command_for(measurement, name, options.databases)
-        comparison, left_out = comparison_for(measurement, name, command)
+        findings: list[Finding] = []
+        command, reason = command_for(measurement, name, options.databases, findings)
+        comparison, left_out = comparison_for(measurement, name, command, findings)
         return {
             **contents(measurement),
+            "findings": findings,
             "command": command or None,
             "command_reason": reason,
             "comparison": comparison or None,
@@ -188,6 +191,7 @@ def report(content: dict[str, Any]) -> str:
             f"{mode['points']:>7}{complex_note}  {mode['name']}"
         )
     lines += [f"notice: {text}" for text in content["notices"]]
+    lines += [f"finding: {text}" for text in content.get("findings", ())]
     if content["command"]:
         lines += [f"{content['command_reason']}:", f"  {content['command']}"]
     else:

@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from vehicle.commands.accepted_advice import accept
 from vehicle.commands.command_line import ProgressLine, command
 from vehicle.commands.compare import measured_beside, measured_options
 from vehicle.commands.crank_speed import crank_overrides, steady_points
@@ -206,6 +207,7 @@ def _job(options: argparse.Namespace) -> None:
     wheel = CORNERS[options.wheel] if options.wheel else car.vehicle.shaker_wheel
     choice = record_choice(options, wheel) if drive is None else None
     signal = drive.signal() if drive is not None else plate_signal(options, wheel, choice)
+    accept(options, signal.notices)
     _check_signal(options, signal)
     skip = evaluation_start({stem: signal.duration}, options.skip, 0.0 if drive is None else drive.skip)
     channels = None if options.recorded is None else recorded_channels(options.recorded, car.vehicle)

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from vehicle.commands.accepted_advice import accept
 from vehicle.commands.clock_options import drift_option
 from vehicle.commands.command_line import ProgressLine, command
 from vehicle.commands.destination import output_folder_of
@@ -108,6 +109,7 @@ def _job(options: argparse.Namespace) -> None:
     protect = tuple(Path(name) for name in inputs)
     folder = output_folder_of(options, OUTPUT, protect=(*files, *protect))
     targets = measured_targets(options, car)
+    accept(options, (text for target in targets for text in target.notices))
     if not (options.quiet or options.json):
         for text in dict.fromkeys(text for target in targets for text in target.notices):
             print(f"notice: {text}", file=sys.stderr, flush=True)

@@ -88,12 +88,25 @@ def test_a_stuck_sensor():
 
 
 def test_a_channel_that_ends_while_another_goes_on():
-    values = random_record()
-    values[15000:] = values[15000]
-    assert stuck(values, TIME) is None  # alone it may be at rest
-    assert stuck(values, TIME, [random_record(seed=2)]) == pytest.approx((15.0, 19.999))
+    fading = random_record() * np.clip((15.0 - TIME) / 3.0, 0.0, 1.0) ** 2
+    assert stuck(fading, TIME) is None  # alone it may come to rest
+    assert stuck(fading, TIME, [random_record(seed=2)]) == pytest.approx((15.0, 19.999), abs=2e-3)
     other = random_record(seed=2)
-    assert faults({"x": values, "y": other}, TIME) == [] != faults({"x": values, "y": other}, TIME, moving="xy")
+    assert faults({"x": fading, "y": other}, TIME) == [] != faults({"x": fading, "y": other}, TIME, moving="xy")
+
+
+@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("held", ["last value", "zero"])
+def test_a_record_that_is_constant_at_an_end(seed, held):
+    """It was accepted, and the third of a record without motion lowered its comfort by a fifth."""
+    values = random_record(seed)
+    values[14000:] = values[14000] if held == "last value" else 0.0
+    assert stuck(values, TIME) == pytest.approx((14.0, 19.999), abs=2e-3)
+    (finding,) = faults({"z": values}, TIME)
+    assert finding.options == ("--to", "14") and "with --to 14" in finding
+    assert stuck(values[::-1], TIME) == pytest.approx((0.0, 5.999), abs=2e-3)
+    assert faults({"z": values[::-1]}, TIME)[0].options[0] == "--from"
+    assert stuck(values[::-1], TIME, from_rest=True) is None  # a plate that is not yet moving
 
 
 def test_copies_but_for_offset_and_sign():

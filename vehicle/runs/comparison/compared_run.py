@@ -19,23 +19,19 @@ from vehicle.runs.comparison.frf_comparison import (
     compare_responses,
     other_plates,
 )
-from vehicle.runs.comparison.record_comparison import RecordComparison, compare_records, offsets, unlike_copies
+from vehicle.runs.comparison.record_comparison import RecordComparison, compare_records, unlike_copies
 from vehicle.runs.comparison.simulated import Simulated, of_folder, of_run
 from vehicle.signals.analysis.phase_delay import phase_delay
 from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.formats.channel import Measurement
 from vehicle.signals.records.choice import Choice
-from vehicle.signals.records.counterpart import (
-    PARTS,
-    SAME_MOTION,
-    clock_advice,
-    response_faults,
-    run_times,
-    sign_and_unit,
-)
-from vehicle.signals.records.delays import PLATES, Delay, group_of, split_delay
-from vehicle.signals.records.group_delays import ChannelLag, channel_lags, group_delays
+from vehicle.signals.records.counterpart import PARTS, SAME_MOTION, response_faults, run_times
+from vehicle.signals.records.delays import PLATES, Delay, split_delay
+from vehicle.signals.records.exchanged import exchange_finding, exchanged_responses
+from vehicle.signals.records.finding import Finding
+from vehicle.signals.records.group_delays import ChannelLag, GroupDelay, group_delays
 from vehicle.signals.records.measured import Measured, read_measured
+from vehicle.signals.records.run_findings import beside_run
 from vehicle.threads import one_blas_thread
 
 LARGEST_DRIFT = 0.1
@@ -181,30 +177,22 @@ def comparison_of(
             notices += other_plates(measured.frf, other)
     records: tuple[RecordComparison, ...] = ()
     judged: set[str] = set()
-    lags, step, reference = list[ChannelLag](), 0.0, ""
+    delays: tuple[GroupDelay, ...] = ()
     if measured.record is not None:
         times = run_times(measured.record, delay, drift, measured.start)
         begin, text = _settled_part(measured, simulated, times)
-        notices += text
         records, parts = compare_records(measured.record, simulated.record, times, begin)
-        step = float(records[0].time[1] - records[0].time[0]) if records else 0.0
-        lags = channel_lags(parts, measured.delays)
+        beside = beside_run(
+            measured, measured.record, simulated.record, times, delay=delay, drift=drift, parts=parts, command=command
+        )
+        notices += [*text, *beside.findings, *unlike_copies(records)]
+        judged = {part.channel for part in beside.parts if part.reliable_shift}
+        delays = beside.delays
     elif responses:
-        lags, reference = response_lags(responses, measured.delays), PLATES
         step = PHASE_STEP / float(responses[0].frequency[-1])
-    delays = group_delays(lags, step, reference)
-    if measured.record is not None:
-        clock = [part for part in parts if not delays or group_of(part.channel) == delays[0].group]
-        notices += clock_advice(clock, step, delay, drift, command)
-        notices += [*sign_and_unit(parts), *offsets(records), *unlike_copies(records)]
-        judged = {part.channel for part in parts if part.reliable_shift}
-    notices += [text for group in delays for text in group.advice(step, command)]
-    for response in responses:
-        if response.channel not in judged:
-            weight = np.nan_to_num(response.measured_coherence, nan=1.0) * np.nan_to_num(
-                response.simulated_coherence, nan=1.0
-            )
-            notices += response_faults(response.channel, response.measured, response.simulated, weight)
+        delays = group_delays(response_lags(responses, measured.delays), step, PLATES)
+        notices += [finding for group in delays for finding in group.advice(step, command)]
+    notices += response_findings(measured, [each for each in responses if each.channel not in judged])
     if not responses and not records:
         raise DataError(
             f"{measured.file.path}: has no channel in common with the run {simulated.name}; set --map "
@@ -243,6 +231,22 @@ def _settled_part(measured: Measured, simulated: Simulated, times: Vector) -> tu
         f"time histories are compared from {settled:g} s of the run on, since it begins at rest; with stuck dampers it "
         "settles for longer: --from S compares from S of the file on"
     ]
+
+
+def response_findings(measured: Measured, responses: Sequence[FrfComparison]) -> list[Finding]:
+    """Return the findings on measured FRFs against the run: exchanged channels, signs and units."""
+    findings: list[Finding] = []
+    exchanged: dict[str, str] = {}
+    for plate in dict.fromkeys(each.plate for each in responses):
+        of_plate = [each for each in responses if each.plate == plate]
+        tables = (np.array([getattr(each, side) for each in of_plate]) for side in ("measured", "simulated"))
+        exchanged |= exchanged_responses([each.channel for each in of_plate], *tables)
+    findings += exchange_finding(exchanged, measured.mapped, complete=measured.by_name)
+    for each in responses:
+        if each.channel not in exchanged:
+            weight = np.nan_to_num(each.measured_coherence, nan=1.0) * np.nan_to_num(each.simulated_coherence, nan=1.0)
+            findings += response_faults(each.channel, each.measured, each.simulated, weight)
+    return findings
 
 
 def response_lags(responses: Sequence[FrfComparison], taken_out: Mapping[str, float]) -> list[ChannelLag]:

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vehicle.digits import number
 from vehicle.errors import DataError
 from vehicle.signals.analysis.record_rating import RecordRating, rate_record
 from vehicle.signals.analysis.samples import Vector
@@ -14,9 +13,6 @@ from vehicle.signals.analysis.time_shift import TimeShift
 from vehicle.signals.formats.table import Record
 from vehicle.signals.records.counterpart import Counterpart, counterparts
 from vehicle.signals.records.resampled import at_times
-
-LARGEST_OFFSET = 0.3
-"""Difference of the means over the standard deviation of the measurement: the RMS ratio is then off by 4 %."""
 
 LEAST_SAMPLES = 20
 """That both have in common: fewer are no time history. Assumed."""
@@ -105,20 +101,6 @@ def _compared(
         rating=rate_record(truth, curve, step),
         clock=part.reliable_shift,
     )
-
-
-def offsets(records: Sequence[RecordComparison]) -> list[str]:
-    """Return a notice for each acceleration whose mean differs by more than `LARGEST_OFFSET`."""
-    said = []
-    for record in records:
-        means = float(np.mean(record.measured)), float(np.mean(record.simulated))
-        if record.unit == "m/s2" and abs(means[0] - means[1]) > LARGEST_OFFSET * float(np.std(record.measured)):
-            said.append(
-                f"{record.channel}: the mean is {means[0]:.3g} m/s2 in the measurement and {number(means[1], 2)} "
-                "m/s2 in the run, and it spoils the RMS ratio: gravity, or the offset of a sensor? Subtract the "
-                "mean with --detrend, or with --highpass 0.5"
-            )
-    return said
 
 
 def unlike_copies(records: Sequence[RecordComparison]) -> list[str]:

@@ -1,5 +1,6 @@
 """Read plate displacements from selected channels of a measurement file."""
 
+import shlex
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,7 +10,9 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import CORNERS, is_wheel
 from vehicle.signals.formats.reader import read_record
 from vehicle.signals.formats.table import TIME, USABLE, Header, Table
+from vehicle.signals.records.channel_words import suggested_channels
 from vehicle.signals.records.choice import Choice, choose
+from vehicle.signals.records.finding import Finding, FindingError
 from vehicle.signals.records.integration import displacement
 
 WHEEL_REMEDY = "pass wheel='fl' (of a car: wheel=car.vehicle.shaker_wheel), or name the column displacement_fl"
@@ -52,11 +55,18 @@ def chosen_plates(path: Path, choice: Choice | None, wheel: str | None) -> tuple
                 raise DataError(f"{path}: the name of channel {plain[0].name!r} states no wheel; {WHEEL_REMEDY}")
             assigned = {wheel: "1" if len(measurement.channels) == 1 else plain[0].name}
         if not assigned:
-            raise DataError(
-                f"{path}: which of the {len(measurement.channels)} channels is the plate? set --channel "
-                f"{wheel or 'fl'}=NAME with a number, exact name or pattern with *; the file has "
-                f"{measurement.listed()}"
+            options = tuple(
+                word
+                for role, name in suggested_channels(measurement.channels).items()
+                if role.startswith("plate_")
+                for word in ("--channel", f"{role.split('_')[1]}={name}")
             )
+            text = (
+                f"which of the {len(measurement.channels)} channels is the plate? set --channel {wheel or 'fl'}=NAME "
+                f"with a number, exact name or pattern with *; the file has {measurement.listed()}"
+                + (f"; their names suggest {shlex.join(options)}" if options else "")
+            )
+            raise FindingError(path, [Finding(text, "unmapped", options)])
         choice = replace(choice, channels={**choice.channels, **assigned})
     chosen = choose(measurement, choice)
     columns, notices = displacement(chosen, choice, str(path))

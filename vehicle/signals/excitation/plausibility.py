@@ -1,4 +1,4 @@
-"""Check the plausibility of plate displacements: level, acceleration, bandwidth, drift, pauses, clipping."""
+"""Check the plausibility of plate displacements: level, acceleration, bandwidth, drift."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -9,8 +9,7 @@ from vehicle.digits import number
 from vehicle.errors import DataError
 from vehicle.signals.analysis.fast_length import fast_length
 from vehicle.signals.analysis.samples import Vector
-from vehicle.signals.formats.clock import PAUSE
-from vehicle.signals.records.channel_faults import clipped, constant_part
+from vehicle.signals.records.finding import Finding
 from vehicle.signals.records.rare_events import rare_events
 
 LARGEST_DISPLACEMENT = 0.15
@@ -204,10 +203,10 @@ def aliasing_notices(displacement: Mapping[str, Vector], timestep: float) -> tup
     )
 
 
-def drifts(displacement: Mapping[str, Vector]) -> list[str]:
-    """Return a notice for each plate (wheel -> [m], (n,)) whose least-squares line rises by more than the RMS about it.
+def drifts(displacement: Mapping[str, Vector]) -> list[Finding]:
+    """Return a finding for each plate (wheel -> [m], (n,)) whose least-squares line rises by more than its RMS.
 
-    Slope b = 12 / (n^2 - 1) mean((k - (n - 1)/2) z_k) per sample, k = 0 ... n - 1; drift b (n - 1).
+    Slope b = 12 / (n^2 - 1) mean((k - (n - 1)/2) z_k) per sample, k = 0 ... n - 1; drift b (n - 1); RMS about the line.
     """
     notices = []
     for wheel, z in displacement.items():
@@ -216,41 +215,12 @@ def drifts(displacement: Mapping[str, Vector]) -> list[str]:
         drift, rms = slope * (z.size - 1), float(np.std(z - slope * offsets))
         if abs(drift) > DRIFT_SHARE * rms:
             notices.append(
-                f"plate {wheel} drifts by {1e3 * drift:.4g} mm from beginning to end (RMS without the drift "
-                f"{1e3 * rms:.4g} mm): a drifting sensor or integrator? The drift was not subtracted; --detrend "
-                "subtracts it"
+                Finding(
+                    f"plate {wheel} drifts by {1e3 * drift:.4g} mm from beginning to end (RMS without the drift "
+                    f"{1e3 * rms:.4g} mm): a drifting sensor or integrator? The drift was not subtracted; --detrend "
+                    "subtracts it",
+                    "drift",
+                    ("--detrend",),
+                )
             )
     return notices
-
-
-def pauses(wheel: str, time: Vector, values: Vector) -> list[str]:
-    """Return a notice on the longest constant part between two motions if it is at least `PAUSE` long.
-
-    Args:
-        time: sample times [s], shape (n,).
-        values: displacement of the plate in any unit, shape (n,).
-    """
-    part = constant_part(values)
-    if part is None or time[part[1]] - time[part[0]] < PAUSE:
-        return []
-    moves = np.flatnonzero(np.diff(values) != 0.0)
-    further = int(np.count_nonzero(time[moves[1:]] - time[moves[:-1] + 1] >= PAUSE)) - 1
-    return [
-        f"plate {wheel} stands still for {time[part[1]] - time[part[0]]:.4g} s from t = {time[part[0]]:.6g} s "
-        "on, between two motions: a pause of the record? RMS, comfort and slip shares include this pause"
-        + (f"; {further} further shorter pauses" if further else "")
-    ]
-
-
-def clipping(wheel: str, values: Vector) -> list[str]:
-    """Return a notice for each side on which the displacement of a plate is clipped.
-
-    Args:
-        values: displacement of the plate in any unit, shape (n,).
-    """
-    return [
-        f"plate {wheel}: clipped? {100.0 * share:.3g} % of the samples are exactly at the {side}, {level:.4g} m, "
-        "and the velocity jumps there; measure with a larger range, or select an unclipped part (--from S, --to "
-        "S)"
-        for side, level, share in clipped(values)
-    ]

@@ -58,7 +58,7 @@ def start_from_rest(
     samples = next(iter(plates.values())).size
     length = min(RAMP_S, 0.1 * (samples - 1) * timestep)
     weights = half_cosine(samples=samples, timestep=timestep, length=length)
-    done = f"the motion of all plates is faded in over the first {length:.3f} s ({RAMP_WORDS}); no mean was subtracted"
+    done = f"the motion of all plates is faded in over the first {length:.3f} s ({RAMP_WORDS})"
     # Adding 0.0 avoids -0.0 for a negative first value.
     return {wheel: z * weights + 0.0 for wheel, z in plates.items()}, tuple(f"{cause}; {done}" for cause in causes)
 

@@ -16,9 +16,7 @@ from vehicle.signals.excitation.plausibility import (
     ImplausibleError,
     aliasing_notices,
     check_level,
-    clipping,
     drifts,
-    pauses,
 )
 from vehicle.signals.excitation.rest import start_from_rest
 from vehicle.signals.excitation.signal import MINIMUM_SAMPLES, Signal, is_event, uniform_time
@@ -37,7 +35,9 @@ from vehicle.signals.formats.reader import is_table
 from vehicle.signals.formats.table import TIME, USABLE, Header, Table, Wanted, name_and_unit
 from vehicle.signals.formats.table_file import read_table
 from vehicle.signals.formats.units import find_unit
+from vehicle.signals.records.channel_findings import channel_findings
 from vehicle.signals.records.choice import Choice
+from vehicle.signals.records.plate_offset import without_offsets
 from vehicle.signals.records.resampled import resampled
 
 NEEDED = "'time [s]' and 'displacement [m]' (or 'displacement_fr [m]', 'displacement_fl [m]'); [mm] is accepted"
@@ -124,11 +124,10 @@ def read_signal(
         values, filled = fill_missing(table, time, column)
         if table.header.cells[column].startswith("plate_") and not np.ptp(values) > 0.0:
             continue  # a run also records the plates that it did not drive
-        plain_notices = (
-            [*pauses(driven, time, values), *clipping(driven, values)] if is_plain_table else []
-        )  # otherwise checked by `choose`
-        notices.extend([*filled, *plain_notices])
+        notices.extend(filled)
         columns[driven] = values * _LENGTH_UNITS[unit]
+    if is_plain_table:  # otherwise checked by `choose`
+        notices.extend(channel_findings(path, time, columns, dict.fromkeys(columns, "m")))
     timestep, columns, recorded, grid_notices = _uniform_columns(table, time, columns, resample)
     notices.extend(grid_notices)
     band_rate = min(band_rate, recorded)
@@ -139,6 +138,8 @@ def read_signal(
         for driven, displacement in columns.items():
             notices.append(f"mean {np.mean(displacement):.6g} m of plate {driven} was subtracted, as requested")
             columns[driven] = displacement - np.mean(displacement)
+    columns, offsets = without_offsets(columns)
+    notices.extend(offsets)
     if not any(np.ptp(displacement) > 0.0 for displacement in columns.values()):
         raise DataError(f"{path}: no plate moves: all columns are constant; use a record with motion")
     notices.extend(drifts(columns))

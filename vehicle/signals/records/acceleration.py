@@ -12,7 +12,7 @@ from vehicle.names import AXES
 from vehicle.signals.formats.reader import is_table, read_columns, read_record
 from vehicle.signals.formats.table import Record
 from vehicle.signals.formats.units import STANDARD_GRAVITY
-from vehicle.signals.records.channel_faults import faults
+from vehicle.signals.records.channel_findings import channel_findings
 from vehicle.signals.records.choice import Choice, choose
 from vehicle.signals.records.integration import filtered
 from vehicle.signals.records.rare_events import rare_events
@@ -142,7 +142,8 @@ def read_acceleration(path: str | Path, point: str | None = None, choice: Choice
             )
         xyz[axis] = values
     # `choose` checks its channels before they are filtered.
-    channel_notices = faults(xyz, record.time, moving=list(xyz)) if plain else []
+    units = {axis: record.units[name] for axis, name in zip(AXES, axes, strict=True) if axis in xyz}
+    channel_notices = channel_findings(file, record.time, xyz, units) if plain else []
     notices = (*record.notices, *events, *channel_notices, *_notices(xyz, 1.0 / record.step))
     return Record(
         time=record.time, channels=xyz, units=dict.fromkeys(xyz, "m/s2"), notices=notices, highest=record.highest

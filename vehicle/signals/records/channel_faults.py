@@ -1,11 +1,12 @@
-"""Detect faults of measured channels: clipped sensors, stuck sensors, copied channels."""
+"""Detect faults of measured channels: clipped sensors, stuck sensors, constant ends, copied channels."""
 
-from collections.abc import Container, Mapping
+from collections.abc import Container, Mapping, Sequence
 
 import numpy as np
 
 from vehicle.arrays import Mask, Vector
 from vehicle.signals.formats.text import LARGEST
+from vehicle.signals.records.finding import Finding
 
 EQUAL = 1e-6
 """Maximum difference of equal samples over peak to peak [-]: single precision has seven digits."""
@@ -59,14 +60,27 @@ OUTLASTS = 5.0
 `CERTAIN` suffices whatever the intervals. A motion of a few Hz is slow at its extremes, where rounding repeats a value:
 the longest of such parts has at most 3.2 times the samples of the second longest in 2000 sound records."""
 
+FIRST_STEPS = 3
+"""Number of steps after or before a constant part for the test whether a motion is cut off."""
+
+LEAST_CROSSINGS = 10
+"""Minimum number of crossings of the mean of a motion that may be cut off: a bump begins and ends at rest."""
+
+STEADY = 4.5
+"""Maximum kurtosis of a steady motion [-]: 3 for a Gaussian one, 1.5 T / tau for a decay with tau in a time T."""
+
 OTHERS_MOVE = 0.2
 """Minimum RMS of another channel in the constant part, over its RMS in the whole record, that counts as motion [-]."""
 
 
 def faults(
-    channels: Mapping[str, Vector], time: Vector, *, moving: Container[str] = (), remedy: str = "--from S and --to S"
-) -> list[str]:
-    """Return one message for each clipped side and each constant part of the channels.
+    channels: Mapping[str, Vector],
+    time: Vector,
+    *,
+    moving: Container[str] = (),
+    rests: Container[str] = (),
+) -> list[Finding]:
+    """Return one finding for each clipped side and each constant part of the channels.
 
     For motion channels only: a friction force may be constant by nature.
 
@@ -74,27 +88,37 @@ def faults(
         channels: name to unfiltered samples, (n,).
         time: sample times [s], (n,).
         moving: names of channels on the same sensor or body, which stop moving at the same time.
-        remedy: options that cut a part out of the record, for the messages.
+        rests: names of channels that may begin at rest, for example the displacement of a plate.
     """
-    messages, grouped = [], {name for name in channels if name in moving}
+    findings, grouped = [], {name for name in channels if name in moving}
     # The squares of larger values overflow; their readers refuse them.
     channels = {name: values for name, values in channels.items() if float(np.max(np.abs(values))) <= LARGEST}
     for name, values in channels.items():
         for side, level, share in clipped(values):
-            messages.append(
-                f"{name}: clipped? {100.0 * share:.3g} % of the samples are exactly at the {side}, {level:.4g}, "
-                "with sharp edges, so peaks, RMS and spectra are wrong; measure with a larger range, or select "
-                f"an unclipped part ({remedy})"
+            findings.append(
+                Finding(
+                    f"{name}: clipped? {100.0 * share:.3g} % of the samples are exactly at the {side}, {level:.4g}, "
+                    "with sharp edges, so peaks, RMS and spectra are wrong; measure with a larger range, or select "
+                    "an unclipped part (--from S and --to S)",
+                    "clipped",
+                )
             )
         others = [other for channel, other in channels.items() if channel != name and {channel, name} <= grouped]
-        interval = stuck(values, time, others)
+        interval = stuck(values, time, others, from_rest=name in rests)
         if interval is not None:
             begin, end = interval
-            messages.append(
-                f"{name}: constant for {end - begin:.4g} s, from {begin:.6g} to {end:.6g} s: a stuck sensor or a "
-                f"pause? All means include these seconds; select the part before or after it ({remedy})"
+            first = begin - time[0] >= time[-1] - end
+            options = ("--to", f"{begin:.9g}") if first else ("--from", f"{end:.9g}")
+            findings.append(
+                Finding(
+                    f"{name}: constant for {end - begin:.4g} s, from {begin:.6g} to {end:.6g} s: a stuck sensor or a "
+                    f"pause? All means include these seconds; select the part {'before' if first else 'after'} it "
+                    f"with {' '.join(options)}",
+                    "constant",
+                    options,
+                )
             )
-    return messages
+    return findings
 
 
 def clipped(values: Vector) -> list[tuple[str, float, float]]:
@@ -167,16 +191,19 @@ def _at_rest(at_extreme: Mask) -> bool:
     return bool(np.max(lengths, where=at_ends, initial=0) >= np.max(lengths, where=~at_ends, initial=0))
 
 
-def stuck(values: Vector, time: Vector, others: list[Vector] | None = None) -> tuple[float, float] | None:
+def stuck(
+    values: Vector, time: Vector, others: Sequence[Vector] = (), *, from_rest: bool = False
+) -> tuple[float, float] | None:
     """Return begin and end [s] of the longest implausibly constant part of a channel; None without such a part.
 
-    A constant beginning is accepted; so is a constant end, unless another channel moves there. Nothing is said of a
-    channel that switches between two values.
+    A constant beginning or end is accepted where the motion begins or ends smoothly, unless another channel moves at
+    the end. Nothing is said of a channel that switches between two values.
 
     Args:
         values: samples, (n,).
         time: sample times [s], (n,).
         others: other channels of the record, (n,) each.
+        from_rest: the channel may begin at rest.
     """
     away = values - values.mean()
     crossings = int(np.count_nonzero(away[1:] * away[:-1] < 0.0))
@@ -186,19 +213,43 @@ def stuck(values: Vector, time: Vector, others: list[Vector] | None = None) -> t
     moves = np.flatnonzero(np.diff(values) != 0.0)  # not empty, as it crosses its mean
     rested = [(0, int(moves[0])), (int(moves[-1]) + 1, values.size - 1)]
     candidates = [part] if part is not None else []
-    if any(float(np.std(other[rested[1][0] :])) > OTHERS_MOVE * float(np.std(other)) > 0.0 for other in others or []):
+    motion = values[rested[0][1] : rested[1][0] + 1]
+    if not from_rest and _abrupt(motion, crossings):
+        candidates.append(rested[0])
+    if _abrupt(motion[::-1], crossings) or any(
+        float(np.std(other[rested[1][0] :])) > OTHERS_MOVE * float(np.std(other)) > 0.0 for other in others
+    ):
         candidates.append(rested[1])
     if not candidates:
         return None
     begin, end = max(candidates, key=lambda part_bounds: float(time[part_bounds[1]] - time[part_bounds[0]]))
     length = float(time[end] - time[begin])
-    moving = float(time[-1] - time[0]) - sum(float(time[last] - time[first]) for first, last in [*rested, (begin, end)])
+    unmoved = {*rested, (begin, end)}
+    moving = float(time[-1] - time[0]) - sum(float(time[last] - time[first]) for first, last in unmoved)
     interval = max(moving, 0.0) / crossings
     minimum = max(STUCK_PERIODS * interval, min(CERTAIN, CERTAIN_PERIODS * interval))
     ends = np.concatenate([[-1], moves, [values.size - 1]])
     if end + 1 - begin >= OUTLASTS * np.sort(np.diff(ends))[-2]:  # of all constant parts, the ends included
         minimum = min(minimum, CERTAIN)
     return (float(time[begin]), float(time[end])) if length >= minimum else None
+
+
+def _abrupt(motion: Vector, crossings: int) -> bool:
+    """Return True if a motion (n,) with this number of crossings of the mean begins at the speed of the whole motion.
+
+    Its first steps decide, which are small where a machine starts or a bump begins. In a steady motion, which has no
+    single event, those of the first period decide as well: a sensor may freeze at an extreme value.
+    """
+    if crossings < LEAST_CROSSINGS:
+        return False
+    steps = np.diff(motion)
+    pace = float(np.sqrt(np.mean(steps**2)))
+    first, period = (
+        float(np.sqrt(np.mean(steps[:count] ** 2))) for count in (FIRST_STEPS, 1 + 2 * motion.size // crossings)
+    )
+    squares = (motion - motion.mean()) ** 2
+    steady = float(np.mean(squares**2)) < STEADY * float(np.mean(squares)) ** 2
+    return first >= CORNER * pace or (steady and period >= CORNER * pace)
 
 
 def constant_part(values: Vector) -> tuple[int, int] | None:

@@ -6,7 +6,7 @@ seat, and a displacement is that of a plate only if a word says plate. Else the 
 
 import re
 import shlex
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import NamedTuple
 
 from vehicle.signals.formats.channel import Channel
@@ -323,9 +323,14 @@ def main_channels(suggested: dict[str, str]) -> dict[str, str]:
     return {name: suggested[name] for name in suggested if name in order[:MAPPED]}
 
 
+def map_words(mapped: Mapping[str, str]) -> tuple[str, ...]:
+    """Return the options --map of channels of the model and their channels in a file, as words of a command line."""
+    return tuple(word for model, name in mapped.items() for word in ("--map", f"{model}={name}"))
+
+
 def map_options(suggested: dict[str, str]) -> str:
     """Return the options `--map` of the main ones of `suggested_channels`, as typed."""
-    return " ".join(f"--map {shlex.quote(f'{model}={name}')}" for model, name in main_channels(suggested).items())
+    return shlex.join(map_words(main_channels(suggested)))
 
 
 def _suggested(channel: Channel) -> str:

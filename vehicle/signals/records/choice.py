@@ -11,12 +11,13 @@ import numpy as np
 from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.formats.channel import NOT_OVER_TIME, Channel, Measurement, uniform_axis
-from vehicle.signals.formats.clock import check_stamps, clock_options, is_uniform, longest_step, without_rounding
+from vehicle.signals.formats.clock import clock_of_stamps, clock_options, is_uniform, longest_step, without_rounding
 from vehicle.signals.formats.table import USABLE
 from vehicle.signals.formats.text import LARGEST
 from vehicle.signals.formats.units import allowed_units, find_ratio, find_unit, seconds_in
-from vehicle.signals.records.channel_faults import MOTIONS, faults
+from vehicle.signals.records.channel_findings import channel_findings
 from vehicle.signals.records.common_span import Block, blocks_of, cut, need_resampling
+from vehicle.signals.records.finding import Finding, FindingError
 from vehicle.signals.records.resampled import resampled
 
 
@@ -102,11 +103,12 @@ class Chosen:
         if not is_uniform(self.time):
             steps = np.diff(self.time)
             jitter = 100.0 * float(np.max(np.abs(steps / np.median(steps) - 1.0)))
-            raise DataError(
-                f"{where}: times are not uniform, steps deviate from the median by up to {jitter:.3g} %; set "
-                f"{' '.join(clock_options(self.time))}, or --rate HZ if the samples are uniform and only the "
-                "time stamps are irregular"
+            options = clock_options(self.time)
+            text = (
+                f"times are not uniform, steps deviate from the median by up to {jitter:.3g} %; set "
+                f"{' '.join(options)}, or --rate HZ if the samples are uniform and only the time stamps are irregular"
             )
+            raise FindingError(where, [Finding(text, "times", options)])
 
 
 def pairs(option: str, texts: Sequence[str], role: str) -> dict[str, str]:
@@ -295,8 +297,14 @@ def _part(path: Path, block: Block, choice: Choice, notices: list[str]) -> tuple
             raise DataError(f"{path}: {role}: {missing} missing values{f' ({remark})' if remark else ''}, the first at "
                             f"{at:.6g} s; exclude them with --from and --to, or repair the file")  # fmt: skip
     time = _uniform(path, time, notices)
-    motions = {role: samples for role, samples in values.items() if channels[role].quantity in MOTIONS}
-    notices += faults(motions, time, moving=[role for role in motions if channels[role].quantity == "acceleration"])
+    notices += channel_findings(
+        path,
+        time,
+        values,
+        {role: channel.unit for role, channel in channels.items()},
+        stated=values if "" in choice.units else choice.units,
+        filtered=choice.detrend or choice.highpass is not None,
+    )
     return time, values
 
 
@@ -345,7 +353,9 @@ def _has_rate(time: Vector, rate: float) -> bool:
 
 def _uniform(path: object, time: Vector, notices: list[str]) -> Vector:
     """Return times without the rounding of their stamps; reject pauses, decreasing times, and unusable stamps."""
-    check_stamps(path, time)
+    clock = clock_of_stamps(time)
+    if clock is not None:
+        raise FindingError(path, [Finding(clock.remedy, "times", ("--rate", clock.option))])
     steps = np.diff(time)
     if not np.isfinite(time).all() or not (steps > 0.0).all():
         at = int(np.flatnonzero(~(steps > 0.0))[0]) + 1
@@ -356,11 +366,12 @@ def _uniform(path: object, time: Vector, notices: list[str]) -> Vector:
     median = float(np.median(steps))
     index = int(np.argmax(steps))
     if steps[index] > longest_step(median):
-        raise DataError(
-            f"{path}: the record has a gap of {steps[index]:.6g} s, from {time[index]:.9g} to "
-            f"{time[index + 1]:.9g} s, and gaps are not filled; select the part before it (--to "
-            f"{time[index]:.9g}) or after it (--from {time[index + 1]:.9g})"
+        text = (
+            f"the record has a gap of {steps[index]:.6g} s, from {time[index]:.9g} to {time[index + 1]:.9g} s, and "
+            f"gaps are not filled; select the part before it (--to {time[index]:.9g}) or after it (--from "
+            f"{time[index + 1]:.9g})"
         )
+        raise FindingError(path, [Finding(text, "times", clock_options(time))])
     unrounded, rounded = without_rounding(time)
-    notices.extend(rounded)
+    notices.extend(Finding(text, "times") for text in rounded)
     return unrounded

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from vehicle.signals.analysis.samples import Complex
 from vehicle.signals.analysis.time_shift import TimeShift, time_shift
 from vehicle.signals.formats.table import Record
 from vehicle.signals.formats.units import STANDARD_GRAVITY
+from vehicle.signals.records.finding import Finding
 from vehicle.signals.records.resampled import at_times
 
 SAME_MOTION = 0.7
@@ -58,6 +59,10 @@ class Counterpart:
     unit: str
     shift: TimeShift | None
 
+    def later(self, lag: float) -> "Counterpart":
+        """Return the comparison with a run that is later by a time [s]."""
+        return replace(self, shift=replace(self.shift, shift=self.shift.shift + lag)) if self.shift and lag else self
+
     @property
     def reliable_shift(self) -> TimeShift | None:
         """Time shift if |correlation| is at least `SAME_MOTION`, else None."""
@@ -103,8 +108,10 @@ def counterparts(measured: Record, simulated: Record, times: Vector) -> list[Cou
     return pairs
 
 
-def clock_advice(parts: Sequence[Counterpart], step: float, delay: float, drift: float, command: str = "") -> list[str]:
-    """Return a message if another delay and drift is the best fit of most channels; else [].
+def clock_advice(
+    parts: Sequence[Counterpart], step: float, delay: float, drift: float, command: str = ""
+) -> list[Finding]:
+    """Return a finding if another delay and drift is the best fit of most channels; else [].
 
     Args:
         parts: comparisons returned by `counterparts`.
@@ -138,10 +145,10 @@ def clock_advice(parts: Sequence[Counterpart], step: float, delay: float, drift:
     agreement = (
         "in all channels" if alike.all() and len(alike) == len(parts) else f"in {len(shifts)} of {len(parts)} channels"
     )
-    options = f"--delay {round(new_delay, 7):.10g}"
+    arguments = ["--delay", f"{round(new_delay, 7):.10g}"]
     if drifts or drift:
-        options += f" --drift {new_drift * PARTS:.7g}"
-    options = f"{options} to {command}" if command else options
+        arguments += ["--drift", f"{new_drift * PARTS:.7g}"]
+    options = f"{' '.join(arguments)} to {command}" if command else " ".join(arguments)
     if drifts:
         low, high = middle - 0.5 * span, middle + 0.5 * span
         message = (
@@ -160,7 +167,7 @@ def clock_advice(parts: Sequence[Counterpart], step: float, delay: float, drift:
             f"; the records repeat every {min(periods):.4g} s, so a shift by whole periods fits equally well; "
             "start the record at an event that occurs once"
         )
-    return [message]
+    return [Finding(message, "clock", () if command else arguments)]
 
 
 def _common_drift(shifts: Sequence[TimeShift]) -> tuple[float, float]:
@@ -176,9 +183,9 @@ def _common_drift(shifts: Sequence[TimeShift]) -> tuple[float, float]:
     return mean, max(1.0 / math.sqrt(float(weight.sum())), scatter)
 
 
-def sign_and_unit(parts: Sequence[Counterpart]) -> list[str]:
-    """Return one message for each inverted channel and each wrong unit among the result of `counterparts`."""
-    messages: list[str] = []
+def sign_and_unit(parts: Sequence[Counterpart]) -> list[Finding]:
+    """Return one finding for each inverted channel and each wrong unit among the result of `counterparts`."""
+    messages: list[Finding] = []
     for part in parts:
         shift = part.reliable_shift
         if shift is None:
@@ -189,8 +196,8 @@ def sign_and_unit(parts: Sequence[Counterpart]) -> list[str]:
     return messages
 
 
-def response_faults(channel: str, measured: Complex, simulated: Complex, weight: Vector) -> list[str]:
-    """Return messages for a measured frequency response that is inverted or has a wrong unit at all frequencies.
+def response_faults(channel: str, measured: Complex, simulated: Complex, weight: Vector) -> list[Finding]:
+    """Return findings on a measured frequency response that is inverted or has a wrong unit at all frequencies.
 
     Args:
         measured, simulated: frequency responses [m/s2 per m], (m,); NaN if undefined.
@@ -201,7 +208,7 @@ def response_faults(channel: str, measured: Complex, simulated: Complex, weight:
     if np.count_nonzero(usable) < 3:
         return []
     ratio, share = measured[usable] / simulated[usable], weight[usable] / weight[usable].sum()
-    messages = []
+    messages: list[Finding] = []
     if float(share @ (ratio / np.abs(ratio)).real) < -SAME_MOTION:
         phase = math.degrees(math.sqrt(float(share @ np.angle(-ratio) ** 2)))
         messages.append(_inverted(channel, f"phase 180 degrees, RMS deviation {number(phase, 2)} degrees"))
@@ -212,12 +219,13 @@ def response_faults(channel: str, measured: Complex, simulated: Complex, weight:
     return messages
 
 
-def _inverted(channel: str, why: str) -> str:
+def _inverted(channel: str, why: str) -> Finding:
     remedy = f"if its sensor points the other way, set --turn {channel}"
-    return f"{channel} is inverted relative to the run ({why}): {remedy}"
+    text = f"{channel} is inverted relative to the run ({why}): {remedy}"
+    return Finding(text, "sign", ("--turn", channel))
 
 
-def _unit(channel: str, unit: str, ratio: float) -> list[str]:
+def _unit(channel: str, unit: str, ratio: float) -> list[Finding]:
     for (si, factor), unit_text in UNITS.items():
         if si == unit and abs(math.log(ratio / factor)) < math.log(FACTOR_RANGE):
             name, *remark = unit_text.split(" ", 1)
@@ -225,8 +233,9 @@ def _unit(channel: str, unit: str, ratio: float) -> list[str]:
                 f"{ratio:.4g} times the simulated one" if ratio > 1.0 else f"1/{1.0 / ratio:.4g} of the simulated one"
             )
             full_text = f"{name} {remark[0]}" if remark else name
-            return [
+            text = (
                 f"{channel}: the measured level is {size}, which is close to the unit factor "
                 f"{max(factor, 1.0 / factor):.4g}; if the values are in {full_text}, set --unit {channel}={name}"
-            ]
+            )
+            return [Finding(text, "unit", ("--unit", f"{channel}={name}"))]
     return []

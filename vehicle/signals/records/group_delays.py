@@ -10,6 +10,7 @@ import numpy as np
 from vehicle.digits import number
 from vehicle.signals.records.counterpart import SHARE_OF_STEP, SIGNIFICANT, Counterpart
 from vehicle.signals.records.delays import PLATES, group_of
+from vehicle.signals.records.finding import Finding
 
 RUN = "run"
 """Reference of the first group: its lag contains the start of the record."""
@@ -48,6 +49,7 @@ class GroupDelay:
         agreeing: number of channels with this delay.
         channels: number of channels with a known lag.
         unlike: channels with another delay that was not taken out, and their delays in the file [s].
+        spread: smallest and largest remaining delay of the channels [s].
     """
 
     group: str
@@ -58,6 +60,7 @@ class GroupDelay:
     agreeing: int
     channels: int
     unlike: Mapping[str, float] = field(default_factory=dict)
+    spread: tuple[float, float] = (0.0, 0.0)
 
     def summary(self) -> dict[str, Any]:
         """Return the entry of `compare.json`."""
@@ -72,8 +75,8 @@ class GroupDelay:
             "channels": self.channels,
         }
 
-    def advice(self, step: float, command: str = "") -> list[str]:
-        """Return messages with the options that take the rest of the delays out; [] without a significant rest.
+    def advice(self, step: float, command: str = "") -> list[Finding]:
+        """Return findings with the options that take the rest of the delays out; [] without a significant rest.
 
         Args:
             step: sampling interval of the comparison [s].
@@ -83,20 +86,39 @@ class GroupDelay:
         after = f" of {command}" if command else ""
         others = 0.0 if self.against == RUN else self.delay
         separate = [
-            f"{channel} {'lags' if delay > others else 'leads'} the other {self.group} by "
-            f"{1e3 * abs(delay - others):.3g} ms: wrong parameters of the car or a late sensor; only if this sensor is "
-            f"known to lag, set --delay {channel}={1e3 * delay:.5g}ms{after}"
+            Finding(
+                f"{channel} {'lags' if delay > others else 'leads'} the other {self.group} by "
+                f"{1e3 * abs(delay - others):.3g} ms: wrong parameters of the car or a late sensor; only if this "
+                f"sensor is known to lag, set --delay {channel}={1e3 * delay:.5g}ms{after}",
+                "delay",
+            )
             for channel, delay in self.unlike.items()
         ]
+        low, high = sorted(self.spread, key=abs)
+        if (
+            self.against != RUN
+            and not math.isfinite(self.delay)
+            and low * high > 0.0
+            and abs(low) > SHARE_OF_STEP * step
+        ):
+            return [
+                Finding(
+                    f"the {self.group} {'lag' if low > 0.0 else 'lead'} the {self.against} by {1e3 * abs(low):.3g} to "
+                    f"{1e3 * abs(high):.3g} ms, each channel by another time: late sensors and wrong parameters of the "
+                    "car together; fit both with `tune`, and compare with the fitted car",
+                    "delay",
+                )
+            ]
         if self.against == RUN or not abs(remainder) > max(SHARE_OF_STEP * step, SIGNIFICANT * self.error):
             return separate
-        return [
-            *separate,
+        option = f"{self.group}={1e3 * self.delay:.5g}ms"
+        text = (
             f"the {self.group} {'lag' if self.delay > 0.0 else 'lead'} the {self.against} by "
             f"{1e3 * abs(self.delay):.3g} ms (+- {number(1e3 * self.error, 1)} ms, in {self.agreeing} of "
             f"{self.channels} channels): wrong parameters of the car or late sensors; `tune` fits both together. Only "
-            f"if the sensors are known to lag, set --delay {self.group}={1e3 * self.delay:.5g}ms{after}",
-        ]
+            f"if the sensors are known to lag, set --delay {option}{after}"
+        )
+        return [*separate, Finding(text, "delay", () if command else ("--delay", option))]
 
 
 def channel_lags(parts: Sequence[Counterpart], taken_out: Mapping[str, float]) -> list[ChannelLag]:
@@ -155,9 +177,16 @@ def group_delays(lags: Sequence[ChannelLag], step: float, reference: str = "") -
                     for each, remainder in remainders.items()
                     if abs(remainder) > max(step, SIGNIFICANT * each.error)
                 },
+                spread=_ends(
+                    [each.lag - zero - (each.taken_out - (0.0 if is_first else base[2])) for each in groups[group]]
+                ),
             )
         )
     return tuple(delays)
+
+
+def _ends(values: Sequence[float]) -> tuple[float, float]:
+    return min(values), max(values)
 
 
 def _mean(lags: Sequence[ChannelLag], step: float) -> tuple[float, float, float, int]:

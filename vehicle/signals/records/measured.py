@@ -1,6 +1,7 @@
 """Read measured frequency responses and time histories under the channel names of the model."""
 
 import re
+import shlex
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
@@ -17,17 +18,22 @@ from vehicle.signals.formats.frf_file import FrfData, frf_data
 from vehicle.signals.formats.reader import read_record
 from vehicle.signals.formats.table import Record
 from vehicle.signals.formats.units import find_unit
-from vehicle.signals.records.channel_words import map_options, suggested_channels
+from vehicle.signals.records.channel_words import is_plate, main_channels, map_words, suggested_channels
 from vehicle.signals.records.choice import Choice, choose, matching, pick
 from vehicle.signals.records.delays import channel_delays, responses_without_delays, without_delays
+from vehicle.signals.records.finding import Finding, FindingError
 from vehicle.signals.records.integration import displacement, filtered
 from vehicle.signals.records.measured_frf import input_of, is_response, measured_frfs
+from vehicle.signals.records.plate_offset import without_offsets
 
 EXAMPLES = re.compile(r"plate_\w+_displacement|knuckle_\w+_acc_z|seat_rail_acc_z")
 """Names of model channels in a message: those that are measured most often."""
 
 PLATE_CHANNEL = re.compile(r"plate_(?P<wheel>\w+)_displacement")
 """Channel of a plate."""
+
+SMALL_MOTION = 0.05
+"""Maximum RMS of a plate over that of the others that changes no response [-]: it counts as noise of 5 %."""
 
 FRF_BAND = (1.0, 50.0)
 """Frequency band of estimated responses [Hz], equal to that of simulated responses."""
@@ -45,6 +51,8 @@ class Measured:
         estimator: estimator of the frequency responses; empty if the file contains the responses.
         start: first time of the file [s]; `record` may be an excerpt that begins later.
         delays: channel to delay that was taken out [s].
+        mapped: channel of the model -> its channel in the file, as for --map.
+        by_name: the channels were chosen by their names, not by --map.
     """
 
     file: Measurement
@@ -54,6 +62,8 @@ class Measured:
     estimator: str = ""
     start: float = 0.0
     delays: Mapping[str, float] = field(default_factory=dict)
+    mapped: Mapping[str, str] = field(default_factory=dict)
+    by_name: bool = False
 
 
 def read_measured(
@@ -91,9 +101,9 @@ def read_measured(
     """
     selection = Choice() if choice is None else choice
     file = read_record(path, selection.databases) if measurement is None else measurement
-    roles = {name: wanted for name, wanted in selection.channels.items() if name != "time"} or _same_names(
-        file, model_channels, (False,) if histories_only else (True, False)
-    )
+    roles = {name: wanted for name, wanted in selection.channels.items() if name != "time"}
+    by_name = not roles
+    roles = roles or _same_names(file, model_channels, (False,) if histories_only else (True, False))
     output_of = {role: parsed_name(role).output for role in roles}
     unknown = next((name for name in (*output_of.values(), *inverted) if name not in model_channels), None)
     if unknown is not None:
@@ -110,13 +120,17 @@ def read_measured(
     }
     if not roles:
         listed = file.listed() or "none"
-        suggested = map_options(suggested_channels(file.channels, model_channels))
+        suggested = main_channels(suggested_channels(file.channels, model_channels))
         examples = ", ".join(name for name in model_channels if EXAMPLES.fullmatch(name))
-        advice = f"their names suggest {suggested}" if suggested else f"channels of the model look like {examples}"
-        raise DataError(
-            f"{path}: no channel has the name of a channel of the model; set --map CHANNEL=NAME, with a number, "
-            f"exact name or pattern with *; the file has {listed}; {advice}"
+        options = map_words(suggested)
+        advice = (
+            f"their names suggest {shlex.join(options)}" if options else f"channels of the model look like {examples}"
         )
+        text = (
+            "no channel has the name of a channel of the model; set --map CHANNEL=NAME, with a number, exact name or "
+            f"pattern with *; the file has {listed}; {advice}"
+        )
+        raise FindingError(path, [Finding(text, "unmapped", options)])
     other = next((name for name in selection.units if name and name not in {*roles, *output_of.values()}), None)
     if other is not None:
         raise ConfigurationError(f"--unit {other}=...: must be one of the compared channels: {', '.join(roles)}")
@@ -154,7 +168,7 @@ def read_measured(
         times = {role: wanted for role, wanted in selection.channels.items() if role == "time"}
         start = _start(file, histories) if selection.rate is None else 0.0
         record = _record(file, replace(selection, channels={**times, **histories}), inverted, delays)
-        notices += record.notices
+        notices += [*record.notices, *_unmapped_plates(file, histories, record, model_channels, by_name)]
         if frf is None and not histories_only:
             estimated = estimated_frf(record, window)
             if estimated is not None:
@@ -173,7 +187,40 @@ def read_measured(
         start=start,
         estimator=estimator,
         delays=delays,
+        mapped=roles,
+        by_name=by_name,
     )
+
+
+def _unmapped_plates(
+    file: Measurement, roles: Mapping[str, str], record: Record, model_channels: Sequence[str], by_name: bool
+) -> list[Finding]:
+    """Return the finding on moving plates of the file that no channel of the model is assigned to; [] without any."""
+    used = {pick(file, wanted) for wanted in roles.values()}
+    plates = [values for name, values in record.channels.items() if PLATE_CHANNEL.fullmatch(name)]
+    smallest = SMALL_MOTION * max(map(np.std, plates), default=0.0)
+    moving = [
+        channel
+        for index, channel in enumerate(file.channels)
+        if index not in used
+        and channel.name not in model_channels
+        and channel.quantity == "displacement"
+        and channel.kind == "time"
+        and is_plate(channel)
+        and float(np.nanstd(channel.si_values)) > smallest
+        and np.nanmax(channel.si_values) > np.nanmin(channel.si_values)
+    ]
+    suggested = suggested_channels(file.channels, model_channels)
+    names = {channel.name for channel in moving}
+    unmapped = {role: name for role, name in suggested.items() if name in names and role not in roles}
+    if not unmapped:
+        return []
+    options = map_words({**(roles if by_name else {}), **unmapped})
+    text = (
+        f"moving plates that are not mapped: {', '.join(unmapped.values())}; they move the car as well, so that FRFs "
+        f"and fitted values without them are wrong; set {shlex.join(options)}"
+    )
+    return [Finding(text, "unmapped", options)]
 
 
 def _start(file: Measurement, histories: Mapping[str, str]) -> float:
@@ -228,7 +275,8 @@ def _record(file: Measurement, choice: Choice, inverted: Collection[str], delays
     notices = list(chosen.notices)
     if plates:
         processed, messages = displacement(replace(chosen, values=plates), choice, str(file.path))
-        plates, notices = dict(processed), [*notices, *messages]
+        plates, offsets = without_offsets(processed)
+        notices += [*messages, *offsets]
     if others and choice.highpass is not None:
         processed, messages = filtered(replace(chosen, values=others), choice.highpass)
         others, notices = dict(processed), [*notices, messages[-1]]

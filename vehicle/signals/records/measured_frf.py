@@ -74,7 +74,7 @@ def measured_frfs(
             responses[name] = (channel, sign * values)
             notices.append(
                 f"{name}: channel {index + 1} {channel.name!r}"
-                + "".join(f"; {text}" for text in (conversion, *sign_notes) if text)
+                + "".join(f"; {text}" for text in (channel.remark, conversion, *sign_notes) if text)
             )
     frequency = _union([channel.axis for channel, _ in responses.values() if channel.axis is not None])
     shape = (len(responses), frequency.size)

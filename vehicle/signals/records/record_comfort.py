@@ -27,6 +27,7 @@ from vehicle.signals.formats.table import Record
 from vehicle.signals.records.acceleration import read_acceleration
 from vehicle.signals.records.channel_faults import copies
 from vehicle.signals.records.choice import Choice
+from vehicle.signals.records.finding import FindingError, findings_of
 
 OFFSETS = ("refuse", "remove", "keep")
 """Treatments of mean and drift of an axis."""
@@ -195,7 +196,9 @@ def evaluate_comfort(
         "mean": dict(zip(axes, (float(value) for value in xyz.mean(axis=1)), strict=True)),
         "drift": dict(zip(axes, (float(value) for value in line[:, -1] - line[:, 0]), strict=True)),
     }
-    summary = {"input": str(file), "offset": offset_summary, **result, "notices": [*record.notices, *copied]}
+    # Gravity is refused or removed.
+    notices = [text for text in record.notices if text not in findings_of(record.notices, kinds=("gravity",))]
+    summary = {"input": str(file), "offset": offset_summary, **result, "notices": [*notices, *copied]}
     if hours is not None:
         summary["exposure"] = exposure(summary, hours)
     if contact == "train_floor":
@@ -235,6 +238,9 @@ def _read(
     record = read_acceleration(file, point, choice)
     if offset != "refuse":
         return record
+    gravity = findings_of(record.notices, kinds=("gravity",))
+    if gravity:
+        raise FindingError(file, gravity)
     xyz = np.array(list(record.channels.values()))
     line = offset_line(xyz)
     effects = offset_effect(record.step, xyz, contact=contact, axes=list(record.channels))

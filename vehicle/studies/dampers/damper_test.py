@@ -18,6 +18,7 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.formats.channel import Measurement
 from vehicle.signals.formats.reader import read_record
 from vehicle.signals.records.choice import Choice, choose, pick
+from vehicle.signals.records.finding import findings_of
 from vehicle.studies.dampers.damper_force import Motion
 from vehicle.studies.dampers.record_checks import require_damping, require_sensors, usable_velocity
 from vehicle.studies.dampers.waveform import Waveform, reversal_times, reversals, waveform_of
@@ -185,6 +186,7 @@ def read_test(path: Path, choice: Choice | None = None, *, compression: bool = F
             raise DataError(
                 f"{path}: the channel for the {role} is a {quantity}; choose another with --channel {role}=NAME"
             )
+    notices += findings_of(chosen.notices)
     time, sign = chosen.time, -1.0 if compression else 1.0
     if time.size < LEAST_SAMPLES:
         raise DataError(f"{path}: contains {time.size} samples, must be at least {LEAST_SAMPLES}; record a longer test")

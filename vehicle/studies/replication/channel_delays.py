@@ -23,6 +23,7 @@ import numpy as np
 from vehicle.arrays import Complex, Vector
 from vehicle.digits import number
 from vehicle.signals.records.counterpart import SHARE_OF_STEP, SIGNIFICANT
+from vehicle.signals.records.finding import Finding
 from vehicle.studies.replication.inverse import Lines
 
 LARGEST_DELAY = 0.1
@@ -63,16 +64,18 @@ class ChannelDelay:
             "taken_out_s": self.taken_out,
         }
 
-    def advice(self, step: float) -> list[str]:
-        """Return a message with the option that takes the rest of the delay out; [] without a significant rest."""
+    def advice(self, step: float) -> list[Finding]:
+        """Return a finding with the option that takes the rest of the delay out; [] without a significant rest."""
         remainder = self.delay - self.taken_out
         if not abs(remainder) > max(SHARE_OF_STEP * step, SIGNIFICANT * self.error):
             return []
-        return [
+        option = f"{self.channel}={1e3 * self.delay:.5g}ms"
+        text = (
             f"{self.channel} {'lags' if self.delay > 0.0 else 'leads'} the other channels by "
             f"{1e3 * abs(self.delay):.3g} ms (+- {number(1e3 * self.error, 1)} ms): a sensor delay? Remove it "
-            f"with --delay {self.channel}={1e3 * self.delay:.5g}ms"
-        ]
+            f"with --delay {option}"
+        )
+        return [Finding(text, "delay", ("--delay", option))]
 
 
 def against_median(delays: Vector) -> Vector:

@@ -125,10 +125,9 @@ def write_drive(folder: Path, drive: FoundDrive, *, figures: bool = True) -> dic
         ],
         "delays": [each.summary() for each in drive.delays],
         "notices": [
-            *target.notices,
+            *drive.notices,
             *plant.ramp,
             *run.recording.statistics.warnings,
-            *(text for each in drive.delays for text in each.advice(float(target.time[1]))),
         ],
         "files": files | write_own_files(folder, plant.car),
     }

@@ -73,6 +73,12 @@ class FoundDrive:
         )
 
     @property
+    def notices(self) -> tuple[str, ...]:
+        """Return the notices on the target, with the findings on its channels and their delays."""
+        target = self.plant.target
+        return (*target.notices, *(text for each in self.delays for text in each.advice(float(target.time[1]))))
+
+    @property
     def run(self) -> Run:
         """Return the last run of the iteration."""
         assert self.plant.last is not None

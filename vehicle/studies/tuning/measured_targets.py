@@ -10,26 +10,28 @@ import numpy as np
 
 from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.runs.car import Car
+from vehicle.runs.car import Car, Run
 from vehicle.runs.car.road import Road
+from vehicle.runs.comparison.plate_signal import plate_choices, plate_signal
 from vehicle.settings import with_settings
 from vehicle.signals.analysis.response_name import ResponseName, plates_of
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.formats.channel import uniform_axis
 from vehicle.signals.formats.table import Record
 from vehicle.signals.records.choice import Choice
-from vehicle.signals.records.counterpart import Counterpart, clock_advice, counterparts, run_times, sign_and_unit
+from vehicle.signals.records.counterpart import run_times
 from vehicle.signals.records.delays import split_delay
+from vehicle.signals.records.finding import Finding, FindingError, findings_of
 from vehicle.signals.records.measured import Measured, read_measured
 from vehicle.signals.records.resampled import at_times
+from vehicle.signals.records.run_findings import beside_run
 from vehicle.signals.records.settling import settling_time
 from vehicle.studies.tuning.fit_result import LEAST_VALUES
 from vehicle.studies.tuning.fit_settings import HistorySettings, LevelSettings, ReadingSettings, ResponseSettings
 from vehicle.studies.tuning.frf_target import FrfTarget, motions_of, to_driven_plates
 from vehicle.studies.tuning.level_target import LevelTarget, level_target
-from vehicle.studies.tuning.plate_signal import plate_choices, plate_signal
 from vehicle.studies.tuning.record_target import KEPT, RecordTarget, RoadCar, signal_until
-from vehicle.studies.tuning.response_delays import response_delays
+from vehicle.studies.tuning.response_delays import ResponseDelays, response_delays
 
 LEVEL_WINDOW = 4.0
 """Default length of the windows of classes of the input level [s]: four periods at 1 Hz, and short enough for the level
@@ -101,7 +103,12 @@ def measured_responses(car: Car, file: Path | str, settings: ResponseSettings) -
         delays=delays,
         sample=sample,
     )
-    return MeasuredTarget(target=target, signal=driving, notices=_notices(path, measured, []))
+    findings: tuple[Finding, ...] = ()
+    if measured.record is not None and driving is not None and signal is None:
+        record, times = measured.record, measured.record.time - measured.record.time[0]
+        run = car.run(driving, engine="reduced", channels=tuple(record.channels))
+        findings = _findings(measured, record, run, times, delays, contained=True)
+    return MeasuredTarget(target=target, signal=driving, notices=_notices(path, measured, findings))
 
 
 @with_settings(HistorySettings)
@@ -221,9 +228,14 @@ def _histories(
         name=path.stem, signal=signal, record=Record(time=grid[:count], channels=histories, units=held.units),
         window=window, lowpass=lowpass, road=road, delays=delays, sample=held.step,
     )  # fmt: skip
-    parts = _beside_run(target, car, held, times)
-    clock = [] if contained else clock_advice(parts, step, begin, settings.drift)  # the plate of a file has its clock
-    return target, _notices(path, measured, [*more, *clock, *sign_and_unit(parts)])
+    judged = measured.record if contained and measured.record is not None else held
+    run = target.run(car, channels=tuple(judged.channels))
+    findings = _findings(
+        measured, judged, run, times, target.delays, contained=contained, begin=begin, drift=settings.drift
+    )
+    if any(each.options for each in findings if each.kind in ("gravity", "offset")):  # a car has no mean acceleration
+        raise FindingError(path, findings)
+    return target, _notices(path, measured, [*more, *findings])
 
 
 def _compared_channels(path: Path, record: Record | None, fitted: Sequence[str], keep: str | None) -> Record:
@@ -254,16 +266,24 @@ def _driven_input(
     return signal, None, settling_time(signal.notices) if settings.signal is None else 0.0
 
 
-def _beside_run(target: RecordTarget, car: Car, held: Record, times: Vector) -> list[Counterpart]:
-    """Compare a record with a run of the car, which shows errors of the clock, of signs and of units."""
-    run = target.run(car)
-    parts = counterparts(held, Record(time=run.time, channels=run.recording.channels, units=run.recording.units), times)
-    # A known delay of a sensor is no error of the clock.
-    lags = target.delays.of([part.channel for part in parts], {}, {}).tolist()
-    return [
-        replace(part, shift=part.shift and replace(part.shift, shift=part.shift.shift + lag))
-        for part, lag in zip(parts, lags, strict=True)
-    ]
+def _findings(
+    measured: Measured, record: Record, run: Run, times: Vector, delays: ResponseDelays, *, contained: bool,
+    begin: float = 0.0, drift: float = 0.0,
+) -> tuple[Finding, ...]:  # fmt: skip
+    """Return the findings on a record, also against a run of the car at the start of the fit.
+
+    The plates of a file have its clock. A delay has no option to be accepted: it is an unknown of the fit, in which the
+    parameters of the car are right.
+    """
+    simulated = Record(time=run.time, channels=run.recording.channels, units=run.recording.units)
+    lags = dict(zip(record.channels, delays.of(list(record.channels), {}, {}).tolist(), strict=True))
+    beside = beside_run(measured, record, simulated, times, delay=begin, drift=drift, sensor_delays=lags)
+    findings = [*findings_of(measured.notices), *beside.findings]
+    return tuple(
+        Finding(each, each.kind) if each.kind == "delay" else each
+        for each in findings
+        if not (contained and each.kind == "clock")
+    )
 
 
 def _asked(settings: ReadingSettings) -> Choice:
@@ -289,4 +309,7 @@ def _read(
 
 def _notices(file: Path, measured: Measured, more: Sequence[str]) -> tuple[str, ...]:
     """Return the notices of reading a file and further notices, with the file name in front."""
-    return tuple(f"{file.name}: {text}" for text in (*measured.notices, *more))
+    return tuple(
+        text.within(f"{file.name}: ") if isinstance(text, Finding) else f"{file.name}: {text}"
+        for text in dict.fromkeys((*measured.notices, *more))
+    )

@@ -1,0 +1,57 @@
+"""Exchanged channels are found by what they move like, whatever their signs and delays."""
+
+from itertools import permutations
+
+import numpy as np
+import pytest
+
+from tests.benchmarks.record_alignment import made_pair
+from vehicle.signals.formats.table import Record
+from vehicle.signals.records.exchanged import exchange_finding, exchanged_histories, put_right
+
+STEP = 1e-3
+NAMES = ("knuckle_fl_acc_z", "knuckle_fr_acc_z", "seat_acc_z")
+
+
+def record(channels):
+    count = next(iter(channels.values())).size
+    return Record(time=STEP * np.arange(count), channels=channels, units=dict.fromkeys(channels, "m/s2"))
+
+
+def curves(alike=0.0):
+    common = made_pair(20.0, 0.0, 0.0, band=(1.0, 30.0), seed=50)[0]
+    own = [made_pair(20.0, 0.0, 0.0, band=(1.0, 30.0), seed=seed)[0] for seed in range(len(NAMES))]
+    return [alike * common + np.sqrt(1.0 - alike**2) * each for each in own]
+
+
+@pytest.mark.parametrize("order", list(permutations(range(3))))
+def test_every_permutation_is_put_right(order):
+    noise, simulated = np.random.default_rng(3), record(dict(zip(NAMES, curves(), strict=True)))
+    signs, lags = (1.0, -1.0, 1.0), (0, 12, 40)
+    measured = record(
+        {
+            name: signs[at] * np.roll(curves()[at], lags[at]) + 0.1 * noise.standard_normal(20_000)
+            for name, at in zip(NAMES, order, strict=True)
+        }
+    )
+    exchanged = exchanged_histories(measured, simulated, measured.time)
+    assert exchanged == {name: NAMES[at] for name, at in zip(NAMES, order, strict=True) if name != NAMES[at]}
+    right = put_right(measured, exchanged)
+    for name, at in zip(NAMES, range(3), strict=True):
+        assert np.corrcoef(right.channels[name], signs[at] * np.roll(curves()[at], lags[at]))[0, 1] > 0.9
+
+
+def test_channels_that_move_alike_are_not_exchanged():
+    """In heave both sides are equal, and a wrong car makes neither of them fit better."""
+    first, second, third = curves(alike=0.99)
+    simulated = record(dict(zip(NAMES, (first, second, third), strict=True)))
+    measured = record(dict(zip(NAMES, (second, first, third), strict=True)))
+    assert exchanged_histories(measured, simulated, measured.time) == {}
+
+
+def test_options_name_two_channels_or_all():
+    mapped = {"a": "1", "b": "2", "c": "3"}
+    (finding,) = exchange_finding({"a": "b", "b": "a"}, mapped, complete=False)
+    assert finding.options == ("--map", "b=1", "--map", "a=2") and finding.startswith("exchanged channels: ")
+    (finding,) = exchange_finding({"a": "b", "b": "a"}, mapped, complete=True)
+    assert finding.options == ("--map", "a=2", "--map", "b=1", "--map", "c=3")

@@ -1,0 +1,99 @@
+"""Gravity in records of accelerometers, as a check of their unit and range.
+
+Accelerometers that measure from 0 Hz on show the standard gravity as the mean of its vertical axis, or as the
+length of the vector of the means of three axes.
+"""
+
+import math
+import shlex
+from collections.abc import Collection, Mapping
+
+from vehicle.names import AXES
+from vehicle.signals.formats.units import STANDARD_GRAVITY, find_unit
+from vehicle.signals.records.finding import Finding
+
+TOLERANCE = 0.03
+"""Maximum deviation of a mean from gravity or a multiple of it [-]: 14 degrees of tilt, or calibration and offset."""
+
+ACCELERATIONS = ("m/s2", "g", "mm/s2")
+"""Units in which accelerometers are recorded, the first the most frequent."""
+
+RANGES = (2.0, 0.5, 4.0, 8.0)
+"""Ratios of a recorded to the true acceleration with a wrong range: ranges of sensors are 2, 4, 8 and 16 g."""
+
+
+def gravity_findings(
+    means: Mapping[str, float], units: Mapping[str, str], stated: Collection[str] = ()
+) -> list[Finding]:
+    """Return findings on gravity in the means of accelerations: a wrong unit or range ("unit"), or gravity ("gravity").
+
+    Args:
+        means: role to mean by the unit [m/s2].
+        units: role to unit.
+        stated: roles whose unit the user stated; it is taken as right.
+    """
+    findings, with_gravity = [], dict[str, float]()
+    for roles in _groups(means):
+        mean = math.hypot(*(means[role] for role in roles))
+        vertical = [role for role in roles if axis_of_role(role) in ("", "z")]
+        if _near(mean, STANDARD_GRAVITY):
+            with_gravity |= {role: means[role] for role in roles if abs(means[role]) > TOLERANCE * STANDARD_GRAVITY}
+        elif vertical and not {*roles} & {*stated}:
+            findings += [each for role in vertical for each in _unit_of(role, roles, mean, units)]
+    if with_gravity:
+        low, high = (pick(map(abs, with_gravity.values())) for pick in (min, max))
+        shown = f"{high:.4g}" if high - low < 5e-3 * high else f"{low:.4g} to {high:.4g}"
+        which = "the mean" if len(with_gravity) == 1 else "the means"
+        text = (
+            f"{', '.join(with_gravity)}: gravity is in {which} ({shown} m/s2) and no motion; subtract it with --detrend"
+        )
+        findings.append(Finding(text, "gravity", ("--detrend",)))
+    return findings
+
+
+def axis_of_role(role: str) -> str:
+    """Return the axis of a role, "z" for "z" and "seat_acc_z"; empty for another name."""
+    return role[-1] if role in AXES or role[-2:] in {f"_{axis}" for axis in AXES} else ""
+
+
+def _groups(means: Mapping[str, float]) -> list[tuple[str, ...]]:
+    """Return the roles of each point together, as x, y and z."""
+    points: dict[str, list[str]] = {}
+    for role in means:
+        points.setdefault(role[:-1] if axis_of_role(role) else role, []).append(role)
+    return [tuple(roles) for roles in points.values()]
+
+
+def _near(value: float, gravity: float) -> bool:
+    return abs(abs(value) / gravity - 1.0) <= TOLERANCE
+
+
+def _unit_of(role: str, roles: tuple[str, ...], mean: float, units: Mapping[str, str]) -> list[Finding]:
+    """Return the finding on the unit or range of a role whose mean is not gravity by its unit, or none."""
+    unit, subject = units[role], "the mean is" if len(roles) == 1 else f"the means of {', '.join(roles)} are together"
+    entry = find_unit(unit)
+    factor = entry.factor if entry is not None else 1.0
+    others = {other: entry.factor for other in ACCELERATIONS if (entry := find_unit(other)) is not None}
+    for other, other_factor in others.items():
+        if other_factor != factor and _near(mean / factor * other_factor, STANDARD_GRAVITY):
+            options = tuple(word for each in roles for word in ("--unit", f"{each}={other}"))
+            return [
+                Finding(
+                    f"{role}: {subject} {mean:.4g} m/s2 by the unit [{unit}] of the file, but gravity is 9.81 m/s2, so "
+                    f"the values are in {other}; set {shlex.join(options)}",
+                    "unit",
+                    options,
+                )
+            ]
+    for ratio in RANGES:
+        if _near(mean, ratio * STANDARD_GRAVITY):
+            options = tuple(word for each in roles for word in ("--unit", f"{each}={1.0 / ratio:g} {unit}"))
+            return [
+                Finding(
+                    f"{role}: {subject} {mean:.4g} m/s2, {ratio:g} times gravity, so the range or the calibration of "
+                    f"the sensor is wrong by this factor; set {shlex.join(options)}",
+                    "unit",
+                    options,
+                )
+            ]
+    return []
