@@ -181,22 +181,20 @@ def parse_and_run(parser: Parser, job: Callable[[argparse.Namespace], None], arg
                 raise ConfigurationError(f"argument {word!r}: contains a NUL character; remove it")
         with ExitStack() as held:
             options = parser.parse_args(typed, argparse.Namespace(words=typed, held=held))
-            _put_in_order(typed)
+            _mention_leftovers(typed, getattr(options, "output", None))
             job(options)
 
     # Not from the parsed options: --debug also applies to an error of the parser.
     return run_command(work, debug="--debug" in typed)
 
 
-def _put_in_order(arguments: Sequence[str]) -> None:
-    """Bring to an end what a killed command left at the files and folders of a command line, with a notice."""
-    from vehicle.runs.output.work_folder import put_in_order
+def _mention_leftovers(arguments: Sequence[str], output: Path | None) -> None:
+    """Print what a killed command left at the paths of a command line; a command that writes clears its output."""
+    from vehicle.leftovers import mention
 
     for text in dict.fromkeys(part for word in arguments for part in (word, word.partition("=")[2])):
-        if text and not text.startswith("-"):
-            put_in_order(Path(text))
-            if Path(text).parent != Path():
-                put_in_order(Path(text).parent)
+        if text and not text.startswith("-") and Path(text) != output:
+            mention(Path(text))
 
 
 def command(parser: Callable[[], Parser], job: Callable[[argparse.Namespace], None]) -> Callable[..., int]:
