@@ -18,6 +18,9 @@ _NOTICES.propagate = False
 FINISHED_ROWS = ("rows.jsonl", "cars.csv")
 """Files of finished rows: of a sweep, a line a run; of a search, a head and a line a car."""
 
+PLAIN = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
+"""Flags of `os.open` that follow no link and wait for no pipe; 0 under Windows."""
+
 _mentioned: set[tuple[str, int]] = set()
 """Sentences of `mention` with the time of the last change of what they are about: each is printed once."""
 
@@ -45,9 +48,7 @@ def lock_file(goal: Path) -> Path:
 
 def left_at(goal: Path) -> list[str]:
     """Return the hidden names that a killed command may have left for a goal, sorted."""
-    pattern = re.compile(rf"\.{re.escape(goal.name)}\.(partial|old|lock|\d+\.partial.*)")
-    with os.scandir(goal.parent) as entries:
-        return sorted(entry.name for entry in entries if pattern.fullmatch(entry.name))
+    return [path.name for path in (lock_file(goal), old_of(goal), work_of(goal)) if os.path.lexists(path)]
 
 
 def is_plain(path: Path, *, folder: bool = False) -> bool:
@@ -110,7 +111,7 @@ def _mention(goal: Path) -> None:
 def is_locked(goal: Path) -> bool:
     """True if a process writes there now; changes nothing."""
     try:
-        descriptor = os.open(lock_file(goal), os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0))
+        descriptor = os.open(lock_file(goal), os.O_RDONLY | PLAIN)
     except OSError:
         return False
     try:

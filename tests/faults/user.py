@@ -1,4 +1,4 @@
-"""A command is killed at a rename or a removal, a user changes a file, other commands follow: what must be true then."""
+"""A command is killed at a rename or removal, a user changes a file, other commands follow: what must be true then."""
 
 import os
 import re
@@ -43,7 +43,7 @@ def in_fork(job: Job, said: Path) -> tuple[int, str]:
 
 
 def dies_at(number: int, job: Job) -> Job:
-    """Return the job with an end as by a kill before the n-th rename, exchange or removal; after it if n is negative."""
+    """Return the job, which ends as by a kill before its n-th rename, exchange or removal, or after it if n < 0."""
 
     def dying() -> object:
         calls = 0
@@ -95,21 +95,17 @@ def faults(name: str, path: Path, case: Path, runs: Sequence[tuple[int, str]]) -
     if name == "remove":
         return wrong
     found = [each for each in case.rglob("*") if each.is_file() and each.read_bytes().endswith(MINE)]
-    hidden = [part for part in path.relative_to(case).parts if part.startswith(".")]
-    visible = [each for each in found if not any(part.startswith(".") for part in each.relative_to(case).parts)]
-    if not found and path.name == "rows.jsonl" and "finished rows" in said:
-        pass  # it grows: its content is the program's, and the message counts the rows
-    elif not found:
-        wrong.append(f"{name} of {path.relative_to(case)} is lost")
-    elif not visible and not any(part in said for part in hidden):
-        wrong.append(f"{name} of {path.relative_to(case)} is hidden without a sentence")
-    elif path not in found and (not hidden or not any(each.relative_to(case).parts[0] in said for each in found)):
-        wrong.append(f"{name} of {path.relative_to(case)} was moved without a sentence")
+    moved = [each for each in found if each.relative_to(case).parts[0] in said]
+    grows = path.name == "rows.jsonl" and "finished rows" in said  # is the program's, and the message counts the rows
+    if not grows and path not in found and not (moved and any(part[0] == "." for part in path.relative_to(case).parts)):
+        wrong.append(f"{name} of {path.relative_to(case)} is lost, or was moved without a sentence")
     return wrong
 
 
-def judged(before: Path, case: Path, job: Job, ways: Sequence[Sequence[Job]], last: Job) -> list[str]:
-    """Kill a job at every call, change a file, run other jobs after it, and return what is wrong.
+def judged(
+    before: Path, case: Path, job: Job, ways: Sequence[Sequence[Job]], last: Job, *, every: int = 1
+) -> tuple[int, list[str]]:
+    """Kill a job at every call, change a file, run other jobs after it; return the number of cases, and what is wrong.
 
     Args:
         before: folder with the results of before.
@@ -117,14 +113,18 @@ def judged(before: Path, case: Path, job: Job, ways: Sequence[Sequence[Job]], la
         job: command that is killed.
         ways: commands that follow, each way from the same state.
         last: command that must work when the user has moved what is theirs.
+        every: only each n-th case is tried.
     """
     state, said = case.with_name("state"), case.with_name("said.txt")
-    wrong = []
+    wrong, cases = [], 0
     for number in kills(before, case, job):
         shutil.rmtree(state, ignore_errors=True)
         shutil.copytree(case, state, symlinks=True)
         for name, path in list(_named(state, case)):
             for way, jobs in enumerate(ways):
+                cases += 1
+                if cases % every:
+                    continue
                 shutil.rmtree(case)
                 shutil.copytree(state, case, symlinks=True)
                 _change(name, path)
@@ -135,7 +135,7 @@ def judged(before: Path, case: Path, job: Job, ways: Sequence[Sequence[Job]], la
                 texts += [f"the last command: exit code {code}: {text[-300:]}"] if code else []
                 texts += [f"left: {', '.join(left)}"] if (left := hidden_in(case)) else []
                 wrong += [f"kill {number}, {name} {path.relative_to(case)}, way {way}: {text}" for text in texts]
-    return wrong
+    return cases // every, wrong
 
 
 def _named(state: Path, case: Path) -> Iterator[tuple[str, Path]]:

@@ -92,21 +92,16 @@ def check_study(folder: Path, *, force: bool, resume: bool = False, rows: Sequen
         raise OutputError(f"--output {folder}: cannot be created, because a file has this name; give another folder")
     goal = _resolved(folder)
     put_in_order(goal)
-    left = unfinished(goal)
-    if left and left not in rows and not force:
-        raise ConfigurationError(
-            f"--output {folder}: another killed command left finished rows, {left}; continue it with --resume, give "
-            "--force to delete them, or another folder"
-        )
-    begun = folder.exists() and (
-        (folder / rows[0]).exists() if rows else any(path.name != MARKER for path in folder.iterdir())
-    )
-    if (begun or left) and not (resume or force):
-        ways = (
-            "finished runs; continue them with --resume, or start again with --force"
-            if rows
-            else "files; give another folder, or --force to overwrite"
-        )
+    begun, left = folder.exists() and any(path.name != MARKER for path in folder.iterdir()), unfinished(goal)
+    if rows:
+        begun = (folder / rows[0]).exists()
+    other = left not in ("", *rows)
+    if (begun or left) and not force and (other or not resume):
+        ways = "files; give another folder, or --force to overwrite"
+        if other:
+            ways = f"{left} of another killed command; give another folder, or --force to delete its finished rows"
+        elif rows:
+            ways = "finished runs; continue them with --resume, or start again with --force"
         raise ConfigurationError(f"--output {folder}: holds {ways}")
     return check_output(folder, force=True, changes_only=resume and begun)
 

@@ -9,7 +9,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from vehicle.errors import ConfigurationError
-from vehicle.leftovers import old_of, unfinished
+from vehicle.leftovers import mention, old_of, unfinished
 from vehicle.runs.output.folder import check_file, check_output
 from vehicle.runs.output.locks import OccupiedError, claim
 
@@ -82,6 +82,7 @@ def _claimed_if_free(held: ExitStack, path: Path, number: int) -> bool:
         raise ConfigurationError(f"{path}: exists, like the {MOST} names before it; choose a name with --output")
     goal = path.parent.resolve() / path.name
     if path.exists() or path.is_symlink() or unfinished(goal) or old_of(goal).exists():
+        mention(path)
         return False
     with ExitStack() as attempt:
         try:

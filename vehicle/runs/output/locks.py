@@ -6,7 +6,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from vehicle.errors import ConfigurationError, OutputError
-from vehicle.leftovers import lock_file, say, take_lock
+from vehicle.leftovers import PLAIN, lock_file, say, take_lock
 
 _claimed: set[Path] = set()
 """Folders and files that this command has locked until its end, see `claim`."""
@@ -110,7 +110,7 @@ def _lock(descriptor: int, folder: Path, *, is_new: bool) -> None:
 
 def _opened(path: Path) -> tuple[int, bool]:
     """Open a lock file, whose folder another process may remove in between; True if it did not exist."""
-    flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
+    flags = os.O_RDWR | os.O_CREAT | PLAIN
     for _ in range(5):
         path.parent.mkdir(parents=True, exist_ok=True)
         with suppress(FileNotFoundError):

@@ -33,9 +33,6 @@ from vehicle.runs.output.written_files import (
     refuse_foreign_file,
 )
 
-_named: set[Path] = set()
-"""Goals whose finished rows a notice of this process has named."""
-
 
 @contextmanager
 def new_folder(
@@ -214,20 +211,8 @@ def _put_in_order(goal: Path, left: Sequence[str]) -> list[str]:
     if os.path.lexists(old):
         # They are replaced if the new results are in place; else somebody has made a folder of this name meanwhile.
         said.append(_cleared(old, goal, keep=not (goal / MARKER).exists() or os.path.lexists(work)))
-    if rows := unfinished(goal):
-        if goal not in _named:
-            _named.add(goal)
-            said.append(
-                f"{goal}: a killed command left finished rows in {work.name}/{rows}; continue with --resume, or "
-                "start again with --force"
-            )
-    elif os.path.lexists(work):
+    if os.path.lexists(work) and not unfinished(goal):  # finished rows wait for --resume or --force
         said.append(_cleared(work, goal))
-    for name in left:
-        number, path = name.removeprefix(f".{goal.name}.").partition(".")[0], goal.parent / name
-        if number.isdigit() and not _lives(int(number)) and not path.is_dir():
-            path.unlink(missing_ok=True)
-            said.append(f"{goal}: a killed command left an unfinished file; it was removed")
     if not said and lock_file(goal).name in left:
         said.append(f"{goal}: an earlier command left only its lock file; it was removed")
     return said
@@ -246,11 +231,8 @@ def _cleared(hidden: Path, goal: Path, *, keep: bool = False) -> str:
 
 def _set_aside(hidden: Path, goal: Path) -> str:
     """Give what is left of a hidden folder, or a link of its name, a visible name; return what was done."""
-    plain, visible = is_plain(hidden, folder=True), _visible(goal)
-    hidden.rename(visible)
-    if plain:
-        return f"{hidden.name} has files that the program did not write, or that were edited; it is now {visible.name}"
-    return f"{hidden.name} is no folder of this user; it is now {visible.name}"
+    hidden.rename(visible := _visible(goal))
+    return f"{hidden.name} is not, or not only, of unchanged files of the program; what is left is now {visible.name}"
 
 
 def _visible(goal: Path) -> Path:
@@ -265,7 +247,7 @@ def _begin(goal: Path, rows: Sequence[str] = (), *, resume: bool = False) -> Pat
     goes_on = resume and unfinished(goal) in rows
     if goes_on:
         discard(work, kept=rows)
-        if others := [path for path in work.iterdir() if path.name not in (MARKER, *rows)]:
+        if others := [path for path in work.iterdir() if path.name not in (MARKER, *rows) or not is_plain(path)]:
             visible = _visible(goal)
             visible.mkdir()
             for path in others:
@@ -282,16 +264,3 @@ def _begin(goal: Path, rows: Sequence[str] = (), *, resume: bool = False) -> Pat
         if is_plain(work / name):
             note(work / name)
     return work
-
-
-def _lives(number: int) -> bool:
-    """True if a process with this number exists."""
-    if os.name == "nt":
-        return False  # an open file cannot be removed there anyway
-    try:
-        os.kill(number, 0)
-    except ProcessLookupError:
-        return False
-    except OSError:
-        return True
-    return True
