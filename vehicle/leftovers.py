@@ -67,7 +67,7 @@ def finished_rows(folder: Path) -> tuple[str, int]:
         if is_plain(folder / name):
             with (folder / name).open("rb") as file:
                 lines = sum(block.count(b"\n") for block in iter(lambda: file.read(1 << 20), b""))
-            if count := lines - name.endswith(".csv"):
+            if (count := lines - name.endswith(".csv")) > 0:
                 return name, count
     return "", 0
 
@@ -101,7 +101,7 @@ def _mention(goal: Path) -> None:
         text = f"finished rows in {work_of(goal).name}/{name}; continue with --resume, or start again with --force"
     else:
         mixed = "" if goal.is_dir() else ", and of files that it wrote together some may be earlier ones"
-        text = f"{', '.join(left)}{mixed}; the next command that writes {goal.name} removes it"
+        text = f"{', '.join(left)}{mixed}; the next command that writes {goal.name} removes what it made"
     sentence, changed = f"{goal}: a killed command left {text}", (goal.parent / left[0]).lstat().st_mtime_ns
     if (sentence, changed) not in _mentioned:
         _mentioned.add((sentence, changed))

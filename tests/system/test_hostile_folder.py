@@ -202,7 +202,7 @@ READING = [
         "seat_rail_acc_z=seat_rail_acc_z",
         "--no-figures",
     ),
-    ("comfort", "--input", "runs/low/time.npz"),
+    ("comfort", "--input", "runs/low/time.npz", "--channel", "seat_rail"),
     ("kinematics", "--vehicle", "runs/low/vehicle.toml", "--axle", "front", "--travel", "0:10:10"),
 ]
 """Commands that read; those that write too are given an --output elsewhere."""

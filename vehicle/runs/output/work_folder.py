@@ -174,8 +174,8 @@ def _failures_told(goal: Path, folder: Path) -> Iterator[None]:
         else:
             state = "the earlier results are unchanged" if goal.exists() else "no results are there"
             if os.path.lexists(work):
-                rest = "the finished rows" if rows else f"{work.name}, which the next command that writes there removes"
-                state += f"; left is {rest}"
+                left = "the finished rows" if rows else f"{work.name}, which the next command that writes there removes"
+                state += f"; left is {left}"
         name = Path(os.fsdecode(error.filename or b"")).name if not isinstance(error.filename, int) else ""
         where = folder / name if name and name[0] != "." else goal
         raise OutputError(f"{where}: cannot be written: {error.strerror or error}; {state}") from None
