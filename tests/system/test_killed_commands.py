@@ -46,7 +46,11 @@ def test_what_a_user_does_after_a_kill_is_kept(kind, tmp_path):
     case.mkdir()
 
     def at(folder, *words):
-        return lambda: (os.chdir(folder), run_words(words))[1]
+        def job():
+            os.chdir(folder)
+            return run_words(words)
+
+        return job
 
     def reads():
         for name in ("a", "a.csv", "."):
