@@ -77,11 +77,9 @@ def unfinished(goal: Path) -> str:
     return finished_rows(work_of(goal))[0]
 
 
-def mention(path: Path | None) -> None:
-    """Print what a killed command left at a folder or a file, and which command finishes it; change nothing."""
+def mention(path: Path) -> Path:
+    """Print what a killed command left at a path, and which command finishes it; change nothing, return the path."""
     with suppress(OSError, RuntimeError, ValueError):
-        if path is None:
-            return
         goal = path.resolve()
         _mention(goal)
         if goal.is_dir():
@@ -89,6 +87,7 @@ def mention(path: Path | None) -> None:
                 names = [entry.name for entry in entries if re.fullmatch(r"\..+\.(partial|old)", entry.name)]
             for name in dict.fromkeys(name[1:].rpartition(".")[0] for name in sorted(names)):
                 _mention(goal / name)
+    return path
 
 
 def _mention(goal: Path) -> None:

@@ -94,8 +94,7 @@ class Car:
         Raises:
             ConfigurationError: the file, a name or a value is wrong.
         """
-        file = None if path is None else vehicle_file(Path(path))
-        mention(file)
+        file = None if path is None else mention(vehicle_file(Path(path)))
         changes = assignments(overrides)
         table, vehicle = load_file(file, changes)
         car = cls(vehicle, folder=None if file is None else file.parent)
