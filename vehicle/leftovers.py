@@ -1,6 +1,6 @@
-"""Hidden files and folders beside results, in which a command works, and the notice of what a killed command left.
+"""Hidden files and folders of results that are being written, and the notice about those of a killed command.
 
-A command that only reads changes nothing on the disk: it prints what is unfinished, and which command finishes it.
+A command that only reads changes nothing on the disk: it prints a notice of unfinished results.
 """
 
 import logging
@@ -52,7 +52,7 @@ def left_at(goal: Path) -> list[str]:
 
 
 def is_plain(path: Path, *, folder: bool = False) -> bool:
-    """True for a file, or a folder, of this user: no link, no second name of another file, no pipe."""
+    """True if a path is a file or a folder of this user, not a link, a second name of another file or a pipe."""
     try:
         status = path.lstat()
     except (FileNotFoundError, NotADirectoryError):
@@ -62,7 +62,7 @@ def is_plain(path: Path, *, folder: bool = False) -> bool:
 
 
 def finished_rows(folder: Path) -> tuple[str, int]:
-    """Return the file of finished rows in a folder, and the number of whole ones; empty and 0 without one."""
+    """Return the file of finished rows in a folder and the number of complete rows; empty and 0 without rows."""
     for name in FINISHED_ROWS if is_plain(folder, folder=True) else ():
         if is_plain(folder / name):
             with (folder / name).open("rb") as file:
@@ -78,7 +78,7 @@ def unfinished(goal: Path) -> str:
 
 
 def mention(path: Path) -> Path:
-    """Print what a killed command left at a path, and which command finishes it; change nothing, return the path."""
+    """Print a notice of unfinished results at a path without changing anything; return the path."""
     with suppress(OSError, RuntimeError, ValueError):
         goal = path.resolve()
         _mention(goal)

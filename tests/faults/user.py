@@ -94,7 +94,7 @@ def faults(name: str, path: Path, case: Path, runs: Sequence[tuple[int, str]]) -
     wrong += ["traceback"] if "Traceback" in said or "a fault of the program" in said else []
     if name == "remove":
         return wrong
-    found = [each for each in case.rglob("*") if each.is_file() and each.read_bytes().endswith(MINE)]
+    found = [each for each in case.rglob("*") if each.is_file() and MINE in each.read_bytes()]
     moved = [each for each in found if each.relative_to(case).parts[0] in said]
     grows = path.name == "rows.jsonl" and "finished rows" in said  # is the program's, and the message counts the rows
     if not grows and path not in found and not (moved and any(part[0] == "." for part in path.relative_to(case).parts)):
@@ -163,5 +163,5 @@ def _take_away(case: Path) -> None:
     """Remove the files of the user, as somebody does who follows the message."""
     for path in list(case.rglob("*")):
         with suppress(FileNotFoundError):
-            if path.is_file() and path.read_bytes().endswith(MINE):
+            if path.is_file() and MINE in path.read_bytes():
                 path.unlink()

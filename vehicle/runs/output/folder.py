@@ -228,8 +228,8 @@ def whole_file(path: Path) -> Iterator[Path]:
 def whole_files(paths: Sequence[Path]) -> Iterator[list[Path]]:
     """Yield names for several files of one folder and below; on success, each takes its place; see `whole_file`.
 
-    Each file is whole at any time. A command that is killed between their renames leaves new and earlier ones, which
-    the next command mentions.
+    Each file is whole at any time. A command that is killed between the renames leaves new and earlier files, with a
+    notice of the next command.
 
     Args:
         paths: final names; a file that the body does not write is not changed.

@@ -48,8 +48,8 @@ def is_claimed(path: Path) -> bool:
 def folder_lock(folder: Path) -> Iterator[None]:
     """Lock a folder or a file against writing by other processes.
 
-    The kernel releases the lock of a process that ends, so the lock file of a killed process does not block. Where the
-    file system has no locks, the lock file itself is the lock, and that of a killed process must be removed by hand.
+    The kernel releases the lock of a process that ends, so the lock file of a killed process does not block. On a
+    file system without locks the lock file itself is the lock, and the user removes the lock file of a killed process.
 
     Raises:
         OccupiedError: another process writes there; the message contains its process id.

@@ -1,14 +1,13 @@
 """Hidden folder next to the results, where a command writes new results until all are complete and on the disk.
 
-There is no journal: names alone tell what a killed command left, and nothing is moved that was not being written.
+There is no journal. The state after a killed command follows from these names:
 
-- `.NAME.partial` holds results that are not complete. The next command that writes NAME removes the files of the
-  program in it, or continues its finished rows (--resume);
-- `.NAME.old` holds earlier results until they are removed. Where the system has no exchange in one step, NAME is free
-  for a moment: the next command that writes NAME then puts them back.
+- `.NAME.partial` contains incomplete results. The next command that writes NAME removes the files of the program in it,
+  or continues its finished rows (--resume);
+- `.NAME.old` contains earlier results until they are removed. Some systems cannot exchange two names in one step, and
+  NAME is missing for a moment: the next command that writes NAME then restores it.
 
-What is not of the program, or was edited, gets a visible name, `NAME.left`. A link, or a folder of another user, is
-never entered.
+Other files and edited files get a visible name, `NAME.left`. A link or a folder of another user is never entered.
 """
 
 import itertools
@@ -50,6 +49,7 @@ def new_folder(
         OutputError: a file cannot be written; the message says what is in the folder.
     """
     with _failures_told(goal, goal):
+        continues_goal = resume and not unfinished(goal)
         work = _begin(goal, rows, resume=resume)
         with being_made(work), claimed(work):
             yield work
@@ -59,7 +59,7 @@ def new_folder(
         synchronise_folder(work)
         replaced = _put_in_place(goal)
     if replaced is not None:
-        _retire(replaced, goal, say_rows=not resume)
+        _retire(replaced, goal, say_rows=not continues_goal)
 
 
 @contextmanager
@@ -110,7 +110,7 @@ def new_files(goals: Sequence[Path]) -> Iterator[list[Path]]:
 
 
 def _put_in_place(goal: Path) -> Path | None:
-    """Exchange the hidden folder with the goal; return the folder that now holds the earlier results."""
+    """Exchange the hidden folder with the goal; return the folder of the earlier results."""
     work, old, replaced = work_of(goal), old_of(goal), None
     if not goal.exists():
         work.rename(goal)
@@ -186,7 +186,7 @@ def put_in_order(goal: Path) -> None:
     try:
         left = left_at(goal)
     except OSError:
-        return  # without a parent folder nothing is left
+        return  # no parent folder
     if is_claimed(goal) and lock_file(goal).name in left:
         left.remove(lock_file(goal).name)
     if not left or is_being_made(work_of(goal) / MARKER):
@@ -203,13 +203,13 @@ def put_in_order(goal: Path) -> None:
 
 
 def _put_in_order(goal: Path, left: Sequence[str]) -> list[str]:
-    """Return what was done, as sentences; see `put_in_order`."""
+    """Return sentences about the changes; see `put_in_order`."""
     work, old, said = work_of(goal), old_of(goal), []
     if is_plain(old, folder=True) and is_whole(old) and not os.path.lexists(goal):
         old.rename(goal)
         said.append(f"{goal}: a killed command had moved the earlier results away; they were put back")
     if os.path.lexists(old):
-        # They are replaced if the new results are in place; else somebody has made a folder of this name meanwhile.
+        # Replaced results if NAME has a list; otherwise the user has made a folder NAME meanwhile.
         said.append(_cleared(old, goal, keep=not (goal / MARKER).exists() or os.path.lexists(work)))
     if os.path.lexists(work) and not unfinished(goal):  # finished rows wait for --resume or --force
         said.append(_cleared(work, goal))
@@ -219,7 +219,7 @@ def _put_in_order(goal: Path, left: Sequence[str]) -> list[str]:
 
 
 def _cleared(hidden: Path, goal: Path, *, keep: bool = False) -> str:
-    """Remove the files of the program from a hidden folder, or keep all; return what was done, as a sentence."""
+    """Remove the files of the program from a hidden folder, or keep all; return a sentence."""
     count = finished_rows(hidden)[1]
     if is_plain(hidden, folder=True) and not keep:
         discard(hidden)
@@ -230,13 +230,13 @@ def _cleared(hidden: Path, goal: Path, *, keep: bool = False) -> str:
 
 
 def _set_aside(hidden: Path, goal: Path) -> str:
-    """Give what is left of a hidden folder, or a link of its name, a visible name; return what was done."""
+    """Give what is left of a hidden folder, or a link of its name, a visible name; return a sentence."""
     hidden.rename(visible := _visible(goal))
     return f"{hidden.name} is not, or not only, of unchanged files of the program; what is left is now {visible.name}"
 
 
 def _visible(goal: Path) -> Path:
-    """Return a free name beside a goal."""
+    """Return a free name in the folder of a goal."""
     names = (f"{goal.name}.left{'' if number == 1 else f'-{number}'}" for number in itertools.count(1))
     return next(path for path in map(goal.with_name, names) if not os.path.lexists(path))
 
