@@ -46,7 +46,7 @@ def new_folder(
         resume: begin with the rows of a killed command, else with those of the goal.
 
     Raises:
-        OutputError: a file cannot be written; the message says what is in the folder.
+        OutputError: a file cannot be written; the message describes the folder.
     """
     with _failures_told(goal, goal):
         continues_goal = resume and not unfinished(goal)
@@ -101,8 +101,8 @@ def new_files(goals: Sequence[Path]) -> Iterator[list[Path]]:
                     raise
                 names = ", ".join(before.name for before, _ in written[:number])
                 raise OutputError(
-                    f"{path}: cannot be written: {error.strerror or error}; {names} is new already, the others are "
-                    "earlier ones: type the command again"
+                    f"{path}: cannot be written: {error.strerror or error}; {names} is new already, the remaining "
+                    "files are earlier ones: type the command again"
                 ) from None
     with suppress(OSError):  # the results are in place
         synchronise(folder)

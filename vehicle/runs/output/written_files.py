@@ -1,13 +1,13 @@
 """List of the files that the program wrote, stored in their folder; only these files are replaced or removed.
 
 A line contains the beginning of the SHA-256 of a file and its name. A file belongs to the program as long as its
-content matches a digest of its lines: an edited file belongs to the user. A last line without a digest belongs to a
-file that grows, or that a killed command had not finished. The list moves with its folder; a single file that is moved
+content matches a digest of its lines: an edited file belongs to the user. The last line of a
+growing or unfinished file has no digest. The list moves with its folder; a single file that is moved
 away has no list and is not replaced.
 
-A list names the files of its own folder, and those below that were made together with it, as meshes/wheel.stl of a
-model: never a file that another command wrote below, which has a list of its own. So a list in the folder of all, as
-/tmp, concerns nothing in the folders there.
+A list names the files of its own folder, and files below from the same command, for example
+meshes/wheel.stl of a model: never the files of another command below, which are in a list of their own. So a list in
+the folder of all, as /tmp, concerns nothing in the folders there.
 """
 
 import errno
@@ -55,7 +55,7 @@ def note(path: Path, digest: str = "", *, with_folder: Path | None = None) -> No
     Args:
         path: the file under its final name.
         digest: see `digest_of`; empty for a file that grows, which belongs to the program with any content.
-        with_folder: folder above, whose files are made together with this one and whose list names it; by default the
+        with_folder: folder above with the list for this file and the files of the same command; by default the
             folder of `being_made` that contains the file, else its own.
     """
     at = path.parent.resolve() / path.name

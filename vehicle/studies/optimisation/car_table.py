@@ -112,7 +112,7 @@ class CarTable:
 
 
 def _number(cell: str) -> float:
-    """Return the number of a cell, NaN for an empty one; raise a ValueError for one that is not finite."""
+    """Return the number of a cell, NaN for an empty one; raise a ValueError for an infinite number or NaN."""
     if cell and not math.isfinite(float(cell)):
         raise ValueError(f"found {cell[:20]!r}, must be a finite number")
     return float(cell) if cell else math.nan

@@ -70,7 +70,7 @@ class StoredRows(LazySequence[Result]):
 
     @contextmanager
     def _opened(self, mode: Literal["rb", "ab"]) -> Iterator[BinaryIO]:
-        """Yield the file without a buffer; a mode as of `open`."""
+        """Yield the file without a buffer; mode: see `open`."""
         if self._temporary is not None:
             yield self._temporary
             return
