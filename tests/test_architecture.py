@@ -15,7 +15,7 @@ from vehicle.commands import OLDER
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "vehicle"
 
-EVERYWHERE = {"arrays", "digits", "errors", "names", "settings"}
+EVERYWHERE = {"arrays", "digits", "errors", "leftovers", "names", "settings"}
 """May be used by every room."""
 
 WINGS = {
@@ -42,6 +42,7 @@ ROOMS: dict[str, set[str]] = {
     "digits": set(),
     "errors": set(),
     "handed_down": set(),
+    "leftovers": set(),
     "names": set(),
     "machine": set(),
     "replacement": set(),
@@ -96,7 +97,8 @@ ROOMS: dict[str, set[str]] = {
         "reduced",
     }
     | {"rendering", "report", "threads"},
-    "optimisation": {"analysis", "car", "formats", "output", "parameters", "rendering", "sweeps", "targets"},
+    "optimisation": {"analysis", "car", "formats", "output", "parameters", "rendering"}
+    | {"replacement", "sweeps", "targets"},
     "commands": {"analysis", "assembly", "bench", "car", "comparison", "core", "dampers", "design", "excitation"}
     | {"flexbody", "fmu", "formats", "kinematics", "linear", "mounts", "optimisation", "output"}
     | {"page", "parameters", "records", "rendering", "replication", "report", "sweeps", "targets"}

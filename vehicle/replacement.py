@@ -101,11 +101,6 @@ def is_being_made(path: Path) -> bool:
     return path.absolute() in _being_made or folder_being_made(path) is not None
 
 
-def temporary_name(path: Path) -> Path:
-    """Return the hidden name of a file until it is complete, with the number of this process and the same ending."""
-    return path.with_name(f".{path.name}.{os.getpid()}.partial{path.suffix}")
-
-
 @contextmanager
 def replaced_file(path: Path) -> Iterator[Path]:
     """Yield a name for a new file in the same folder; on success, it takes the place of the file, else it is removed.
@@ -119,7 +114,7 @@ def replaced_file(path: Path) -> Iterator[Path]:
     if is_being_made(path):
         yield path
         return
-    temporary = temporary_name(path)
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.partial{path.suffix}")
     try:
         with being_made(temporary):
             yield temporary

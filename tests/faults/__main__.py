@@ -24,8 +24,8 @@ for byte, or the new ones, complete; the exit code and the message must be true;
 next command must succeed, say what it found, and leave nothing of it.
 
 Several files that a command adds to a folder with others (`loads`, `spectra`, `road`, `fit-mount`, `fit-damper`) cannot
-be exchanged in one step: after a kill between their renames, the next command that reads or writes them moves the
-others too, and is run here before the results are judged.
+be exchanged in one step: each is whole at any time, but after a kill between their renames some are new and some are
+earlier ones. The next command that reads them says so, and the same command, typed again, writes all.
 
 Each command that writes has a row, for each option and format that writes; a test compares them with the parsers. The
 rows "only writing" write small files in each way that the commands use, without a computation. `bench` replaces nothing
@@ -42,10 +42,10 @@ calls, they have equal distances. The next command is run once for all cases of 
 lists and journals.
 
 `make faults` runs all different calls and writes this page; `make test` runs a sample. Rows with a `*` are of an
-earlier run of the page; where the column "different" is empty, of a version that counted all calls.
+earlier run of the page; where the column "some of each" is empty, of a version that moved all files after a kill.
 """
 
-HEADS = ("command", "fault", "calls", "different", "cases", "results of before", "new results", "wrong")
+HEADS = ("command", "fault", "calls", "different", "cases", "results of before", "new results", "some of each", "wrong")
 
 Cells = list[str]
 
@@ -78,8 +78,9 @@ def _rows(table: dict[tuple[str, str], Count], name: str) -> list[Cells]:
     rows = []
     for fault in sorted(faults, key=[*FAULTS, *(fault for fault in faults if fault not in FAULTS)].index):
         count = table[name, fault]
-        numbers = (count.results.total(), count.results["old"], count.results["new"], len(count.wrong))
-        rows.append([name, fault, str(count.calls or ""), str(count.different or ""), *map(str, numbers)])
+        numbers = (count.results.total(), *map(count.results.get, ("old", "new", "mixed")), len(count.wrong))
+        cells = (str(number or 0) for number in numbers)
+        rows.append([name, fault, str(count.calls or ""), str(count.different or ""), *cells])
     return rows
 
 
@@ -87,9 +88,7 @@ def _earlier(text: str, name: str) -> list[Cells]:
     """Return the rows of a command in a page, marked as earlier."""
     lines = [[cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines() if line[:1] == "|"]
     rows = [cells for cells in lines if cells[0].removesuffix(" *") == name]
-    return [
-        [f"{name} *", *(cells[1:] if len(cells) == len(HEADS) else [*cells[1:3], "", *cells[3:]])] for cells in rows
-    ]
+    return [[f"{name} *", *(cells[1:] if len(cells) == len(HEADS) else [*cells[1:7], "", cells[7]])] for cells in rows]
 
 
 def main() -> int:

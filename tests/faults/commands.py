@@ -1,6 +1,5 @@
 """What a case runs: a command, or a way of writing alone."""
 
-import ctypes
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass
@@ -12,7 +11,7 @@ from unittest import mock
 from vehicle.__main__ import main
 from vehicle.commands.command_line import run_command
 from vehicle.runs.car import Car
-from vehicle.runs.output.folder import output_folder, study_folder, whole_files, write_text
+from vehicle.runs.output.folder import check_files, output_folder, study_folder, whole_files, write_text
 from vehicle.runs.output.written_files import note
 
 
@@ -38,26 +37,31 @@ def run_words(words: Sequence[str]) -> int:
     return run_command(partial(_write_only, *words[1:])) if words[0] == "door" else main(list(words))
 
 
-def _write_only(kind: str, content: str) -> None:
+def _write_only(kind: str, content: str, option: str = "--force") -> None:
     """Replace results by files with a content, as the commands do; the kind "renames" has no exchange in one step."""
+    force, resume = option == "--force", option == "--resume"
     if kind == "renames":
-        ctypes.CDLL(None).faults_without_exchange(1)
-    if kind == "file":
-        return write_text(Path("a.csv"), content)
-    if kind == "files":
-        with whole_files([Path(name) for name in ("a.csv", "b.csv", "c.csv")]) as paths:
-            for path in paths:
+        mock.patch("vehicle.runs.output.work_folder.exchange", lambda *_: False).start()
+    if kind in ("file", "files"):
+        paths = [Path(name) for name in ("a.csv", "b.csv", "c.csv")[: 1 if kind == "file" else 3]]
+        check_files(Path(), [path.name for path in paths], force=force)
+        with whole_files(paths) as temporary:
+            for path in temporary:
                 write_text(path, content)
-        return None
+        return
     rows = ("rows.jsonl",) if kind == "study" else ()
-    made = study_folder(Path("a"), force=True, rows=rows) if rows else output_folder(Path("a"), force=True)
+    made = (
+        study_folder(Path("a"), force=force, resume=resume, rows=rows)
+        if rows
+        else output_folder(Path("a"), force=force)
+    )
     with made as folder:
         for name in rows:
             note(folder / name)
-            (folder / name).write_text(content)
+            with (folder / name).open("a") as file:
+                file.write(f"{content}\n")
         write_text(folder / "a.csv", content)
         write_text(folder / "below" / "b.csv", content)
-    return None
 
 
 DOOR = {

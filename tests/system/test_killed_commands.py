@@ -1,42 +1,22 @@
 """What a killed command leaves: results of before or new ones, whole, and a sentence of the next command."""
 
 import os
-import subprocess
-import sys
+from functools import partial
 from pathlib import Path
 
 import pytest
 
+from tests.faults.commands import DOOR, run_words
+from tests.faults.user import KILLED, dies_at, in_fork, judged
 from vehicle import replacement
 from vehicle.errors import ConfigurationError, OutputError
+from vehicle.leftovers import mention
 from vehicle.runs.output import work_folder
 from vehicle.runs.output.folder import check_study, output_folder, study_folder, whole_files, write_text
 from vehicle.runs.output.work_folder import put_in_order
 from vehicle.runs.output.written_files import MARKER, note
 
-ROOT = Path(__file__).resolve().parents[2]
-HEAD = """
-import os, signal
-from pathlib import Path
-from vehicle.runs.output import work_folder
-from vehicle.runs.output.folder import output_folder, study_folder, whole_files, write_text
-from vehicle.runs.output.written_files import note
-
-def kill(*arguments, **named):
-    os.kill(os.getpid(), signal.SIGKILL)
-"""
-
-
-def killed(folder: Path, text: str) -> None:
-    """Run a Python program that kills itself."""
-    process = subprocess.run(
-        [sys.executable, "-c", HEAD + text],
-        cwd=folder,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-    )
-    assert process.returncode == -9, process.stderr
+pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="a killed command is a forked process here")
 
 
 def results(folder: Path, content: str) -> None:
@@ -53,51 +33,76 @@ def visible(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.iterdir() if path.name != MARKER)
 
 
-@pytest.mark.parametrize(
-    ("killer", "content", "said"),
-    [
-        ("work_folder.synchronise_folder", "old", "left unfinished results; they were removed"),
-        ("work_folder._put_in_place", "new", "the complete results of a killed command were put in place"),
-        ("work_folder._retire", "new", "the complete results of a killed command were put in place"),
-        ("work_folder.discard", "new", "the complete results of a killed command were put in place"),
-    ],
-)
-@pytest.mark.parametrize("exchange", [True, False])
-def test_a_killed_exchange_is_brought_to_its_end(killer, content, said, exchange, tmp_path, capsys):
+def killed(number: int, job, folder: Path) -> None:
+    """Run a job in a process that ends before its n-th rename, exchange or removal; after it if n is negative."""
+    assert in_fork(dies_at(number, job), folder.with_name("said.txt"))[0] == KILLED
+
+
+@pytest.mark.parametrize("kind", DOOR)
+def test_what_a_user_does_after_a_kill_is_kept(kind, tmp_path):
+    """At every rename: the user edits, adds or removes a file, then the same command, another one, or a reading one."""
+    before, case = tmp_path / "before", tmp_path / "case"
+    before.mkdir()
+    case.mkdir()
+
+    def at(folder, *words):
+        def job():
+            os.chdir(folder)
+            return run_words(words)
+
+        return job
+
+    def reads():
+        for name in ("a", "a.csv", "."):
+            mention(case / name)
+
+    assert in_fork(at(before, "door", kind, "old"), tmp_path / "said.txt")[0] == 0
+    new, other = at(case, "door", kind, "new"), {"study": "folder", "folder": "study"}.get(kind, kind)
+    ways = [[at(case, "door", kind, "new", "")], [reads, new], [at(case, "door", other, "other")]]
+    ways += [[at(case, "door", kind, "new", "--resume")]] if kind == "study" else []
+    cases, wrong = judged(before, case, new, ways, new, every={"file": 7, "files": 23}.get(kind, 29))
+    assert cases > 10 and not wrong
+
+
+@pytest.mark.parametrize(("exchange", "number"), [(True, 1), (True, -1), (False, 1), (False, -2), (False, -3)])
+def test_a_killed_exchange_leaves_results_that_a_reader_finds(exchange, number, tmp_path, capsys, monkeypatch):
     results(tmp_path / "run", "old")
-    without = "" if exchange else "work_folder.exchange = lambda *_: False\n"
-    killed(
-        tmp_path,
-        f"{without}{killer} = kill\n"
-        "with output_folder(Path('run'), force=True) as work:\n"
-        "    write_text(work / 'a.csv', 'new'); write_text(work / 'b.csv', 'new')\n",
-    )
+    if not exchange:
+        monkeypatch.setattr(work_folder, "exchange", lambda *_: False)
+    killed(number, lambda: results(tmp_path / "run", "new"), tmp_path)
+    names = visible(tmp_path)
+    mention(tmp_path / "run")
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1 and "a killed command left" in said and visible(tmp_path) == names
+    mention(tmp_path / "run")
+    assert capsys.readouterr().err == ""
     put_in_order(tmp_path / "run")
-    assert (
-        capsys.readouterr().err
-        == f"notice: {tmp_path / 'run'}: {'a killed command ' if content == 'old' else ''}{said}\n"
-    )
-    assert read(tmp_path / "run") == [content, content] and visible(tmp_path) == ["run"]
+    assert read(tmp_path / "run") == 2 * ["new" if number in (-1, -3) else "old"]
+    assert visible(tmp_path) == ["run"] and "notice" in capsys.readouterr().err
     put_in_order(tmp_path / "run")
     assert capsys.readouterr().err == ""
 
 
-def test_results_between_two_renames_come_back(tmp_path, capsys, monkeypatch):
-    """Without an exchange in one step, the old name is free for a moment."""
+def test_earlier_results_between_two_renames_come_back_to_a_command_that_writes(tmp_path, capsys, monkeypatch):
+    """Without an exchange in one step, the name is free for a moment."""
     results(tmp_path / "run", "old")
-    killed(
-        tmp_path,
-        "work_folder.exchange = lambda *_: False\nrename = Path.rename\n"
-        "def renamed(path, target):\n    rename(path, target)\n    if str(target).endswith('.old'): kill()\n"
-        "Path.rename = renamed\n"
-        "with output_folder(Path('run'), force=True) as work:\n    write_text(work / 'a.csv', 'new')\n",
-    )
+    monkeypatch.setattr(work_folder, "exchange", lambda *_: False)
+    killed(3, lambda: results(tmp_path / "run", "new"), tmp_path)
     assert visible(tmp_path) == [".run.lock", ".run.old", ".run.partial"]
     with pytest.raises(ConfigurationError, match="exists; give --force"):
-        results_again = output_folder(tmp_path / "run", force=False)
-        results_again.__enter__()
-    assert (tmp_path / "run" / "a.csv").read_text() == "new" and visible(tmp_path) == ["run"]
-    assert "the complete results of a killed command were put in place" in capsys.readouterr().err
+        output_folder(tmp_path / "run", force=False).__enter__()
+    assert read(tmp_path / "run") == ["old", "old"]
+    assert "had moved the earlier results away; they were put back" in capsys.readouterr().err
+    # Not over a folder that somebody has made meanwhile, and not half of them.
+    killed(3, lambda: results(tmp_path / "run", "new"), tmp_path)
+    (tmp_path / "run").mkdir()
+    put_in_order(tmp_path / "run")
+    assert visible(tmp_path / "run") == [] and read(tmp_path / "run.left") == ["old", "old"]
+    (tmp_path / "run").rmdir()
+    (tmp_path / "run.left").rename(tmp_path / ".run.old")
+    (tmp_path / ".run.old" / "a.csv").unlink()
+    put_in_order(tmp_path / "run")
+    assert visible(tmp_path) == ["run.left"] and visible(tmp_path / "run.left") == ["b.csv"]
 
 
 def test_a_failing_exchange_leaves_the_results_of_before(tmp_path, monkeypatch):
@@ -122,75 +127,78 @@ def test_undeletable_old_results_are_no_error(tmp_path, monkeypatch, capsys):
         patch.setattr(work_folder, "discard", fails)
         results(tmp_path / "run", "new")
     assert read(tmp_path / "run") == ["new", "new"]
-    assert "is complete; files of the earlier results remain" in capsys.readouterr().err
+    assert "is complete; .run.old remains" in capsys.readouterr().err
     put_in_order(tmp_path / "run")
-    assert visible(tmp_path) == ["run"] and "were put in place" in capsys.readouterr().err
+    assert visible(tmp_path) == ["run"] and "left .run.old; it was removed" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("touched", [0, 1, 2])
-def test_several_files_are_all_new_or_all_old(touched, tmp_path, capsys):
-    """The next command that touches one of the files, or their folder, moves all of them."""
+def test_several_files_are_whole_and_the_next_reader_says_that_they_are_mixed(tmp_path, capsys):
     files = [tmp_path / "a.csv", tmp_path / "b.csv"]
-    with whole_files(files) as work:
-        for path in work:
-            write_text(path, "old")
-    program = (
-        "replace, moved = Path.replace, []\n"
-        "def replaced(path, target):\n"
-        "    if Path(target).suffix == '.csv' and moved: kill()\n"
-        "    moved.append(target) if Path(target).suffix == '.csv' else None\n    return replace(path, target)\n"
-        "Path.replace = replaced\n"
-        "with whole_files([Path('a.csv').absolute(), Path('b.csv').absolute()]) as work:\n"
-        "    for path in work: write_text(path, 'new')\n"
-    )
-    killed(tmp_path, program)
+
+    def write(content):
+        with whole_files(files) as work:
+            for path in work:
+                write_text(path, content)
+
+    write("old")
+    killed(-1, partial(write, "new"), tmp_path)
     assert [path.read_text() for path in files] == ["new", "old"]
-    put_in_order(files[touched] if touched < 2 else tmp_path)
+    mention(tmp_path)
+    said = capsys.readouterr().err
+    assert (
+        "a.csv: a killed command left .a.csv.partial, and of files that it wrote together some may be earlier" in said
+    )
+    write("new")
     assert [path.read_text() for path in files] == ["new", "new"] and visible(tmp_path) == ["a.csv", "b.csv"]
-    assert "were put in place" in capsys.readouterr().err
 
 
 ROWS = ("rows.jsonl", "plan.json")
-STUDY = (
-    "with study_folder(Path('study'), force={force}, resume={resume}, rows=('rows.jsonl', 'plan.json')) as work:\n"
-    "    write_text(work / 'plan.json', 'plan'); note(work / 'rows.jsonl')\n"
-    "    with (work / 'rows.jsonl').open('a') as file: file.write('{row}\\n')\n"
-    "    write_text(work / 'table.csv', 'half')\n    kill()\n"
-)
+
+
+def study(folder: Path, row: str, **ways) -> None:
+    with study_folder(folder, rows=ROWS, **{"force": False, "resume": False, **ways}) as work:
+        write_text(work / "plan.json", "plan")
+        note(work / "rows.jsonl")
+        with (work / "rows.jsonl").open("a") as file:
+            file.write(f"{row}\n")
+        write_text(work / "table.csv", "half")
+        (work / "table.csv").replace(work / "table.csv")
 
 
 def test_a_killed_study_goes_on_where_it_was(tmp_path, capsys):
-    killed(tmp_path, STUDY.format(force=False, resume=False, row=1))
     folder = tmp_path / "study"
+    killed(1, partial(study, folder, "1"), tmp_path)
     assert not folder.exists()
     with pytest.raises(
         ConfigurationError, match="holds finished runs; continue them with --resume, or start again with --force"
     ):
         check_study(folder, force=False, rows=ROWS)
-    assert (
-        "a killed command left finished rows in .study.partial/rows.jsonl; continue with --resume"
-    ) in capsys.readouterr().err
+    for ways in ({}, {"resume": True}):
+        with pytest.raises(ConfigurationError, match=r"holds rows\.jsonl of another killed command"):
+            check_study(folder, force=False, rows=("cars.csv",), **ways)
     with pytest.raises(ConfigurationError, match="a killed command left finished rows there"):
         results(folder, "of another command")
-    with study_folder(folder, force=False, resume=True, rows=ROWS) as work:
-        assert visible(work) == [".vehicle-unfinished", "plan.json", "rows.jsonl"]
-        assert (work / "rows.jsonl").read_text() == "1\n"
-        with (work / "rows.jsonl").open("a") as file:
-            file.write("2\n")
+    mention(folder)
+    assert "left finished rows in .study.partial/rows.jsonl; continue with --resume" in capsys.readouterr().err
+    study(folder, "2", resume=True)
     assert (folder / "rows.jsonl").read_text() == "1\n2\n" and visible(tmp_path) == ["study"]
     # A killed --force: the old results stay, and --resume continues the new ones.
     (folder / "notes.txt").write_text("mine")
-    killed(tmp_path, STUDY.format(force=False, resume=True, row=3))
+    killed(1, partial(study, folder, "3", resume=True), tmp_path)
     assert (folder / "rows.jsonl").read_text() == "1\n2\n"
-    with study_folder(folder, force=False, resume=True, rows=ROWS) as work:
-        assert (work / "rows.jsonl").read_text() == "1\n2\n3\n"
-    assert visible(folder) == ["notes.txt", "plan.json", "rows.jsonl"] and (folder / "notes.txt").read_text() == "mine"
+    study(folder, "4", resume=True)
+    assert (folder / "rows.jsonl").read_text() == "1\n2\n3\n4\n" and (folder / "notes.txt").read_text() == "mine"
     (folder / "notes.txt").unlink()
-    killed(tmp_path, STUDY.format(force=True, resume=False, row="new"))
-    assert (folder / "rows.jsonl").read_text() == "1\n2\n3\n"
-    with study_folder(folder, force=False, resume=True, rows=ROWS) as work:
-        assert (work / "rows.jsonl").read_text() == "new\n"
-    assert (folder / "rows.jsonl").read_text() == "new\n" and visible(tmp_path) == ["study"]
+    killed(1, partial(study, folder, "new", force=True), tmp_path)
+    assert (folder / "rows.jsonl").read_text() == "1\n2\n3\n4\n"
+    study(folder, "5", resume=True)
+    assert (folder / "rows.jsonl").read_text() == "new\n5\n" and visible(tmp_path) == ["study"]
+    # --force says how many rows it deletes: those of a killed command, and those of the folder.
+    killed(1, partial(study, folder, "6", force=True), tmp_path)
+    capsys.readouterr()
+    study(folder, "7", force=True)
+    said = capsys.readouterr().err
+    assert ".study.partial with 1 finished rows; it was removed" in said and "2 finished rows of the earlier" in said
 
 
 def test_half_a_line_of_a_list_ends_before_the_next(tmp_path):

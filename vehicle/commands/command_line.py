@@ -186,7 +186,8 @@ def parse_and_run(parser: Parser, job: Callable[[argparse.Namespace], None], arg
         while line is not None:
             with ExitStack() as held:
                 options = parser.parse_args(line, argparse.Namespace(words=line, held=held, accepted=accepted))
-                _put_in_order(typed)
+                if line is typed:
+                    _mention_leftovers(typed, getattr(options, "output", None))
                 try:
                     job(options)
                     line = None
@@ -199,15 +200,13 @@ def parse_and_run(parser: Parser, job: Callable[[argparse.Namespace], None], arg
     return run_command(work, debug="--debug" in typed)
 
 
-def _put_in_order(arguments: Sequence[str]) -> None:
-    """Bring to an end what a killed command left at the files and folders of a command line, with a notice."""
-    from vehicle.runs.output.work_folder import put_in_order
+def _mention_leftovers(arguments: Sequence[str], output: Path | None) -> None:
+    """Print what a killed command left at the paths of a command line; a command that writes clears its output."""
+    from vehicle.leftovers import mention
 
     for text in dict.fromkeys(part for word in arguments for part in (word, word.partition("=")[2])):
-        if text and not text.startswith("-"):
-            put_in_order(Path(text))
-            if Path(text).parent != Path():
-                put_in_order(Path(text).parent)
+        if text and not text.startswith("-") and Path(text) != output:
+            mention(Path(text))
 
 
 def command(parser: Callable[[], Parser], job: Callable[[argparse.Namespace], None]) -> Callable[..., int]:

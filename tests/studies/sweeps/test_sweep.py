@@ -18,7 +18,7 @@ import pytest
 from scenarios.signals.random_road import random_road
 from tests.patience import HANG
 from tests.studies.sweeps.sweep_samples import Peak, ShortRoad, Worker, grid, threads
-from vehicle.errors import ConfigurationError, DataError, MissingPartError
+from vehicle.errors import ConfigurationError, MissingPartError
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.ride_comfort import UNWEIGHTED, WEIGHTED, wave_names
 from vehicle.studies.sweeps.case import SignalFile
@@ -133,18 +133,36 @@ def test_failed_rows_are_kept_or_tried_again(tmp_path):
         assert len((tmp_path / "rows.jsonl").read_text(encoding="utf-8").splitlines()) == lines
 
 
-def test_a_line_cut_off_is_dropped_and_a_damaged_one_is_refused(tmp_path):
+@pytest.mark.parametrize(
+    "line",
+    [
+        "{",
+        "[" * 3000 + "]" * 3000,
+        "\0" * 50,
+        '{"key": "00000000000000000000", "values": {"peak": NaN}, "engine": "", "reason": "", "seconds": 1.0}',
+        '{"key": "00000000000000000000", "values": {"peak": 1e999}, "engine": "", "reason": "", "seconds": 1.0}',
+        '{"key": "00000000000000000000", "values": {"peak": "nan"}, "engine": "", "reason": "", "seconds": 1.0}',
+        '{"key": "0", "values": {"peak": 1.0}, "engine": "", "reason": "", "seconds": 1.0}',
+        '{"key": "00000000000000000000", "values": {}, "engine": "", "reason": "", "seconds": 1.0}',
+    ],
+)
+def test_whole_rows_are_taken_and_those_of_a_damaged_line_computed_again(tmp_path, capsys, line):
     cases = two_by_two()[:2]
-    whole = sweep(cases, Peak(), executor=in_threads, folder=tmp_path)
+    whole = sweep(cases, Peak(), executor=in_threads, folder=tmp_path).text()
     rows = tmp_path / "rows.jsonl"
     text = rows.read_text(encoding="utf-8")
     rows.write_text(text[:-20], encoding="utf-8")
     again = sweep(cases, Peak(), executor=in_threads, folder=tmp_path)
-    assert again.text() == whole.text()
+    assert again.text() == whole
     assert len(rows.read_text(encoding="utf-8").splitlines()) == 2
-    rows.write_text("{\n" + text, encoding="utf-8")
-    with pytest.raises(DataError, match=r"rows.jsonl, line 1: not a row of a sweep"):
-        sweep(cases, Peak(), executor=in_threads, folder=tmp_path)
+    first, second = text.splitlines()
+    rows.write_text(f"{first}\n{line}\n", encoding="utf-8")
+    assert sweep(cases, Peak(), executor=in_threads, folder=tmp_path).text() == whole
+    assert "1 damaged rows, the first in line 2 (" in capsys.readouterr().err
+    assert rows.read_text(encoding="utf-8").splitlines()[:2] == [first, line]
+    assert rows.read_text(encoding="utf-8").count("\n") == 3 and second.split('"')[3] in rows.read_text(
+        encoding="utf-8"
+    )
 
 
 def test_the_key_tells_car_input_engine_and_measure(tmp_path):

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from vehicle.errors import ConfigurationError
 from vehicle.handover.page.trial_section import trial
+from vehicle.leftovers import mention
 from vehicle.runs.output.folder import check_file, write_text
-from vehicle.runs.output.work_folder import put_in_order
 from vehicle.runs.report.finished_run import read_run
 from vehicle.runs.report.page import report_page
 from vehicle.runs.targets.verdict import missing_runs, read_targets
@@ -48,7 +48,7 @@ def write_report(
     """
     folders = [Path(runs)] if isinstance(runs, Path | str) else [Path(run) for run in runs]
     for folder in folders:
-        put_in_order(folder)
+        mention(folder)
     missing = next((folder for folder in folders if not folder.is_dir()), None)
     if missing is not None:
         raise ConfigurationError(f"{missing}: is not a folder; give the folder of a run, for example runs/low")

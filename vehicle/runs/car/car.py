@@ -25,6 +25,7 @@ from vehicle.engines.simulation.static_trim import StaticTrim
 from vehicle.engines.simulation.stepping import Progress
 from vehicle.errors import ConfigurationError
 from vehicle.handed_down import HANDED
+from vehicle.leftovers import mention
 from vehicle.model.flexbody.body_model import body_model
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.laws.controller_fmu import require_controllers
@@ -93,13 +94,12 @@ class Car:
         Raises:
             ConfigurationError: the file, a name or a value is wrong.
         """
-        file = None if path is None else vehicle_file(Path(path))
+        file = None if path is None else mention(vehicle_file(Path(path)))
         changes = assignments(overrides)
         table, vehicle = load_file(file, changes)
         car = cls(vehicle, folder=None if file is None else file.parent)
         car.origin = {"file": None if file is None else str(file), "overrides": changes}
-        car.overrides = tuple(changes)
-        car._table = table
+        car.overrides, car._table = tuple(changes), table
         return car
 
     def with_(self, overrides: Overrides) -> Car:

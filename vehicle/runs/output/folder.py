@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.errors import ConfigurationError, OutputError
-from vehicle.replacement import is_being_made, replaced_file
+from vehicle.leftovers import unfinished
+from vehicle.replacement import is_being_made
 from vehicle.runs.output.locks import folder_lock
-from vehicle.runs.output.work_folder import new_files, new_folder, put_in_order, unfinished
+from vehicle.runs.output.work_folder import new_files, new_folder, put_in_order
 from vehicle.runs.output.written_files import MARKER, digest_of, note, refuse_foreign, refuse_foreign_file
 
 Content = str | bytes | Callable[[Path], object]
@@ -89,16 +90,18 @@ def check_study(folder: Path, *, force: bool, resume: bool = False, rows: Sequen
         raise ConfigurationError("--resume keeps the finished rows, --force deletes them; leave one of them out")
     if folder.exists() and not folder.is_dir():
         raise OutputError(f"--output {folder}: cannot be created, because a file has this name; give another folder")
-    put_in_order(folder)
-    begun = folder.exists() and (
-        (folder / rows[0]).exists() if rows else any(path.name != MARKER for path in folder.iterdir())
-    )
-    if (begun or (rows and unfinished(folder.resolve()))) and not (resume or force):
-        ways = (
-            "finished runs; continue them with --resume, or start again with --force"
-            if rows
-            else "files; give another folder, or --force to overwrite"
-        )
+    goal = _resolved(folder)
+    put_in_order(goal)
+    begun, left = folder.exists() and any(path.name != MARKER for path in folder.iterdir()), unfinished(goal)
+    if rows:
+        begun = (folder / rows[0]).exists()
+    other = left not in ("", *rows)
+    if (begun or left) and not force and (other or not resume):
+        ways = "files; give another folder, or --force to overwrite"
+        if other:
+            ways = f"{left} of another killed command; give another folder, or --force to delete its finished rows"
+        elif rows:
+            ways = "finished runs; continue them with --resume, or start again with --force"
         raise ConfigurationError(f"--output {folder}: holds {ways}")
     return check_output(folder, force=True, changes_only=resume and begun)
 
@@ -118,11 +121,7 @@ def check_output(path: Path, *, force: bool, protect: tuple[Path, ...] = (), cha
             run wrote.
         OutputError: its parent cannot be written.
     """
-    try:
-        folder = path.resolve()
-        current = Path.cwd()
-    except (OSError, RuntimeError) as error:
-        raise OutputError(f"--output {path}: cannot be reached ({error}); choose another folder") from None
+    folder, current = _resolved(path), _resolved(Path.cwd())
     put_in_order(folder)
     for file in protect:
         source = file.resolve()
@@ -149,6 +148,14 @@ def check_output(path: Path, *, force: bool, protect: tuple[Path, ...] = (), cha
     return folder
 
 
+def _resolved(path: Path) -> Path:
+    """Return a path without links."""
+    try:
+        return path.resolve()
+    except (OSError, RuntimeError) as error:
+        raise OutputError(f"--output {path}: cannot be reached ({error}); choose another folder") from None
+
+
 def check_file(
     path: Path, option: str = "--output", *, ending: str = "", force: bool, protect: tuple[Path, ...] = ()
 ) -> None:
@@ -169,7 +176,7 @@ def check_file(
         raise ConfigurationError(f"{option} {path}: the name must end in {ending}; give FILE{ending}")
     if path.is_dir():
         raise ConfigurationError(f"{option} {path}: is a folder; give FILE{ending}")
-    put_in_order(path)
+    put_in_order(_resolved(path.parent) / path.name)
     if any(file.resolve() == path.resolve() for file in protect):
         raise ConfigurationError(f"{option} {path}: is an input of this command; give another name")
     if path.exists() or path.is_symlink():
@@ -209,33 +216,30 @@ def whole_file(path: Path) -> Iterator[Path]:
     """
     if is_being_made(path):  # errors are those of the folder that is being made
         path.parent.mkdir(parents=True, exist_ok=True)
+        note(path)  # a killed command's file is known by this, complete or not
         yield path
         note(path, digest_of(path))
         return
-    if path.is_dir():
-        raise OutputError(f"{path}: cannot be written, because it is a folder; no file was changed")
-    put_in_order(path)
-    with folder_lock(path.parent.resolve() / path.name):
-        refuse_foreign_file(path)
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            with replaced_file(path) as temporary:
-                yield temporary
-                note(path, digest_of(temporary))
-        except OSError as error:
-            kept = "the earlier file is unchanged" if path.exists() else "no file was changed"
-            raise OutputError(f"{path}: cannot be written: {error.strerror or error}; {kept}") from None
+    with whole_files([path]) as temporary:
+        yield temporary[0]
 
 
 @contextmanager
 def whole_files(paths: Sequence[Path]) -> Iterator[list[Path]]:
-    """Yield names for several files of one folder and below; on success, all take their places; see `whole_file`.
+    """Yield names for several files of one folder and below; on success, each takes its place; see `whole_file`.
+
+    Each file is whole at any time. A command that is killed between the renames leaves new and earlier files, with a
+    notice of the next command.
 
     Args:
         paths: final names; a file that the body does not write is not changed.
     """
-    put_in_order(paths[0])
-    with folder_lock(paths[0].parent.resolve() / paths[0].name), new_files(paths) as temporary:
+    for path in paths:
+        if path.is_dir():
+            raise OutputError(f"{path}: cannot be written, because it is a folder; no file was changed")
+    goal = _resolved(paths[0].parent) / paths[0].name
+    put_in_order(goal)
+    with folder_lock(goal), new_files(paths) as temporary:
         yield temporary
 
 

@@ -9,9 +9,9 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from vehicle.errors import ConfigurationError
+from vehicle.leftovers import mention, old_of, unfinished
 from vehicle.runs.output.folder import check_file, check_output
 from vehicle.runs.output.locks import OccupiedError, claim
-from vehicle.runs.output.work_folder import put_in_order, unfinished
 
 MOST = 10_000
 """Maximum number in a name, as low-10000; more runs of one input are not expected."""
@@ -80,12 +80,13 @@ def _claimed_if_free(held: ExitStack, path: Path, number: int) -> bool:
     """Lock a free path; return False if the path exists or another process writes there."""
     if number > MOST:
         raise ConfigurationError(f"{path}: exists, like the {MOST} names before it; choose a name with --output")
-    put_in_order(path)
-    if path.exists() or path.is_symlink() or unfinished(path.parent.resolve() / path.name):
+    goal = path.parent.resolve() / path.name
+    if path.exists() or path.is_symlink() or unfinished(goal) or old_of(goal).exists():
+        mention(path)
         return False
     with ExitStack() as attempt:
         try:
-            attempt.enter_context(claim(path.parent.resolve() / path.name))
+            attempt.enter_context(claim(goal))
         except OccupiedError:
             return False
         if path.exists():  # written by another process in the meantime

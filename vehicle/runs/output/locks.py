@@ -6,7 +6,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from vehicle.errors import ConfigurationError, OutputError
-from vehicle.runs.output.notices import say
+from vehicle.leftovers import PLAIN, lock_file, say, take_lock
 
 _claimed: set[Path] = set()
 """Folders and files that this command has locked until its end, see `claim`."""
@@ -44,16 +44,12 @@ def is_claimed(path: Path) -> bool:
     return path in _claimed
 
 
-def lock_file(path: Path) -> Path:
-    """Return the lock file of a folder or a file."""
-    return path.parent / f".{path.name}.lock"
-
-
 @contextmanager
 def folder_lock(folder: Path) -> Iterator[None]:
     """Lock a folder or a file against writing by other processes.
 
-    The kernel releases the lock of a process that ends, so the lock file of a killed process does not block.
+    The kernel releases the lock of a process that ends, so the lock file of a killed process does not block. On a
+    file system without locks the lock file itself is the lock, and the user removes the lock file of a killed process.
 
     Raises:
         OccupiedError: another process writes there; the message contains its process id.
@@ -67,8 +63,8 @@ def folder_lock(folder: Path) -> Iterator[None]:
     descriptor = -1
     try:
         try:
-            descriptor = _opened(path)
-            _lock(descriptor, folder)
+            descriptor, is_new = _opened(path)
+            _lock(descriptor, folder, is_new=is_new)
             os.ftruncate(descriptor, 0)
             os.write(descriptor, f"{os.getpid()}\n".encode())
         except OSError as error:
@@ -96,41 +92,30 @@ def folder_lock(folder: Path) -> Iterator[None]:
                 parent.rmdir()
 
 
-def _lock(descriptor: int, folder: Path) -> None:
+def _lock(descriptor: int, folder: Path, *, is_new: bool) -> None:
     """Lock an open file; raise OccupiedError if another process holds the lock."""
+    remedy = "wait until it ends"
     try:
-        if os.name == "nt":
-            import msvcrt
-
-            os.lseek(descriptor, LOCKED_BYTE, os.SEEK_SET)
-            msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)  # type: ignore[attr-defined, unused-ignore]
-            os.lseek(descriptor, 0, os.SEEK_SET)
-        else:
-            import fcntl
-
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        if os.name != "nt" and not os.fstat(descriptor).st_nlink:
-            raise BlockingIOError  # the other one finished between the two calls
-    except (BlockingIOError, PermissionError):
+        locked = take_lock(descriptor)
+    except OSError:  # the file system does not support locks
+        locked, remedy = is_new, f"if it has ended, remove {lock_file(folder).name}"
+    # Without a name, the other process finished between the two calls; with two, writing would change another file.
+    if not locked or (os.name != "nt" and os.fstat(descriptor).st_nlink != 1):
         os.lseek(descriptor, 0, os.SEEK_SET)
         owner = os.read(descriptor, 20).decode(errors="replace").strip()
         raise OccupiedError(
-            f"--output {folder}: process {owner or '(unknown)'} is writing there; wait until it ends, or "
-            "give another folder"
-        ) from None
-    except OSError:
-        pass  # the file system does not support locks
+            f"--output {folder}: process {owner or '(unknown)'} is writing there; {remedy}, or give another folder"
+        )
 
 
-LOCKED_BYTE = 1 << 20
-"""Position of the locked byte under Windows, which cannot be read; the process id is before it."""
-
-
-def _opened(path: Path) -> int:
-    """Open a lock file, whose folder another process may remove in between."""
-    flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
+def _opened(path: Path) -> tuple[int, bool]:
+    """Open a lock file, whose folder another process may remove in between; True if it did not exist."""
+    flags = os.O_RDWR | os.O_CREAT | PLAIN
     for _ in range(5):
         path.parent.mkdir(parents=True, exist_ok=True)
         with suppress(FileNotFoundError):
-            return os.open(path, flags, 0o644)
-    return os.open(path, flags, 0o644)
+            try:
+                return os.open(path, flags | os.O_EXCL, 0o644), True
+            except FileExistsError:
+                return os.open(path, flags, 0o644), False
+    return os.open(path, flags, 0o644), False

@@ -9,11 +9,11 @@ import numpy as np
 
 from vehicle.engines.simulation.recording import Energies, Recording, Statistics
 from vehicle.errors import ConfigurationError, DataError
+from vehicle.leftovers import mention
 from vehicle.names import in_order
 from vehicle.runs.car import Car, Run
 from vehicle.runs.output.folder import output_folder
 from vehicle.runs.output.run_files import write_run
-from vehicle.runs.output.work_folder import put_in_order
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.formats.reader import read_columns
 from vehicle.signals.records.record_spectra import evaluated_from
@@ -77,7 +77,7 @@ def load_run(folder: Path | str) -> Run:
         DataError: a file of it is missing or damaged.
     """
     folder = Path(folder)
-    put_in_order(folder)
+    mention(folder)
     summary = read_summary(folder)
     car, recording = Car.load(file_of_run(folder, summary, "vehicle")), read_recording(folder, summary)
     return Run(

@@ -1,59 +1,36 @@
-"""Hidden folder next to the results, where a command writes new results, named finally when all are complete.
+"""Hidden folder next to the results, where a command writes new results until all are complete and on the disk.
 
-A file in this folder is the journal: it is named UNFINISHED, and renamed to COMPLETE when all results are on the disk.
-The next command that reads or writes there finishes or removes the results of a killed command, with `put_in_order`:
+There is no journal. The state after a killed command follows from these names:
 
-- unfinished: the new results are removed, or kept for --resume;
-- complete, in the hidden folder: the new results are put in place;
-- complete, in the folder of the results: they are in place, and the old results are removed.
+- `.NAME.partial` contains incomplete results. The next command that writes NAME removes the files of the program in it,
+  or continues its finished rows (--resume);
+- `.NAME.old` contains earlier results until they are removed. Some systems cannot exchange two names in one step, and
+  NAME is missing for a moment: the next command that writes NAME then restores it.
+
+Other files and edited files get a visible name, `NAME.left`. A link or a folder of another user is never entered.
 """
 
+import itertools
 import os
-import re
 import shutil
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from vehicle.errors import OutputError
+from vehicle.errors import ConfigurationError, OutputError
+from vehicle.leftovers import finished_rows, is_plain, left_at, lock_file, old_of, say, unfinished, work_of
 from vehicle.replacement import being_made, exchange, is_being_made, synchronise, synchronise_folder
-from vehicle.runs.output.locks import OccupiedError, claimed, folder_lock, is_claimed, lock_file
-from vehicle.runs.output.notices import say
+from vehicle.runs.output.locks import OccupiedError, claimed, folder_lock, is_claimed
 from vehicle.runs.output.written_files import (
-    COMPLETE,
     MARKER,
-    UNFINISHED,
     digest_of,
     discard,
     foreign,
+    is_whole,
     mark,
     note,
     refuse_foreign_file,
 )
-
-FOLDER, FILES = "folder", "files"
-"""First line of the journal: the hidden folder becomes the results, or its files are moved into an existing folder. The
-second line is the file of finished rows, or empty."""
-
-
-_named: set[Path] = set()
-"""Goals whose finished rows a notice of this process has named."""
-
-
-def work_of(goal: Path) -> Path:
-    """Return the hidden folder in which new results are made."""
-    return goal.parent / f".{goal.name}.partial"
-
-
-def old_of(goal: Path) -> Path:
-    """Return the name of the old results between two renames, where the system has no exchange in one step."""
-    return goal.parent / f".{goal.name}.old"
-
-
-def unfinished(goal: Path) -> str:
-    """Return the file of finished rows of a killed command that --resume continues, or an empty text."""
-    rows = _journal(work_of(goal), UNFINISHED)[1]
-    return rows if rows and (work_of(goal) / rows).is_file() else ""
 
 
 @contextmanager
@@ -69,284 +46,221 @@ def new_folder(
         resume: begin with the rows of a killed command, else with those of the goal.
 
     Raises:
-        OutputError: a file cannot be written; the message says what is in the folder.
+        OutputError: a file cannot be written; the message describes the folder.
     """
-    with _failures_undone(goal, FOLDER):
-        work = _begin(goal, FOLDER, rows, resume=resume)
+    with _failures_told(goal, goal):
+        continues_goal = resume and not unfinished(goal)
+        work = _begin(goal, rows, resume=resume)
         with being_made(work), claimed(work):
             yield work
         check()
         if goal.exists():
-            mark(goal)  # what of it is the program's is known also when half of it is removed
-        _complete(work)
-        _put_in_place(goal)
+            mark(goal)  # a folder of an earlier version has no list
+        synchronise_folder(work)
+        replaced = _put_in_place(goal)
+    if replaced is not None:
+        _retire(replaced, goal, say_rows=not continues_goal)
 
 
 @contextmanager
 def new_files(goals: Sequence[Path]) -> Iterator[list[Path]]:
-    """Yield hidden names of files; on success, all take their places, also after a kill in between.
+    """Yield hidden names of files; on success, each takes its place in one step, one after the other.
 
     Args:
         goals: the files, in the folder of the first one or below; the caller holds the lock of the first one.
 
     Raises:
-        ConfigurationError: an existing file is of the user, or was edited.
+        ConfigurationError: an existing file is of the user, or was edited; or a folder below is a link.
         OutputError: a file cannot be written.
     """
-    goal = goals[0]
-    with _failures_undone(goal, FILES):
-        goal.parent.mkdir(parents=True, exist_ok=True)
-        work = _begin(goal, FILES)
+    goal, folder = goals[0], goals[0].parent
+    with _failures_told(goal, folder):
+        if linked := [path.parent for path in goals if path.parent != folder and path.parent.is_symlink()]:
+            raise ConfigurationError(f"{linked[0]}: is a link, and files are not written through it; remove it")
+        folder.mkdir(parents=True, exist_ok=True)
+        work = _begin(goal)
+        new = [work / path.relative_to(folder) for path in goals]
         with being_made(work), claimed(work):
-            yield (new := [work / path.relative_to(goal.parent) for path in goals])
-        for path, hidden in zip(goals, new, strict=True):
-            if hidden.exists():
-                refuse_foreign_file(path)
-                note(path, digest_of(hidden), with_folder=goal.parent)
-        _complete(work)
-        _put_in_place(goal)
+            for hidden in new:
+                note(hidden, with_folder=work)
+            yield new
+        written = [(path, hidden) for path, hidden in zip(goals, new, strict=True) if hidden.exists()]
+        for path, _ in written:
+            refuse_foreign_file(path)
+        synchronise_folder(work)
+        for path, hidden in written:
+            digest = digest_of(hidden)
+            note(hidden, digest, with_folder=work)
+            note(path, digest, with_folder=folder)
+        for number, (path, hidden) in enumerate(written):
+            try:
+                path.parent.mkdir(exist_ok=True)
+                hidden.replace(path)
+            except OSError as error:
+                if not number:
+                    raise
+                names = ", ".join(before.name for before, _ in written[:number])
+                raise OutputError(
+                    f"{path}: cannot be written: {error.strerror or error}; {names} is new already, the remaining "
+                    "files are earlier ones: type the command again"
+                ) from None
+    with suppress(OSError):  # the results are in place
+        synchronise(folder)
+    _retire(work, goal)
+
+
+def _put_in_place(goal: Path) -> Path | None:
+    """Exchange the hidden folder with the goal; return the folder of the earlier results."""
+    work, old, replaced = work_of(goal), old_of(goal), None
+    if not goal.exists():
+        work.rename(goal)
+    elif exchange(work, goal):
+        with suppress(OSError):
+            replaced = work
+            work.rename(old)  # so that earlier rows are not continued
+            replaced = old
+    else:
+        goal.rename(old)
+        try:
+            work.rename(goal)
+        except BaseException:
+            if not goal.exists():
+                old.rename(goal)
+            raise
+        replaced = old
+    with suppress(OSError):  # the results are in place
+        synchronise(goal.parent)
+    return replaced
+
+
+def _retire(replaced: Path, goal: Path, *, say_rows: bool = False) -> None:
+    """Remove replaced results, or an emptied hidden folder; move files of the user among them to the new results."""
+    try:
+        count = finished_rows(replaced)[1] if say_rows else 0
+        for name in foreign(replaced) if goal.is_dir() else ():
+            if not os.path.lexists(goal / name):
+                (goal / name).parent.mkdir(parents=True, exist_ok=True)
+                (replaced / name).rename(goal / name)
+        discard(replaced)
+        if count:
+            say(f"{goal}: {count} finished rows of the earlier results were replaced")
+        if os.path.lexists(replaced):
+            say(f"{goal}: {_set_aside(replaced, goal)}")
+    except OSError:
+        say(f"{goal}: is complete; {replaced.name} remains, until the next command that writes there removes it")
 
 
 @contextmanager
-def _failures_undone(goal: Path, result_type: str) -> Iterator[None]:
-    """Undo after an error, and convert an OSError to an OutputError that describes the results that exist."""
-    work = work_of(goal)
+def _failures_told(goal: Path, folder: Path) -> Iterator[None]:
+    """Remove unfinished results after an error; convert an OSError to an OutputError that describes what exists.
+
+    Args:
+        folder: folder of the files that are written.
+    """
+    work, old = work_of(goal), old_of(goal)
     try:
         yield
     except BaseException as error:
-        in_place = _abandon(goal)
+        rows = ""
         with suppress(OSError):
             if rows := unfinished(goal):
                 say(f"{goal}: the finished rows are kept in {work.name}/{rows}; continue with --resume")
+            elif is_plain(work, folder=True):
+                discard(work)
         if not isinstance(error, OSError):
             raise
-        if in_place:
-            return
+        if os.path.lexists(old) and not goal.exists():
+            state = f"the earlier results are in {old.name}; the next command that writes there puts them back"
+        else:
+            state = "the earlier results are unchanged" if goal.exists() else "no results are there"
+            if os.path.lexists(work):
+                left = "the finished rows" if rows else f"{work.name}, which the next command that writes there removes"
+                state += f"; left is {left}"
         name = Path(os.fsdecode(error.filename or b"")).name if not isinstance(error.filename, int) else ""
-        where = goal if not name or name[0] == "." else goal / name if result_type == FOLDER else goal.with_name(name)
-        raise OutputError(f"{where}: cannot be written: {error.strerror or error}; {_outcome(goal)}") from None
+        where = folder / name if name and name[0] != "." else goal
+        raise OutputError(f"{where}: cannot be written: {error.strerror or error}; {state}") from None
 
 
-def put_in_order(path: Path) -> None:
-    """Finish or remove the results of a killed command at a folder or a file, and print a notice."""
-    with suppress(OSError, RuntimeError, ValueError):
-        goal = path.resolve()
-        _put_goal_in_order(goal)
-        # Files that were completed together are found at each of them, and at their folder.
-        for folder in (goal.parent, goal):
-            for work in _complete_works(folder):
-                _put_goal_in_order(folder / work.removeprefix(".").removesuffix(".partial"))
-
-
-def _complete_works(folder: Path) -> list[str]:
-    """Return the hidden folders with complete results in a folder."""
-    if not folder.is_dir():
-        return []
-    with os.scandir(folder) as entries:
-        names = [entry.name for entry in entries if entry.name[0] == "." and entry.name.endswith(".partial")]
-    return [name for name in names if (folder / name / COMPLETE).exists()]
-
-
-def _put_goal_in_order(goal: Path) -> None:
-    remains = _remains(goal)
-    if is_claimed(goal) and lock_file(goal).name in remains:
-        remains.remove(lock_file(goal).name)
-    if not remains or is_being_made(work_of(goal) / MARKER):
+def put_in_order(goal: Path) -> None:
+    """Remove what a killed command left at a goal that a command writes, and print a notice; see the module."""
+    try:
+        left = left_at(goal)
+    except OSError:
+        return  # no parent folder
+    if is_claimed(goal) and lock_file(goal).name in left:
+        left.remove(lock_file(goal).name)
+    if not left or is_being_made(work_of(goal) / MARKER):
         return
     try:
         with folder_lock(goal):
-            say(*_put_in_order(goal, remains))
+            say(*_put_in_order(goal, left))
     except OccupiedError:
         return  # of a command that is running
     except (OSError, OutputError) as error:
-        names = ", ".join(name for name in remains if not name.endswith(".lock"))
+        names = ", ".join(name for name in left if not name.endswith(".lock"))
         reason = error.strerror if isinstance(error, OSError) else "the folder cannot be written"
         say(f"{goal}: a killed command left {names or 'a lock file'} there, which cannot be cleaned up: {reason}")
 
 
-def _remains(goal: Path) -> list[str]:
-    """Return the names that a killed command may have left for a goal."""
-    pattern = re.compile(rf"\.{re.escape(goal.name)}\.(partial|old|lock|\d+\.partial.*)")
-    with os.scandir(goal.parent) as entries:
-        remains = sorted(entry.name for entry in entries if pattern.fullmatch(entry.name))
-    return remains + ([COMPLETE] if (goal / COMPLETE).exists() else [])
-
-
-def _put_in_order(goal: Path, remains: Sequence[str]) -> list[str]:
-    """Return what was done, as sentences; see `put_in_order`."""
-    work, old = work_of(goal), old_of(goal)
-    said = []
-    if (work / COMPLETE).exists() or (goal / COMPLETE).exists():
-        _put_in_place(goal)
-        said.append(f"{goal}: the complete results of a killed command were put in place")
-    elif old.exists() and not goal.exists():
+def _put_in_order(goal: Path, left: Sequence[str]) -> list[str]:
+    """Return sentences about the changes; see `put_in_order`."""
+    work, old, said = work_of(goal), old_of(goal), []
+    if is_plain(old, folder=True) and is_whole(old) and not os.path.lexists(goal):
         old.rename(goal)
         said.append(f"{goal}: a killed command had moved the earlier results away; they were put back")
-    if rows := unfinished(goal):
-        if goal in _named:
-            return said
-        _named.add(goal)
-        said.append(
-            f"{goal}: a killed command left finished rows in {work.name}/{rows}; continue with --resume, or "
-            "start again with --force"
-        )
-    elif _is_own_work(work):
-        _remove(work)
-        said.append(f"{goal}: a killed command left unfinished results; they were removed")
-    for name in remains:
-        number, path = name.removeprefix(f".{goal.name}.").partition(".")[0], goal.parent / name
-        if number.isdigit() and not _lives(int(number)) and (not path.is_dir() or (path / MARKER).exists()):
-            shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)  # a folder: of an earlier version
-            said.append(f"{goal}: a killed command left an unfinished file; it was removed")
-    if not said and lock_file(goal).name in remains:
+    if os.path.lexists(old):
+        # Replaced results if NAME has a list; otherwise the user has made a folder NAME meanwhile.
+        said.append(_cleared(old, goal, keep=not (goal / MARKER).exists() or os.path.lexists(work)))
+    if os.path.lexists(work) and not unfinished(goal):  # finished rows wait for --resume or --force
+        said.append(_cleared(work, goal))
+    if not said and lock_file(goal).name in left:
         said.append(f"{goal}: an earlier command left only its lock file; it was removed")
     return said
 
 
-def _begin(goal: Path, result_type: str, rows: Sequence[str] = (), *, resume: bool = False) -> Path:
+def _cleared(hidden: Path, goal: Path, *, keep: bool = False) -> str:
+    """Remove the files of the program from a hidden folder, or keep all; return a sentence."""
+    count = finished_rows(hidden)[1]
+    if is_plain(hidden, folder=True) and not keep:
+        discard(hidden)
+    if os.path.lexists(hidden):
+        return f"{goal}: {_set_aside(hidden, goal)}"
+    rows = f" with {count} finished rows" if count else ""
+    return f"{goal}: a killed command left {hidden.name}{rows}; it was removed"
+
+
+def _set_aside(hidden: Path, goal: Path) -> str:
+    """Give what is left of a hidden folder, or a link of its name, a visible name; return a sentence."""
+    hidden.rename(visible := _visible(goal))
+    return f"{hidden.name} is not, or not only, of unchanged files of the program; what is left is now {visible.name}"
+
+
+def _visible(goal: Path) -> Path:
+    """Return a free name in the folder of a goal."""
+    names = (f"{goal.name}.left{'' if number == 1 else f'-{number}'}" for number in itertools.count(1))
+    return next(path for path in map(goal.with_name, names) if not os.path.lexists(path))
+
+
+def _begin(goal: Path, rows: Sequence[str] = (), *, resume: bool = False) -> Path:
     """Make the hidden folder; with `resume`, with the rows of a killed command or of the goal."""
     work = work_of(goal)
-    if resume and unfinished(goal):
-        for path in work.iterdir():
-            if path.name not in (UNFINISHED, *rows):
-                shutil.rmtree(path) if path.is_dir() else path.unlink()
-        mark(work)
-        for name in rows:
-            if (work / name).is_file():
-                note(work / name)
-        return work
-    if _is_own_work(work):
-        _remove(work)
-    work.mkdir(parents=True)
-    journal = work / f"{UNFINISHED}-new"
-    journal.write_text(f"{result_type}\n{rows[0] if rows else ''}\n", encoding="utf-8")
-    journal.rename(work / UNFINISHED)
+    goes_on = resume and unfinished(goal) in rows
+    if goes_on:
+        discard(work, kept=rows)
+        if others := [path for path in work.iterdir() if path.name not in (MARKER, *rows) or not is_plain(path)]:
+            visible = _visible(goal)
+            visible.mkdir()
+            for path in others:
+                path.rename(visible / path.name)
+            say(f"{goal}: files in {work.name} that the program did not write, or that were edited: now {visible.name}")
+    else:
+        if os.path.lexists(work):
+            say(_cleared(work, goal))
+        work.mkdir(parents=True)
     mark(work)
     for name in rows if resume else ():
-        if (goal / name).is_file():
+        if not goes_on and is_plain(goal / name):
             shutil.copyfile(goal / name, work / name)
+        if is_plain(work / name):
             note(work / name)
     return work
-
-
-def _journal(work: Path, state: str) -> tuple[str, str]:
-    """Return the lines of a journal in this state; empty without a journal."""
-    try:
-        result_type, rows = (work / state).read_text(encoding="utf-8").splitlines()
-    except (FileNotFoundError, NotADirectoryError):
-        return "", ""
-    return result_type, rows
-
-
-def _is_own_work(work: Path) -> bool:
-    """True for a hidden folder that a command made, also if it was killed as it made or removed the folder."""
-    return work.is_dir() and (
-        (work / UNFINISHED).exists() or all(path.name.startswith(MARKER_BEGINNING) for path in work.iterdir())
-    )
-
-
-MARKER_BEGINNING = ".vehicle-"
-"""Beginning of the names of the files of the program that are no results."""
-
-
-def _remove(work: Path) -> None:
-    """Remove a hidden folder, its journal last."""
-    for path in work.iterdir():
-        if path.name != UNFINISHED:
-            shutil.rmtree(path) if path.is_dir() else path.unlink()
-    (work / UNFINISHED).unlink(missing_ok=True)
-    work.rmdir()
-
-
-def _complete(work: Path) -> None:
-    """Write the new results to the disk, and note in the journal that they are complete."""
-    synchronise_folder(work)
-    (work / UNFINISHED).rename(work / COMPLETE)
-    synchronise(work)
-
-
-def _put_in_place(goal: Path) -> None:
-    """Give complete results their names; the parts of this that have been done are not repeated."""
-    work, old = work_of(goal), old_of(goal)
-    result_type, _ = _journal(work, COMPLETE)
-    if result_type == FILES:
-        for path in sorted(work.rglob("*")):
-            if path.is_file() and path.parent / path.name not in (work / MARKER, work / COMPLETE):
-                final = goal.parent / path.relative_to(work)
-                final.parent.mkdir(exist_ok=True)
-                path.replace(final)
-        with suppress(OSError):  # from here on, the results are in place
-            synchronise(goal.parent)
-        try:
-            (work / COMPLETE).rename(work / UNFINISHED)
-            _remove(work)
-        except OSError:
-            say(f"{goal}: is complete; the empty folder {work.name} remains, until the next command there removes it")
-        return
-    if result_type:
-        if not goal.exists():
-            work.rename(goal)
-        elif not exchange(work, goal):
-            goal.rename(old)
-            work.rename(goal)
-        with suppress(OSError):
-            synchronise(goal.parent)
-    try:
-        for replaced in (work, old):
-            if replaced.exists() and (goal / COMPLETE).exists():
-                _retire(replaced, goal)
-        (goal / COMPLETE).unlink(missing_ok=True)
-    except OSError:
-        say(f"{goal}: is complete; files of the earlier results remain, until the next command there removes them")
-
-
-def _retire(replaced: Path, goal: Path) -> None:
-    """Remove replaced results; move files of the user among them to the new results."""
-    for name in foreign(replaced):
-        if not os.path.lexists(goal / name):
-            (goal / name).parent.mkdir(parents=True, exist_ok=True)
-            (replaced / name).rename(goal / name)
-    discard(replaced)
-
-
-def _abandon(goal: Path) -> bool:
-    """Undo after a failure, as far as possible; True if it came so late that the new results are in place."""
-    work, old = work_of(goal), old_of(goal)
-    with suppress(OSError):
-        if (goal / COMPLETE).exists() or _journal(work, COMPLETE)[0] == FILES:
-            _put_in_place(goal)  # the new results have their names, or some of them
-            return True
-        if old.exists() and not goal.exists():
-            old.rename(goal)
-        if (work / COMPLETE).exists():
-            (work / COMPLETE).rename(work / UNFINISHED)
-        if not unfinished(goal) and _is_own_work(work):
-            _remove(work)
-    return False
-
-
-def _outcome(goal: Path) -> str:
-    """Return what is there after a failure."""
-    work, old = work_of(goal), old_of(goal)
-    if (work / COMPLETE).exists() or (goal / COMPLETE).exists():
-        return "the new results are complete, and the next command there puts them in place"
-    if old.exists() and not goal.exists():
-        return "the next command there puts the earlier results back"
-    there = "the earlier results are unchanged" if goal.exists() else "nothing is left behind"
-    if work.exists():
-        remainder = "the finished rows" if unfinished(goal) else "an unfinished folder, which the next command removes"
-        return f"{there.replace('nothing is left behind', 'no results are there')}; left is {remainder}"
-    return there
-
-
-def _lives(number: int) -> bool:
-    """True if a process with this number exists."""
-    if os.name == "nt":
-        return False  # an open file cannot be removed there anyway
-    try:
-        os.kill(number, 0)
-    except ProcessLookupError:
-        return False
-    except OSError:
-        return True
-    return True

@@ -1,29 +1,28 @@
 """List of the files that the program wrote, stored in their folder; only these files are replaced or removed.
 
 A line contains the beginning of the SHA-256 of a file and its name. A file belongs to the program as long as its
-content matches a digest of its lines: an edited file belongs to the user. A line without a digest belongs to a file
-that grows during a run. The list moves with its folder; a single file that is moved away has no list and is not
-replaced.
+content matches a digest of its lines: an edited file belongs to the user. The last line of a
+growing or unfinished file has no digest. The list moves with its folder; a single file that is moved
+away has no list and is not replaced.
 
-A list names the files of its own folder, and those below that were made together with it, as meshes/wheel.stl of a
-model: never a file that another command wrote below, which has a list of its own. So a list in the folder of all, as
-/tmp, concerns nothing in the folders there.
+A list names the files of its own folder, and files below from the same command, for example
+meshes/wheel.stl of a model: never the files of another command below, which are in a list of their own. So a list in
+the folder of all, as /tmp, concerns nothing in the folders there.
 """
 
 import errno
 import json
 import os
 import re
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from vehicle.errors import ConfigurationError
+from vehicle.errors import ConfigurationError, OutputError
 from vehicle.replacement import folder_being_made, is_being_made
 from vehicle.signals.formats.file_digest import digest
 
 MARKER = ".vehicle-files"
-UNFINISHED, COMPLETE = ".vehicle-unfinished", ".vehicle-complete"
-"""Journal of new results, see `vehicle.runs.output.work_folder`."""
 HEAD = "# Files that the program wrote here. --force replaces these, and stops at any other.\n"
 
 SWEEP = {"rows.jsonl", "table.csv", "sweep.json", "timing.csv"}
@@ -36,7 +35,8 @@ GENERATED_PAGE = "<!-- Written by `python -m"
 _LEFT_OVER = re.compile(
     r"(^|/)(\.[^/]+\.lock|\.[^/]+\.\d+\.partial[^/]*|\.vehicle-(unfinished|complete)(-new)?|\.[^/]+\.partial/\.vehicle-files)$"
 )
-"""Files that a killed process leaves: locks, unfinished files, and the journal of a hidden folder."""
+"""Files that a killed process leaves: locks, unfinished files, the list of a hidden folder, a journal of an earlier
+version."""
 DIGITS = 32
 _LINE = re.compile(rf"(?:([0-9a-f]{{{DIGITS}}})  )?(.+)")
 SHOWN = 5
@@ -55,7 +55,7 @@ def note(path: Path, digest: str = "", *, with_folder: Path | None = None) -> No
     Args:
         path: the file under its final name.
         digest: see `digest_of`; empty for a file that grows, which belongs to the program with any content.
-        with_folder: folder above, whose files are made together with this one and whose list names it; by default the
+        with_folder: folder above with the list for this file and the files of the same command; by default the
             folder of `being_made` that contains the file, else its own.
     """
     at = path.parent.resolve() / path.name
@@ -69,6 +69,8 @@ def note(path: Path, digest: str = "", *, with_folder: Path | None = None) -> No
 
 def _append(marker: Path, text: str) -> None:
     """Append lines to a list in one call; a failed call appends nothing, and half a line of a killed one ends."""
+    if (os.path.lexists(marker) and not marker.is_file()) or marker.is_symlink():
+        raise OutputError(f"{marker}: must be a file, not a link, as the list of files in this folder; remove it")
     with marker.open("ab", buffering=0) as file:
         size = file.seek(0, os.SEEK_END)
         if size:
@@ -95,22 +97,24 @@ def digest_of(path: Path) -> str:
 def written(folder: Path) -> dict[str, frozenset[str]]:
     """Return the names, relative to the folder, of what the program wrote there, and the digests of each.
 
-    An empty set means any content.
+    An empty set means any content. A folder without a list may be of an earlier version.
     """
+    return listing(folder) or dict.fromkeys(_of_earlier_versions(folder), frozenset())
+
+
+def listing(folder: Path) -> dict[str, frozenset[str]]:
+    """Return the names in the list of a folder and the digests of each, see `written`; empty without a list."""
+    marker = folder / MARKER
     try:
-        lines = (folder / MARKER).read_text(encoding="utf-8").splitlines()
-    except (FileNotFoundError, NotADirectoryError, UnicodeDecodeError):
+        lines = marker.read_text(encoding="utf-8").splitlines() if marker.is_file() and not marker.is_symlink() else []
+    except (FileNotFoundError, UnicodeDecodeError):
         lines = []
-    if not lines:
-        return dict.fromkeys(_of_earlier_versions(folder), frozenset())
-    listed: dict[str, frozenset[str]] = {MARKER: frozenset()}
+    names: dict[str, frozenset[str]] = {MARKER: frozenset()} if lines else {}
     for line in lines:
         if (match := _LINE.fullmatch(line)) and not line.startswith("#"):
             digest, name = match.groups()
-            digests = listed.get(name)
-            any_content = not digest or (digests is not None and not digests)
-            listed[name] = frozenset() if any_content else (digests or frozenset()) | {digest}
-    return listed
+            names[name] = names.get(name, frozenset()) | {digest} if digest else frozenset()
+    return names
 
 
 def _of_earlier_versions(folder: Path) -> set[str]:
@@ -173,6 +177,11 @@ def changed(folder: Path) -> list[str]:
     return sorted(name for name in _files(folder) & listed.keys() if not _unchanged(folder / name, listed[name]))
 
 
+def is_whole(folder: Path) -> bool:
+    """True if a folder has a list, and every file of the list."""
+    return {MARKER} < listing(folder).keys() <= _files(folder)
+
+
 def _files(folder: Path) -> set[str]:
     """Return all files and links in a folder and below, relative to the folder."""
     paths = (path for path in folder.rglob("*") if path.is_symlink() or not path.is_dir())
@@ -183,8 +192,8 @@ def _is_left_over(folder: Path, name: str) -> bool:
     """Return True for what a killed process left in a folder: a lock, an unfinished file, files of a hidden folder."""
     if _LEFT_OVER.search(name):
         return True
-    hidden = [parent for parent in (folder / name).relative_to(folder).parents if parent.name.endswith(".partial")]
-    return any((folder / parent / journal).exists() for parent in hidden for journal in (UNFINISHED, COMPLETE))
+    hidden = [folder / parent for parent in Path(name).parents if parent.name.endswith(".partial")]
+    return any(_unchanged(folder / name, listing(at).get((folder / name).relative_to(at).as_posix())) for at in hidden)
 
 
 def refuse_foreign(folder: Path, *, changes_only: bool = False) -> None:
@@ -227,11 +236,16 @@ def refuse_foreign_file(path: Path, option: str = "--output") -> None:
         )
 
 
-def discard(folder: Path) -> None:
-    """Remove the files of the program, and folders that become empty."""
-    listed, files = written(folder), _files(folder)
-    removable = {name for name in files if name in listed and _unchanged(folder / name, listed[name])}
+def discard(folder: Path, *, kept: Sequence[str] = ()) -> None:
+    """Remove the unchanged files of the list of a folder, and folders that become empty.
+
+    Args:
+        kept: names that are kept, with the list.
+    """
+    names, files = listing(folder), _files(folder)
+    removable = {name for name in files if name in names and _unchanged(folder / name, names[name])}
     removable |= {name for name in files - removable if _is_left_over(folder, name)}
+    removable -= {*kept, MARKER} if kept else set()
     for name in sorted(removable, key=lambda name: (name.startswith(".vehicle-"), name)):  # the list is the last
         (folder / name).unlink(missing_ok=True)
     inner = [path for path in folder.rglob("*") if path.is_dir() and not path.is_symlink()]

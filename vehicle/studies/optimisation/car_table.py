@@ -3,12 +3,14 @@
 import csv
 import io
 import math
+import os
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
-from vehicle.errors import DataError, OutputError
+from vehicle.errors import OutputError
+from vehicle.leftovers import say
 from vehicle.runs.output.folder import write_text
 from vehicle.runs.output.written_files import note
 from vehicle.signals.formats.csv_table import RowWriter
@@ -33,11 +35,11 @@ class CarTable:
     """File of the cars of a search; generation 0 is the unmodified car.
 
     Args:
-        path: the file. Existing generations are kept except the last, which may be incomplete after a killed process.
+        path: the file. Existing generations are kept except the last, which may be incomplete after a killed process,
+            and those from a damaged row on, with a notice.
         problem: parameters, objectives and limits.
 
     Raises:
-        DataError: the file is damaged.
         OutputError: the file cannot be written.
     """
 
@@ -61,6 +63,8 @@ class CarTable:
         try:
             with self.path.open("a", encoding="utf-8") as file:
                 file.write(_text(self._rows(tried, len(self.generations))))
+                file.flush()
+                os.fsync(file.fileno())
         except OSError as error:
             raise OutputError(f"{self.path}: cannot be written: {error.strerror}; continue with --resume") from None
         self._take(tried)
@@ -78,28 +82,39 @@ class CarTable:
         ]
 
     def _read(self) -> list[TriedCars]:
-        """Read all generations of the file except the last."""
+        """Read all generations of the file except the last, and those from a damaged row on."""
         size = len(self.problem.ranges)
-        generations: dict[str, list[list[str]]] = {}
-        for row in list(csv.reader(self.path.read_text(encoding="utf-8").splitlines()))[1:]:
-            if len(row) == len(self._head):  # a shorter row is incomplete
-                generations.setdefault(row[1], []).append(row)
-        if generations:
-            generations.popitem()
-        try:
-            return [
-                TriedCars(
-                    points=np.array([[_number(cell) for cell in row[2 : 2 + size]] for row in rows]),
-                    values=np.array([[_number(cell) for cell in row[2 + size : -1]] for row in rows]),
-                    reasons=tuple(row[-1] for row in rows),
-                )
-                for rows in generations.values()
-            ]
-        except ValueError as error:
-            raise DataError(f"{self.path}: not a table of a search ({error}); start again with --force") from None
+        generations: list[list[list[str]]] = []
+        lines = self.path.read_text(encoding="utf-8", errors="replace").split("\n")[:-1]  # the last may be incomplete
+        for number, line in enumerate(lines[1:], start=2):
+            try:
+                (row,) = csv.reader([line])
+                if len(row) != len(self._head) or int(row[0]) != number - 2:
+                    raise ValueError(f"found {len(row)} cells, must be {len(self._head)}, and the next number of a car")
+                if int(row[1]) == len(generations):
+                    generations.append([])
+                elif int(row[1]) != len(generations) - 1:
+                    raise ValueError(f"found generation {row[1]}")
+                generations[-1].append([*row[2:-1], row[-1]])
+                [_number(cell) for cell in row[2:-1]]
+            except (ValueError, csv.Error) as error:
+                kept = max(len(generations) - 1, 0)
+                say(f"{self.path}, line {number}: damaged ({error}); the {kept} whole generations before it are taken")
+                break
+        return [
+            TriedCars(
+                points=np.array([[_number(cell) for cell in row[:size]] for row in rows]),
+                values=np.array([[_number(cell) for cell in row[size:-1]] for row in rows]),
+                reasons=tuple(row[-1] for row in rows),
+            )
+            for rows in generations[:-1]
+        ]
 
 
 def _number(cell: str) -> float:
+    """Return the number of a cell, NaN for an empty one; raise a ValueError for an infinite number or NaN."""
+    if cell and not math.isfinite(float(cell)):
+        raise ValueError(f"found {cell[:20]!r}, must be a finite number")
     return float(cell) if cell else math.nan
 
 

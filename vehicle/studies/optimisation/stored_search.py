@@ -8,6 +8,7 @@ import numpy as np
 
 from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
+from vehicle.replacement import synchronise
 from vehicle.runs.output.folder import write_json
 from vehicle.runs.output.locks import folder_lock
 from vehicle.studies.optimisation.car_table import CARS, CarTable
@@ -50,6 +51,7 @@ def stored_search(trials: Trials, folder: Path, settings: SearchSettings) -> tup
                 "same options, or --force to start again"
             )
         write_json(folder / SEARCH, identity)
+        synchronise(folder / SEARCH)  # the rows are of no use without it
         table = CarTable(folder / CARS, problem)
 
         def attempt(points: Vector) -> TriedCars:
@@ -70,5 +72,5 @@ def stored_search(trials: Trials, folder: Path, settings: SearchSettings) -> tup
 def _identity(path: Path) -> object:
     try:
         return json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return None

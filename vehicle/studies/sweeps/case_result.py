@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypedDict
@@ -67,31 +68,51 @@ class Block:
 
 def row_text(case: Case, key: str, result: Result) -> str:
     """Return the row of a case, a line of JSON."""
-    # JSON writes floats with all digits, so values read again are identical; NaN is written as NaN.
+    # JSON writes floats with all digits, so values read again are identical; an undefined value (NaN) is null.
     row = {
         "key": key,
         "case": case.label,
-        "values": result.values,
+        "values": {name: None if value != value else value for name, value in result.values.items()},
         "engine": result.engine,
         "reason": result.reason,
         "seconds": result.seconds,
     }
-    return json.dumps(row) + "\n"
+    return json.dumps(row, allow_nan=False) + "\n"
 
 
 def result_of(line: bytes) -> Result:
     """Return the result in a row.
 
     Raises:
-        ValueError, KeyError, TypeError, AttributeError: the line is no row.
+        ValueError: the line is no row: not JSON, a key is missing or of another type, or a number is not finite.
     """
-    row: dict[str, Any] = json.loads(line)
-    return Result(
-        values={name: float(value) for name, value in row["values"].items()},
-        engine=str(row["engine"]),
-        reason=str(row["reason"]),
-        seconds=float(row["seconds"]),
-    )
+    try:
+        row: dict[str, Any] = json.loads(line)
+        result = Result(
+            values={str(name): math.nan if value is None else number(value) for name, value in row["values"].items()},
+            engine=text(row["engine"]),
+            reason=text(row["reason"]),
+            seconds=number(row["seconds"]),
+        )
+    except (KeyError, TypeError, AttributeError, RecursionError, OverflowError) as error:
+        raise ValueError(f"{type(error).__name__}: {error}") from None
+    if bool(result.values) == bool(result.reason):
+        raise ValueError("must have values, or the message of an error")
+    return result
+
+
+def number(value: Any) -> float:
+    """Return a finite number of JSON; raise a ValueError for another value."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise ValueError(f"found {value!r:.20}, must be a finite number")
+    return float(value)
+
+
+def text(value: Any) -> str:
+    """Return a text of JSON; raise a ValueError for another value."""
+    if not isinstance(value, str):
+        raise ValueError(f"found {value!r:.20}, must be a text")
+    return value
 
 
 class Row(TypedDict):

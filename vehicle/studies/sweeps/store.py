@@ -17,7 +17,8 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.arrays import Indices, Mask
-from vehicle.errors import DataError, OutputError
+from vehicle.errors import OutputError
+from vehicle.leftovers import say
 from vehicle.runs.output.written_files import note
 from vehicle.studies.sweeps.case import Case
 from vehicle.studies.sweeps.case_keys import KEY_DIGITS
@@ -69,7 +70,7 @@ class StoredRows(LazySequence[Result]):
 
     @contextmanager
     def _opened(self, mode: Literal["rb", "ab"]) -> Iterator[BinaryIO]:
-        """Yield the file without a buffer; a mode as of `open`."""
+        """Yield the file without a buffer; mode: see `open`."""
         if self._temporary is not None:
             yield self._temporary
             return
@@ -85,12 +86,11 @@ class StoredRows(LazySequence[Result]):
     def use_stored(self, cases: Sequence[Case], key_of: Callable[[Case], str]) -> None:
         """Find the rows of cases among those that the file already contains; remove an incomplete last line.
 
+        A damaged line is passed over with a notice, and its run is computed again.
+
         Args:
             cases: the cases.
             key_of: function that returns the key of a case.
-
-        Raises:
-            DataError: a line in the middle of the file is damaged.
         """
         if not self._end:
             return
@@ -172,9 +172,10 @@ class StoredRows(LazySequence[Result]):
         return file.read(int(self._length[number]))
 
     def _read(self) -> tuple[npt.NDArray[np.bytes_], Indices, Indices, Mask]:
-        """Return key, position, length and failure of all rows in the file; remove an incomplete last line."""
+        """Return key, position, length and failure of all whole rows in the file; remove an incomplete last line."""
         keys, starts, lengths, failed = bytearray(), [], [], []
         position = 0
+        damaged: list[str] = []
         assert self.path is not None  # a temporary file has no rows yet
         with self.path.open("r+b") as file:
             for number, line in enumerate(file, start=1):
@@ -182,17 +183,23 @@ class StoredRows(LazySequence[Result]):
                     file.truncate(position)
                     break
                 try:
-                    failed.append(bool(result_of(line).reason))
-                    if not line.startswith(BEGINNING):
+                    reason = result_of(line).reason
+                    key = line[len(BEGINNING) :][:KEY_DIGITS]
+                    if not line.startswith(BEGINNING) or len(key.split(b'"')[0]) != KEY_DIGITS:
                         raise ValueError("no key")
-                except (ValueError, KeyError, TypeError, AttributeError) as error:
-                    raise DataError(
-                        f"{self.path}, line {number}: not a row of a sweep ({error}); start again with --force"
-                    ) from None
-                keys += line[len(BEGINNING) :][:KEY_DIGITS]
-                starts.append(position)
-                lengths.append(len(line))
+                except ValueError as error:
+                    damaged.append(f"line {number} ({error})")
+                else:
+                    failed.append(bool(reason))
+                    keys += key
+                    starts.append(position)
+                    lengths.append(len(line))
                 position += len(line)
+        if damaged:
+            say(
+                f"{self.path}: {len(damaged)} damaged rows, the first in {damaged[0]}; their runs are computed again, "
+                f"{len(starts)} whole rows are taken"
+            )
         self._end = position
         return (
             np.frombuffer(bytes(keys), dtype=f"S{KEY_DIGITS}"),

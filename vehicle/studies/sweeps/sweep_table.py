@@ -28,9 +28,6 @@ from vehicle.studies.sweeps.sweep_ranking import ranked_cars, ranking_lines
 INPUT, ENGINE, REASON = "input", "engine", "failed because"
 """Heads of the columns without unit."""
 
-CONSTANTS = {"NaN": "nan", "Infinity": "inf", "-Infinity": "-inf"}
-"""Constants of JSON to the texts of Python."""
-
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class SweepTable:
@@ -79,9 +76,12 @@ class SweepTable:
     def rows(self) -> Iterator[Row]:
         """Return the rows with numbers as texts of all digits, which need no conversion; read when they are used."""
         if isinstance(self.results, StoredRows):
-            numbers_as_texts = json.JSONDecoder(parse_float=str, parse_constant=CONSTANTS.__getitem__)
-            for row in self.results.rows():
-                yield numbers_as_texts.decode(row.decode())
+            numbers_as_texts = json.JSONDecoder(parse_float=str)
+            for line in self.results.rows():
+                row = numbers_as_texts.decode(line.decode())
+                if b"null" in line:
+                    row["values"] = {name: "nan" if text is None else text for name, text in row["values"].items()}
+                yield row
         else:
             for result in self.results:
                 texts = {name: repr(value) for name, value in result.values.items()}
