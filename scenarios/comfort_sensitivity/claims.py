@@ -7,7 +7,7 @@ import numpy as np
 
 from scenarios.claims import NOT_TESTABLE, PREDICTED, Claim, Interval
 from scenarios.comfort_runs import Changes, Curves, Point, Variation
-from scenarios.evidence import COMFORT_ENDS
+from scenarios.evidence import COMFORT_ENDS, SLIP_STEP, slip_error
 from scenarios.evidence_claims import evidence_claim, reason
 from scenarios.signals.exact_road import ROAD_EDGE_HZ
 
@@ -41,8 +41,11 @@ def slip_claims(nominal: Mapping[str, Point], slip_velocity: float) -> list[Clai
             100.0 * numbers.slip,
             f"above {1e3 * slip_velocity:g} mm/s, as in all rows; standard error {100.0 * numbers.slip_error:.2f} "
             f"points; {100.0 * numbers.saturated:.1f} % above 1 mm/s. One band edge for both "
-            f"roads, {ROAD_EDGE_HZ:g} Hz",
+            f"roads, {ROAD_EDGE_HZ:g} Hz. Error: half of the change from a slip velocity {100.0 * SLIP_STEP:g} % "
+            f"higher to one {100.0 * SLIP_STEP:g} % lower ({100.0 * numbers.slip_more:.1f} to "
+            f"{100.0 * numbers.slip_less:.1f} %)",
             printed=100.0 * PUBLISHED_SLIP[road],
+            error=100.0 * slip_error(numbers.slip_less, numbers.slip_more),
         )
         for road, numbers in nominal.items()
     ]
@@ -111,6 +114,24 @@ def degressive_claim(points: Mapping[str, Point]) -> Claim:
         "the source has this damper for the quarter car only; ours with the numbers of appendix C.2, ± two standard "
         "errors",
     ).at("section 5")
+
+
+def body_claim(points: Mapping[str, Sequence[Point]]) -> Claim:
+    """Return the row on the global stiffness of the body, which the source recommends and does not compute."""
+    return NOT_TESTABLE.statement(
+        "body of another global stiffness in the complete car: comfort value over that of the designed body",
+        "recommended, not computed",
+        "; ".join(
+            f"{road} road "
+            + ", ".join(
+                f"{100.0 * point.relative:.1f} ± {200.0 * point.relative_error:.1f} % with modes x {point.value:g}"
+                for point in ends
+            )
+            for road, ends in points.items()
+        ),
+        None,
+        "all frequencies of the flexible body times a factor, masses unchanged; ± two standard errors",
+    ).at("section 5.2", f"{BODY.name}.png")
 
 
 def _end_name(word: str, value: float, road: str) -> str:
