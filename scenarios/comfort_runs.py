@@ -84,8 +84,6 @@ class Point:
     slip_error: float
     saturated: float  # saturated, slip_left: share above 1 mm/s; share above the slip velocity, left damper [-]
     slip_left: float
-    slip_less: float  # slip_less, slip_more: share above a slip velocity 10 % lower and higher, right damper [-]
-    slip_more: float
     lowest_load: float  # minimum load of the tyre on the shaker [N]
     pulling: float  # share of the time with a negative load [-]
 
@@ -112,7 +110,7 @@ def point(value: float, numbers: Sequence[Numbers], reference: Sequence[Numbers]
         comfort=mean[UNWEIGHTED],
         weighted=mean[WEIGHTED],
         relative_weighted=float(np.mean(ratio_weighted)),
-        **{name: mean[name] for name in ("slip", "saturated", "slip_left", "slip_less", "slip_more", "pulling")},
+        **{name: mean[name] for name in ("slip", "saturated", "slip_left", "pulling")},
     )
 
 

@@ -104,7 +104,8 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
         label: {f"{name}, {road}, {value:g}": entry for (name, road, value), entry in entries.items()}
         for label, entries in trials.items()
     }
-    slip = slip_claims(comfort.nominal(), runs.car().vehicle.damper.slip_velocity)
+    records = {road: comfort(comfort.cases((), road)) for road in ROAD_RMS}
+    slip = slip_claims(records, runs.car().vehicle.damper.slip_velocity)
     claims = [*slip, *order_claims(curves), *size_claims(curves, trials), *level_claims(levels, louder)]
     claims += [*history_claims(levels), amplification_claim(comfort.nominal()), stiffness_claim(wheel_modes(comfort))]
     claims += [*wheel_claims(levels), degressive_claim(degressive_points(comfort))]

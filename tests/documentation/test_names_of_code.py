@@ -30,8 +30,8 @@ ELSEWHERE = {"vehicle.toml", "vehicle.schema.json", "vehicle.cmd", "vehicle.forc
 """Dotted names that are files, and the plugin of MuJoCo that no program has."""
 
 
-FOREIGN = {"ChVehicle"}
-"""Classes of other programs."""
+FOREIGN = {"ChVehicle", "MarkupSafe"}
+"""Classes and packages of others."""
 
 
 @cache
