@@ -49,8 +49,8 @@ SLIP_STEP = 0.1
 def slip_error(above_less: Vector | float, above_more: Vector | float) -> float:
     """Return the error of a slip share: half of its change over the slip velocity v +- 10 %.
 
-    e = (S(0.9 v) - S(1.1 v)) / 2, S the share of the time above a velocity. Each row has its own: where the velocity is
-    seldom near v, an error of v changes little.
+    e = (S(0.9 v) - S(1.1 v)) / 2, S the share of the time above a velocity. The error differs from row to row: where
+    the velocity is seldom near v, an error of v changes little.
 
     Args:
         above_less: shares above 0.9 v, of each record, (n,).

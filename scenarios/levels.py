@@ -132,7 +132,7 @@ def numbers(run: Run, response: FrequencyResponse) -> LevelNumbers:
 
 
 def wheel_mode_claim(runs: CarRuns, low: LevelNumbers) -> Claim:
-    """Return the row on the four numbers that may be called the vertical wheel mode."""
+    """Return the row on four definitions of the vertical wheel mode."""
     car, evidence = runs.car(), evidence_of("wheel_mode")
     natural = max(car.modes("stuck"), key=_wheel_hop).frequency
     lines = np.arange(*WHEEL_BAND, 0.01)

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from scenarios.evidence import COMFORT_ENDS, LEVELS
-from scenarios.inertia import led_by, roll_mode
 from scenarios.inputs.make_inputs import LEVELS as SHAKER_RMS
 from scenarios.levels import WHEEL_BAND
+from scenarios.rigid_modes import led_by, roll_mode
 from scenarios.signals.bump import BUMP_START_S, NOISE_RMS, bump
 from scenarios.signals.exact_road import LEAD_S, RATE_HZ, ROAD_RMS, road
 from scenarios.signals.random_road import random_road
