@@ -122,13 +122,22 @@ TABLE, INFERRED, DUPLICATE = Kind("predicted", "table"), Kind("predicted", "infe
 NOT_TESTABLE = Kind("not testable", "text")
 
 
+ONE_LABEL = "only one label is known, and any smaller curve lies inside too"
+"""Reason of a row whose interval reaches to 0."""
+
+
 def interval_claim(name: str, interval: Interval, ours: float, why: str, *, status: Status = "predicted") -> Claim:
     """Return the row of an extreme that is only known to lie between two labels of an axis; it agrees inside.
+
+    Where the interval reaches to 0, only one label is known: every curve of a smaller size lies inside, so a row inside
+    is not testable. A row outside disagrees.
 
     Arguments as for `Kind.number`; the interval is infinite at an open end.
     """
     value = float(ours)
     inside = interval[0] <= value <= interval[1]
+    if inside and 0.0 in interval:
+        status, why = "not testable", f"{why}; {ONE_LABEL}"
     deviation = _interval_deviation(interval, value)
     within = None if status == "not testable" else inside
     row = Claim(name, between(interval), value, deviation, within, why, status, "axis interval", interval)

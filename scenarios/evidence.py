@@ -12,6 +12,7 @@ from typing import Literal
 import numpy as np
 
 from scenarios.claims import Interval, Status
+from vehicle.arrays import Vector
 
 Topic = Literal["shaker slip", "no slip", "road slip", "bump 7.5 mm", "bump 1.5 mm", "comfort", "level", "mode"]
 """Strata of the draw: rows of one topic, so that every unprinted parameter keeps rows that depend on it
@@ -30,7 +31,7 @@ class Evidence:
     topic: Topic  # stratum of the row
     how: str  # computation of our value
     # standard deviation of a normal error of the model, in the unit of the quantity; 0 if the scatter of the input over
-    # its unpublished seeds is larger
+    # its unpublished seeds is larger, and for a slip share, whose error is `slip_error` of its own shares
     error: float = 0.0
     weight: float = 1.0  # weight in the sum of log-likelihoods; 1 / k for each of k rows from one curve or run
     # status of the row in both halves: the body was fitted to it, or an earlier choice had it in view; None if neither
@@ -41,8 +42,25 @@ class Evidence:
     same: str = ""
 
 
-SLIP_ERROR = 1.3
-"""Error of a slip share [points]: what 10 % of the damper's velocity, or of the velocity that counts, change of it."""
+SLIP_STEP = 0.1
+"""Error of the velocity of a damper, or of the velocity that counts as slip, as a share of it [-]."""
+
+
+def slip_error(above_less: Vector | float, above_more: Vector | float) -> float:
+    """Return the error of a slip share: half of its change over the slip velocity v +- 10 %.
+
+    e = (S(0.9 v) - S(1.1 v)) / 2, S the share of the time above a velocity. The error differs from row to row: where
+    the velocity is seldom near v, an error of v changes little.
+
+    Args:
+        above_less: shares above 0.9 v, of each record, (n,).
+        above_more: shares above 1.1 v of the same records, (n,).
+
+    Returns:
+        Error in the unit of the shares, from their means.
+    """
+    return 0.5 * float(np.mean(above_less) - np.mean(above_more))
+
 
 SHARE_READING = 1.0
 """Half width of the interval around a printed share [points]: the treatment of crossings between samples is unknown."""
@@ -89,7 +107,6 @@ def _share(key: str, name: str, place: str, percent: float, how: str, weight: fl
         interval=(low, high),
         topic=topic,
         how=how,
-        error=SLIP_ERROR,
         weight=weight,
         # All eight chose among slip velocities that the half leaves equally likely
         # (`vehicle.signals.excitation.slip_set`).

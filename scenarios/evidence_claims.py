@@ -12,7 +12,9 @@ from scenarios.evidence import Evidence, evidence_of, status_of
 from scenarios.interval_probability import AGREES_ABOVE, interval_probability
 
 
-def evidence_claim(key: str, name: str, ours: npt.ArrayLike, why: str, *, printed: float | None = None) -> Claim:
+def evidence_claim(
+    key: str, name: str, ours: npt.ArrayLike, why: str, *, printed: float | None = None, error: float | None = None
+) -> Claim:
     """Return the row of an evidence: it agrees where the probability of its interval is above 5 %.
 
     The probability contains the scatter of ours over its seeds and the error that the evidence states. The row is
@@ -24,12 +26,18 @@ def evidence_claim(key: str, name: str, ours: npt.ArrayLike, why: str, *, printe
         ours: own value, or one for each seed, (n,); infinite where what is timed never happens.
         why: reason of a disagreement, and how ours was found.
         printed: the number itself where the source prints one, shown instead of the interval.
+        error: error of the model in the unit of the row, see `slip_error`; by default that of the evidence.
     """
     evidence, values = evidence_of(key), np.atleast_1d(np.asarray(ours, dtype=float))
-    row = interval_claim(name, evidence.interval, float(np.mean(values)), why, status=status_of(key))
+    if error is not None:
+        evidence = replace(evidence, error=error)
     if evidence.same:
         why = f"the half second of {evidence_of(evidence.same).place} again, counted there; {why}"
-    row = replace(row, why=why, place=evidence.place, evidence=key, source=_source(evidence, printed))
+    row = interval_claim(name, evidence.interval, float(np.mean(values)), why, status=status_of(key))
+    source = _source(evidence, printed)
+    if source != "axis interval":  # an interval from 0 on is printed, as "no slip", and can be tested
+        row = replace(row, status=status_of(key), within=row.inside, why=why)
+    row = replace(row, place=evidence.place, evidence=key, source=source)
     if printed is not None:
         deviation = (float(np.mean(values)) - printed) / printed if printed else None
         row = replace(row, published=printed, deviation=deviation)
@@ -38,7 +46,7 @@ def evidence_claim(key: str, name: str, ours: npt.ArrayLike, why: str, *, printe
         return replace(row, ours=never, deviation=None, within=False, inside=False)
     if values.size > 1:
         row = replace(row, ours=f"{np.mean(values):.4g} +- {np.std(values, ddof=1):.2g} ({values.size} values)")
-    elif not evidence.error:
+    if row.status == "not testable" or (values.size == 1 and not evidence.error):
         return row
     probability = interval_probability(values, evidence.interval, error=evidence.error)
     rule = (

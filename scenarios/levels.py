@@ -13,13 +13,17 @@ import numpy as np
 
 from scenarios.car_runs import CarRuns
 from scenarios.charts import LEVEL_COLOURS, FrfCurve, draw_frf, measured_curve
-from scenarios.claims import PREDICTED, Claim, Findings
+from scenarios.claims import NOT_TESTABLE, OWN_CHECK, PREDICTED, Claim, Findings
+from scenarios.evidence import evidence_of
 from scenarios.evidence_claims import evidence_claim
-from scenarios.frf_claims import axis_claims, coherence_claim
+from scenarios.frf_claims import FRF_END, axis_claims, coherence_claim
 from scenarios.inputs.make_inputs import LEVELS, QUICK_DURATION, level_signal
+from scenarios.interval_probability import AGREES_ABOVE, interval_probability
 from scenarios.slip_shares import slip_claims, slip_shares, slip_table
 from scenarios.study import car_study, computed_by, estimator_text, setting
+from scenarios.verdict import common
 from vehicle.arrays import Vector
+from vehicle.engines.linear.car_modes import Mode
 from vehicle.names import across
 from vehicle.runs.car import Run
 from vehicle.signals.analysis.frf import FrequencyResponse
@@ -43,7 +47,8 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     shares = slip_shares(runs, quick=options.quick)
     shipped = {level: value.slip for level, value in values.items()}
     claims = [*slip_claims(shares, shipped, slip_velocity), *frequency_claims(values), *order_claims(values)]
-    claims.append(other_damper_claim(by_level["low"]))
+    claims += [wheel_mode_claim(runs, values["low"]), other_damper_claim(by_level["low"])]
+    claims.append(seat_claim(responses["low"]))
     claims += axis_claims(responses, channels_of(runs.wheel), None if options.quick else rigid_lines(runs))
     trial = None if options.quick else less_friction(runs)
     claims.append(coherence_claim(responses, CHANNELS.index(DAMPER[0]), trial))
@@ -124,6 +129,55 @@ def numbers(run: Run, response: FrequencyResponse) -> LevelNumbers:
         body_peak=float(np.nanmax(knuckle[body])),
         damper_ratio=float(np.exp(np.nanmean(np.log(top[damper] / knuckle[damper])))),
     )
+
+
+def wheel_mode_claim(runs: CarRuns, low: LevelNumbers) -> Claim:
+    """Return the row on four definitions of the vertical wheel mode."""
+    car, evidence = runs.car(), evidence_of("wheel_mode")
+    natural = max(car.modes("stuck"), key=_wheel_hop).frequency
+    lines = np.arange(*WHEEL_BAND, 0.01)
+    (knuckle,) = np.abs(car.matrix_frf([f"knuckle_{runs.wheel}_acc_z"], lines, wheel=runs.wheel))
+    definitions = {
+        "natural frequency of the mode with most energy in wheel hop (`vehicle modes`)": natural,
+        "largest |H| of the knuckle by the matrices": float(lines[np.argmax(knuckle)]),
+        "largest line of the simulated FRF of the knuckle": low.wheel_peak_hz,
+        "phase of that FRF through 90 deg": low.wheel_hz,
+    }
+    return OWN_CHECK.statement(
+        "vertical wheel mode, low, by four definitions",
+        f"{WHEEL_HZ:g} Hz, no definition",
+        "; ".join(f"{value:.2f} Hz {text}" for text, value in definitions.items()),
+        common(
+            interval_probability(value, evidence.interval, error=evidence.error) > AGREES_ABOVE
+            for value in definitions.values()
+        ),
+        "rule: each as the row above, which has the last one. A mode near others (torsion, belt lines) has its peak "
+        "and its phase beside its natural frequency",
+    ).at(evidence.place, KNUCKLE)
+
+
+def _wheel_hop(mode: Mode) -> float:
+    """Return the share of the kinetic energy of a mode in the vertical motion of wheels [-]."""
+    return sum(share for motion, share in mode.motions.items() if "wheel hop" in motion)
+
+
+SEAT_FROM = 22.0
+"""Model and measurement of the source differ at the seat above this frequency [Hz] (section 3.2.1.4)."""
+
+
+def seat_claim(response: FrequencyResponse) -> Claim:
+    """Return the row on the seat, whose own dynamics the source recommends to model."""
+    seat, rail = (np.abs(response.response[CHANNELS.index(f"{name}_acc_z")]) for name in ("seat", "seat_rail"))
+    above = response.frequency >= SEAT_FROM
+    ratio = float(np.exp(np.nanmean(np.log(seat[above] / rail[above]))))
+    return NOT_TESTABLE.statement(
+        "seat above 22 Hz: a detailed seat model would improve it",
+        "recommended, not computed",
+        f"|H| of the seat over that of its rail, {SEAT_FROM:g} to {FRF_END:g} Hz: {ratio:.2f}",
+        None,
+        "the measured FRF of the seat is lost; here the seat is a point of the body, as in the source. The car "
+        "`focus_road_seated` has a seat with an occupant",
+    ).at("section 5.2", "seat_z.png")
 
 
 def other_damper_claim(run: Run) -> Claim:

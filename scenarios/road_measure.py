@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
+from scenarios.evidence import SLIP_STEP
 from scenarios.signals.exact_road import RATE_HZ, road
 from vehicle.arrays import Vector
 from vehicle.names import across
@@ -56,7 +57,8 @@ class RoadMeasure:
     `unweighted` and `weighted` are the comfort of the seat rail, see `vehicle.signals.analysis.ride_comfort`; the
     unweighted value is that of whole periods of the record. `gaussian_error` is its standard error over Gaussian roads
     of this spectrum, see `vehicle.signals.analysis.comfort_error`; `slip` and `slip_left` are shares of the time above
-    the slip velocity, for the damper of `wheel` and the damper of the opposite wheel; `saturated` is the share above
+    the slip velocity, for the damper of `wheel` and the damper of the opposite wheel; `slip_less` and `slip_more` are
+    those of the damper of `wheel` above a slip velocity 10 % lower and higher; `saturated` is the share above
     1 mm/s for the damper of `wheel`; `lowest_load` is the minimum load of its tyre; `pulling` is the share of the time
     with a negative load.
     """
@@ -83,6 +85,8 @@ class RoadMeasure:
             "gaussian_error": "m/s2",
             "slip": "-",
             "slip_left": "-",
+            "slip_less": "-",
+            "slip_more": "-",
             "saturated": "-",
             "lowest_load": "N",
             "pulling": "-",
@@ -107,6 +111,8 @@ class RoadMeasure:
             "gaussian_error": comfort.error * comfort.overall,
             "slip": slip_shares(right, limit),
             "slip_left": slip_shares(left, limit),
+            "slip_less": slip_shares(right, (1.0 - SLIP_STEP) * limit),
+            "slip_more": slip_shares(right, (1.0 + SLIP_STEP) * limit),
             "saturated": slip_shares(right, np.full_like(limit, SATURATED_VELOCITY)),
             "lowest_load": np.min(load, axis=1),
             "pulling": np.mean(load < 0.0, axis=1),

@@ -10,6 +10,7 @@ import numpy as np
 
 from scenarios.car_runs import CarRuns
 from scenarios.claims import Claim, markdown
+from scenarios.evidence import SLIP_STEP, slip_error
 from scenarios.evidence_claims import evidence_claim
 from scenarios.inputs.make_inputs import LEVELS, QUICK_DURATION
 from scenarios.signals.random_road import random_road
@@ -41,7 +42,8 @@ friction, 12 mm/s is that of a car chosen earlier."""
 def slip_shares(runs: CarRuns, *, quick: bool) -> Shares:
     """Return the slip shares at all levels; runs of the reduced engine, two short records with quick."""
     car, wheel = runs.car(), runs.wheel
-    velocities = (*OTHER_VELOCITIES, car.vehicle.damper.slip_velocity)
+    slip_velocity = car.vehicle.damper.slip_velocity
+    velocities = (*OTHER_VELOCITIES, slip_velocity, *_ends(slip_velocity))
     channels = [f"damper_{side}_velocity" for side in (wheel, across(wheel))]
     duration = QUICK_DURATION if quick else LENGTH
     shares: dict[str, dict[float, Vector]] = {}
@@ -81,20 +83,32 @@ def slip_claims(shares: Shares, shipped: Mapping[str, Sequence[float]], slip_vel
                 f"{100.0 * shipped[level][side]:.2f} %. {_others(shares[level], slip_velocity)}"
             )
             name = f"slip share of the {word} damper, {level} [%]"
-            ours = 100.0 * shares[level][slip_velocity][:, side]
-            claims.append(evidence_claim(f"slip_{word}_{level}", name, ours, why, printed=100.0 * share))
+            ours, less, more = (
+                100.0 * shares[level][velocity][:, side] for velocity in (slip_velocity, *_ends(slip_velocity))
+            )
+            error = slip_error(less, more)
+            claims.append(evidence_claim(f"slip_{word}_{level}", name, ours, why, printed=100.0 * share, error=error))
     return claims
 
 
+def _ends(slip_velocity: float) -> tuple[float, float]:
+    """Return the velocities [m/s] whose shares bound the error of a row, see `slip_error`."""
+    return (1.0 - SLIP_STEP) * slip_velocity, (1.0 + SLIP_STEP) * slip_velocity
+
+
 def _others(shares: Mapping[float, Vector], slip_velocity: float) -> str:
-    """Return a text with the shares of both dampers at the other velocities."""
+    """Return a text with the shares of both dampers at the other velocities, and at the ends of the error."""
     texts = [
         f"{right:.1f} / {left:.2f} % above {1e3 * velocity:g} mm/s"
-        for velocity in sorted(shares)
-        if velocity != slip_velocity
+        for velocity in OTHER_VELOCITIES
         for right, left in [100.0 * np.mean(shares[velocity], axis=0)]
     ]
-    return f"Right / left by other definitions: {', '.join(texts)}"
+    less, more = (100.0 * np.mean(shares[velocity], axis=0) for velocity in _ends(slip_velocity))
+    ends = ", ".join(f"{side} {low:.2f} to {high:.2f}" for side, low, high in zip(SIDES, more, less, strict=True))
+    return (
+        f"Right / left by other definitions: {', '.join(texts)}. Error: half of the change from "
+        f"{1e3 * _ends(slip_velocity)[1]:g} to {1e3 * _ends(slip_velocity)[0]:g} mm/s ({ends} %)"
+    )
 
 
 def slip_table(shares: Shares) -> str:

@@ -15,7 +15,10 @@ from typing import Any
 
 import numpy as np
 
-EVIDENCE = ("closed form", "second derivation", "foreign code", "standard", "publication", "conservation")
+EVIDENCE = (
+    *("closed form", "second derivation", "foreign code", "standard", "publication", "conservation"),
+    "own function",
+)
 """First words of a source: kinds of evidence, columns of the summary."""
 
 SUBJECTS = {
@@ -151,6 +154,11 @@ def current_test() -> str:
 def foreign(package: str, what: str = "") -> str:
     """Return the source text of a foreign package with its installed version."""
     return f"foreign code: {package} {version(package)}{', ' if what else ''}{what}"
+
+
+def own_function(package: str, what: str) -> str:
+    """Return the source text of a foreign solver that integrates equations, matrices or laws of this program."""
+    return f"own function: {what}, solved by {package} {version(package)}"
 
 
 def _values(values: Any, finest: float, unit: str) -> str:

@@ -26,6 +26,8 @@ How far may the numbers of this program be trusted? Each row below is a physical
 program checks against an expected value from elsewhere: a closed form, a second derivation, another program, a
 standard, a publication, or a conservation law or symmetry. A second derivation is written for the test, or computes
 the same quantity by another path of the program: the other engine, a finer step, the matrices of the linear system.
+Foreign code is most often a solver, an integral or a file writer of scipy, on equations that the test writes out. Where
+it works on equations, matrices or laws of this program, the row says own function: it verifies the integration alone.
 The tests write this page.
 
 **Verified against equations.** Force laws, static equilibrium, the linear system, time integration, reduction of

@@ -93,7 +93,7 @@ def extreme_claims(seeds: BumpSeeds, trials: Mapping[str, Mapping[str, float]]) 
                 key, ours = row_key(size, point, word), seeds.extremes[size, point][:, column]
                 row = f"bump {1e3 * size:g} mm, {word} {name} [m/s2]"
                 claim = evidence_claim(key, row, ours, AXIS).at(picture=picture_of(point))
-                if not claim.within and trials:
+                if not claim.within and claim.status != "not testable" and trials:
                     why = reason(evidence_of(key).interval, {label: values[key] for label, values in trials.items()})
                     claim = evidence_claim(key, row, ours, f"{AXIS}; {why}").at(picture=picture_of(point))
                 claims.append(claim)

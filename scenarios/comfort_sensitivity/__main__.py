@@ -21,6 +21,7 @@ from scenarios.comfort_sensitivity.claims import (
     RIGID_BODY,
     SOURCE,
     TITLES,
+    body_claim,
     degressive_claim,
     order_claims,
     size_claims,
@@ -103,10 +104,12 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
         label: {f"{name}, {road}, {value:g}": entry for (name, road, value), entry in entries.items()}
         for label, entries in trials.items()
     }
-    slip = slip_claims(comfort.nominal(), runs.car().vehicle.damper.slip_velocity)
+    records = {road: comfort(comfort.cases((), road)) for road in ROAD_RMS}
+    slip = slip_claims(records, runs.car().vehicle.damper.slip_velocity)
     claims = [*slip, *order_claims(curves), *size_claims(curves, trials), *level_claims(levels, louder)]
     claims += [*history_claims(levels), amplification_claim(comfort.nominal()), stiffness_claim(wheel_modes(comfort))]
     claims += [*wheel_claims(levels), degressive_claim(degressive_points(comfort))]
+    claims.append(body_claim(body_points(comfort)))
     return Findings(
         title="Comfort on a smooth and a rough road (Bommer 2006, chapter 4)",
         claims=claims,
@@ -143,6 +146,15 @@ def beyond_cases(comfort: ComfortRuns) -> list[Case]:
 def degressive_points(comfort: ComfortRuns) -> dict[str, Point]:
     """Return road to the point of the car with the degressive damper, relative to that with the linear one."""
     return {road: comfort.point(0.0, DEGRESSIVE, road, ()) for road in ROAD_RMS}
+
+
+def body_points(comfort: ComfortRuns) -> dict[str, list[Point]]:
+    """Return road to the points of the cars with the softest and the stiffest body."""
+    cars = comfort.cars(BODY)
+    return {
+        road: [comfort.point(value, cars[value], road, ()) for value in (BODY.values[0], BODY.values[-1])]
+        for road in ROAD_RMS
+    }
 
 
 def beyond_findings(

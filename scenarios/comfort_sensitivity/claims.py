@@ -6,8 +6,8 @@ from itertools import pairwise
 import numpy as np
 
 from scenarios.claims import NOT_TESTABLE, PREDICTED, Claim, Interval
-from scenarios.comfort_runs import Changes, Curves, Point, Variation
-from scenarios.evidence import COMFORT_ENDS
+from scenarios.comfort_runs import Changes, Curves, Numbers, Point, Variation
+from scenarios.evidence import COMFORT_ENDS, SLIP_STEP, slip_error
 from scenarios.evidence_claims import evidence_claim, reason
 from scenarios.signals.exact_road import ROAD_EDGE_HZ
 
@@ -32,20 +32,34 @@ SAME_INFLUENCE = 0.25
 """Largest difference of two ranges that count as about the same, as a share of one: two divisions of 2 % in 16 %."""
 
 
-def slip_claims(nominal: Mapping[str, Point], slip_velocity: float) -> list[Claim]:
-    """Return the rows on the slip shares of the nominal car on both roads."""
-    return [
-        evidence_claim(
-            f"slip_{road}",
-            f"slip share of the right damper, {road} road [%]",
-            100.0 * numbers.slip,
-            f"above {1e3 * slip_velocity:g} mm/s, as in all rows; standard error {100.0 * numbers.slip_error:.2f} "
-            f"points; {100.0 * numbers.saturated:.1f} % above 1 mm/s. One band edge for both "
-            f"roads, {ROAD_EDGE_HZ:g} Hz",
-            printed=100.0 * PUBLISHED_SLIP[road],
+def slip_claims(records: Mapping[str, Sequence[Numbers]], slip_velocity: float) -> list[Claim]:
+    """Return the rows on the slip shares of the nominal car on both roads.
+
+    Args:
+        records: road to the values of the nominal car on each of its records.
+        slip_velocity: velocity of the rows [m/s].
+    """
+    claims = []
+    for road, numbers in records.items():
+        shares = {
+            name: np.array([100.0 * record[name] for record in numbers])
+            for name in ("slip", "saturated", "slip_less", "slip_more")
+        }
+        less, more = (float(np.mean(shares[name])) for name in ("slip_less", "slip_more"))
+        claims.append(
+            evidence_claim(
+                f"slip_{road}",
+                f"slip share of the right damper, {road} road [%]",
+                shares["slip"],
+                f"above {1e3 * slip_velocity:g} mm/s, as in all rows; {np.mean(shares['saturated']):.1f} % above 1 "
+                f"mm/s. One band edge for both roads, {ROAD_EDGE_HZ:g} Hz. Error: half of the change from a slip "
+                f"velocity {100.0 * SLIP_STEP:g} % higher to one {100.0 * SLIP_STEP:g} % lower ({more:.1f} to "
+                f"{less:.1f} %)",
+                printed=100.0 * PUBLISHED_SLIP[road],
+                error=slip_error(less, more),
+            )
         )
-        for road, numbers in nominal.items()
-    ]
+    return claims
 
 
 def order_claims(curves: Mapping[str, Curves]) -> list[Claim]:
@@ -111,6 +125,24 @@ def degressive_claim(points: Mapping[str, Point]) -> Claim:
         "the source has this damper for the quarter car only; ours with the numbers of appendix C.2, ± two standard "
         "errors",
     ).at("section 5")
+
+
+def body_claim(points: Mapping[str, Sequence[Point]]) -> Claim:
+    """Return the row on the global stiffness of the body, which the source recommends and does not compute."""
+    return NOT_TESTABLE.statement(
+        "body of another global stiffness in the complete car: comfort value over that of the designed body",
+        "recommended, not computed",
+        "; ".join(
+            f"{road} road "
+            + ", ".join(
+                f"{100.0 * point.relative:.1f} ± {200.0 * point.relative_error:.1f} % with modes x {point.value:g}"
+                for point in ends
+            )
+            for road, ends in points.items()
+        ),
+        None,
+        "all frequencies of the flexible body times a factor, masses unchanged; ± two standard errors",
+    ).at("section 5.2", f"{BODY.name}.png")
 
 
 def _end_name(word: str, value: float, road: str) -> str:

@@ -14,6 +14,8 @@ import numpy as np
 
 from scenarios.claims import Findings, markdown
 from scenarios.damper_choice.claims import (
+    city_claim,
+    determinant_claim,
     half_optimum_claims,
     half_response_claims,
     quarter_optimum_claims,
@@ -86,6 +88,8 @@ def study(parameters: DamperChoiceParameters, folder: Path, options: argparse.Na
         *rate_claims(parameters, holding["highway"]["printed"], printed(4000.0, 4000.0), printed(3250.0, 3250.0)),
         *half_optimum_claims(holding["highway"]["physical"], "physical"),
         *curve_claims(curves),
+        city_claim(holding["highway"], holding["city"]),
+        determinant_claim(parameters),
     ]
     curve_figure(folder, curves)
     response_figures(folder, lines, quarter, wide, half)

@@ -1,14 +1,15 @@
 """Rows of printed statements about the choice of dampers with the results of the equations."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from scenarios.claims import CHOSEN, COMPARED, FITTED, PREDICTED, Claim, placed
+from scenarios.claims import CHOSEN, COMPARED, FITTED, NOT_TESTABLE, PREDICTED, Claim, placed
 from scenarios.damper_choice.experiments import rear_experiment, wheel_experiments
 from scenarios.damper_choice.fit import FRONT_RATIOS, QUARTER_RATIOS, REAR_RATIOS
 from scenarios.damper_choice.optimum import Optimum
 from scenarios.damper_choice.other_vehicles import CROSSING, LOW_EDGE, SAME, Refit, region_verdicts
+from scenarios.damper_choice.printed_determinant import PRINTED_TERMS, half_car_matrix, printed_determinant, wrong_terms
 from scenarios.damper_choice.response_features import crossing, last_peak, local_peaks, spread_of
 from scenarios.damper_choice.runs import HALF_DAMPING, QUARTER_DAMPING, RoadHolding
 from scenarios.lumped.damper_choice import DamperChoiceParameters
@@ -25,6 +26,9 @@ RATE_READING = 0.05
 
 PICTURES = {2: "figure_02_03_quarter_car.png", 5: "figure_05_to_08_half_car.png", 9: "figure_09_10_highway.png"}
 """First figure of the source that a picture shows -> its file."""
+
+DETERMINANT_HZ = (2.0, 6.0)
+"""Frequencies at which the printed determinant is compared [Hz]: body resonance, and where the wheel curves cross."""
 
 ITERATION = "figure_11_12_13_iteration.png"
 
@@ -199,6 +203,42 @@ def quarter_optimum_claims(parameters: DamperChoiceParameters, road_holding: Roa
             ).at("equation 10")
         )
     return placed(rows, "figure 9", PICTURES[9])
+
+
+def city_claim(highway: Mapping[str, RoadHolding], city: Mapping[str, RoadHolding]) -> Claim:
+    """Return the row on the best damper of the quarter car on both roads of table 1, by measure."""
+    optima = [
+        f"{measure} measure: city {city[measure].quarter_optimum.damping:.0f}, highway "
+        f"{highway[measure].quarter_optimum.damping:.0f} N s/m"
+        for measure in highway
+    ]
+    return NOT_TESTABLE.statement(
+        "quarter car optimum on the city road against the highway",
+        "another road may have another best damper",
+        "; ".join(optima),
+        None,
+        "the source computes the highway only and says that the best damper need not be that of another road; both "
+        "spectra have nearly one shape (b 0.213 against 0.19 s), and a alone moves no optimum",
+    ).at("table 1", PICTURES[9])
+
+
+def determinant_claim(parameters: DamperChoiceParameters) -> Claim:
+    """Return the row on the printed determinant of the half car."""
+    wrong = wrong_terms()
+    ratios = [
+        abs(printed_determinant(matrix) / np.linalg.det(matrix))
+        for matrix in (half_car_matrix(parameters.half_car, frequency) for frequency in DETERMINANT_HZ)
+    ]
+    at = " and ".join(f"{ratio:.2f} at {line:g} Hz" for ratio, line in zip(ratios, DETERMINANT_HZ, strict=True))
+    return COMPARED.statement(
+        "determinant D below equation 6",
+        "determinant of the matrix a",
+        f"{len(PRINTED_TERMS) - len(wrong)} of {len(PRINTED_TERMS)} terms are permutations; |D| as printed over the "
+        f"determinant: {at}",
+        not wrong,
+        f"{' and '.join(wrong)} has two factors of one column and none of another, so it is no term of a determinant "
+        "(a31 a42 a14 a23 is missing). The scan lost the signs; each term has that of its permutation",
+    ).at("equation 6")
 
 
 def _steeper(name: str, measure: str, best: Optimum, damping: Vector, curve: Vector) -> Claim:

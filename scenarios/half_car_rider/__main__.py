@@ -15,13 +15,23 @@ from scenarios.claims import Claim, Findings, markdown
 from scenarios.half_car_rider.claims import (
     base_case_claims,
     dose_claims,
+    first_mode_claim,
     law_claim,
     matrix_claim,
     speed_claims,
     travel_claims,
 )
 from scenarios.half_car_rider.figures import lift_off_figure, speed_figure, study_figures, time_figures
-from scenarios.half_car_rider.runs import SPEEDS, Outcome, base_case_table, driven, outcome, parameter_study, passive
+from scenarios.half_car_rider.runs import (
+    SPEEDS,
+    Outcome,
+    at_first_mode,
+    base_case_table,
+    driven,
+    outcome,
+    parameter_study,
+    passive,
+)
 from scenarios.half_car_rider.seats import FACTORS, Measure, with_experiment
 from scenarios.lumped.half_car_rider_model import ENDS
 from scenarios.lumped.half_car_rider_parameters import (
@@ -70,6 +80,7 @@ def study(car: HalfCarRiderParameters, folder: Path, options: argparse.Namespace
         *travel_claims(car, studied, factors),
         matrix_claim(car),
         law_claim({law: [o.upper_vdv for o in row] for law, row in outcomes.items()}),
+        first_mode_claim(*at_first_mode(car, laws)),
     ]
     if not options.quick:
         claims = with_experiment(claims, car, rows_of)

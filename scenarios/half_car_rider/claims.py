@@ -221,9 +221,9 @@ def _changes(table: Sequence[Sequence[Outcome]], name: str) -> Vector:
 
 
 def relative_changes(values: Sequence[Sequence[float]]) -> Vector:
-    """Return the change from the first to the last factor over the middle of the range, one for each speed [-]."""
+    """Return the change from the first to the last factor over the value at the first, one for each speed [-]."""
     table = np.asarray(values, dtype=float)
-    return np.asarray((table[:, -1] - table[:, 0]) / table.mean(axis=1))
+    return np.asarray(table[:, -1] / table[:, 0] - 1.0)
 
 
 def _why_dose(car: HalfCarRiderParameters) -> dict[str, str]:
@@ -333,6 +333,27 @@ def law_claim(doses: Mapping[str, Sequence[float]]) -> Claim:
         "the title and equations 4 to 7 have control forces, but no law and no number of a damper is printed; VDV of "
         f"the upper body with usual laws at {_list(SPEEDS)} km/h, all numbers assumed",
     ).at("section 2")
+
+
+def first_mode_claim(frequency: float, ratios: Mapping[str, Mapping[str, Sequence[float]]]) -> Claim:
+    """Return the row on semi-active dampers at the first natural frequency.
+
+    Args:
+        frequency: first natural frequency of the passive car [Hz].
+        ratios: law to quantity to its RMS over that of the passive car at each of `SPEEDS` [-].
+    """
+    return NOT_TESTABLE.statement(
+        "semi-active suspension at the first natural frequency: body acceleration, suspension and tyre deflection",
+        "all significantly improved",
+        "; ".join(
+            f"{law}: " + ", ".join(f"{name} x {min(row):.2f} to {max(row):.2f}" for name, row in quantities.items())
+            for law, quantities in ratios.items()
+        ),
+        None,
+        "no law and no number of a damper is printed, and the law turns the row; RMS over that of the passive car on a "
+        f"sine road of {frequency:.2f} Hz, steady, at {SPEEDS[0]:.0f} to {SPEEDS[-1]:.0f} km/h, the larger of both "
+        "axles; all numbers of the laws assumed",
+    ).at("section 1")
 
 
 def _list(values: Sequence[float]) -> str:

@@ -14,6 +14,8 @@ from scenarios.lumped.half_car_rider_parameters import HalfCarRiderParameters
 from scenarios.lumped.history import History
 from scenarios.lumped.semi_active_half_car import simulate_bump
 from vehicle.arrays import Vector
+from vehicle.engines.linear.first_order import first_order
+from vehicle.engines.linear.natural_modes import natural_modes
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.semi_active_damper import PASSIVE
 from vehicle.signals.analysis.exposure import vibration_dose_value
@@ -137,6 +139,45 @@ def driven(car: HalfCarRiderParameters, speeds: Sequence[float], law: str, *, on
         one_sided_tyres=one_sided_tyres,
         duration=DURATION,
     )
+
+
+WAVES = 20
+"""Waves of a sine road: the last ten of them are evaluated, when the start has died away."""
+
+
+def at_first_mode(car: HalfCarRiderParameters, laws: Sequence[str]) -> tuple[float, dict[str, dict[str, list[float]]]]:
+    """Return the first natural frequency [Hz], and law to quantity to RMS over that of the passive car at `SPEEDS`.
+
+    The road is a sine of that frequency and of the height of the bump under both axles, one wheelbase apart.
+    """
+    frequency = float(natural_modes(first_order(half_car_rider(car))).frequency[0])
+    speeds = [speed * KMH for speed in SPEEDS]
+    cars = [replace(car, bump=replace(car.bump, length=0.5 * speed / frequency)) for speed in speeds]
+
+    def sizes(law: str) -> dict[str, list[float]]:
+        histories = simulate_bump(cars, speeds, law=law, duration=WAVES / frequency, halves=2 * WAVES)
+        late = [history.during(0.5 * WAVES / frequency) for history in histories]
+        return {
+            "body acceleration": [_rms(entry.acceleration("body")) for entry in late],
+            "suspension": [max(_rms(entry.displacement(f"{end}_travel")) for end in ENDS) for entry in late],
+            "tyre": [
+                max(_rms(entry.displacement(f"{end}_wheel") - entry.inputs[:, n]) for n, end in enumerate(ENDS))
+                for entry in late
+            ],
+        }
+
+    reference = sizes(PASSIVE)
+    return frequency, {
+        law: {
+            name: [value / base for value, base in zip(row, reference[name], strict=True)]
+            for name, row in sizes(law).items()
+        }
+        for law in laws
+    }
+
+
+def _rms(signal: Vector) -> float:
+    return float(np.sqrt(np.mean(signal**2)))
 
 
 def peak(signal: Vector) -> float:

@@ -28,11 +28,12 @@ class BumpPassage:
     height: float  # h0 [m]
     omega: float  # Angular frequency pi v / wb [rad/s]
     arrivals: tuple[float, ...]  # Time t_i at which each wheel reaches the bump [s]
+    halves: int = 1  # Number of half waves: 1 for a bump, more for a sine road of finite length
 
     @property
     def contact(self) -> float:
-        """Return the time wb / v of a wheel on the bump [s]."""
-        return math.pi / self.omega
+        """Return the time n wb / v of a wheel on n half waves [s]."""
+        return self.halves * math.pi / self.omega
 
     def heights(self, time: npt.ArrayLike) -> Vector:
         """Return the road height under each wheel [m], shape (wheels, *time.shape)."""
@@ -51,7 +52,9 @@ class BumpPassage:
         return [(phase, (phase >= 0.0) & (phase < self.contact)) for phase in elapsed]
 
 
-def bump_passage(shape: BumpShape, speed: float, wheelbase: float, start: float = 0.0) -> BumpPassage:
+def bump_passage(
+    shape: BumpShape, speed: float, wheelbase: float, start: float = 0.0, *, halves: int = 1
+) -> BumpPassage:
     """Return the passage of a two-axle car over a bump at constant speed; the rear wheel arrives (a1 + a2) / v later.
 
     Args:
@@ -59,6 +62,7 @@ def bump_passage(shape: BumpShape, speed: float, wheelbase: float, start: float 
         speed: v [m/s].
         wheelbase: a1 + a2 [m].
         start: time t0 at which the front wheel reaches the bump [s].
+        halves: number of half waves in a row, alternately up and down.
 
     Returns:
         The passage, front wheel first.
@@ -74,7 +78,7 @@ def bump_passage(shape: BumpShape, speed: float, wheelbase: float, start: float 
     if not (math.isfinite(start) and start >= 0.0):
         raise ConfigurationError(f"bump passage: start: found {start!r} s, must be at least 0.0")
     omega = math.pi * speed / shape.length
-    return BumpPassage(height=shape.height, omega=omega, arrivals=(start, start + wheelbase / speed))
+    return BumpPassage(height=shape.height, omega=omega, arrivals=(start, start + wheelbase / speed), halves=halves)
 
 
 def bump_response(model: LinearSystem, passage: BumpPassage, *, time_step: float, duration: float) -> History:

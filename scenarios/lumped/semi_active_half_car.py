@@ -36,6 +36,7 @@ def simulate_bump(
     one_sided_tyres: bool = False,
     duration: float = 5.0,
     largest_step: float = LARGEST_STEP,
+    halves: int = 1,
 ) -> list[History]:
     """Simulate cars over their bumps with passive or controlled dampers.
 
@@ -47,6 +48,7 @@ def simulate_bump(
         one_sided_tyres: tyres cannot pull: the load is max(0, static + k (z - x) + c (z' - x')).
         duration: duration of the runs [s].
         largest_step: upper limit of the integration step [s].
+        halves: number of half waves of the bump in a row, see `bump_passage`.
 
     Returns:
         History of each run, sampled once in an integration step. Its sliding pairs are the dampers of both axles,
@@ -75,7 +77,7 @@ def simulate_bump(
     if steps < 1:
         raise ConfigurationError(f"half car: duration: found {duration!r} s, must be at least {step!r} s")
     passages = [
-        bump_passage(car.bump, speed, car.body.front_arm + car.body.rear_arm)
+        bump_passage(car.bump, speed, car.body.front_arm + car.body.rear_arm, halves=halves)
         for car, speed in zip(cars, speeds, strict=True)
     ]
     run = _Cars([_without_dampers(car) for car in cars], cars, one_sided_tyres)

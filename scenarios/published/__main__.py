@@ -73,7 +73,7 @@ def _job(options: argparse.Namespace) -> None:
     beside: dict[str, dict[str, Any]] = {}
     for name in () if options.quick else (name for name in STUDIES if name in BESIDE_STUDIES):
         print(f"{name}, {BESIDE_NAME}", flush=True)
-        beside[name] = study_results(name, options, f"{name}_beside", (*BESIDE_STUDIES[name], "--set", *BESIDE))
+        beside[name] = study_results(name, options, f"{name}_beside", (*BESIDE_STUDIES[name], "--vehicle", BESIDE))
     rows = collect(results, beside)
     notes = results.get(CHOICE, {}).get("notes", [])
     left_open = [f"{name}: {row}" for name, content in results.items() for row in content.get("not_judged", {})]

@@ -4,8 +4,8 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
 
-from scenarios.claims import STATUSES, VERDICTS, cell, headline, markdown
-from scenarios.evidence import EVIDENCE, half_of
+from scenarios.claims import STATUSES, cell, headline, markdown
+from scenarios.evidence import EVIDENCE, SLIP_STEP, half_of
 from scenarios.interval_probability import AGREES_ABOVE
 from scenarios.published.sources import BESIDE_NAME, SOURCES, Place, Section, Source, place_of, section_of, source_of
 from scenarios.published.statements import unanswered
@@ -40,8 +40,11 @@ were fitted are `fitted`.
 known to lie between two labels of its axis. Column `inside`: our value, or its mean over noise seeds or windows,
 lies in that interval. Column `agrees`: the interval is not contradicted at {100.0 * AGREES_ABOVE:g} %, which is
 weaker: the probability that a further value lies in it is above {100.0 * AGREES_ABOVE:g} % (Student's t, with the
-stated error of the model; `scenarios/interval_probability.py`); a value without seeds and error agrees inside. A
-statement in words agrees by the rule of its row. A row is `undecided` where its verdict is not the same for our
+stated error of the model; `scenarios/interval_probability.py`); a value without seeds and error agrees inside. The
+error of a slip share is half of its change from a slip velocity {100.0 * SLIP_STEP:g} % higher to one
+{100.0 * SLIP_STEP:g} % lower, row by row. An axis of which only one label and 0 are known holds any smaller curve:
+such a row is `not testable`, unless our value is outside.
+A statement in words agrees by the rule of its row. A row is `undecided` where its verdict is not the same for our
 value and for {ERRORS:g} standard errors above and below it (over seeds, roads or windows), or where single seeds,
 roads or readings of the statement differ (`scenarios/verdict.py`): it does not count as agreeing. `own check` is no
 published result, `duplicate` is the statement of another row again, and `not testable` lacks something that the
@@ -54,7 +57,8 @@ of sticking, as in figures 3.12 and 3.38: above 1 mm/s, where the friction is sa
 
 **Two cars.** The printed Ixx of 1000 kg m2 has a roll mode of 6.5 Hz, in the thesis as here; the measured car had
 5.8 Hz, and an axis of chapter 3 that holds a measurement holds that car too. Column `{BESIDE_NAME}` has our value
-and verdict with 1080 kg m2, whose roll mode is at 5.8 Hz. Counts are of the printed car.
+and verdict with 1080 kg m2, whose roll mode is at 5.8 Hz: the shipped car `focus_measured_roll`
+(`python -m vehicle shaker --input high.csv --vehicle focus_measured_roll`). Counts are of the printed car.
 """
 
 ROW_COLUMNS = ("statement", "published", "ours", "inside", "agrees", BESIDE_NAME, "status", "why")
@@ -188,7 +192,7 @@ def _text(row: Row, name: str) -> str:
     if name == "status" and row["evidence"]:
         return f"{row['status']} ({half_of(row['evidence'])})"
     if name == "beside":
-        return f"{cell(row['beside'], 'ours')}: {VERDICTS[row['beside']['within']]}" if row["beside"] else ""
+        return f"{cell(row['beside'], 'ours')}: {cell(row['beside'], 'within')}" if row["beside"] else ""
     return cell(row, name)
 
 

@@ -12,6 +12,11 @@ COMPLETE_CAR = {
     "roll mode of the body": ("inertia: roll peak*",),
     "six rigid body modes": ("inertia: six rigid body modes",),
     "engine modes": ("inertia: engine modes",),
+    "Ixx 1200, no change of the other modes": ("inertia: other rigid body modes, Ixx 1200*",),
+    "roll tuned otherwise, three others badly tuned": ("inertia: other rigid body modes with the roll mode tuned*",),
+    "stabilizer tuned from 3 to 5 kN m/rad": ("inertia: stabilizer*",),
+    "seat above 22 Hz": ("levels: seat above*",),
+    "body of another stiffness": ("comfort_sensitivity: body of another global stiffness*",),
     "flexible body modes": ("inertia: flexible modes*",),
     "torsion mode and vertical wheel mode": ("inertia: torsion mode*",),
     "left damper top and left knuckle": ("levels: damper top against knuckle on the left*",),
@@ -50,6 +55,7 @@ QUARTER_CAR = {
         "quarter_car: sine *: lowest *",
     ),
     "resonances against the level of the road": ("quarter_car: *resonance*",),
+    "engine alone at the slip wheel mode": ("quarter_car: engine alone against the wheel*",),
     "engine mass, accelerations at 1 and 50 mm": ("@figure 2.17",),
     "engine mass, effect of the transitions": ("@figure 2.18",),
     "engine mass on the road": ("quarter_car: *engine*first resonance*",),
@@ -75,7 +81,8 @@ HALF_CAR_RIDER = {
     "VDV with tyre damping": ("half_car_rider: VDV*tyre damping*",),
     "VDV with speed": ("half_car_rider: VDV with speed*",),
     "suspension travel": ("half_car_rider: suspension travel*",),
-    "semi-active law": ("half_car_rider: semi-active*",),
+    "semi-active law": ("half_car_rider: semi-active suspension: control*",),
+    "semi-active at the first natural frequency": ("half_car_rider: semi-active suspension at the first*",),
     "conclusions": ("half_car_rider: conclusion*", "half_car_rider@*conclusion*", "half_car_rider@section 5*"),
 }
 """Statements of the half car with rider."""
@@ -90,6 +97,8 @@ DAMPER_CHOICE = {
     "half car, equal dampers": ("damper_choice: *equal dampers*",),
     "half car, iteration": ("damper_choice: *iteration*",),
     "bump and rebound curves": ("damper_choice: *rebound*",),
+    "determinant": ("damper_choice: determinant*",),
+    "city road": ("damper_choice: *city road*",),
 }
 """Statements of the choice of dampers."""
 

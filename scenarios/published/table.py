@@ -20,7 +20,7 @@ def collect(
         beside: results of studies with the car of `sources.BESIDE`; their values are the member `beside` of a row.
     """
     others = {
-        (study, row["name"]): {name: row[name] for name in ("ours", "within", "inside")}
+        (study, row["name"]): {name: row[name] for name in ("ours", "within", "inside", "status")}
         for study, content in (beside or {}).items()
         for row in content["rows"]
     }

@@ -13,6 +13,9 @@ ABOUT = "printed with 'about', read from a figure: 5 %"
 PHASE_READING = 25.0
 """A phase is read from an axis with labels 100 deg apart: a quarter of that [deg]."""
 
+COINCIDE = 0.05
+"""Two frequencies coincide within this share [-], as `ABOUT`."""
+
 EQUAL = 0.1
 """Two amplitudes are "equal" within this share [-]."""
 
@@ -158,6 +161,8 @@ def element_claims(runs: Runs) -> list[Claim]:
     at_nine = float(np.degrees(law.loss_angle(2.0 * np.pi * 9.0)))
     corner = float(rubber.branch_stiffness / (2.0 * np.pi * rubber.branch_damping))
     ratio, digits = float(50.0 * mount.damping / (engine.mass * natural)), "printed digits"
+    hop = natural_modes(runs.model(damper="slip"))
+    wheel, free = float(hop.frequency[1]), float(hop.damped_frequency[1])
     largest = (
         f"our largest angle, which the source does not print: {np.degrees(angle):.2f} deg at "
         f"{frequency / (2.0 * np.pi):.2f} Hz"
@@ -166,6 +171,13 @@ def element_claims(runs: Runs) -> list[Claim]:
     return [
         PREDICTED.number("engine alone [Hz]", 12.7, float(natural / (2 * np.pi)), 0.05, digits).at(mass),
         PREDICTED.number("engine alone, damping [%]", 15.0, ratio, 0.5, digits).at(mass),
+        PREDICTED.statement(
+            "engine alone against the wheel with the damper in slip",
+            "frequencies coincide, 12.5 Hz",
+            f"engine {natural / (2.0 * np.pi):.2f} Hz, wheel {wheel:.2f} Hz undamped, {free:.2f} Hz in its free decay",
+            all(abs(natural / (2.0 * np.pi) / frequency - 1.0) <= COINCIDE for frequency in (wheel, free)),
+            f"rule: within {COINCIDE:.0%} of both, as the frequencies that are printed with 'about'",
+        ).at(mass),
         PREDICTED.number(
             "elastomer, loss angle at 9 Hz [deg]",
             10.0,

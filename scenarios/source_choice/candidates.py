@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from scenarios.evidence import SLIP_STEP
 from vehicle.model.parameters.shipped import vehicle_file as shipped_file
 from vehicle.runs.output.folder import write_text
 
@@ -26,6 +27,9 @@ BRACKETS = {"as designed": 1.0, "half as stiff": 0.5, "twice as stiff": 2.0}
 
 SLIP_VELOCITIES = tuple(1e-3 * v for v in (1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13.5, 15))
 """Velocity that counts as slip [m/s]."""
+
+SLIP_STEPS = (1.0, 1.0 - SLIP_STEP, 1.0 + SLIP_STEP)
+"""Factors on the slip velocity at which the shares are read: the share, and both ends of its error."""
 
 SHAKER_EDGES = (2.0, 2.5, 3.0, 4.0, 6.0)
 """Lower edge of the shaker inputs, and of the noise before and after the bump [Hz], half power."""

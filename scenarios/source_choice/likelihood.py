@@ -5,9 +5,8 @@ from dataclasses import dataclass
 from functools import lru_cache, partial
 
 import numpy as np
-import numpy.typing as npt
 
-from scenarios.evidence import COMFORT_ENDS, EVIDENCE, LEVELS, USED, Evidence
+from scenarios.evidence import COMFORT_ENDS, EVIDENCE, LEVELS, USED, Evidence, slip_error
 from scenarios.interval_probability import AGREES_ABOVE, interval_probability
 from scenarios.signals.exact_road import ROAD_RMS
 from scenarios.source_choice.candidates import NOISE_LEVELS, SLIP_VELOCITIES, Rig
@@ -47,14 +46,16 @@ class Candidate:
         )
 
 
-def probability(row: Evidence, values: npt.ArrayLike) -> float:
-    """Return the probability of the interval of a row, over our values, (n,), and the error of the model."""
-    return interval_probability(values, row.interval, error=row.error)
+def probability(row: Evidence, readings: Readings, candidate: Candidate, plan: Plan) -> float:
+    """Return the probability of the interval of a row, over our values and the error of the model."""
+    values = _VALUES[row.key](readings, candidate, plan)
+    return interval_probability(values, row.interval, error=_error(row, readings, candidate))
 
 
-def log_likelihood(row: Evidence, values: npt.ArrayLike) -> float:
+def log_likelihood(row: Evidence, readings: Readings, candidate: Candidate, plan: Plan) -> float:
     """Return the weighted ln(m + (1 - m) P) of a row, m the probability of a misreading."""
-    return row.weight * float(np.log(MISREADING + (1.0 - MISREADING) * probability(row, values)))
+    chance = probability(row, readings, candidate, plan)
+    return row.weight * float(np.log(MISREADING + (1.0 - MISREADING) * chance))
 
 
 def values_of(readings: Readings, candidate: Candidate, plan: Plan) -> dict[str, Vector]:
@@ -66,11 +67,8 @@ Reader = Callable[[Readings, Candidate, Plan], Vector]
 
 
 def _readers() -> Iterator[tuple[str, Reader]]:
-    for index, level in enumerate(LEVEL_NAMES):
-        for side, word in enumerate(("right", "left")):
-            yield f"slip_{word}_{level}", partial(_shaker_share, index, side)
-    for index, name in enumerate(ROAD_RMS):
-        yield f"slip_{name}", partial(_road_share, index)
+    for key in _SHARES:
+        yield key, partial(_share, key)
     yield "bump_7p5_end_of_stick", lambda readers, entry, _: np.minimum(readers.stick_end[entry.noise], 6.0)
     yield "bump_1p5_no_slip", _fastest
     for size in ("7p5", "1p5"):
@@ -87,12 +85,35 @@ def _readers() -> Iterator[tuple[str, Reader]]:
         yield name, partial(_mode, index)
 
 
-def _shaker_share(level: int, side: int, readings: Readings, candidate: Candidate, _: Plan) -> Vector:
-    return np.asarray(100.0 * readings.shaker[candidate.shaker, level, :, side, candidate.velocity])
+def _shaker_shares(level: int, side: int, readings: Readings, candidate: Candidate) -> Vector:
+    return np.asarray(100.0 * readings.shaker[candidate.shaker, level, :, side, :, candidate.velocity])
 
 
-def _road_share(road: int, readings: Readings, candidate: Candidate, _: Plan) -> Vector:
-    return np.asarray(100.0 * readings.road[candidate.road, road, :, candidate.velocity])
+def _road_shares(road: int, readings: Readings, candidate: Candidate) -> Vector:
+    return np.asarray(100.0 * readings.road[candidate.road, road, :, :, candidate.velocity])
+
+
+_SHARES: Mapping[str, Callable[[Readings, Candidate], Vector]] = {
+    **{
+        f"slip_{word}_{level}": partial(_shaker_shares, index, side)
+        for index, level in enumerate(LEVEL_NAMES)
+        for side, word in enumerate(("right", "left"))
+    },
+    **{f"slip_{name}": partial(_road_shares, index) for index, name in enumerate(ROAD_RMS)},
+}
+"""Key of a slip share to the shares [%] at `SLIP_STEPS` of the slip velocity of a candidate, (seeds, steps)."""
+
+
+def _share(key: str, readings: Readings, candidate: Candidate, _: Plan) -> Vector:
+    return np.asarray(_SHARES[key](readings, candidate)[:, 0])
+
+
+def _error(row: Evidence, readings: Readings, candidate: Candidate) -> float:
+    """Return the error of the model in the unit of a row; for a slip share that of the candidate's own shares."""
+    if row.key not in _SHARES:
+        return row.error
+    _, less, more = _SHARES[row.key](readings, candidate).T
+    return slip_error(less, more)
 
 
 def _fastest(readings: Readings, candidate: Candidate, _: Plan) -> Vector:
@@ -176,7 +197,7 @@ def table(readings: Readings, rig: Rig, plan: Plan, keys: frozenset[str] = USED)
         part = np.empty([sizes[name] if name in axes else 1 for name in NUMBERS])
         for at in np.ndindex(part.shape):
             candidate = Candidate(rig=rig, **dict(zip(NUMBERS, at, strict=True)))
-            part[at] = log_likelihood(row, _VALUES[row.key](readings, candidate, plan))
+            part[at] = log_likelihood(row, readings, candidate, plan)
         total += part
     return total
 
@@ -229,8 +250,7 @@ def shipped_numbers(readings: Readings, rig: Rig, plan: Plan, whole: Vector) -> 
 
 def probabilities(readings: Readings, candidate: Candidate, plan: Plan) -> dict[str, float]:
     """Return key to probability of every row."""
-    values = values_of(readings, candidate, plan)
-    return {row.key: probability(row, values[row.key]) for row in EVIDENCE}
+    return {row.key: probability(row, readings, candidate, plan) for row in EVIDENCE}
 
 
 def agreement(by_row: Mapping[str, float], keys: Sequence[str]) -> float:
@@ -247,7 +267,7 @@ def jackknife(judged: Sequence[tuple[Readings, Candidate]], plan: Plan) -> float
     for seed in range(plan.seeds):
         sums = []
         for readings, without_seed in judged:
-            values = values_of(readings.without(seed), without_seed, plan)
-            sums.append(sum(log_likelihood(row, values[row.key]) for row in EVIDENCE if row.key in USED))
+            kept = readings.without(seed)
+            sums.append(sum(log_likelihood(row, kept, without_seed, plan) for row in EVIDENCE if row.key in USED))
         differences.append(sums[0] - sums[1])
     return float(np.sqrt((plan.seeds - 1) * np.var(differences)))

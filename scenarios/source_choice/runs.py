@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from scenarios.evidence import COMFORT_ENDS, LEVELS
-from scenarios.inertia import led_by, roll_mode
 from scenarios.inputs.make_inputs import LEVELS as SHAKER_RMS
 from scenarios.levels import WHEEL_BAND
+from scenarios.rigid_modes import led_by, roll_mode
 from scenarios.signals.bump import BUMP_START_S, NOISE_RMS, bump
 from scenarios.signals.exact_road import LEAD_S, RATE_HZ, ROAD_RMS, road
 from scenarios.signals.random_road import random_road
@@ -21,6 +21,7 @@ from scenarios.source_choice.candidates import (
     PLATES,
     ROAD_EDGES,
     SHAKER_EDGES,
+    SLIP_STEPS,
     SLIP_VELOCITIES,
     Rig,
     vehicle_file,
@@ -90,12 +91,12 @@ PATHS = {
 class Readings:
     """Values of one rig, including both roof points."""
 
-    shaker: Vector  # slip shares, (edges, levels, seeds, [plate, other side], slip velocities)
+    shaker: Vector  # slip shares, (edges, levels, seeds, [plate, other side], `SLIP_STEPS`, slip velocities)
     extremes: Vector  # lowest and highest of `POINTS` [m/s2], (edges of the noise, seeds, bumps, points, 2)
     stick_end: Vector  # end of sticking for a 7.5 mm bump that begins at 5 s [s], (edges, seeds); infinite without slip
     fastest: Vector  # largest velocity of the damper over the plate [m/s], (edges, seeds, bumps)
     comfort: Vector  # relative comfort value of `ENDS`, (road edges, roads, seeds, ends)
-    road: Vector  # slip shares of the damper over the plate, (edges, roads, seeds, slip velocities)
+    road: Vector  # slip shares of the damper over the plate, (edges, roads, seeds, `SLIP_STEPS`, slip velocities)
     # largest |seat rail, vertical| over the cars of `evidence.LEVELS` in every half second [m/s2], (edges, figures,
     # seeds * windows)
     levels: Vector
@@ -199,14 +200,14 @@ def _velocities(wheel: str) -> tuple[str, str]:
 
 
 def _above(velocity: Vector) -> Vector:
-    """Return the share of the samples above each slip velocity, (..., velocities)."""
-    speed = np.sort(np.abs(velocity), axis=-1)
-    below = [np.searchsorted(row, SLIP_VELOCITIES, side="right") for row in speed.reshape(-1, speed.shape[-1])]
-    return np.asarray(1.0 - np.array(below).reshape(*speed.shape[:-1], -1) / speed.shape[-1])
+    """Return the share of the samples above each slip velocity times each factor, (..., steps, velocities)."""
+    speed, limits = np.sort(np.abs(velocity), axis=-1), np.outer(SLIP_STEPS, SLIP_VELOCITIES)
+    below = [np.searchsorted(row, limits, side="right") for row in speed.reshape(-1, speed.shape[-1])]
+    return np.asarray(1.0 - np.array(below).reshape(*speed.shape[:-1], *limits.shape) / speed.shape[-1])
 
 
 def _shares(cars: Sequence[Car], signal: Signal, wheel: str) -> Vector:
-    """Return slip shares, (cars, [plate, other], velocities)."""
+    """Return slip shares, (cars, [plate, other], steps, velocities)."""
     channels = _velocities(wheel)
     return np.concatenate(
         [
@@ -275,7 +276,7 @@ def _bumps(cars: Sequence[Car], signals: Sequence[Sequence[Signal]], wheel: str)
 
 
 def _roads(every: Sequence[Car], plan: Plan, edge: float, wheel: str) -> tuple[Vector, Vector, Vector]:
-    """Return comfort (roads, seeds, cars, ends), slip (.., velocities) and levels (figures, cars, windows).
+    """Return comfort (roads, seeds, cars, ends), slip (.., steps, velocities) and levels (figures, cars, windows).
 
     `every` has each car followed by those at the ends of its comfort curves; the lower edge of the records is in Hz.
     """
@@ -283,7 +284,7 @@ def _roads(every: Sequence[Car], plan: Plan, edge: float, wheel: str) -> tuple[V
     rail, (speed, _) = [f"seat_rail_acc_{axis}" for axis in AXES], _velocities(wheel)
     record = slice(round(LEAD_S * RATE_HZ) + 1, None)
     shape = (len(ROAD_RMS), plan.seeds, len(every))
-    comfort, shares = np.empty(shape), np.empty((*shape, len(SLIP_VELOCITIES)))
+    comfort, shares = np.empty(shape), np.empty((*shape, len(SLIP_STEPS), len(SLIP_VELOCITIES)))
     largest = np.empty((*shape, round(plan.road_s * RATE_HZ) // WINDOW))
     for i, rms in enumerate(ROAD_RMS.values()):
         for seed in range(plan.seeds):
@@ -303,7 +304,8 @@ def _roads(every: Sequence[Car], plan: Plan, edge: float, wheel: str) -> tuple[V
         entry = np.max(largest[list(ROAD_RMS).index(road_name)][:, :, members], axis=2)
         figures.append(np.swapaxes(entry, 0, 1).reshape(number, -1))
     ratios = by_car[..., 1:] / by_car[..., :1]
-    return ratios, shares.reshape(*shape[:2], number, count, -1)[..., 0, :], np.array(figures)
+    by_rig = shares.reshape(*shape[:2], number, count, *shares.shape[3:])
+    return ratios, by_rig[:, :, :, 0], np.array(figures)
 
 
 def swings(edge: float, plan: Plan) -> Vector:

@@ -14,7 +14,7 @@ from scenarios.lumped.quarter_car_spec import quarter_car_spec
 from scenarios.lumped.stiff_solution import stiff_solution
 from scenarios.quarter_car.in_mujoco import DEFAULT_STEP, friction_of_the_rows, in_mujoco
 from scenarios.signals.random_road import random_road
-from tests.validation import foreign, validated
+from tests.validation import own_function, validated
 from vehicle.errors import ConfigurationError
 from vehicle.signals.analysis.slip import slip_share
 
@@ -91,7 +91,7 @@ def orders(form, quantity, outputs):
 @pytest.mark.parametrize("size", [0.001, 0.005])
 def test_body_wheel_and_damper_move_as_in_the_stiff_solution_of_the_same_law(size):
     # Asked for: RMS within 1 %, slip within 0.5 points, at the default step, where the damper slips part of the time.
-    stiff = foreign("scipy", "Radau on the lumped quarter car")
+    stiff = own_function("scipy", "lumped quarter car, Radau")
     for output in ("body", "wheel", "damper"):
         validated(
             "Integration in MuJoCo",
@@ -127,7 +127,7 @@ def test_the_linear_models_converge_with_second_order():
         for place in outputs:
             validated(
                 "Integration in MuJoCo", f"linear quarter car, order of convergence of the {quantity} of the {place}",
-                slope[place], 2.0, abs=0.15, source=foreign("scipy", "Radau"),
+                slope[place], 2.0, abs=0.15, source=own_function("scipy", "lumped quarter car, Radau"),
             )  # fmt: skip
         assert max(gap[-1] for gap in errors.values()) < limit
     # The massless damper is a Maxwell branch, exact for a rate on a straight line: its share of the error is of higher
@@ -147,7 +147,7 @@ def test_the_friction_model_converges_with_second_order():
         validated(
             "Integration in MuJoCo",
             f"quarter car with friction, order of convergence of the displacement of the {place}", value, 2.0,
-            within=(1.7, 2.4), source=foreign("scipy", "Radau"),
+            within=(1.7, 2.4), source=own_function("scipy", "lumped quarter car, Radau"),
         )  # fmt: skip
     assert max(gap[-1] for gap in errors.values()) < 2e-4
     errors, slope = orders("rows", "acceleration", ("body", "wheel", "damper"))

@@ -10,6 +10,7 @@ from scenarios.lumped.bump_response import bump_passage
 from scenarios.lumped.half_car_rider_parameters import half_car_rider_parameters
 from scenarios.lumped.semi_active_half_car import simulate_bump
 from tests.physics.controlled_half_car import half_car_spec
+from tests.physics.written_control import use_written_control
 from tests.validation import validated
 from vehicle.engines.linear.car_matrices import car_matrices
 from vehicle.engines.reduced.pole_model import pole_model
@@ -29,6 +30,7 @@ CAR = dataclasses.replace(CAR, bump=dataclasses.replace(CAR.bump, height=1e-3, l
 PASSAGE = bump_passage(CAR.bump, SPEED, CAR.body.front_arm + CAR.body.rear_arm)
 TIME = uniform_time(samples=round(DURATION / STEP) + 1, timestep=STEP)
 ROAD = Signal(time=TIME, displacement=dict(zip(("fr", "rr"), PASSAGE.heights(TIME), strict=True)))
+SOURCE = "second derivation: lumped half car with control laws written for the test"
 REAL = {"delay": 0.012, "rate": 1e5}
 
 
@@ -99,7 +101,8 @@ def gap(values, expected):
 
 
 @pytest.mark.parametrize("law", LAWS)
-def test_both_engines_are_the_lumped_half_car(law):
+def test_both_engines_are_the_lumped_half_car(law, monkeypatch):
+    use_written_control(monkeypatch)
     car = with_control(law=law, **(REAL if law in ("hybrid", "skyhook_on_off") else {}))
     expected, (stepped, coefficient), run = lumped(car), in_mujoco(car), reduced(car)
     # Point by point. MuJoCo at 1 ms knows the instant of a switch from velocities half a step old: it may be one late.
@@ -107,13 +110,13 @@ def test_both_engines_are_the_lumped_half_car(law):
         validated(
             "Semi-active dampers", f"half car under {law} in MuJoCo, RMS error of the velocity of {name}",
             gap(stepped[name], values), 0.0, abs=1e-2 if "on_off" in law else 4e-3,
-            source="second derivation: lumped half car",
+            source=SOURCE,
         )  # fmt: skip
     for number, wheel in enumerate(("fr", "rr")):
         velocity, setting = -run[f"damper_{wheel}_velocity"], run[f"damper_{wheel}_coefficient"]
         validated(
             "Semi-active dampers", f"half car under {law}, reduced engine, RMS error of the velocity of damper {wheel}",
-            gap(velocity, expected[f"damper_{wheel}"]), 0.0, abs=4e-3, source="second derivation: lumped half car",
+            gap(velocity, expected[f"damper_{wheel}"]), 0.0, abs=4e-3, source=SOURCE,
         )  # fmt: skip
         # Passive at every sample: the force is a coefficient of the damper times its velocity.
         force = -run[f"damper_{wheel}_force"]

@@ -156,7 +156,10 @@ def _at(size, point, word, position):
 
 def test_every_readable_end_of_an_axis_is_a_row():
     inside = extreme_claims(seeds_at(0.5), {})
-    assert len(inside) == 24 and all(claim.within for claim in inside)
+    # The axis of figure 3.16 has one label on either side: both of its rows are bounds.
+    bounds = [claim for claim in inside if claim.place == "figure 3.16"]
+    assert [claim.status for claim in bounds] == ["not testable"] * 2
+    assert len(inside) == 24 and all(claim.within for claim in inside if claim not in bounds)
     assert all(claim.place.startswith("figure 3.1") or claim.place == "figure 3.20" for claim in inside)
     key = row_key(SIZES[1], "engine_z", "lowest")
     trials = {"stiffer": {row_key(*row): 0.0 for row in _all_rows()} | {key: -1.2}}

@@ -45,9 +45,20 @@ def test_an_extreme_agrees_inside_its_interval():
     assert (inside.within, inside.deviation, inside.published) == (True, 0.0, "-0.8 to -0.6")
     assert not below.within and below.deviation == pytest.approx(-0.25)
     assert not above.within and above.deviation == pytest.approx(0.5)
-    assert interval_claim("a", (0.0, 0.5), -0.1, "w").deviation is None  # no share of 0
+    below_zero = interval_claim("a", (0.0, 0.5), -0.1, "w")
+    assert below_zero.deviation is None and below_zero.within is False  # no share of 0
     open_end = interval_claim("a", (0.5, float("inf")), 70.0, "w")
     assert open_end.within and open_end.published == "0.5 or more" and open_end.source == "axis interval"
+
+
+@pytest.mark.parametrize(("interval", "ours", "outside"), [((0.0, 0.5), 0.2, 0.6), ((-300.0, 0.0), -20.0, -310.0)])
+def test_an_interval_that_reaches_to_0_is_a_bound_alone(interval, ours, outside):
+    """Half of the size, or a hundredth of it, lies inside too: such a row can contradict and never agree."""
+    row = interval_claim("a", interval, ours, "w", status="chosen")
+    assert (row.status, row.within, row.inside) == ("not testable", None, True) and row.why.startswith("w; only one")
+    assert interval_claim("a", interval, 0.01 * ours, "w").within is None
+    row = interval_claim("a", interval, outside, "w", status="chosen")
+    assert (row.status, row.within, row.inside, row.why) == ("chosen", False, False, "w")
 
 
 def test_a_spread_agrees_where_the_interval_is_probable_and_prints_the_probability():
@@ -91,10 +102,10 @@ def test_the_headline_counts_predicted_rows_only():
 def test_both_counts_of_the_rows_with_an_interval():
     near = [0.61, 0.62, 0.6, 0.59, 0.63, 0.61, 0.6, 0.62]  # outside, yet not improbable
     rows = [
-        interval_claim("a", (0.0, 1.0), 0.5, "w"),
+        interval_claim("a", (0.1, 1.0), 0.5, "w"),
         spread_claim("b", (0.4, 0.6), near, "w"),
-        interval_claim("c", (0.0, 1.0), 2.0, "w", status="fitted"),
-        interval_claim("d", (0.0, 1.0), 0.5, "w", status="duplicate"),
+        interval_claim("c", (0.1, 1.0), 2.0, "w", status="fitted"),
+        interval_claim("d", (0.1, 1.0), 0.5, "w", status="duplicate"),
         made("predicted", True),
     ]
     assert [row.inside for row in rows] == [True, False, False, True, None]

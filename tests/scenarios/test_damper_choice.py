@@ -11,6 +11,12 @@ from scenarios.claims import Claim
 from scenarios.damper_choice.__main__ import main
 from scenarios.damper_choice.damper_curves import compare_curves
 from scenarios.damper_choice.other_vehicles import region_verdicts
+from scenarios.damper_choice.printed_determinant import (
+    PRINTED_TERMS,
+    half_car_matrix,
+    printed_determinant,
+    wrong_terms,
+)
 from scenarios.damper_choice.runs import complete_car_quarter, trade_off
 from scenarios.lumped.damper_choice import damper_choice_parameters
 from scenarios.lumped.road_holding import quarter_car_model, tyre_load_ratio
@@ -66,6 +72,30 @@ def test_rows_show_what_the_source_prints(results):
     curves = [row for name, row in rows.items() if name.startswith("damper curve: ")]
     assert len(curves) == 2
     assert all(row["status"] == "not testable" and row["within"] is None for row in curves)
+
+
+def test_one_printed_term_of_the_determinant_is_no_permutation():
+    """With a24 read as a23 the terms are those of a determinant with a12 = a21 = 0, for any numbers."""
+    assert wrong_terms() == ["a31 a42 a14 a24"] and len(PRINTED_TERMS) == 14
+    rng = np.random.default_rng(1)
+    matrix = rng.normal(size=(4, 4)) + 1j * rng.normal(size=(4, 4))
+    matrix[0, 1] = matrix[1, 0] = 0.0
+    misprint = matrix[2, 0] * matrix[3, 1] * matrix[0, 3] * (matrix[1, 2] - matrix[1, 3])
+    assert printed_determinant(matrix) - misprint == pytest.approx(np.linalg.det(matrix))
+    car = P.half_car
+    # The matrix of the source at a line: front wheel, a22 = -mf w^2 + ktf + kf + jw (ctf + cf).
+    rate, front = 2j * np.pi * 3.0, car.front
+    expected = front.unsprung_mass * rate**2 + front.tyre_stiffness + front.suspension_stiffness
+    expected += rate * (front.tyre_damping + front.suspension_damping)
+    assert half_car_matrix(car, 3.0)[1, 1] == pytest.approx(expected)
+    assert half_car_matrix(car, 3.0)[0, 1] == half_car_matrix(car, 3.0)[1, 0] == 0.0
+
+
+def test_the_city_road_is_listed_and_not_judged(results):
+    rows = {row["name"]: row for row in json.loads((results / "results.json").read_text(encoding="utf-8"))["rows"]}
+    row = rows["quarter car optimum on the city road against the highway"]
+    assert row["status"] == "not testable" and "printed measure: city" in row["ours"]
+    assert rows["determinant D below equation 6"]["within"] is False
 
 
 def test_a_flank_that_the_distance_turns_is_undecided(results):

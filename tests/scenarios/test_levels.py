@@ -1,11 +1,15 @@
 """`python -m scenarios.levels` as a user runs it, and how its numbers are read off."""
 
 import json
+import re
+from dataclasses import replace
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
+from scenarios.car_runs import CarRuns
 from scenarios.frf_claims import axis_claims, coherence_claim, least_coherence
 from scenarios.levels import (
     CHANNELS,
@@ -13,6 +17,8 @@ from scenarios.levels import (
     frequency_claims,
     main,
     order_claims,
+    seat_claim,
+    wheel_mode_claim,
 )
 from scenarios.slip_shares import OTHER_VELOCITIES, PUBLISHED_SLIP, slip_claims
 from tests.scenarios.kept_table import contradictions
@@ -113,10 +119,11 @@ def level(slip, wheel_hz, peak, ratio):
 
 
 def shares_of(levels):
-    """Eight records, each with the slip shares of the levels, at every velocity."""
+    """Eight records, each with the slip shares of the levels at every velocity, a tenth less 10 % above 6 mm/s."""
     scatter = 1e-3 * np.linspace(-1.0, 1.0, 8)[:, None]
+    factors = {**dict.fromkeys((*OTHER_VELOCITIES, 0.006), 1.0), 0.0054: 1.1, 1.1 * 0.006: 0.9}
     return {
-        name: {velocity: np.array(one.slip) + scatter for velocity in (*OTHER_VELOCITIES, 0.006)}
+        name: {velocity: factor * np.array(one.slip) + scatter for velocity, factor in factors.items()}
         for name, one in levels.items()
     }
 
@@ -133,6 +140,39 @@ def test_a_slip_row_gives_the_shares_by_other_definitions():
     assert row.name.startswith("slip share of the right damper, high") and row.evidence == "slip_right_high"
     assert "above 6 mm/s; the shipped record has 20.00 %" in row.why
     assert "20.0 / 3.00 % above 1 mm/s, 12.0 / 0.40 % above 12 mm/s" in row.why
+    # The error is half of the change from 22 to 18 %.
+    assert "with a model error of 2 %" in row.why
+    assert row.why.endswith("from 6.6 to 5.4 mm/s (right 18.00 to 22.00, left 2.70 to 3.30 %)")
+
+
+def test_a_small_share_has_a_small_error():
+    """6.3 for 3.9 % (table 3.2): nine tenths to eleven tenths of 6 mm/s change it by half a point, not by 1.3."""
+    shares = shares_of({name: level((0.063, 0.0), 28.0, 1.0, 1.0) for name in PUBLISHED_SLIP})
+    row = slip_claims(shares, dict.fromkeys(PUBLISHED_SLIP, (0.063, 0.0)), 0.006)[2]
+    assert row.name.startswith("slip share of the right damper, mid") and row.within is False
+    assert row.probability is not None and 0.0 < row.probability < 0.05
+
+
+def test_four_numbers_may_be_called_the_wheel_mode(car):
+    low = level((0.0, 0.0), 27.75, 1.0, 1.0)
+    row = wheel_mode_claim(CarRuns(), replace(low, wheel_peak_hz=27.6))
+    assert row.within is True and row.status == "own check"
+    natural, peak, line, phase = (float(text) for text in re.findall(r"([\d.]+) Hz (?:nat|larg|ph)", str(row.ours)))
+    assert (line, phase) == (27.6, 27.75)
+    hops = [mode.frequency for mode in car.modes("stuck") if mode.description.startswith("front wheel hop")]
+    assert natural == pytest.approx(hops[0], abs=5e-3)
+    lines = np.arange(25.0, 30.0, 0.01)
+    (knuckle,) = np.abs(car.matrix_frf(["knuckle_fl_acc_z"], lines))
+    assert peak == pytest.approx(lines[np.argmax(knuckle)], abs=0.011)
+    assert wheel_mode_claim(CarRuns(), replace(low, wheel_hz=31.0)).within is None
+
+
+def test_the_seat_is_compared_with_its_rail_above_22_hz():
+    frequency = np.arange(1.0, 50.0)
+    rows = np.ones((len(CHANNELS), frequency.size), dtype=complex)
+    rows[CHANNELS.index("seat_acc_z")] = np.where(frequency < 22.0, 9.0, 2.0)
+    response: Any = SimpleNamespace(frequency=frequency, response=rows)
+    assert str(seat_claim(response).ours).endswith("22 to 50 Hz: 2.00")
 
 
 def test_rows_disagree_where_the_numbers_do():

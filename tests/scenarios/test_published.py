@@ -181,13 +181,16 @@ def test_finished_studies_are_read_and_missing_ones_run(studies, tmp_path):
     assert {name: len(calls) for name, calls in studies.items()} == {"levels": 3, "quarter_car": 1, "half_car_rider": 1}
 
 
-def test_the_second_car_has_a_column_and_a_count(studies, tmp_path):
+def test_the_second_car_has_a_column_and_a_count(studies, tmp_path, monkeypatch):
+    untested = row("seat", within=None, status="not testable", place="section 5.2")
+    monkeypatch.setitem(CONTENT, "levels", [*CONTENT["levels"], untested])
     assert command(tmp_path) == 0
     first, second = studies["levels"]
-    assert second == [*first[:1], f"{first[1]}_beside", *first[2:], "--set", "body.inertia.ixx=1080"]
+    assert second == [*first[:1], f"{first[1]}_beside", *first[2:], "--vehicle", "focus_measured_roll"]
     text = written(tmp_path)
     assert "| statement | published | ours | agrees | Ixx 1080 | status | why |" in text
     assert "| slip share of the right damper, high [%] | 1 | 1.02 | yes | 1.02: yes | predicted | 5 % |" in text
+    assert "| seat | 1 | 1.02 | not testable | 1.02: not testable | not testable | 5 % |" in text
     assert "Of 2 predicted rows computed with both cars, 1 agree with the printed Ixx 1000 and 1 with Ixx 1080." in text
 
 

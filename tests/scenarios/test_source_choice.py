@@ -4,10 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.special import stdtr
 
-from scenarios.evidence import EVIDENCE, USED, evidence_of, status_of
+from scenarios.evidence import EVIDENCE, USED, evidence_of, slip_error, status_of
 from scenarios.source_choice.__main__ import before, chosen
-from scenarios.source_choice.candidates import TODAY, Rig, all_sides, vehicle_file
+from scenarios.source_choice.candidates import SLIP_STEPS, TODAY, Rig, all_sides, vehicle_file
 from scenarios.source_choice.likelihood import (
     MISREADING,
     NUMBERS,
@@ -17,11 +18,12 @@ from scenarios.source_choice.likelihood import (
     jackknife,
     log_likelihood,
     probabilities,
+    probability,
     shipped_numbers,
     table,
     values_of,
 )
-from scenarios.source_choice.runs import BUMPS, ENDS, POINTS, Plan, Readings
+from scenarios.source_choice.runs import BUMPS, ENDS, POINTS, Plan, Readings, _above
 from vehicle.runs.car import Car
 
 PLAN = Plan(seeds=4, shaker_edges=(2.5, 6.0), road_edges=(0.017, 0.029), road_s=30.0)
@@ -34,13 +36,14 @@ def made(rng):
         return mean * (1.0 + 0.1 * rng.standard_normal(shape))
 
     edges, roads, seeds, velocities = 2, 2, PLAN.seeds, 14
+    falling = 2.0 - np.array(SLIP_STEPS)[:, None]  # a share falls with the velocity that counts
     return Readings(
-        shaker=near(0.05, edges, 3, seeds, 2, velocities),
+        shaker=near(0.05, edges, 3, seeds, 2, 1, velocities) * falling,
         extremes=near(0.5, edges, seeds, len(BUMPS), len(POINTS), 2),
         stick_end=near(5.03, edges, seeds),
         fastest=near(0.006, edges, seeds, len(BUMPS)),
         comfort=near(1.0, roads, 2, seeds, len(ENDS)),
-        road=near(0.5, roads, 2, seeds, velocities),
+        road=near(0.5, roads, 2, seeds, 1, velocities) * falling,
         levels=near(0.7, roads, 5, seeds * 60),
         modes=np.array([28.0, 6.5, 9.7, 10.5, 19.0]),
     )
@@ -73,8 +76,11 @@ def test_statuses_follow_the_halves():
 
 
 def test_a_row_changes_the_likelihood_by_at_most_a_factor_of_a_hundred():
-    row = evidence_of("wheel_mode")
-    far, near = log_likelihood(row, [40.0]), log_likelihood(row, [28.0])
+    row, readings = evidence_of("wheel_mode"), made(np.random.default_rng(0))
+    candidate = Candidate(rig=Rig(), velocity=0, shaker=0, noise=0, level=0, road=0)
+    far, near = (
+        log_likelihood(row, replace(readings, modes=np.full(5, mode)), candidate, PLAN) for mode in (40.0, 28.0)
+    )
     assert far == pytest.approx(np.log(MISREADING), abs=1e-9) and near > -0.6
     # Half a hertz of the printed digits and 2 % of the model: P = 2 Phi(0.5 / 0.56) - 1.
     assert near == pytest.approx(np.log(0.01 + 0.99 * 0.6281), abs=1e-3)
@@ -85,11 +91,30 @@ def test_every_number_of_a_candidate_reads_its_own_values():
     candidate = Candidate(rig=rig, velocity=4, shaker=0, noise=0, level=0, road=1)
     values = values_of(readings, candidate, PLAN)
     assert set(values) == {row.key for row in EVIDENCE}
-    assert np.array_equal(values["slip_left_high"], 100.0 * readings.shaker[0, 2, :, 1, 4])
+    assert np.array_equal(values["slip_left_high"], 100.0 * readings.shaker[0, 2, :, 1, 0, 4])
+    assert np.array_equal(values["slip_rough"], 100.0 * readings.road[1, 1, :, 0, 4])
     assert np.array_equal(values["bump_1p5_roof_z_lowest"], readings.extremes[0, :, 1, POINTS.index("roof_left_z"), 0])
     other = values_of(readings, replace(candidate, rig=replace(rig, roof="+y"), level=1), PLAN)
     assert np.array_equal(other["bump_1p5_roof_z_lowest"], readings.extremes[0, :, 2, POINTS.index("roof_right_z"), 0])
     assert np.array_equal(other["bump_7p5_engine_z_lowest"], values["bump_7p5_engine_z_lowest"])
+
+
+def test_the_error_of_a_slip_share_is_half_of_its_change_over_the_slip_velocity():
+    readings = made(np.random.default_rng(5))
+    readings.shaker[0, 1, :, 0, :, 4] = 0.063, 0.070, 0.056  # above 5, 4.5 and 5.5 mm/s
+    candidate = Candidate(rig=Rig(), velocity=4, shaker=0, noise=0, level=0, road=0)
+    # No scatter over the seeds: Student's t of four records with the error (7.0 - 5.6)/2 = 0.7 points alone; 6.3 % is
+    # 1.4 points above the printed 2.9 to 4.9 %.
+    expected = stdtr(3, -1.4 / 0.7) - stdtr(3, -3.4 / 0.7)
+    assert probability(evidence_of("slip_right_mid"), readings, candidate, PLAN) == pytest.approx(expected, rel=1e-6)
+    assert slip_error(7.0, 5.6) == pytest.approx(0.7) and slip_error(np.array([8.0, 6.0]), np.full(2, 5.6)) > 0.69
+
+
+def test_shares_are_read_at_the_slip_velocity_and_ten_percent_around_it():
+    velocity = np.linspace(0.0, 0.02, 200_001)
+    shares = _above(np.stack([velocity, -velocity]))
+    assert shares.shape == (2, 3, 14)
+    np.testing.assert_allclose(shares[1, :, 5], 1.0 - np.array([6.0, 5.4, 6.6]) / 20.0, atol=1e-5)
 
 
 def test_the_table_is_the_sum_over_the_rows_of_each_candidate():
@@ -99,8 +124,7 @@ def test_the_table_is_the_sum_over_the_rows_of_each_candidate():
     for _ in range(4):
         at = tuple(int(rng.integers(size)) for size in whole.shape)
         candidate = Candidate(rig=rig, **dict(zip(NUMBERS, at, strict=True)))
-        values = values_of(readings, candidate, PLAN)
-        rows = [log_likelihood(row, values[row.key]) for row in EVIDENCE if row.key in USED]
+        rows = [log_likelihood(row, readings, candidate, PLAN) for row in EVIDENCE if row.key in USED]
         assert whole[at] == pytest.approx(sum(rows), abs=1e-9)
     # The same shaker makes the noise of the bump; a separate edge cannot be less likely.
     (tied, candidate), (free, _) = best({rig: whole})[0], best({rig: whole}, own_noise=True)[0]
@@ -117,7 +141,7 @@ def test_tied_numbers_take_the_median_velocity_and_the_printed_shares():
         whole[velocity, shaker, shaker, 0, 1] = -19.5
     whole[12, 0, 1, 0, 1] = -10.0  # an edge of its own for the noise: not of one shaker
     # With the second edge the share of the high level is the printed one.
-    readings.shaker[1, 2, :, 0, 4], readings.shaker[0, 2, :, 0, 4] = 0.218, 0.5
+    readings.shaker[1, 2, :, 0, :, 4], readings.shaker[0, 2, :, 0, :, 4] = 0.218, 0.5
     readings.shaker[:, 0], readings.shaker[:, 1], readings.shaker[:, 2, :, 1] = 0.0, 0.0, 0.0
     shipped = shipped_numbers(readings, rig, PLAN, whole)
     assert (shipped.velocity, shipped.shaker, shipped.noise, shipped.road) == (4, 1, 1, 1)

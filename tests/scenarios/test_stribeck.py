@@ -29,7 +29,7 @@ def test_the_extra_peak_is_there_with_stribeck_alone(results):
         "extra peak after stick ends, Coulomb": True,
         "damper force over velocity against equations 3.1 and 3.2": True,
         "highest velocity of the damper over the 7.5 mm bump, both laws [m/s]": True,
-        "lowest force of the damper over the 7.5 mm bump, both laws [N]": True,
+        "lowest force of the damper over the 7.5 mm bump, both laws [N]": None,  # an axis with one readable label
     }
     assert all(len(counts) in (0, 2) for counts in content["extra_peaks_over_seeds"].values())
     largest = {

@@ -13,7 +13,7 @@ from scenarios.lumped.stiff_solution import stiff_solution
 from scenarios.quarter_car.in_mujoco import friction_of_the_rows
 from scenarios.signals.random_road import random_road
 from tests.engines.linear.plain_matrices import plain_matrices
-from tests.validation import foreign, validated
+from tests.validation import own_function, validated
 from vehicle.engines.reduced.batch_simulation import simulate_batch
 from vehicle.engines.reduced.pole_model import pole_model
 from vehicle.engines.reduced.reduced_run import simulate_reduced
@@ -97,7 +97,7 @@ def compare(reduced, expected, bounds, law):
         validated(
             "Reduced engine", f"quarter car with {law} friction, RMS error of {name}",
             np.sqrt(np.mean((a - b) ** 2)) / np.sqrt(np.mean(b**2)), 0.0, abs=bound,
-            source=foreign("scipy", "Radau on the lumped quarter car"),
+            source=own_function("scipy", "lumped quarter car, Radau"),
         )  # fmt: skip
 
 
@@ -130,7 +130,7 @@ def test_friction_against_the_stiff_solver(solved):
     validated(
         "Reduced engine", "quarter car, share of time in which the damper slips",
         slip_share(run["damper_fr_velocity"], 1e-3), share, abs=2e-3,
-        source=foreign("scipy", "Radau on the lumped quarter car"),
+        source=own_function("scipy", "lumped quarter car, Radau"),
     )  # fmt: skip
     # The left car stands still; equal poles of two equal cars mix them in the last digits.
     assert np.max(np.abs(run["knuckle_fl_acc_z"])) < 1e-9 * np.max(np.abs(run["knuckle_fr_acc_z"]))

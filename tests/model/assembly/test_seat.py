@@ -127,7 +127,7 @@ def test_a_file_over_another_car(tmp_path):
     assert vehicle_table(other)["rear"] == {"template": "blocks", "hardpoints": {"rear_support": [3.4, 0.5, 0.7]}}
     for text, message in {
         'base = "fokus"': (
-            "base: found 'fokus', must be a shipped car \\(focus, focus_road, focus_road_seated, kinematic_reference"
+            "base: found 'fokus', must be a shipped car \\(focus, focus_measured_roll, focus_road, focus_road_seated"
         ),
         'base = "own.toml"': "base: .*own.toml uses itself as base, directly or through other files; name",
         "base = 3": "base: ",

@@ -10,7 +10,7 @@ from scenarios.lumped.bump_response import BumpPassage, bump_passage, bump_respo
 from scenarios.lumped.half_car_rider_model import half_car_rider
 from scenarios.lumped.half_car_rider_parameters import half_car_rider_parameters
 from scenarios.lumped.network import ROAD, Network, masses_of, spring_damper
-from tests.validation import foreign, validated
+from tests.validation import own_function, validated
 from vehicle.errors import ConfigurationError
 
 CAR = half_car_rider_parameters()
@@ -47,7 +47,7 @@ def test_half_car_agrees_with_an_adaptive_integrator(speed):
     exact = bump_response(MODEL, passage, time_step=2e-3, duration=1.5)
     states = integrated(MODEL, passage, exact.time)
     # the integrator is asked for 1e-10 and errors add up over a few hundred steps
-    dop853 = foreign("scipy", "DOP853, tolerance 1e-10")
+    dop853 = own_function("scipy", "matrices of the half car, DOP853, tolerance 1e-10")
     validated(
         "Quarter and half cars", f"displacements of the half car on a bump at {speed:g} km/h", exact.state[:, :7].T,
         states[:7], peak=1e-8, unit="m", source=dop853,

@@ -8,7 +8,7 @@ from scenarios.lumped.input_signals import Sampled
 from scenarios.lumped.quarter_car_network import quarter_car, single_mass
 from scenarios.lumped.quarter_car_parameters import load_quarter_car
 from scenarios.lumped.stiff_solution import Tolerances, stiff_solution
-from tests.validation import foreign, validated
+from tests.validation import own_function, validated
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.laws.coulomb import Coulomb
 
@@ -70,7 +70,7 @@ def test_the_order_is_two_for_a_law_of_any_slope(gentle, name):
     rough, _, finest = relative_errors(histories, reference, name)
     validated(
         "Quarter and half cars", f"order of convergence of the march with a gentle friction law, {name}",
-        np.log2(rough / finest) / 2, 2.0, abs=0.2, source=foreign("scipy", "stiff solver"),
+        np.log2(rough / finest) / 2, 2.0, abs=0.2, source=own_function("scipy", "lumped quarter car, LSODA"),
     )  # fmt: skip
 
 
@@ -129,7 +129,7 @@ def test_another_stiff_method_agrees():
         validated(
             "Quarter and half cars", f"acceleration of the {output} of a quarter car with friction, against Radau",
             a, b, abs=(3e-3 if output == "wheel" else 1e-4) * np.abs(a).max(), unit="m/s2",
-            source=foreign("scipy", "Radau"),
+            source=own_function("scipy", "lumped quarter car, Radau"),
         )  # fmt: skip
 
 
