@@ -22,13 +22,12 @@ def wanted(control: SemiActiveDamper, body: float, wheel: float) -> float:
     softest, firmest, extension = control.minimum_damping, control.maximum_damping, body - wheel
     if extension == 0.0:
         return softest
-    weights = {"skyhook": (1.0, 0.0), "groundhook": (0.0, 1.0), "hybrid": (control.skyhook_share, None)}
-    of_sky, of_ground = weights[control.law.replace("_on_off", "")]
-    of_ground = 1.0 - of_sky if of_ground is None else of_ground
+    of_sky = {"skyhook": 1.0, "groundhook": 0.0, "hybrid": control.skyhook_share}[control.law.replace("_on_off", "")]
+    assert of_sky is not None
     total = 0.0
     for weight, velocity, gain in (
-        (of_sky, body, control.skyhook_damping),
-        (of_ground, -wheel, control.groundhook_damping),
+        (of_sky, body, control.skyhook_damping or 0.0),
+        (1.0 - of_sky, -wheel, control.groundhook_damping or 0.0),
     ):
         if velocity / extension > 0.0:  # a damper can pull this way
             total += weight * (firmest - softest if "on_off" in control.law else gain * velocity / extension)
