@@ -2,6 +2,7 @@
 
 import gc
 import os
+import shutil
 import tempfile
 
 import pytest
@@ -56,9 +57,10 @@ def pytest_collection_modifyitems(items):
 
 def pytest_configure(config):
     """Draw figures only where a test looks at them; build equal cars once; keep the user's list of trusted code."""
-    folder = tempfile.TemporaryDirectory(prefix="configuration-")
-    config.add_cleanup(folder.cleanup)
-    os.environ["XDG_CONFIG_HOME"] = folder.name
+    # Not a TemporaryDirectory: a forked process would remove it at its end.
+    folder = tempfile.mkdtemp(prefix="configuration-")
+    config.add_cleanup(lambda: shutil.rmtree(folder, ignore_errors=True))
+    os.environ["XDG_CONFIG_HOME"] = folder
     present = PresentTest()
     # Not as functions of this file: pytest does not ask a conftest about fixtures of the session.
     config.pluginmanager.register(present, "present test")
