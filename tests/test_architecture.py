@@ -84,19 +84,8 @@ ROOMS: dict[str, set[str]] = {
     "replication": {"car", "excitation", "formats", "output", "records", "reduced", "rendering", "threads"},
     "sweeps": {"analysis", "car", "excitation", "flexbody", "formats", "notebook", "output"}
     | {"parameters", "reduced", "rendering", "report", "simulation", "threads"},
-    "tuning": {
-        "analysis",
-        "car",
-        "comparison",
-        "excitation",
-        "flexbody",
-        "formats",
-        "output",
-        "parameters",
-        "records",
-        "reduced",
-    }
-    | {"rendering", "report", "threads"},
+    "tuning": {"analysis", "car", "comparison", "excitation", "flexbody", "formats", "output", "parameters"}
+    | {"records", "reduced", "rendering", "report", "threads"},
     "optimisation": {"analysis", "car", "formats", "output", "parameters", "rendering"}
     | {"replacement", "sweeps", "targets"},
     "commands": {"analysis", "assembly", "bench", "car", "comparison", "core", "dampers", "design", "excitation"}

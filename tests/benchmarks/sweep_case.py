@@ -15,6 +15,7 @@ from scenarios.signals.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.studies.sweeps.case import Case
 from vehicle.studies.sweeps.case_evaluation import run_of
 from vehicle.studies.sweeps.case_table import table_cases
+from vehicle.studies.sweeps.indices import LEAST_BASE
 from vehicle.studies.sweeps.sweep import sweep
 
 SECONDS = 20.0
@@ -32,7 +33,7 @@ def cases(count: int) -> list[Case]:
         lead=LEAD_S,
         lower_band_edge=ROAD_EDGE_HZ,
     )
-    base = 2 ** int(np.log2(max(24, 2 * count) / (len(RANGES) + 2)))
+    base = max(LEAST_BASE, 2 ** int(np.log2(max(24, 2 * count) / (len(RANGES) + 2))))
     points = points_of(base)[:count].tolist()
     return list(table_cases([one.path for one in RANGES], points, [road], engine="reduced"))
 

@@ -98,7 +98,7 @@ def test_the_file_holds_the_road_beside_what_the_tyre_takes(tmp_path, capsys):
 def test_refusals(arguments, code, message, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     head = "distance [m],left [m],right [m]\n"
-    (tmp_path / "p.csv").write_text(head + "".join(f"{x},0,0\n" for x in range(31)), encoding="utf-8")
+    (tmp_path / "p.csv").write_text(head + "".join(f"{x},{0.01 * (x % 2)},0\n" for x in range(31)), encoding="utf-8")
     (tmp_path / "q.csv").write_text(head + "0,0,0\n1,0,0\n0.5,0,0\n2,0,0\n3,0,0\n", encoding="utf-8")
     (tmp_path / "r.csv").write_text("distance [m],left [m]\n0,0\n1,0\n", encoding="utf-8")
     assert main(arguments) == code

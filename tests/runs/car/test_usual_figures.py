@@ -18,16 +18,20 @@ FOCUS_ROAD = {
     ("front", STEER), ("rear", STEER),
     *((axle, name) for axle in ("front", "rear") for name in SHARES),
 }  # fmt: skip
+# On rubber blocks behind: its body moves on them, not on a rear axle.
+FOCUS = {
+    BAR,
+    ("front", STEER),
+    *(("", name) for name in ("heave [Hz]", "heave, damping [%]", "pitch [Hz]", "roll [Hz]")),
+}
 BRAKING = "anti-dive (front) or anti-lift (rear), braking [%]"
 UNUSUAL = {
     "sedan": set(),
     "sedan_steering": set(),
     "focus_road": FOCUS_ROAD,
     "focus_road_seated": FOCUS_ROAD,
-    # On rubber blocks behind: its body moves on them, not on a rear axle.
-    "focus": {
-        BAR, ("front", STEER), ("", "heave [Hz]"), ("", "heave, damping [%]"), ("", "pitch [Hz]"), ("", "roll [Hz]"),
-    },
+    "focus": FOCUS,
+    "focus_measured_roll": {*FOCUS, ("", "roll, damping [%]")},
     "kinematic_reference": {
         ("", "unsprung mass [% of the mass]"), ("front", "roll centre above ground [mm]"),
         ("front", "anti-dive / anti-lift angle, braking [deg]"),

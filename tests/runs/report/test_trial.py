@@ -377,10 +377,10 @@ def test_the_page_has_the_plates_from_the_height_at_which_the_car_stands():
 def test_settings_outside_the_valid_range_are_named(browser):
     car, signal = shipped("bump_7p5mm.csv", seconds=10.0)
     page = Page(browser, car, signal)
+    # The page states no errors, so the rotation alone tells its range, as in sweeps.
     for level in (1.0, 4.0):
-        valid = car.run(scaled(signal, level), engine="reduced").recording.statistics.within_validity
         notices = page.ask("record", level=level)["notices"]
-        assert valid == (level == 1.0) and valid == (not notices), notices
+        assert (level == 1.0) == (not notices), notices
     assert len(notices) == 1 and notices[0].startswith("stabilizer_half_fl rotates by more than 0.05 rad about y")
 
 

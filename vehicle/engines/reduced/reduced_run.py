@@ -90,7 +90,8 @@ def simulate_reduced(
     time, rows = uniform_time(samples=samples, timestep=interval), [*names, *forces, *tyres, *more]
     record = dict(zip(rows, table[:, 0], strict=True))
     errors, read = dict[str, float](), frozenset[str]()
-    if forms:
+    # A law that returned no number has spoilt all samples from then on; the run is rejected where it is recorded.
+    if forms and np.isfinite(table[:, 0, -1]).all():
         errors, read = rms_errors_of(model, forms, dampers, signal, time, record, asked, tyre_load, seated)
     direct = np.hstack([direct_forces(model, loads), direct_laws(model, loads)]) if loads else np.zeros((0, 0))
     for load, row in zip(loads.names, direct, strict=True) if loads else ():

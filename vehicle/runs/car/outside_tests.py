@@ -92,7 +92,8 @@ def outside_tests(run: Any) -> tuple[str, ...]:
             sentences.append(f"{shares}; no test shows its force there, and the effect on comfort is not computed")
         elif changes is not None and any(abs(each) >= RELEVANT for each in changes.get(side, {}).values()):
             effects = " and ".join(
-                f"by {100.0 * each:+.2g} % if the force {way}" for way, each in changes[side].items()
+                f"by {'+' if each > 0.0 else ''}{number(100.0 * each, 2)} % if the force {way}"
+                for way, each in changes[side].items()
             )
             fastest = max(each.fastest for each in sides.values())
             more = f"up to {number(fastest, 2)} m/s" if side == ABOVE else "with lower velocities"

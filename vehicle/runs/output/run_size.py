@@ -4,6 +4,7 @@ import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
+from vehicle.digits import number
 from vehicle.engines.simulation.judgement import require_samples
 from vehicle.errors import ConfigurationError
 
@@ -47,6 +48,6 @@ def run_size(folder: Path, duration: float, rate: float, channels: int, formats:
     if max(memory, disk) < STATED_FROM:
         return ""
     return (
-        f"{channels} channels of {duration:g} s need about {memory / 1e9:.2g} GB of memory and {disk / 1e9:.2g} GB on "
+        f"{channels} channels of {duration:g} s need about {number(memory / 1e9, 2)} GB of memory and {number(disk / 1e9, 2)} GB on "
         f"the disk; {remedy}"
     )
