@@ -48,6 +48,6 @@ def run_size(folder: Path, duration: float, rate: float, channels: int, formats:
     if max(memory, disk) < STATED_FROM:
         return ""
     return (
-        f"{channels} channels of {duration:g} s need about {number(memory / 1e9, 2)} GB of memory and {number(disk / 1e9, 2)} GB on "
-        f"the disk; {remedy}"
+        f"{channels} channels of {duration:g} s need about {number(memory / 1e9, 2)} GB of memory and "
+        f"{number(disk / 1e9, 2)} GB on the disk; {remedy}"
     )
