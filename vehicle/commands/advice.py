@@ -115,7 +115,7 @@ def _responses(measurement: Measurement) -> str:
     faults = [response_fault(channel) for channel in measurement.channels if is_response(channel)]
     if "" in faults:
         return "responses: python -m vehicle compare RUN --measured FILE --map knuckle_fr_acc_z=NAME"
-    return faults[0] if faults else "coherences without their responses; export the responses too"
+    return faults[0] if faults else "coherences without responses; export the responses as well"
 
 
 def comparison_for(

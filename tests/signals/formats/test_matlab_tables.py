@@ -130,3 +130,12 @@ def test_a_truncated_file_is_refused(tmp_path, version):
     path.write_bytes(path.read_bytes()[: path.stat().st_size * 2 // 3])
     with pytest.raises(DataError):
         read(path)
+
+
+def test_a_timetable_has_its_row_times_only(tmp_path):
+    """Columns of durations and times beside the row times were the clocks of their neighbours."""
+    frame = timetable(pandas.to_timedelta(np.rint(TIME * 1e9).astype("int64"), unit="ns"))
+    frame.insert(1, "Time of lap in s", np.mod(TIME, 2.0) + 0.001)
+    frame.insert(1, "LapDuration", pandas.to_timedelta(np.arange(3000) * 3, unit="s"))
+    found = read(saved(tmp_path / "log.mat", {"log": frame}, "v7"))
+    assert np.allclose(times(found["Shaker FL"]), TIME) and found["LapDuration"].unit == "ms"

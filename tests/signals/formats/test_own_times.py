@@ -79,6 +79,66 @@ def test_the_clock_of_a_satellite_receiver_counts_the_same_rows(tmp_path):
     assert found["Speed"].axis is found["Seat Z"].axis and np.allclose(times(found["Speed"]), SLOW)
 
 
+def test_clocks_of_different_rows_are_no_clocks_of_the_same_rows(tmp_path):
+    """200 Hz and 100 Hz, both 15 s long: equal spans, and the words DAQ and ECU."""
+    heads = "Time DAQ [s],Seat Z [m/s2],Time ECU [s],Rail Z [m/s2]"
+    found = read(table(tmp_path / "pairs.csv", heads, FAST, SEAT, SLOW, RAIL))
+    assert np.allclose(times(found["Seat Z"]), FAST) and np.allclose(times(found["Rail Z"]), SLOW)
+
+
+def test_a_satellite_time_of_every_tenth_row_counts_the_same_rows(tmp_path):
+    heads = "Time [s],Seat Z [m/s2],GPS time [s],Speed [km/h]"
+    seldom = np.where(np.arange(1500) % 10, np.nan, SLOW)
+    found = read(table(tmp_path / "gps.csv", heads, SLOW, RAIL, 1234.0 + seldom, 80.0 + seldom))
+    assert np.allclose(times(found["Speed"]), SLOW[::10]) and np.allclose(times(found["Seat Z"]), SLOW)
+
+
+@pytest.mark.parametrize(
+    ("head", "values"),
+    [
+        ("T Oil", 90.0 + 0.01 * SLOW),
+        ("T1", 90.0 + 0.01 * SLOW),
+        ("Time of lap [s]", np.mod(SLOW, 7.0)),
+        ("Time step [s]", 0.01 + 0.0 * SLOW),
+    ],
+)
+def test_a_column_that_is_no_clock_gives_no_times(tmp_path, head, values):
+    heads = f"Time [s],Seat Z [m/s2],{head},Rail Z [m/s2]"
+    found = read(table(tmp_path / "oil.csv", heads, SLOW, SEAT[:1500], values, RAIL))
+    assert len(found.channels) == 3 and np.allclose(times(found["Rail Z"]), SLOW)
+
+
+@pytest.mark.parametrize("kind", ["records", "frame"])
+def test_pairs_of_times_in_hdf5(tmp_path, kind):
+    """Each channel took the times of the first."""
+    h5py = pytest.importorskip("h5py")
+    late = np.where(np.arange(3000) < 1500, 0.004 + np.arange(3000) / 100.0, np.nan)
+    rail = np.where(np.arange(3000) < 1500, np.resize(RAIL, 3000), np.nan)
+    columns = {"Time [s]": FAST, "Seat Z [m/s2]": SEAT, "Time [s].1": late, "Rail Z [m/s2]": rail}
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        if kind == "records":
+            rows = list(zip(*columns.values(), strict=True))
+            file["log"] = np.array(rows, dtype=[(name, float) for name in columns])
+        else:  # the layout of `DataFrame.to_hdf`, which needs PyTables
+            frame = file.create_group("log")
+            frame.attrs.update({"pandas_type": "frame", "nblocks": np.array([1])})
+            frame["axis0"], frame["axis1"] = [name.encode() for name in columns], np.arange(3000)
+            frame["block0_items"], frame["block0_values"] = frame["axis0"][()], np.column_stack([*columns.values()])
+    found = read(tmp_path / "a.h5")
+    assert np.allclose(times(found["Seat Z"]), FAST) and np.allclose(times(found["Rail Z"]), 0.004 + SLOW)
+    assert np.allclose(found["Rail Z"].values, RAIL)
+
+
+def test_a_duration_of_parquet_that_is_no_time_is_a_channel(tmp_path):
+    arrow, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
+    lap = arrow.array(np.repeat(np.arange(80, 95), 100).astype("int64"), arrow.duration("s"))
+    created = arrow.array(np.full(1500, 1_700_000_000), arrow.timestamp("s"))
+    columns = {"LapDuration": lap, "Created": created, "Time [s]": SLOW, "Rail Z [m/s2]": RAIL}
+    parquet.write_table(arrow.table(columns), tmp_path / "laps.parquet")
+    found = read(tmp_path / "laps.parquet")
+    assert np.allclose(times(found["Rail Z"]), SLOW) and found["LapDuration"].unit == "s"
+
+
 def test_a_value_without_its_time_is_refused(tmp_path):
     late = SLOW.copy()
     late[700] = np.nan

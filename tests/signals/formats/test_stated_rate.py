@@ -7,9 +7,10 @@ import pytest
 
 from vehicle.arrays import Vector
 from vehicle.errors import DataError
+from vehicle.signals.formats import hdf_format, mixed_sources
 from vehicle.signals.formats.channel import Channel
 from vehicle.signals.formats.reader import read
-from vehicle.signals.formats.stated_rate import stated_step
+from vehicle.signals.formats.stated_rate import number_of, stated_step
 
 VALUES = np.sin(np.arange(1500.0))
 
@@ -83,6 +84,29 @@ def test_attributes_of_length_one(tmp_path):
     found = read(tmp_path / "a.h5")
     assert found.channels[0].unit == "g" and found.channels[0].axis is None
     assert any("if this is the step of the samples, set --rate 100" in text for text in found.notices)
+
+
+def test_a_long_text_is_no_number():
+    """Its digits were tried in all divisions: minutes for a comment of a megabyte."""
+    assert number_of("1" * 1_000_000 + "!") == (None, "") and number_of(" 0.01 s ") == (0.01, "s")
+
+
+def test_a_group_of_many_arrays_is_searched_once(tmp_path, monkeypatch):
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        for n in range(20):
+            file[f"run/channel {n}"] = VALUES[:10]
+    searched: list[str] = []
+    monkeypatch.setattr(hdf_format, "_numbers", lambda group: searched.append(group.name) or {"fs": 100.0})
+    assert all(channel.rate == pytest.approx(100.0) for channel in read(tmp_path / "a.h5").channels)
+    assert searched == ["/run"]
+
+
+def test_equal_times_are_counted_once(tmp_path, monkeypatch):
+    counted: list[int] = []
+    monkeypatch.setattr(mixed_sources, "rows_at_once", lambda time: counted.append(time.size) or 1)
+    (tmp_path / "a.csv").write_text("\n".join(["Time [s],a,b,c", *(f"{n / 100},{n},{-n},0.5" for n in range(50))]))
+    assert len(read(tmp_path / "a.csv").channels) == 3 and counted == [50]
 
 
 def long_table() -> dict[str, Any]:

@@ -23,6 +23,7 @@ NO_PLATES = (
     "Wheel travel FR", "Body height FL", "Axle travel RL", "Tie rod FL", "Disp FL", "Ground clearance FR", "Gap RL",
     "Einfederweg VL", "Federweg HR", "Federteller VL", "Dämpferweg HL", "Höhenstand VR", "Fahrwerkshöhe VL",
     "Reifeneinfederung VL", "Radhub HR", "Seilzug HL", "Aufbauhöhe VR", "Luftspalt VL", "Niveau HL", "Feder VL",
+    "Road wheel actuator FL", "Actuator RoadWheel RR",
 )  # fmt: skip
 """Names of other displacements at a wheel: motions of one part against another, or not known."""
 

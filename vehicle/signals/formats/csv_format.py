@@ -108,7 +108,7 @@ def read_lines(path: Path, text: Text, format_name: str) -> Measurement:
         for index, name in enumerate(heads.names)
         if kinds[index] == "number" and (index not in axis.columns or (axis.values is None and not own_axes))
     )
-    channels = joined(channels) if axis.kind == "frequency" else tuple(with_own_rasters(channels))
+    channels = joined(path, channels) if axis.kind == "frequency" else tuple(with_own_rasters(channels))
     if axis.values is None:
         notices += _rates_above(lines[:start])
     above = [line.strip(' \t#;,"') for line in lines[: heads.first] if not line.strip('" ').lower().startswith("sep=")]

@@ -12,13 +12,13 @@ import numpy as np
 from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel, Measurement, even_step, uniform_axis
-from vehicle.signals.formats.heads import split_head, time_key
 from vehicle.signals.formats.matlab_format import with_tables
 from vehicle.signals.formats.mixed_sources import SAMPLED, check_alternation
 from vehicle.signals.formats.optional_library import extra, reading
 from vehicle.signals.formats.packed_values import attribute_text, unpacked
 from vehicle.signals.formats.pandas_frames import frame_channels
 from vehicle.signals.formats.stated_rate import number_of, stated_step
+from vehicle.signals.formats.typed_columns import TypedColumn, typed_channels
 from vehicle.signals.formats.units import seconds_in
 from vehicle.signals.formats.unpacked_size import require_unpacked
 
@@ -85,14 +85,15 @@ def _walk(path: Path, file: Any, h5py: Any, notices: list[str]) -> tuple[tuple[C
     """Return the channels of all arrays and pandas frames, in the order of the file, and the first start time."""
     all_channels: list[Channel] = []
     starts: list[str] = []
+    groups: dict[str, tuple[float | None, float, str]] = {}
 
     def enter(group: Any, prefix: str) -> None:
         for name, item in group.items():
             label = f"{prefix}{name}"
             if isinstance(item, h5py.Dataset):
-                all_channels.extend(_arrays(path, label, item, h5py, notices))
+                all_channels.extend(_arrays(path, label, item, h5py, notices, groups))
             elif item.attrs.get("pandas_type") is not None:
-                channels, start = frame_channels(path, label, item)
+                channels, start = frame_channels(path, label, item, notices)
                 all_channels.extend(channels)
                 starts.append(start)
             else:
@@ -139,7 +140,14 @@ def _matlab(file: Any, variable: Any, h5py: Any) -> Any:
     return np.asarray(values).T
 
 
-def _arrays(path: Path, name: str, dataset: Any, h5py: Any, notices: list[str]) -> list[Channel]:
+def _arrays(
+    path: Path,
+    name: str,
+    dataset: Any,
+    h5py: Any,
+    notices: list[str],
+    groups: dict[str, tuple[float | None, float, str]],
+) -> list[Channel]:
     """Return the channels of an array: its columns, or its rows if these are at least `LONG` times longer."""
     if name.startswith(f"{AXES}/") or dataset.size is None or dataset.size < 2:
         return []
@@ -171,7 +179,7 @@ def _arrays(path: Path, name: str, dataset: Any, h5py: Any, notices: list[str]) 
     if axis is None:
         axis = _coordinate(dataset, len(values))
     if axis is None and dataset.dtype.kind != "c" and not axis_quantity:
-        axis = _stated_axis(name, dataset, len(values), notices)
+        axis = _stated_axis(name, dataset, len(values), notices, groups)
     label = _attribute(dataset, "name") or name
     unit = _attribute(dataset, "unit") or _attribute(dataset, "units")
     return [
@@ -207,28 +215,49 @@ def _coordinate(dataset: Any, count: int) -> Vector | None:
     return times - times[0] if since else times
 
 
-def _stated_axis(name: str, dataset: Any, count: int, notices: list[str]) -> Vector | None:
-    """Return times [s] from a rate or step among the attributes and single numbers of an array or its groups."""
+def _stated_axis(
+    name: str, dataset: Any, count: int, notices: list[str], groups: dict[str, tuple[float | None, float, str]]
+) -> Vector | None:
+    """Return times [s] from a rate or step among the attributes and single numbers of an array or its groups.
+
+    Args:
+        groups: results of `_stated` by name of group, which many arrays share; extended.
+    """
     item = dataset
     while True:
-        numbers = dict(item.attrs)
-        if item is not dataset:
-            numbers |= {key: inner[()] for key, inner in item.items() if getattr(inner, "size", None) == 1}
-            if "rate" in getattr(item.get("starting_time"), "attrs", {}):  # NWB, TimeSeries
-                numbers |= {"sample_rate": item["starting_time"].attrs["rate"], "start": item["starting_time"][()]}
-        step, remark = stated_step(numbers)
+        if item is dataset:
+            step, start, remark = _stated(dict(item.attrs))
+        else:
+            if item.name not in groups:
+                groups[item.name] = _stated(_numbers(item))
+            step, start, remark = groups[item.name]
         if remark:
             notices.append(f"array {name!r}: {remark}")
         if step is not None:
-            start = next((number_of(numbers[key])[0] for key in STARTS if key in numbers), None)
-            return uniform_axis(count, step, start or 0.0)
+            return uniform_axis(count, step, start)
         if remark or item.name == "/":
             return None
         item = item.parent
 
 
+def _numbers(group: Any) -> dict[str, Any]:
+    """Return the attributes and single numbers of a group."""
+    numbers = dict(group.attrs)
+    numbers |= {key: inner[()] for key, inner in group.items() if getattr(inner, "size", None) == 1}
+    if "rate" in getattr(group.get("starting_time"), "attrs", {}):  # NWB, TimeSeries
+        numbers |= {"sample_rate": group["starting_time"].attrs["rate"], "start": group["starting_time"][()]}
+    return numbers
+
+
+def _stated(numbers: dict[str, Any]) -> tuple[float | None, float, str]:
+    """Return step and start [s] among named numbers, and a remark, see `stated_step`."""
+    step, remark = stated_step(numbers)
+    start = next((number_of(numbers[key])[0] for key in STARTS if key in numbers), None)
+    return step, start or 0.0, remark
+
+
 def _fields(path: Path, name: str, dataset: Any, notices: list[str]) -> list[Channel]:
-    """Return the fields of a record array as channels; a time field becomes their axis."""
+    """Return the fields of a record array as channels; time fields become their axes."""
     if dataset.ndim != 1:
         notices.append(f"array {name!r} is ignored: it has records in {dataset.ndim} dimensions, must be one dimension")
         return []
@@ -239,14 +268,7 @@ def _fields(path: Path, name: str, dataset: Any, notices: list[str]) -> list[Cha
         check_alternation(path, field, [attribute_text(cell) for cell in table[field][:SAMPLED]])
     if others:
         notices.append(f"fields of {name!r} without numbers are ignored: {', '.join(map(repr, others))}")
-    heads = {field: split_head(field) for field in numeric}
-    key = time_key(heads)
-    axis = None if key is None else table[key].astype(np.float64) * seconds_in(heads[key][1])
-    return [
-        Channel(name=text, values=table[field].astype(np.float64), unit=unit, axis=axis, place=name)
-        for field, (text, unit) in heads.items()
-        if field != key
-    ]
+    return typed_channels(path, [TypedColumn(field, table[field]) for field in numeric], notices, name)[0]
 
 
 def _attribute(item: Any, name: str) -> str:

@@ -2,13 +2,13 @@
 
 import csv
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle.errors import DataError
 from vehicle.signals.formats.clock_text import is_clock
-from vehicle.signals.formats.units import find_unit, seconds_in
+from vehicle.signals.formats.units import find_unit
 
 HEAD_LINES = 6
 """Maximum number of header lines: device, name, type, unit, sensor, axis."""
@@ -248,11 +248,6 @@ def split_head(cell: str) -> tuple[str, str]:
     if slash and find_unit(unit):
         return name.strip(), unit.strip()
     return cell.strip(), _unit_of_name(cell.strip())
-
-
-def time_key(heads: Mapping[str, tuple[str, str]]) -> str | None:
-    """Return the first column with the name and the unit of a time, see `split_head`; None without one."""
-    return next((key for key, (name, unit) in heads.items() if TIME_NAME.fullmatch(name) and seconds_in(unit)), None)
 
 
 def _unit_of_name(name: str) -> str:

@@ -51,7 +51,7 @@ def table_channels(path: Path, tables: Mapping[str, str]) -> tuple[list[Channel]
                 check_alternation(path, column, cells)
             if texts:
                 notices.append(f"columns without numbers are ignored: {', '.join(map(repr, texts))}")
-            of_table, start = typed_channels(path, columns, notices, name)
+            of_table, start = typed_channels(path, columns, notices, name, row_times=tables[name] == "timetable")
             channels += of_table
             starts.append(start)
     return channels, notices, next(filter(None, starts), "")

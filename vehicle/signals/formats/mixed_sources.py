@@ -40,11 +40,14 @@ def check_cycles(measurement: Measurement) -> None:
     Raises:
         DataError: a channel counts sensors.
     """
+    cycles: dict[int, int] = {}  # by axis, which many channels share
     for channel in measurement.channels:
         time, values = channel.axis, channel.values
         if channel.kind != "time" or time is None or time.size != values.size or np.iscomplexobj(values):
             continue
-        cycle = rows_at_once(time)
+        if id(time) not in cycles:
+            cycles[id(time)] = rows_at_once(time)
+        cycle = cycles[id(time)]
         if cycle < 2:
             continue
         numbers = values[: values.size - values.size % cycle].reshape(-1, cycle)

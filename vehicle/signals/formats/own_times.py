@@ -21,6 +21,9 @@ BLANK_SHARE, UNEVEN = 0.3, 1.5
 """Minimum share of blank cells [-], and maximum step over the median step [-], of a jittered channel among
 rasters: a lost sample makes a step of 2."""
 
+RISING = 0.25
+"""Minimum share of rising steps of a clock [-]: times of 400 Hz rounded to 10 ms rise in every fourth row."""
+
 _CLOCKS = re.compile(r"gps|gnss|utc|local|system|device|log|epoch|unix|elapsed|rel|abs|pc|host|daq|ecu", re.IGNORECASE)
 """Beginning of words for the clocks of a logger, which count the same rows."""
 
@@ -45,8 +48,18 @@ def time_pairs(columns: Sequence[str]) -> dict[int, int]:
 
 
 def is_time(name: str, unit: str) -> bool:
-    """Return True if name and unit of a column are those of a time; pandas writes a repeated name as "Time.1"."""
-    return bool(TIME_NAME.fullmatch(re.sub(r"[._ ]?\d+$", "", name.strip()))) and (not unit or seconds_in(unit) > 0.0)
+    """Return True if name and unit of a column are those of a time; pandas writes a repeated name as "Time.1".
+
+    Without a unit the name must contain a word for time: "T Oil" is a temperature.
+    """
+    named = TIME_NAME.fullmatch(re.sub(r"[._ ]?\d+$", "", name.strip()))
+    return bool(named and (seconds_in(unit) > 0.0 if unit else re.search("time|zeit", name, re.IGNORECASE)))
+
+
+def rises(times: Vector) -> bool:
+    """Return True if a column (n,) rises, by at least `RISING` of its steps, and never falls: no duration of a lap."""
+    steps = np.diff(times[np.isfinite(times)])
+    return bool((steps >= 0).all() and np.count_nonzero(steps) >= RISING * steps.size)
 
 
 def own_times(
@@ -54,8 +67,9 @@ def own_times(
 ) -> dict[int, Vector]:
     """Return the times of each channel of `time_pairs` [s]; NaN where its row is blank.
 
-    Two clocks of the same rows, as those of a logger and of a satellite receiver, have equal spans and the word of a
-    clock in their names; the result is then empty.
+    Two clocks of the same rows, as those of a logger and of a satellite receiver, have equal spans, also in the rows
+    that they share, and the word of a clock in their names; the result is then empty. It is also empty if a column of
+    the same rows is no clock, see `rises`.
 
     Args:
         where: file, for messages.
@@ -65,9 +79,15 @@ def own_times(
         DataError: a value without a time, or an unknown unit.
     """
     times = list(dict.fromkeys(pairs.values()))
-    spans = [float(np.nanmax(columns[t]) - np.nanmin(columns[t])) * _factor(units, t, times) for t in times
-             if np.isfinite(columns[t]).any()]  # fmt: skip
-    different = len(spans) < 2 or max(spans) > (1.0 + EQUAL_SPANS) * min(spans)
+    rows = [np.isfinite(columns[t]) for t in times]
+    shared = np.logical_and.reduce(rows)
+    if all((each == shared).all() for each in rows) and not all(rises(columns[t]) for t in times):
+        return {}
+    different = False
+    for masks in (rows, [shared] * len(rows)):
+        masked = [(columns[t][mask], t) for t, mask in zip(times, masks, strict=True) if mask.any()]
+        spans = [float(np.ptp(values)) * _factor(units, t, times) for values, t in masked]
+        different |= len(spans) < 2 or max(spans) > (1.0 + EQUAL_SPANS) * min(spans)
     if not different and any(_CLOCKS.match(word) for time in times for word in re.findall(r"[^\W\d_]+", names[time])):
         return {}
     if not all(_factor(units, time, times) for time in times):

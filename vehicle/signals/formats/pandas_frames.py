@@ -16,18 +16,18 @@ import numpy as np
 from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel
-from vehicle.signals.formats.heads import split_head, time_key
+from vehicle.signals.formats.heads import split_head
 from vehicle.signals.formats.mixed_sources import rows_at_once
 from vehicle.signals.formats.own_times import with_own_rasters
 from vehicle.signals.formats.packed_values import attribute_text
-from vehicle.signals.formats.units import seconds_in
+from vehicle.signals.formats.typed_columns import TypedColumn, typed_channels
 
 NANOSECONDS = 1e-9
 """Length of a nanosecond [s]."""
 
 
-def frame_channels(path: Path, name: str, group: Any) -> tuple[list[Channel], str]:
-    """Return the columns of a pandas frame or series as channels, and its start time.
+def frame_channels(path: Path, name: str, group: Any, notices: list[str]) -> tuple[list[Channel], str]:
+    """Return the columns of a pandas frame or series as channels, and its start time; adds notices.
 
     Args:
         group: group of an HDF5 file, with the attribute `pandas_type`.
@@ -65,23 +65,27 @@ def frame_channels(path: Path, name: str, group: Any) -> tuple[list[Channel], st
         order = [_text(item_name) for item_name in group["axis0"][()]]
         columns = {item: columns[item] for item in order if item in columns}
     axis, start, index_values = _index(index)
-    heads = {column: split_head(column) for column in columns}
-    if axis is None and (key := time_key(heads)) is not None:
-        axis = columns.pop(key) * seconds_in(heads[key][1])
+    if axis is None:
+        typed = [TypedColumn(column, values) for column, values in columns.items()]
+        channels, start = typed_channels(path, typed, notices, name)
+        axis = channels[0].axis if channels else None
+    else:
+        heads = [split_head(column) for column in columns]
+        channels = with_own_rasters(
+            [
+                Channel(name=text, values=values, unit=unit, axis=axis, place=name)
+                for (text, unit), values in zip(heads, columns.values(), strict=True)
+            ]
+        )
     if axis is not None and unreadable and (rows := rows_at_once(axis)) > 1:
         raise DataError(
             f"{path}: {name!r} has {rows} rows for each time, and the column {unreadable[0]!r} is not readable without "
             "pandas: probably the names of sensors; write one column per sensor"
         )
-    channels = [
-        Channel(name=heads[column][0], values=values, unit=heads[column][1], axis=axis, place=name)
-        for column, values in columns.items()
-    ]
-    if index_values is not None:
-        channels.insert(
-            0, Channel(name=_text(index.attrs.get("name")) or "index", values=index_values, axis=axis, place=name)
-        )
-    return with_own_rasters(channels), start
+    if index_values is not None and (axis is None or axis.size == index_values.size):
+        title = _text(index.attrs.get("name")) or "index"
+        channels.insert(0, Channel(name=title, values=index_values, axis=axis, place=name))
+    return channels, start
 
 
 def _index(index: Any) -> tuple[Vector | None, str, Vector | None]:

@@ -6,9 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from vehicle.arrays import Vector
+from vehicle.digits import number
+from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel
 from vehicle.signals.formats.units import find_unit
+
+EDGE = 2.5
+"""Minimum change of a phase in radians over a resonance, which is about pi [rad]."""
+
+DEGREES = 45.0
+"""Largest phase that may be in radians, unwrapped over seven turns; phases in degrees reach +-180."""
 
 _PART = re.compile(
     r"(?P<head>.*?)[ _.:,-]*\(?(?:(?P<real>re|real)|(?P<imaginary>im|imag|imaginary)|(?P<magnitude>mag|magnitude|ampl?|"
@@ -17,14 +24,18 @@ _PART = re.compile(
 )
 
 
-def joined(channels: Sequence[Channel]) -> tuple[Channel, ...]:
+def joined(where: object, channels: Sequence[Channel]) -> tuple[Channel, ...]:
     """Combine real and imaginary parts, or magnitudes and phases, to frequency responses.
 
     Args:
+        where: file, for messages.
         channels: columns over one frequency axis: `H real`, `H imag`; `H_magnitude`, `H_phase [deg]`; `H coherence`.
 
     Returns:
         Channels with responses in place of their first parts; other columns unchanged.
+
+    Raises:
+        DataError: see `_angle_unit`.
     """
     parts: dict[str, dict[str, int]] = {}
     for index, channel in enumerate(channels):
@@ -45,7 +56,7 @@ def joined(channels: Sequence[Channel]) -> tuple[Channel, ...]:
                 continue
             values = np.asarray(upper.values + 1j * lower.values, dtype=np.complex128)
         else:
-            unit = find_unit(lower.unit or _angle_unit(np.asarray(lower.values, dtype=float)))
+            unit = find_unit(lower.unit or _angle_unit(where, upper, lower))
             if unit is None or unit.quantity != "angle":
                 continue
             if not lower.unit:
@@ -61,16 +72,35 @@ def joined(channels: Sequence[Channel]) -> tuple[Channel, ...]:
     return tuple(channel for channel in result.values() if channel is not None)
 
 
-def _angle_unit(phase: Vector) -> str:
-    """Return the unit of a phase (m,) without a unit: rad if a turn of 2 pi holds all values, else deg.
+def _angle_unit(where: object, magnitude: Channel, phase: Channel) -> str:
+    """Return the unit of a phase (m,) without a unit; phases in degrees of a narrow band may lie within 2 pi, too.
 
-    Phases in radians within +-pi or 0 to 2 pi, and not beyond, are those of a response. In degrees they would be those
-    of a response without any phase.
+    Radians lie within a turn, which they fill: they jump by 2 pi, or change by more than `EDGE` over a resonance, where
+    degrees change by about 180.
+
+    Raises:
+        DataError: no value is beyond `DEGREES`, and the phase is not clearly in radians.
     """
-    finite = phase[np.isfinite(phase)]
+    known = np.isfinite(phase.values) & np.isfinite(magnitude.values)
+    angle, size = np.asarray(phase.values[known], dtype=float), np.abs(magnitude.values[known])
+    largest = float(np.max(np.abs(angle))) if angle.size else 0.0
     turn = 2.0 * np.pi * (1.0 + 1e-6)
-    return "rad" if finite.size and np.max(np.abs(finite)) <= turn and np.ptp(finite) <= turn else "deg"
+    if largest > DEGREES:
+        return "deg"
+    extent = float(np.ptp(angle)) if angle.size else 0.0
+    jumps = angle.size > 1 and float(np.max(np.abs(np.diff(angle)))) > 2.0 * EDGE
+    resonates = size.size > 0 and float(np.max(size)) > 2.0 * max(size[0], size[-1])
+    if EDGE < extent <= turn and (jumps or resonates):
+        return "rad"
+    raise DataError(
+        f"{where}: the phase {phase.name!r} has no unit, and its values, at most {number(largest, 3)}, may be degrees "
+        f"or radians; write the unit into the header, {phase.name} [deg] or {phase.name} [rad]"
+    )
 
 
 def _why(word: str) -> str:
-    return "because all values lie within a turn of 2 pi" if word == "radians" else "because its values exceed 2 pi"
+    return (
+        "because all values lie within a turn of 2 pi"
+        if word == "radians"
+        else f"because its values exceed {DEGREES:g}"
+    )

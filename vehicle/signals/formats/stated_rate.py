@@ -19,8 +19,11 @@ STEPS = re.compile(
 UNSURE = re.compile(r"delta|step|increment|x?incr(ement)?|xdelta|xstep|rate|frequency|freq|deltax|dx|spacing")
 """Names of a rate or step of any quantity, which are shown to the user."""
 
+LONGEST = 40
+"""Maximum length of a text that is a number with a unit."""
+
 _UNITS = {"hz": "Hz", "khz": "kHz", "s": "s", "sec": "s", "seconds": "s", "ms": "ms", "us": "us", "ns": "ns"}
-_NUMBER = re.compile(r"\s*(?P<number>[+-]?\d+\.?\d*(?:[eE][+-]?\d+)?)\s*(?P<unit>[A-Za-z]*)\s*")
+_NUMBER = re.compile(r"\s*(?P<number>[+-]?\d+(?:\.\d*)?(?:[eE][+-]?\d+)?)\s*(?P<unit>[A-Za-z]*)\s*")
 
 
 def stated_step(numbers: Mapping[str, Any]) -> tuple[float | None, str]:
@@ -75,5 +78,5 @@ def number_of(value: Any) -> tuple[float | None, str]:
     if array.dtype.kind in "fiu":
         return float(item), ""
     text = item.decode("utf-8", "replace") if isinstance(item, bytes) else str(item)
-    match = _NUMBER.fullmatch(text) if array.dtype.kind in "USO" else None
+    match = _NUMBER.fullmatch(text) if array.dtype.kind in "USO" and len(text) <= LONGEST else None
     return (float(match["number"]), match["unit"]) if match else (None, "")

@@ -112,8 +112,8 @@ def faults(
             findings.append(
                 Finding(
                     f"{name}: constant for {end - begin:.4g} s, from {begin:.6g} to {end:.6g} s: a stuck sensor or a "
-                    f"pause? All means include these seconds; select the part {'before' if first else 'after'} it "
-                    f"with {' '.join(options)}",
+                    "pause? These seconds are part of all mean values; select the part "
+                    f"{'before' if first else 'after'} it with {' '.join(options)}",
                     "constant",
                     options,
                 )

@@ -285,8 +285,11 @@ def of_receiver(channels: Sequence[Channel]) -> bool:
 def is_plate(channel: Channel) -> bool:
     """Return True if the name of a displacement contains a word for the plate under a wheel.
 
-    A ride height, the travel of a suspension or the deflection of a tyre is a relative motion of two parts.
+    A ride height, the travel of a suspension or the deflection of a tyre is a relative motion of two parts, and the
+    actuator of a road wheel steers it.
     """
+    if {"road", "wheel"} <= set(words_of(channel.name)):
+        return False
     default = DEFAULT_PLATE.fullmatch(channel.name.strip().rstrip(".").lower())
     return channel.quantity == "displacement" and (default is not None or _is_point(channel, PLATE, PLATE_MOTION))
 

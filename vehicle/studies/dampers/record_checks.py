@@ -72,6 +72,8 @@ def is_dead(values: Vector) -> bool:
 
 def is_copy(first: Vector, second: Vector) -> bool:
     """Return True if two channels have the same digits: equal up to a factor of units, a power of 1000."""
+    if is_dead(first) or is_dead(second):
+        return False
     scale = float(first @ second) / float(first @ first)
     power = np.log10(abs(scale) or 1.0) / 3.0
     return bool(np.std(second - scale * first) <= DEAD * np.max(np.abs(second)) and abs(power - round(power)) < DEAD)
@@ -129,7 +131,7 @@ def require_damping(path: Path, force: Vector, velocity: Vector, names: Mapping[
     slowest, fastest = 1e3 * float(np.min(velocity)), 1e3 * float(np.max(velocity))
     if min(fastest, -slowest) < ONE_WAY * max(fastest, -slowest):
         raise DataError(
-            f"{path}: the damper moves in one direction alone, with {number(slowest, 2)} to {number(fastest, 2)} mm/s; "
+            f"{path}: the damper moves in one direction only, at {number(slowest, 2)} to {number(fastest, 2)} mm/s; "
             "record at least a whole cycle, rebound and bump"
         )
     changing = force - np.mean(force)
