@@ -74,16 +74,23 @@ def test_the_rate_of_an_array_of_hdf5(tmp_path, place):
     assert times(channel)[0] == (0.5 if place == "starting_time" else 0.0)
 
 
-def test_attributes_of_length_one(tmp_path):
+@pytest.mark.parametrize("kind", ["signed", "spectrum"])
+def test_attributes_of_length_one(tmp_path, kind):
+    """Start and step beside accelerations of both signs are those of the time; others may be those of a spectrum."""
     h5py = pytest.importorskip("h5py")
     with h5py.File(tmp_path / "a.h5", "w") as file:
-        file["seat_z"] = VALUES
+        file["seat_z"] = VALUES if kind == "signed" else np.abs(VALUES)
         for name, value in {"start": [0.0], "delta": [0.01], "step": [0.01]}.items():
             file["seat_z"].attrs[name] = np.array(value)
         file["seat_z"].attrs["unit"] = np.array([b"g"])
     found = read(tmp_path / "a.h5")
-    assert found.channels[0].unit == "g" and found.channels[0].axis is None
-    assert any("if this is the step of the samples, set --rate 100" in text for text in found.notices)
+    assert found.channels[0].unit == "g"
+    if kind == "signed":
+        assert found.channels[0].rate == pytest.approx(100.0)
+        assert "'delta' = 0.01 is read as the step of the samples, 0.01 s, 100 Hz; otherwise set" in found.notices[0]
+    else:
+        assert found.channels[0].axis is None
+        assert "if this is the step of the samples, set --rate 100" in found.notices[0]
 
 
 def test_a_long_text_is_no_number():
@@ -97,14 +104,24 @@ def test_a_group_of_many_arrays_is_searched_once(tmp_path, monkeypatch):
         for n in range(20):
             file[f"run/channel {n}"] = VALUES[:10]
     searched: list[str] = []
-    monkeypatch.setattr(hdf_format, "_numbers", lambda group: searched.append(group.name) or {"fs": 100.0})
+
+    def numbers(group: Any) -> dict[str, float]:
+        searched.append(group.name)
+        return {"fs": 100.0}
+
+    monkeypatch.setattr(hdf_format, "_numbers", numbers)
     assert all(channel.rate == pytest.approx(100.0) for channel in read(tmp_path / "a.h5").channels)
     assert searched == ["/run"]
 
 
 def test_equal_times_are_counted_once(tmp_path, monkeypatch):
     counted: list[int] = []
-    monkeypatch.setattr(mixed_sources, "rows_at_once", lambda time: counted.append(time.size) or 1)
+
+    def rows_at_once(time: Vector) -> int:
+        counted.append(time.size)
+        return 1
+
+    monkeypatch.setattr(mixed_sources, "rows_at_once", rows_at_once)
     (tmp_path / "a.csv").write_text("\n".join(["Time [s],a,b,c", *(f"{n / 100},{n},{-n},0.5" for n in range(50))]))
     assert len(read(tmp_path / "a.csv").channels) == 3 and counted == [50]
 

@@ -19,7 +19,7 @@ from vehicle.signals.formats.packed_values import attribute_text, unpacked
 from vehicle.signals.formats.pandas_frames import frame_channels
 from vehicle.signals.formats.stated_rate import number_of, stated_step
 from vehicle.signals.formats.typed_columns import TypedColumn, typed_channels
-from vehicle.signals.formats.units import seconds_in
+from vehicle.signals.formats.units import find_unit, seconds_in
 from vehicle.signals.formats.unpacked_size import require_unpacked
 
 PLAIN_CLASSES = frozenset(
@@ -169,6 +169,7 @@ def _arrays(
             notices.append(f"array {name!r} of {len(values)} x {values.shape[1]}: each row is a channel")
         values, index_text = values.T, "({},:)"
     values = values.reshape(len(values), -1)
+    unit = _attribute(dataset, "unit") or _attribute(dataset, "units")
     step = number_of(dataset.attrs.get("step", ""))[0]
     start = number_of(dataset.attrs.get("start", 0.0))[0] or 0.0
     axis_quantity = _attribute(dataset, "kind")
@@ -179,9 +180,9 @@ def _arrays(
     if axis is None:
         axis = _coordinate(dataset, len(values))
     if axis is None and dataset.dtype.kind != "c" and not axis_quantity:
-        axis = _stated_axis(name, dataset, len(values), notices, groups)
+        signed = getattr(find_unit(unit), "quantity", "") == "acceleration" and bool((values < 0.0).any())
+        axis = _stated_axis(name, dataset, len(values), notices, groups, signed=signed)
     label = _attribute(dataset, "name") or name
-    unit = _attribute(dataset, "unit") or _attribute(dataset, "units")
     return [
         Channel(
             name=label if values.shape[1] == 1 else label + index_text.format(n + 1),
@@ -216,17 +217,24 @@ def _coordinate(dataset: Any, count: int) -> Vector | None:
 
 
 def _stated_axis(
-    name: str, dataset: Any, count: int, notices: list[str], groups: dict[str, tuple[float | None, float, str]]
+    name: str,
+    dataset: Any,
+    count: int,
+    notices: list[str],
+    groups: dict[str, tuple[float | None, float, str]],
+    *,
+    signed: bool,
 ) -> Vector | None:
     """Return times [s] from a rate or step among the attributes and single numbers of an array or its groups.
 
     Args:
         groups: results of `_stated` by name of group, which many arrays share; extended.
+        signed: True for accelerations of both signs, which are no spectrum.
     """
     item = dataset
     while True:
         if item is dataset:
-            step, start, remark = _stated(dict(item.attrs))
+            step, start, remark = _stated(dict(item.attrs), signed=signed)
         else:
             if item.name not in groups:
                 groups[item.name] = _stated(_numbers(item))
@@ -249,9 +257,9 @@ def _numbers(group: Any) -> dict[str, Any]:
     return numbers
 
 
-def _stated(numbers: dict[str, Any]) -> tuple[float | None, float, str]:
+def _stated(numbers: dict[str, Any], *, signed: bool = False) -> tuple[float | None, float, str]:
     """Return step and start [s] among named numbers, and a remark, see `stated_step`."""
-    step, remark = stated_step(numbers)
+    step, remark = stated_step(numbers, of_time=signed and not numbers.keys().isdisjoint(STARTS))
     start = next((number_of(numbers[key])[0] for key in STARTS if key in numbers), None)
     return step, start or 0.0, remark
 

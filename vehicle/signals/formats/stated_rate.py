@@ -26,17 +26,20 @@ _UNITS = {"hz": "Hz", "khz": "kHz", "s": "s", "sec": "s", "seconds": "s", "ms": 
 _NUMBER = re.compile(r"\s*(?P<number>[+-]?\d+(?:\.\d*)?(?:[eE][+-]?\d+)?)\s*(?P<unit>[A-Za-z]*)\s*")
 
 
-def stated_step(numbers: Mapping[str, Any]) -> tuple[float | None, str]:
+def stated_step(numbers: Mapping[str, Any], *, of_time: bool = False) -> tuple[float | None, str]:
     """Return the step of the samples [s] that names and numbers state, and a remark for the user.
 
     Args:
         numbers: name to value: a number, an array of one number, or a text with number and unit, as "100 Hz".
+        of_time: True if a step of any quantity can only be that of the time, for example beside a start and signed
+            accelerations; the remark then contains it.
 
     Returns:
         The step; None if no name is that of a rate or step, or if several contradict each other. The remark contains a
         possible step, or the contradiction; empty without a remark.
     """
     steps: dict[str, float] = {}
+    guesses: dict[str, float] = {}
     unsure = ""
     for key, value in numbers.items():
         plain = re.sub(r"[\W_]", "", key.lower())
@@ -56,10 +59,18 @@ def stated_step(numbers: Mapping[str, Any]) -> tuple[float | None, str]:
             steps[key] = number * factor
         elif UNSURE.fullmatch(name):
             of_rate = name in ("rate", "frequency", "freq")
+            guesses[key] = 1.0 / number if of_rate else number
             unsure = (
                 f"{key!r} = {number:g}; if this is the {'rate' if of_rate else 'step'} of the samples, set --rate "
                 f"{number if of_rate else 1.0 / number:.9g}"
             )
+    if not steps and of_time and len(set(guesses.values())) == 1:
+        key, step = next(iter(guesses.items()))
+        shown = f"{key!r} = {number_of(numbers[key])[0]:g}"
+        return (
+            step,
+            f"{shown} is read as the step of the samples, {step:g} s, {1.0 / step:g} Hz; otherwise set --rate HZ",
+        )
     if not steps:
         return None, unsure
     first, *others = steps.values()
