@@ -6,9 +6,13 @@ import argparse
 import sys
 from collections.abc import Iterable
 
+from vehicle.errors import ConfigurationError
 from vehicle.signals.records.finding import Finding, FindingError, added, findings_of, parts_of
 
 OPTION = "--accept-advice"
+
+ROUNDS = 8
+"""Maximum number of times that a command begins again; then its findings are the error."""
 
 
 def advice_option(parser: argparse._ActionsContainer) -> None:
@@ -19,6 +23,16 @@ def advice_option(parser: argparse._ActionsContainer) -> None:
         help="apply the options that the findings on the record name (units, offsets, channels, signs, delays, "
         "constant parts), and print each finding",
     )
+
+
+def require_one_file(options: argparse.Namespace) -> None:
+    """Refuse --accept-advice with several files, whose findings differ.
+
+    Raises:
+        ConfigurationError: --accept-advice.
+    """
+    if options.accept_advice:
+        raise ConfigurationError(f"{OPTION} needs a single file; run the command once for each file")
 
 
 def accept(options: argparse.Namespace, notices: Iterable[str]) -> None:
@@ -33,14 +47,18 @@ def accept(options: argparse.Namespace, notices: Iterable[str]) -> None:
 
 
 def retried(error: FindingError, options: argparse.Namespace) -> list[str] | None:
-    """Return the words of a command line with the options of the findings of an error; None without new options."""
+    """Return the words of a command line with the new options of the findings of an error; None without any.
+
+    An option that was accepted before is left out: a second --turn would turn the channel back.
+    """
     new = [_new(finding, options) for finding in error.findings]
     if not getattr(options, "accept_advice", False) or not any(new):
         return None
     arguments = list(options.words)
     for finding, is_new in zip(error.findings, new, strict=True):
-        options.accepted.update(parts_of(finding.options))
-        arguments = added(arguments, finding.options)
+        parts = [part for part in parts_of(finding.options) if part not in options.accepted]
+        options.accepted.update(parts)
+        arguments = added(arguments, [word for part in parts for word in part if word])
         if not getattr(options, "quiet", False):
             print(f"{'accepted' if is_new else 'found'}: {finding}", file=sys.stderr, flush=True)
     return arguments

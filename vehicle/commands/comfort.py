@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vehicle.commands.accepted_advice import accept
+from vehicle.commands.accepted_advice import accept, require_one_file
 from vehicle.commands.command_line import command, print_result
 from vehicle.commands.input_options import record_choice, record_options
 from vehicle.commands.options import command_parser, message_options
@@ -181,6 +181,7 @@ def _job(options: argparse.Namespace) -> None:
 
     names, several = expanded(options.inputs)
     if several:
+        require_one_file(options)
         results, errors = each_file(names, one)
         print_result(options, results, _overview(results))
         raise_worst(errors, len(results))

@@ -18,7 +18,7 @@ from pathlib import Path
 from types import FrameType
 from typing import Any
 
-from vehicle.commands.accepted_advice import retried
+from vehicle.commands.accepted_advice import ROUNDS, retried
 from vehicle.commands.parser import Parser
 from vehicle.commands.printable import printable_streams
 from vehicle.digits import duration
@@ -183,6 +183,7 @@ def parse_and_run(parser: Parser, job: Callable[[argparse.Namespace], None], arg
                 raise ConfigurationError(f"argument {word!r}: contains a NUL character; remove it")
         line: list[str] | None = typed
         accepted: set[tuple[str, str]] = set()
+        rounds = 0
         while line is not None:
             with ExitStack() as held:
                 options = parser.parse_args(line, argparse.Namespace(words=line, held=held, accepted=accepted))
@@ -192,7 +193,8 @@ def parse_and_run(parser: Parser, job: Callable[[argparse.Namespace], None], arg
                     job(options)
                     line = None
                 except FindingError as error:
-                    line = retried(error, options)
+                    rounds += 1
+                    line = retried(error, options) if rounds <= ROUNDS else None
                     if line is None:
                         raise
 
@@ -308,7 +310,7 @@ class ProgressLine:
         elapsed = f"after {now - self.started:.0f} s"
         remark = elapsed if math.isnan(self.end) else f"{duration(max(self.end - now, 0.0))} left"
         counted = f"  {self._counted()}" if self.runs else ""
-        stream = getattr(sys.stderr, "stream", sys.stderr)  # the return to the begin of the line is meant
+        stream = getattr(sys.stderr, "stream", sys.stderr)  # the carriage return is intended
         stream.write(f"\r{self.what} [{bar:<30}] {100 * self.fraction:3.0f} %{counted}  {remark:>12} {newline}")
         sys.stderr.flush()
 

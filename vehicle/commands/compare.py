@@ -7,7 +7,7 @@ from collections.abc import Container
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vehicle.commands.accepted_advice import accept
+from vehicle.commands.accepted_advice import accept, require_one_file
 from vehicle.commands.clock_options import clock_of, delay_option, drift_option
 from vehicle.commands.command_line import ProgressLine, command, print_result
 from vehicle.commands.destination import output_folder_of
@@ -168,7 +168,8 @@ def measured_choice(options: argparse.Namespace, input_names: Container[str] = (
 
 def _job(options: argparse.Namespace) -> None:
     names, several = expanded([str(path) for path in options.measured])
-
+    if several:
+        require_one_file(options)
     whole = output_folder_of(options, OUTPUT, protect=tuple(Path(name) for name in names))
 
     def one(name: str) -> dict[str, Any]:

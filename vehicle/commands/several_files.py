@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from vehicle.errors import ConfigurationError, VehicleError
+from vehicle.errors import ConfigurationError, DataError, VehicleError
 
 Row = tuple[str, ...]
 
@@ -65,9 +65,13 @@ def table_of(heads: Row, results: Sequence[dict[str, Any]], rows_of: Callable[[d
 
 
 def raise_worst(errors: Sequence[VehicleError], files: int) -> None:
-    """Raise one error for all failed files, of the class of the first; call it after printing the results."""
+    """Raise one error for all failed files; call it after printing the results.
+
+    Raises:
+        DataError: a file failed.
+    """
     if errors:
         count = len(errors)
-        raise type(errors[0])(
+        raise DataError(
             f"{count} of {files} files {'has' if count == 1 else 'have'} no result; the reason is in the table"
         )

@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from vehicle.commands.accepted_advice import accept, require_one_file
 from vehicle.commands.command_line import command
 from vehicle.commands.destination import output_files_of
 from vehicle.commands.input_options import record_choice, record_options
@@ -69,7 +70,10 @@ def _job(options: argparse.Namespace) -> None:
     except ValueError:
         raise ConfigurationError(f"--range {options.range}: must be LOW:HIGH [Hz], for example 0.5:80") from None
     choice = record_choice(options, "")
+    if len(options.runs) > 1:
+        require_one_file(options)
     runs = [record_spectra(path, asked, frequency_range, choice) for path in options.runs]
+    accept(options, (text for run in runs for text in run.notices))
     names = _unique([run.name for run in runs])
     by_name = dict(zip(names, runs, strict=True))
     pictures = picture_columns(runs)

@@ -1,7 +1,10 @@
 """A record is diagnosed once: the same sentences in every command, and one option that accepts them."""
 
 import json
+from dataclasses import replace
+from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tests.german_logger import LATE, NAMES, TRUTH, measured_run, write_logger
@@ -9,6 +12,10 @@ from vehicle import Car, Choice, DataError, compare, diagnose, measured_historie
 from vehicle.commands.compare import main as compare_command
 from vehicle.commands.inspect import main as inspect
 from vehicle.commands.tune import main as tune
+from vehicle.signals.formats.channel import Measurement
+from vehicle.signals.formats.table import Record
+from vehicle.signals.records.measured import Measured
+from vehicle.signals.records.run_findings import beside_run
 
 FRONT = ("knuckle_fl_acc_z", "knuckle_fr_acc_z")
 FITTED = [f"{path}={low}:{high}" for path, low, high in zip(TRUTH, (1000, 10), (4000, 200), strict=True)]
@@ -51,9 +58,12 @@ def test_a_german_logger_has_one_diagnosis_of_five_sentences(logger):
 def test_accepted_advice_makes_a_comparison_right(logger, truth, tmp_path, capsys):
     save_run(truth, tmp_path / "run", figures=False)
     words = [str(tmp_path / "run"), "--measured", str(logger), "--delay", "2", "--no-figures"]
-    assert compare_command([*words, "--accept-advice", "--output", str(tmp_path / "compared")]) == 0
+    assert compare_command([*words, "--accept-advice", "--output", str(tmp_path / "asked")]) == 0
+    assert "found: the accelerations lag the plates" in capsys.readouterr().err  # the car may be wrong: no option
+    known = ["--delay", f"accelerations={1e3 * LATE:g}ms"]
+    assert compare_command([*words, *known, "--accept-advice", "--output", str(tmp_path / "compared")]) == 0
     said = capsys.readouterr().err
-    assert said.count("accepted: ") == 5 and said.count("found: ") == 1  # five, with the names; the offset is taken out
+    assert said.count("accepted: ") == 4 and said.count("found: ") == 1  # the offset is taken out
     result = json.loads((tmp_path / "compared" / "compare.json").read_text())
     (accelerations,) = (each for each in result["delays"] if each["group"] == "accelerations")
     assert accelerations["delay_s"] == pytest.approx(LATE, abs=5e-5)
@@ -126,6 +136,29 @@ def test_a_sound_record_has_no_finding_on_channels(truth, tmp_path, faults):
     path = write_logger(tmp_path / "sound.csv", truth, **faults)
     found = diagnose(path, Car.load("focus_road", TRUTH), choice=Choice(channels=MAPS, detrend=True)).findings
     assert {each.kind for each in found} == {"delay"}
+
+
+def test_axes_of_a_point_are_judged_together(tmp_path):
+    """The mean along y is no gravity, and the unit of a vertical channel is clear from three axes."""
+    time = np.arange(3000) / 100.0
+    sine = np.sin(20.0 * time)
+    table = np.column_stack([time, sine, 1.0 + sine, 0.6 + sine, sine, 0.8 + sine])
+    heads = "time [s],Hub lateral [m/s2],Roof lateral [m/s2],Seat X [m/s2],Seat Y [m/s2],Seat Z [m/s2]"
+    np.savetxt(tmp_path / "a.csv", table, fmt="%.6g", delimiter=",", header=heads, comments="")
+    (finding,) = diagnose(tmp_path / "a.csv").findings
+    assert finding.startswith("Seat Z: the means of Seat X, Seat Y, Seat Z are together 1.0")
+
+
+@pytest.mark.parametrize(("name", "options"), [("seat_acc_x", ()), ("seat_acc_z", ("--detrend",))])
+def test_a_mean_along_x_is_a_motion(name, options):
+    """A fit of a record of braking was refused: "the offset of a sensor?"."""
+    time = np.arange(3000) / 100.0
+    run = Record(time=time, channels={name: np.sin(20.0 * time)}, units={name: "m/s2"})
+    record = replace(run, channels={name: 3.0 + run.channels[name]})
+    file = Measurement(path=Path("a.csv"), format="csv", channels=())
+    measured = Measured(file=file, frf=None, record=record, notices=())
+    (finding,) = (each for each in beside_run(measured, record, run, time).findings if each.kind == "offset")
+    assert finding.options == options and ("braking, cornering, or an inclined sensor?" in finding) == (not options)
 
 
 def test_a_cure_in_python_is_that_of_the_command(logger):

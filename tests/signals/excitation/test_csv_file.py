@@ -158,7 +158,7 @@ def test_148_the_position_of_a_sensor_is_no_motion(tmp_path, ratio, begins):
     assert signal.rms("fr") == pytest.approx(np.std(motion), rel=0.03)
     (finding,) = (text for text in signal.notices if "position of the sensor" in text)
     assert isinstance(finding, Finding) and finding.kind == "offset"
-    assert "subtracted, as with --detrend" in finding
+    assert "not a motion of the plate; it was subtracted" in finding
     if begins == "at rest":
         np.testing.assert_allclose(signal.displacement["fr"], motion - motion[0], atol=1e-9)
 

@@ -55,3 +55,24 @@ def test_options_name_two_channels_or_all():
     assert finding.options == ("--map", "b=1", "--map", "a=2") and finding.startswith("exchanged channels: ")
     (finding,) = exchange_finding({"a": "b", "b": "a"}, mapped, complete=True)
     assert finding.options == ("--map", "a=2", "--map", "b=1", "--map", "c=3")
+
+
+def test_a_role_keeps_its_plate_and_a_run_has_no_channels_in_a_file():
+    swap = {"seat_acc_x": "seat_acc_z", "seat_acc_z": "seat_acc_x"}
+    mapped = {"seat_acc_x/plate_fl": "1", "seat_acc_z/plate_fl": "2"}
+    (finding,) = exchange_finding(swap, mapped, complete=False)
+    assert finding.options == ("--map", "seat_acc_z/plate_fl=1", "--map", "seat_acc_x/plate_fl=2")
+    assert exchange_finding(swap, {}, complete=False) == []
+
+
+def test_exchanged_plates_are_not_blamed_on_the_other_channels():
+    """All knuckles move like those of the other side: it may be the plates, and no option is accepted."""
+    mapped = {f"plate_{wheel}_displacement": f"P{wheel}" for wheel in ("fl", "fr", "rl", "rr")}
+    mapped |= {f"knuckle_{wheel}_acc_z": f"K{wheel}" for wheel in ("fl", "fr", "rl", "rr")} | {"seat_acc_z": "S"}
+    front = {"knuckle_fl_acc_z": "knuckle_fr_acc_z", "knuckle_fr_acc_z": "knuckle_fl_acc_z"}
+    rear = {"knuckle_rl_acc_z": "knuckle_rr_acc_z", "knuckle_rr_acc_z": "knuckle_rl_acc_z"}
+    (finding,) = exchange_finding(front | rear, mapped, complete=False)
+    assert finding.startswith("either the plates or all other channels are exchanged") and finding.options == ()
+    assert "--map plate_fl_displacement=Pfr" in finding and "--map knuckle_fl_acc_z=Kfr" in finding
+    (finding,) = exchange_finding(front, mapped, complete=False)
+    assert finding.options == ("--map", "knuckle_fr_acc_z=Kfl", "--map", "knuckle_fl_acc_z=Kfr")

@@ -4,7 +4,7 @@ import pickle
 
 import pytest
 
-from vehicle.signals.records.finding import Finding, added, findings_of
+from vehicle.signals.records.finding import Finding, FindingError, added, findings_of
 
 
 @pytest.mark.parametrize(
@@ -34,3 +34,9 @@ def test_a_finding_is_text_with_options():
     assert findings_of(["a notice", finding, finding]) == [finding]
     assert findings_of([finding], kinds=("unit",)) == []
     assert finding.within("file: ").options == ("--turn", "z")
+
+
+def test_an_error_of_findings_can_be_pickled():
+    """A worker of several processes hands its error over."""
+    again = pickle.loads(pickle.dumps(FindingError("a.csv", [Finding("z: inverted", "sign", ("--turn", "z"))])))
+    assert str(again) == "a.csv: z: inverted" and again.findings[0].options == ("--turn", "z")

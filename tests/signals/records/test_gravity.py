@@ -18,7 +18,6 @@ G = 9.80665
         ("m/s2", 1.0, "g"),  # says m/s2, holds g
         ("m/s2", 2.0 * G, "0.5 m/s2"),
         ("g", 2.0 * G, "0.5 g"),
-        ("m/s2", 0.5 * G, "2 m/s2"),
         ("m/s2", -4.0 * G, "0.25 m/s2"),
         ("mm/s2", 1e-3 * G, "m/s2"),
         ("m/s2", 1e3 * G, "mm/s2"),
@@ -26,24 +25,43 @@ G = 9.80665
 )
 def test_158_gravity_checks_unit_and_range(unit, mean, remedy):
     """The printed advice removed the mean: 2.615, 0.0272 and 0.5334 for 0.2667 m/s2."""
-    (finding,) = gravity_findings({"z": mean}, {"z": unit})
+    (finding,) = gravity_findings({"z": mean}, {"z": 0.03}, {"z": unit})
     assert finding.kind == "unit" and finding.options == ("--unit", f"z={remedy}")
-    assert gravity_findings({"z": mean}, {"z": unit}, stated=["z"]) == []
+    assert finding.endswith(f"or, if it is an offset of the sensor, set --unit z={unit}")
+    assert gravity_findings({"z": mean}, {"z": 0.03}, {"z": unit}, stated=["z"]) == []
+
+
+@pytest.mark.parametrize(("mean", "remedy"), [(1.0, "g"), (4.95, "2 m/s2")])
+def test_an_offset_or_a_tilt_of_one_axis_is_a_question(mean, remedy):
+    """A seat sensor with an offset of 1.00 m/s2 and an engine sensor at 60 degrees were refused."""
+    (finding,) = gravity_findings({"z": mean}, {"z": 0.5}, {"z": "m/s2"})
+    assert (
+        finding.kind == "doubt"
+        and not finding.options
+        and "if it is an offset or a tilt" in finding
+        and f"z={remedy}" in finding
+    )
+    axes = {"x": 0.0, "y": 0.0, "z": mean}
+    (finding,) = gravity_findings(axes, dict.fromkeys(axes, 0.5), dict.fromkeys(axes, "m/s2"))
+    assert finding.kind == "unit"
+    time = np.arange(3000) / 100.0
+    values = mean + 0.7 * np.sin(20.0 * time)
+    assert [each.kind for each in channel_findings("", time, {"z": values}, {"z": "m/s2"})] == ["doubt"]
 
 
 @pytest.mark.parametrize("tilt", [0.0, 5.0, 30.0])
 def test_three_axes_show_gravity_at_any_tilt(tilt):
     means = {"x": G * np.sin(np.radians(tilt)), "y": 0.0, "z": G * np.cos(np.radians(tilt))}
-    (finding,) = gravity_findings(means, dict.fromkeys(means, "m/s2"))
+    (finding,) = gravity_findings(means, means, dict.fromkeys(means, "m/s2"))
     assert finding.kind == "gravity" and finding.options == ("--detrend",)
-    (finding,) = gravity_findings({axis: mean / G for axis, mean in means.items()}, dict.fromkeys(means, "m/s2"))
+    (finding,) = gravity_findings({axis: mean / G for axis, mean in means.items()}, means, dict.fromkeys(means, "m/s2"))
     assert finding.options == ("--unit", "x=g", "--unit", "y=g", "--unit", "z=g")
 
 
 @pytest.mark.parametrize("means", [{"z": 0.3}, {"z": 3.0}, {"x": 1.0}, {"x": 1.0, "y": 0.1}, {"z": 0.0}])
 def test_another_mean_is_not_taken_for_gravity(means):
     """A car that brakes with 1 m/s2 has this mean along x."""
-    assert gravity_findings(means, dict.fromkeys(means, "m/s2")) == []
+    assert gravity_findings(means, dict.fromkeys(means, 0.5), dict.fromkeys(means, "m/s2")) == []
 
 
 def test_a_mean_that_drifts_is_not_gravity():

@@ -13,9 +13,10 @@ from vehicle.runs.comparison.plate_signal import plate_signal
 from vehicle.signals.formats.channel import Measurement
 from vehicle.signals.formats.reader import read_record
 from vehicle.signals.formats.table import Record
+from vehicle.signals.records.channel_words import axis_of, by_point
 from vehicle.signals.records.choice import Choice, choose, pairs
-from vehicle.signals.records.delays import parsed_delays
 from vehicle.signals.records.finding import Finding, FindingError, added, findings_of, parts_of
+from vehicle.signals.records.gravity import axis_of_role
 from vehicle.signals.records.measured import read_measured
 from vehicle.signals.records.run_findings import beside_run
 
@@ -95,20 +96,29 @@ def diagnose(
 
 
 def _of_channels(measurement: Measurement, choice: Choice) -> list[Finding]:
-    """Return the findings on each channel of a file by itself, under its name or number."""
-    findings: list[Finding] = []
+    """Return the findings on the channels of a file, those of a point together, under their names or numbers."""
     names = [channel.name for channel in measurement.channels]
-    for number, channel in enumerate(measurement.channels, 1):
-        if channel.kind != "time" or not channel.quantity:
-            continue
-        role = channel.name if names.count(channel.name) == 1 and "=" not in channel.name else str(number)
-        try:
-            findings += findings_of(choose(measurement, replace(choice, channels={role: str(number)})).notices)
-        except FindingError as error:
-            findings += error.findings
-        except DataError:
-            continue  # the command that uses this channel reports it
+    usable = [(n, each) for n, each in enumerate(measurement.channels, 1) if each.kind == "time" and each.quantity]
+    findings: list[Finding] = []
+    for group in by_point(usable):
+        roles: dict[str, str] = {}
+        for number, channel in group:
+            role, axis = channel.name, axis_of(channel)
+            role = role if names.count(role) == 1 and "=" not in role else str(number)
+            roles[role if axis_of_role(role) == axis else f"{role} {axis}"] = str(number)
+        findings += _of_roles(measurement, choice, roles)
     return findings
+
+
+def _of_roles(measurement: Measurement, choice: Choice, roles: dict[str, str]) -> list[Finding]:
+    """Return the findings on channels (role -> number in the file), or on each if they do not fit together."""
+    try:
+        return findings_of(choose(measurement, replace(choice, channels=roles)).notices)
+    except FindingError as error:
+        return list(error.findings)
+    except DataError:  # the command that uses this channel reports it
+        each = ({role: number} for role, number in roles.items()) if len(roles) > 1 else ()
+        return [finding for one in each for finding in _of_roles(measurement, choice, one)]
 
 
 def _beside_car(measurement: Measurement, car: Car, choice: Choice, inverted: Collection[str]) -> list[Finding]:
@@ -150,7 +160,6 @@ def _cured(choice: Choice, inverted: Collection[str], findings: Iterable[Finding
         choice,
         channels=pairs("--map", values.get("--map", ()), ""),
         units=pairs("--unit", values.get("--unit", ()), ""),
-        delays={**choice.delays, **parsed_delays(values.get("--delay", ()))},
         detrend=choice.detrend or "--detrend" in values,
         first=first[0] if first else None,
         last=last[0] if last else None,

@@ -142,7 +142,7 @@ def read_signal(
     notices.extend(offsets)
     if not any(np.ptp(displacement) > 0.0 for displacement in columns.values()):
         raise DataError(f"{path}: no plate moves: all columns are constant; use a record with motion")
-    notices.extend(drifts(columns))
+    notices.extend(drifts({driven: z for driven, z in columns.items() if not is_event(z)}))
     try:
         notices.extend(check_level(path, columns, timestep, units if is_plain_table else dict.fromkeys(units, "")))
     except ImplausibleError as error:

@@ -36,7 +36,9 @@ def channel_findings(
     quantities = {role: unit.quantity for role, text in units.items() if (unit := find_unit(text)) is not None}
     motions = {role: values[role] for role, quantity in quantities.items() if quantity in MOTIONS}
     accelerations = [role for role in motions if quantities[role] == "acceleration"]
-    gravity = gravity_findings({role: _steady_mean(values[role]) for role in accelerations}, units, stated)
+    means = {role: _steady_mean(values[role]) for role in accelerations}
+    levels = {role: float(np.std(values[role])) for role in accelerations}
+    gravity = gravity_findings(means, levels, units, stated)
     if findings_of(gravity, kinds=("unit",)):
         raise FindingError(where, gravity)
     rests = [role for role in motions if quantities[role] == "displacement"]

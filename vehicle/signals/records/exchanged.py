@@ -7,14 +7,16 @@ are exchanged if each fits its new counterpart clearly better than the mapped on
 """
 
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 import scipy
 
 from vehicle.arrays import Vector
+from vehicle.names import is_wheel
 from vehicle.signals.analysis.fast_length import fast_length
+from vehicle.signals.analysis.response_name import parsed_name
 from vehicle.signals.analysis.samples import Complex
 from vehicle.signals.formats.table import Record
 from vehicle.signals.records.channel_words import map_words
@@ -107,18 +109,58 @@ def _cycles(names: Sequence[str], table: Vector) -> dict[str, str]:
 def exchange_finding(exchanged: Mapping[str, str], mapped: Mapping[str, str], *, complete: bool) -> list[Finding]:
     """Return the finding on exchanged channels, with the options --map that put them right; [] without any.
 
+    If the channels of all wheels are exchanged alike, the plates may be instead: the finding then has no options.
+
     Args:
         exchanged: measured channel -> channel whose motion it contains.
-        mapped: channel of the model -> its channel in the file, as for --map.
+        mapped: channel of the model -> its channel in the file, as for --map; empty for a run.
         complete: --map must name all channels, because the file was read by their names.
     """
-    if not exchanged:
+    options = _renamed(mapped, exchanged, complete=complete)
+    if not options:
         return []
-    right = {motion: mapped[channel] for channel, motion in exchanged.items()}
-    every = {name: right.get(name, wanted) for name, wanted in mapped.items()} if complete else right
-    options = map_words(every)
     pairs = ", ".join(f"that of {name} moves like {motion} of the run" for name, motion in exchanged.items())
+    wheels = _exchanged_wheels(exchanged, [parsed_name(role).output for role in mapped])
+    if wheels:
+        # The run moves wheel b with the motion that its plate had at wheel a.
+        plates = {f"plate_{b}_displacement": f"plate_{a}_displacement" for a, b in wheels.items()}
+        words = shlex.join(_renamed(mapped, plates, complete=complete))
+        text = (
+            f"either the plates or all other channels are exchanged: {pairs}; if it is the plates, "
+            f"{f'set {words}' if words else 'exchange those of the run'}; if it is the channels, "
+            f"set {shlex.join(options)}"
+        )
+        return [Finding(text, "exchanged")]
     return [Finding(f"exchanged channels: {pairs}; set {shlex.join(options)}", "exchanged", options)]
+
+
+def _renamed(mapped: Mapping[str, str], names: Mapping[str, str], *, complete: bool) -> tuple[str, ...]:
+    """Return the options --map of channels under other names (old -> new), as words; () if none is mapped.
+
+    A role keeps its plate, as in "knuckle_fl_acc_z/plate_fl".
+    """
+    outputs = {role: parsed_name(role).output for role in mapped}
+    right = {names[output] + role[len(output) :]: mapped[role] for role, output in outputs.items() if output in names}
+    if complete and right:
+        kept = [role for role, output in outputs.items() if role in right or output not in names]
+        right = {role: right.get(role, mapped[role]) for role in kept} | right
+    return map_words(right)
+
+
+def _exchanged_wheels(exchanged: Mapping[str, str], names: Iterable[str]) -> dict[str, str]:
+    """Return wheel -> wheel if the channels of all wheels but their plates are exchanged alike, else {}."""
+    wheels: dict[str, str] = {}
+    for name in names:
+        wheel = _wheel(name)
+        if wheel and name.startswith("plate_") == (name in exchanged):
+            return {}
+        if wheel and name in exchanged and wheels.setdefault(wheel, _wheel(exchanged[name])) != _wheel(exchanged[name]):
+            return {}
+    return wheels
+
+
+def _wheel(name: str) -> str:
+    return next((part for part in name.split("_") if is_wheel(part)), "")
 
 
 def put_right(record: Record, exchanged: Mapping[str, str]) -> Record:

@@ -42,8 +42,12 @@ class FindingError(DataError):
     """
 
     def __init__(self, where: object, findings: Iterable[Finding]) -> None:
-        self.findings = tuple(findings)
+        self.where, self.findings = where, tuple(findings)
         super().__init__(f"{where}: {'; '.join(self.findings)}" if where else "; ".join(self.findings))
+
+    def __reduce__(self) -> tuple[type[Self], tuple[object, tuple[Finding, ...]]]:
+        """Return the class and its arguments, for `pickle`: those of an exception are the text alone by default."""
+        return type(self), (self.where, self.findings)
 
 
 def findings_of(notices: Iterable[str], *, kinds: Collection[str] = ()) -> list[Finding]:

@@ -76,7 +76,7 @@ class GroupDelay:
         }
 
     def advice(self, step: float, command: str = "") -> list[Finding]:
-        """Return findings with the options that take the rest of the delays out; [] without a significant rest.
+        """Return findings on the rest of the delays, without an option that is accepted; [] without a significant rest.
 
         Args:
             step: sampling interval of the comparison [s].
@@ -118,7 +118,7 @@ class GroupDelay:
             f"{self.channels} channels): wrong parameters of the car or late sensors; `tune` fits both together. Only "
             f"if the sensors are known to lag, set --delay {option}{after}"
         )
-        return [*separate, Finding(text, "delay", () if command else ("--delay", option))]
+        return [*separate, Finding(text, "delay")]
 
 
 def channel_lags(parts: Sequence[Counterpart], taken_out: Mapping[str, float]) -> list[ChannelLag]:

@@ -275,8 +275,8 @@ def _record(file: Measurement, choice: Choice, inverted: Collection[str], delays
     notices = list(chosen.notices)
     if plates:
         processed, messages = displacement(replace(chosen, values=plates), choice, str(file.path))
-        plates, offsets = without_offsets(processed)
-        notices += [*messages, *offsets]
+        moved, offsets = without_offsets({name: z for name, z in processed.items() if PLATE_CHANNEL.fullmatch(name)})
+        plates, notices = {**processed, **moved}, [*notices, *messages, *offsets]
     if others and choice.highpass is not None:
         processed, messages = filtered(replace(chosen, values=others), choice.highpass)
         others, notices = dict(processed), [*notices, messages[-1]]

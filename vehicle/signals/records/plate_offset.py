@@ -18,6 +18,9 @@ LARGEST_POSITION = 0.5
 FLAT = 8
 """Number of equal samples at the beginning of a record that begins at rest."""
 
+ROUNDING = 1e-9
+"""Maximum range of a constant over its mean [-]."""
+
 
 def offset_of(z: Vector) -> float:
     """Return the constant to be subtracted from the displacement z of a plate [m], (n,); 0 for a motion from 0.
@@ -26,22 +29,35 @@ def offset_of(z: Vector) -> float:
     0. For a record that begins at rest, the constant is its first value.
     """
     mean, motion = float(np.mean(z)), float(np.std(z))
-    if not MANY_TIMES * motion <= abs(mean) <= LARGEST_POSITION or not motion > 0.0 or abs(z[0] - mean) >= abs(z[0]):
+    if _is_constant(z) or not MANY_TIMES * motion <= abs(mean) <= LARGEST_POSITION or abs(z[0] - mean) >= abs(z[0]):
         return 0.0
     return float(z[0]) if np.ptp(z[:FLAT]) == 0.0 else mean
 
 
 def without_offsets(plates: Mapping[str, Vector]) -> tuple[dict[str, Vector], list[Finding]]:
-    """Return displacements of plates [m], (n,) each, without the constants of their sensors, and the finding."""
+    """Return displacements of plates [m], (n,) each, without the constants of their sensors, and the finding.
+
+    Decided once for the record, because a constant taken from some plates only twists the car: each plate that moves
+    must have a constant; then a plate that stands loses its own position too.
+    """
     offsets = {name: offset for name, z in plates.items() if (offset := offset_of(z)) != 0.0}
     if not offsets:
         return dict(plates), []
+    about_zero = [name for name, z in plates.items() if name not in offsets and not _is_constant(z)]
     ratio = max(abs(float(np.mean(plates[name]))) / float(np.std(plates[name])) for name in offsets)
     low, high = 1e3 * min(offsets.values()), 1e3 * max(offsets.values())
     shown = f"the constant of {high:.4g} mm is" if len(offsets) == 1 else f"constants of {low:.4g} to {high:.4g} mm are"
-    finding = Finding(
-        f"{', '.join(offsets)}: {shown} {number(ratio, 2)} times the RMS of the motion: the position of the sensor and "
-        "no motion of the plate, so it was subtracted, as with --detrend",
-        "offset",
-    )
-    return {name: z - offsets.get(name, 0.0) for name, z in plates.items()}, [finding]
+    text = f"{', '.join(offsets)}: {shown} {number(ratio, 2)} times the RMS of the motion: "
+    if about_zero:
+        text += (
+            f"the position of the sensor? It was not subtracted, because {', '.join(about_zero)} "
+            f"{'has' if len(about_zero) == 1 else 'have'} none; --detrend subtracts it"
+        )
+        return dict(plates), [Finding(text, "offset")]
+    text += "the position of the sensor, not a motion of the plate; it was subtracted"
+    stands = {name: float(z[0]) for name, z in plates.items() if name not in offsets}
+    return {name: z - (offsets | stands)[name] for name, z in plates.items()}, [Finding(text, "offset")]
+
+
+def _is_constant(z: Vector) -> bool:
+    return bool(np.ptp(z) <= ROUNDING * abs(float(np.mean(z))))

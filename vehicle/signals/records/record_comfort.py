@@ -196,8 +196,8 @@ def evaluate_comfort(
         "mean": dict(zip(axes, (float(value) for value in xyz.mean(axis=1)), strict=True)),
         "drift": dict(zip(axes, (float(value) for value in line[:, -1] - line[:, 0]), strict=True)),
     }
-    # Gravity is refused or removed.
-    notices = [text for text in record.notices if text not in findings_of(record.notices, kinds=("gravity",))]
+    taken_out = findings_of(record.notices, kinds=("gravity",)) if removed else []
+    notices = [text for text in record.notices if text not in taken_out]
     summary = {"input": str(file), "offset": offset_summary, **result, "notices": [*notices, *copied]}
     if hours is not None:
         summary["exposure"] = exposure(summary, hours)

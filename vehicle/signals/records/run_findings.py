@@ -12,6 +12,7 @@ from vehicle.signals.records.counterpart import Counterpart, clock_advice, count
 from vehicle.signals.records.delays import PLATES, group_of
 from vehicle.signals.records.exchanged import exchange_finding, exchanged_histories, put_right
 from vehicle.signals.records.finding import Finding, findings_of
+from vehicle.signals.records.gravity import axis_of_role
 from vehicle.signals.records.group_delays import GroupDelay, channel_lags, group_delays
 from vehicle.signals.records.measured import Measured
 
@@ -93,13 +94,18 @@ def _offsets(record: Record, simulated: Record, notices: tuple[str, ...]) -> lis
             continue
         means = float(np.mean(values)), float(np.mean(simulated.channels[name]))
         if abs(means[0] - means[1]) > LARGEST_OFFSET * float(np.std(values)):
+            horizontal = axis_of_role(name) in ("x", "y")
+            cause = (
+                "braking, cornering, or an inclined sensor? If not wanted, subtract"
+                if horizontal
+                else "the offset of a sensor? Subtract"
+            )
             findings.append(
                 Finding(
                     f"{name}: the mean is {means[0]:.3g} m/s2 in the measurement and {number(means[1], 2)} m/s2 in the "
-                    "run, and it spoils the RMS ratio: the offset of a sensor? Subtract it with --detrend, or with "
-                    "--highpass 0.5",
+                    f"run, and it spoils the RMS ratio: {cause} it with --detrend, or with --highpass 0.5",
                     "offset",
-                    ("--detrend",),
+                    () if horizontal else ("--detrend",),
                 )
             )
     return findings
