@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehicle.commands.accepted_advice import accept
+from vehicle.commands.accepted_advice import accept, require_one_file
 from vehicle.commands.clock_options import drift_option
 from vehicle.commands.command_line import ProgressLine, command
 from vehicle.commands.destination import output_folder_of
@@ -105,6 +105,8 @@ def _job(options: argparse.Namespace) -> None:
     parameters = ranges_of(car.vehicle, {entry.path: (entry.low, entry.high) for entry in bounds})
     require_fittable(parameters, car.vehicle)
     files = tuple(each.file for each in options.measurements)
+    if len(files) > 1:
+        require_one_file(options)
     inputs = [name for each in options.measurements for name in (each.signal, each.road) if name is not None]
     protect = tuple(Path(name) for name in inputs)
     folder = output_folder_of(options, OUTPUT, protect=(*files, *protect))
