@@ -76,3 +76,6 @@ def test_exchanged_plates_are_not_blamed_on_the_other_channels():
     assert "--map plate_fl_displacement=Pfr" in finding and "--map knuckle_fl_acc_z=Kfr" in finding
     (finding,) = exchange_finding(front, mapped, complete=False)
     assert finding.options == ("--map", "knuckle_fr_acc_z=Kfl", "--map", "knuckle_fl_acc_z=Kfr")
+    seat = {"knuckle_fl_acc_z": "seat_acc_z", "seat_acc_z": "knuckle_fl_acc_z"}
+    (finding,) = exchange_finding(seat, {"knuckle_fl_acc_z": "1", "seat_acc_z": "2"}, complete=False)
+    assert finding.options == ("--map", "seat_acc_z=1", "--map", "knuckle_fl_acc_z=2")

@@ -117,8 +117,8 @@ def _of_roles(measurement: Measurement, choice: Choice, roles: dict[str, str]) -
     except FindingError as error:
         return list(error.findings)
     except DataError:  # the command that uses this channel reports it
-        each = ({role: number} for role, number in roles.items()) if len(roles) > 1 else ()
-        return [finding for one in each for finding in _of_roles(measurement, choice, one)]
+        single = [{role: number} for role, number in roles.items()] if len(roles) > 1 else []
+        return [finding for role in single for finding in _of_roles(measurement, choice, role)]
 
 
 def _beside_car(measurement: Measurement, car: Car, choice: Choice, inverted: Collection[str]) -> list[Finding]:

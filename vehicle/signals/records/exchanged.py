@@ -124,10 +124,10 @@ def exchange_finding(exchanged: Mapping[str, str], mapped: Mapping[str, str], *,
     if wheels:
         # The run moves wheel b with the motion that its plate had at wheel a.
         plates = {f"plate_{b}_displacement": f"plate_{a}_displacement" for a, b in wheels.items()}
-        words = shlex.join(_renamed(mapped, plates, complete=complete))
+        plate_options = shlex.join(_renamed(mapped, plates, complete=complete))
         text = (
             f"either the plates or all other channels are exchanged: {pairs}; if it is the plates, "
-            f"{f'set {words}' if words else 'exchange those of the run'}; if it is the channels, "
+            f"{f'set {plate_options}' if plate_options else 'exchange those of the run'}; if it is the channels, "
             f"set {shlex.join(options)}"
         )
         return [Finding(text, "exchanged")]
@@ -151,10 +151,14 @@ def _exchanged_wheels(exchanged: Mapping[str, str], names: Iterable[str]) -> dic
     """Return wheel -> wheel if the channels of all wheels but their plates are exchanged alike, else {}."""
     wheels: dict[str, str] = {}
     for name in names:
-        wheel = _wheel(name)
-        if wheel and name.startswith("plate_") == (name in exchanged):
-            return {}
-        if wheel and name in exchanged and wheels.setdefault(wheel, _wheel(exchanged[name])) != _wheel(exchanged[name]):
+        wheel, motion = _wheel(name), exchanged.get(name, name)
+        if not wheel or name.startswith("plate_"):
+            alike = motion == name
+        else:
+            other = wheels.setdefault(wheel, _wheel(motion))
+            expected = "_".join(other if part == wheel else part for part in name.split("_"))
+            alike = wheel != other and motion == expected
+        if not alike:
             return {}
     return wheels
 
