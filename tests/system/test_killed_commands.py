@@ -1,6 +1,7 @@
 """What a killed command leaves: results of before or new ones, whole, and a sentence of the next command."""
 
 import os
+import shutil
 from functools import partial
 from pathlib import Path
 
@@ -252,7 +253,7 @@ def test_a_kill_of_a_resume_loses_no_row(tmp_path, monkeypatch):
 
     study(folder, "0\n1\n2\n3\n4")
     with monkeypatch.context() as patch:
-        patch.setattr(work_folder.shutil, "copyfileobj", halfway)
+        patch.setattr(shutil, "copyfileobj", halfway)
         assert in_fork(partial(study, folder, "5", resume=True), tmp_path / "said.txt")[0] == KILLED
     study(folder, "5", resume=True)
     assert (folder / "rows.jsonl").read_text() == f"{rows}5\n"
