@@ -192,7 +192,8 @@ def test_an_exception_in_a_friction_law_ends_the_run():
 def test_exceptions_belong_to_the_laws_of_their_own_thread():
     """Two overlapping blocks: each has its own exception, and a callback that is no law goes to the hook of before."""
     register_law("raising", KEPT["raising"])
-    begun, ended, said, hook = threading.Event(), threading.Event(), [], sys.unraisablehook
+    begun, ended, hook = threading.Event(), threading.Event(), sys.unraisablehook
+    said: list[Any] = []
 
     def other():
         with exceptions_of_laws():

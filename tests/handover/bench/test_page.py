@@ -6,6 +6,7 @@ import socket
 import time
 import urllib.error
 import urllib.request
+from typing import Any
 
 import pytest
 
@@ -187,11 +188,12 @@ def test_values_of_a_wrong_type_are_ignored_in_a_line_each(bench, capfd, caplog)
 
 
 def test_an_event_without_an_exception_is_described_by_its_message(capfd):
-    _report(None, {"message": "Task was destroyed but it is pending!\n"})
+    loop: Any = None
+    _report(loop, {"message": "Task was destroyed but it is pending!\n"})
     assert capfd.readouterr().err == (
         "bench: the server of the page reports an event (Task was destroyed but it is pending!)\n"
     )
-    _report(None, {"message": "Task exception was never retrieved", "exception": ValueError("no number")})
+    _report(loop, {"message": "Task exception was never retrieved", "exception": ValueError("no number")})
     assert capfd.readouterr().err == "bench: a message of the page was ignored (ValueError: no number)\n"
 
 
