@@ -52,29 +52,35 @@ def left_at(goal: Path) -> list[str]:
 
 
 def is_plain(path: Path, *, folder: bool = False) -> bool:
-    """True if a path is a file or a folder of this user, not a link, a second name of another file or a pipe."""
+    """True if a path is a file or a folder of this user, not a link or a pipe."""
     try:
         status = path.lstat()
     except (FileNotFoundError, NotADirectoryError):
         return False
-    expected = stat.S_ISDIR(status.st_mode) if folder else stat.S_ISREG(status.st_mode) and status.st_nlink == 1
+    expected = stat.S_ISDIR(status.st_mode) if folder else stat.S_ISREG(status.st_mode)
     return expected and (os.name == "nt" or status.st_uid == os.geteuid())
 
 
-def finished_rows(folder: Path) -> tuple[str, int]:
-    """Return the file of finished rows in a folder and the number of complete rows; empty and 0 without rows."""
+def finished_rows(folder: Path, *, count_all: bool = True) -> tuple[str, int]:
+    """Return the file of finished rows in a folder and the number of complete rows; empty and 0 without rows.
+
+    Args:
+        count_all: False to read only until there is a complete row, where the number does not matter.
+    """
     for name in FINISHED_ROWS if is_plain(folder, folder=True) else ():
         if is_plain(folder / name):
+            count = -1 if name.endswith(".csv") else 0
             with (folder / name).open("rb") as file:
-                lines = sum(block.count(b"\n") for block in iter(lambda: file.read(1 << 20), b""))
-            if (count := lines - name.endswith(".csv")) > 0:
+                while (count_all or count < 1) and (block := file.read(1 << 20)):
+                    count += block.count(b"\n")
+            if count > 0:
                 return name, count
     return "", 0
 
 
 def unfinished(goal: Path) -> str:
     """Return the file of finished rows of a killed command that --resume continues, or an empty text."""
-    return finished_rows(work_of(goal))[0]
+    return finished_rows(work_of(goal), count_all=False)[0]
 
 
 def mention(path: Path) -> Path:

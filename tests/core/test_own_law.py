@@ -1,6 +1,8 @@
 """A damper law of the user's own: a C function by its address, in both engines, a batch and the linear system."""
 
 import ctypes
+import sys
+import threading
 from typing import Any
 
 import numpy as np
@@ -14,6 +16,7 @@ from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.handover.fmu.fmu_file import write_fmu
 from vehicle.model.laws.law_by_address import law_by_address
+from vehicle.model.laws.law_exceptions import exceptions_of_laws
 
 ROAD = Road("C", speed=80.0, duration=1.5)
 PLATES = random_road(rms=5e-3, seed=3, wheel="fr", duration=1.5)
@@ -184,6 +187,38 @@ def test_an_exception_in_a_friction_law_ends_the_run():
     for engine in ("reduced", "mujoco"):
         with pytest.raises(SimulationError, match=r"friction law 'raising': the function raises KeyError: 'v'"):
             car_with("line", **{"front.damper.friction_function": "raising"}).run(ROAD, engine=engine, skip=0.5)
+
+
+def test_exceptions_belong_to_the_laws_of_their_own_thread():
+    """Two overlapping blocks: each has its own exception, and a callback that is no law goes to the hook of before."""
+    register_law("raising", KEPT["raising"])
+    begun, ended, hook = threading.Event(), threading.Event(), sys.unraisablehook
+    said: list[Any] = []
+
+    def other():
+        with exceptions_of_laws():
+            begun.set()
+            ended.wait(10.0)
+
+    sys.unraisablehook = before = said.append
+    try:
+        thread = threading.Thread(target=other)
+        thread.start()
+        assert begun.wait(10.0)
+        with exceptions_of_laws():
+            LAW(lambda memory, x, v: 1 / 0)(0, 0.0, 0.0)
+        assert len(said) == 1
+        with (
+            pytest.raises(SimulationError, match=r"^damper law 'raising': the function raises ValueError"),
+            exceptions_of_laws(),
+        ):
+            KEPT["raising"](0, 0.0, 0.06)
+        ended.set()
+        thread.join()
+        assert sys.unraisablehook is before and len(said) == 1
+    finally:
+        sys.unraisablehook = hook
+        ended.set()
 
 
 def test_laws_that_are_refused():

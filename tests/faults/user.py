@@ -54,10 +54,11 @@ def dies_at(number: int, job: Job) -> Job:
                 calls += 1
                 if calls == number:
                     os._exit(KILLED)
-                result = real(*arguments, **named)
-                if calls == -number:
-                    os._exit(KILLED)
-                return result
+                try:
+                    return real(*arguments, **named)
+                finally:
+                    if calls == -number:
+                        os._exit(KILLED)
 
             return call
 

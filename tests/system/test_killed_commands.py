@@ -1,13 +1,14 @@
 """What a killed command leaves: results of before or new ones, whole, and a sentence of the next command."""
 
 import os
+import shutil
 from functools import partial
 from pathlib import Path
 
 import pytest
 
 from tests.faults.commands import DOOR, run_words
-from tests.faults.user import KILLED, dies_at, in_fork, judged
+from tests.faults.user import KILLED, dies_at, in_fork, judged, kills
 from vehicle import replacement
 from vehicle.errors import ConfigurationError, OutputError
 from vehicle.leftovers import mention
@@ -184,7 +185,7 @@ def test_a_killed_study_goes_on_where_it_was(tmp_path, capsys):
     assert (folder / "rows.jsonl").read_text() == "1\n2\n" and visible(tmp_path) == ["study"]
     # A killed --force: the old results stay, and --resume continues the new ones.
     (folder / "notes.txt").write_text("mine")
-    killed(1, partial(study, folder, "3", resume=True), tmp_path)
+    killed(5, partial(study, folder, "3", resume=True), tmp_path)  # after both copies
     assert (folder / "rows.jsonl").read_text() == "1\n2\n"
     study(folder, "4", resume=True)
     assert (folder / "rows.jsonl").read_text() == "1\n2\n3\n4\n" and (folder / "notes.txt").read_text() == "mine"
@@ -220,3 +221,45 @@ def test_the_exchange_of_the_system(tmp_path):
             replacement.exchange(tmp_path / "a", tmp_path / "missing")
     else:
         assert (tmp_path / "a" / "a").exists()
+
+
+def test_rows_with_several_names_are_continued_and_a_link_is_refused(tmp_path):
+    """A backup of hard links, `cp -al`, gives each file a second name, which must not change."""
+    folder, backup = tmp_path / "study", tmp_path / "backup.jsonl"
+    study(folder, "1")
+    backup.hardlink_to(folder / "rows.jsonl")
+    study(folder, "2", resume=True)
+    assert (folder / "rows.jsonl").read_text() == "1\n2\n" and backup.read_text() == "1\n"
+    killed(1, partial(study, folder, "new", force=True), tmp_path)
+    (tmp_path / "second.jsonl").hardlink_to(tmp_path / ".study.partial" / "rows.jsonl")
+    study(folder, "3", resume=True)
+    assert (folder / "rows.jsonl").read_text() == "new\n3\n" and (tmp_path / "second.jsonl").read_text() == "new\n"
+    (folder / "rows.jsonl").unlink()
+    (folder / "rows.jsonl").symlink_to(backup)
+    with pytest.raises(ConfigurationError, match=r"rows.jsonl: is a link, or no file, .* put a copy there$|edited"):
+        study(folder, "4", resume=True)
+    assert visible(tmp_path) == ["backup.jsonl", "second.jsonl", "study"]
+
+
+def test_a_kill_of_a_resume_loses_no_row(tmp_path, monkeypatch):
+    """In the copy of the rows, and at every rename, exchange or removal."""
+    folder, rows = tmp_path / "before" / "study", "".join(f"{row}\n" for row in range(5))
+    folder.parent.mkdir()
+
+    def halfway(old, new):
+        new.write(old.read(4))
+        new.flush()
+        os._exit(KILLED)
+
+    study(folder, "0\n1\n2\n3\n4")
+    with monkeypatch.context() as patch:
+        patch.setattr(shutil, "copyfileobj", halfway)
+        assert in_fork(partial(study, folder, "5", resume=True), tmp_path / "said.txt")[0] == KILLED
+    study(folder, "5", resume=True)
+    assert (folder / "rows.jsonl").read_text() == f"{rows}5\n"
+    case, found = tmp_path / "case" / "study", set()
+    for _ in kills(folder.parent, case.parent, partial(study, case, "6", resume=True)):
+        study(case, "7", resume=True)
+        found.add((case / "rows.jsonl").read_text())
+        assert visible(case.parent) == ["study"]
+    assert found == {f"{rows}5\n7\n", f"{rows}5\n6\n7\n"}

@@ -32,6 +32,16 @@ def test_channels_are_named_by_their_error_with_its_sign() -> None:
     )
 
 
+def test_comfort_alone_is_named_where_it_alone_is_off():
+    close = {"weighted@seat": 0.0004, "weighted@seat_rail": -0.0061, "seat_acc_x": 0.019}
+    begin = "the linear geometry of the reduced engine makes"
+    assert error_sentence({**close, "weighted@seat_rail": 0.025, "unweighted@seat": 0.04}) == (
+        f"{begin} weighted comfort (seat rail) wrong by +2.5 %"
+    )
+    assert error_sentence({**close, "unweighted@seat": -0.03}) == f"{begin} unweighted comfort (seat) wrong by -3.0 %"
+    assert error_sentence(close) == ""
+
+
 def test_a_warning_is_about_comfort_its_axes_and_forces() -> None:
     comfort = {"weighted@seat": 0.0004, "seat_acc_x": 0.004, "seat_acc_z": 0.0}
     read = {"seat_acc_x", "steering_wheel_rim_acc_y", "tyre_fl_force_z", "damper_rr_force"}

@@ -6,6 +6,7 @@ import socket
 import time
 import urllib.error
 import urllib.request
+from typing import Any
 
 import pytest
 
@@ -24,7 +25,7 @@ from websockets.exceptions import InvalidStatus  # noqa: E402
 from websockets.sync.client import connect  # noqa: E402
 
 from vehicle.handover.bench.page import Page  # noqa: E402
-from vehicle.handover.bench.server import close_server, open_server  # noqa: E402
+from vehicle.handover.bench.server import _report, close_server, open_server  # noqa: E402
 from vehicle.handover.bench.stage import CYCLE  # noqa: E402
 from vehicle.handover.bench.view import RUN  # noqa: E402
 
@@ -184,6 +185,16 @@ def test_values_of_a_wrong_type_are_ignored_in_a_line_each(bench, capfd, caplog)
     ignored = [line for line in said.splitlines() if line.startswith("bench: a message of the page was ignored (")]
     assert len(ignored) >= 10 and "Traceback" not in said and "\x1b" not in said
     assert not any(record.exc_info for record in caplog.records)
+
+
+def test_an_event_without_an_exception_is_described_by_its_message(capfd):
+    loop: Any = None
+    _report(loop, {"message": "Task was destroyed but it is pending!\n"})
+    assert capfd.readouterr().err == (
+        "bench: the server of the page reports an event (Task was destroyed but it is pending!)\n"
+    )
+    _report(loop, {"message": "Task exception was never retrieved", "exception": ValueError("no number")})
+    assert capfd.readouterr().err == "bench: a message of the page was ignored (ValueError: no number)\n"
 
 
 def test_garbage_and_closed_browsers_do_not_end_the_bench(bench, capfd, caplog):

@@ -8,6 +8,7 @@ import pytest
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.base_car import vehicle_table
+from vehicle.model.parameters.driving import require_speed_once
 from vehicle.model.parameters.force_elements import Hydromount
 from vehicle.model.parameters.paths import assignments, full_path, override, overrides_of, unit_of, value_of
 from vehicle.model.parameters.ranges import Range
@@ -42,6 +43,26 @@ def test_an_override_replaces_the_key_that_excludes_it_but_not_another_override(
     assert override(table, ["crank.rpm=900"], lambda: optional) == {"crank": {"rpm": 900}}
     both = override({"crank": {"rpm": 900}}, ["crank.file='a'", "crank.rpm=800"], lambda: optional)
     assert both == {"crank": {"rpm": 800, "file": "a"}}  # refused by the car, as given twice
+
+
+def test_an_override_of_another_table_with_the_same_key_is_no_second_value():
+    def table():
+        return {"force": {"b": {"harmonics": [[1, 2, 3]]}, "a": {"harmonics": [[1, 2, 3]]}}}
+
+    found = override(table(), ["force.b.harmonics=[[1, 5, 0]]", "force.a.file='f.csv'"], lambda: ["force.a.file"])
+    assert found["force"] == {"b": {"harmonics": [[1, 5, 0]]}, "a": {"file": "f.csv"}}
+    tables = {"spring": {"stiffness": 2.0}, "tyre": {"stiffness": [1.0, 1.0, 1.0]}}
+    optional = ["spring.curve", "tyre.curve"]
+    found = override(tables, ["tyre.stiffness.z=2e5", "spring.curve='F'"], lambda: optional)
+    assert found == {"spring": {"curve": "F"}, "tyre": {"stiffness": [1.0, 1.0, 2e5]}}
+    found = override(tables, ["tyre.stiffness.z=2e5", "tyre.curve='F'"], lambda: optional)
+    assert found["tyre"] == {"stiffness": [1.0, 1.0, 2e5], "curve": "F"}  # refused by the car
+
+
+def test_a_speed_that_is_no_number_does_not_agree_with_the_one_before():
+    assert require_speed_once(["driving.speed=20"], 20.0)
+    with pytest.raises(ConfigurationError, match="given twice"):
+        require_speed_once(["driving.speed=20", "driving.speed=fast"], 20.0)
 
 
 def test_values_arrive_where_their_paths_say(car):

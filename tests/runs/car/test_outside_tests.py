@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from tests.validation import validated
-from vehicle import Car, road
+from vehicle import Car, register_friction, road
 from vehicle.model.laws.damper import damper_curve
+from vehicle.model.laws.law_by_address import CALL
 from vehicle.runs.car.outside_tests import continued
 from vehicle.studies.sweeps.plan import plan_sweep
 
@@ -111,6 +112,14 @@ def test_a_controlled_damper_has_its_share_alone():
     control = {"law": "skyhook", "minimum_damping": 500.0, "maximum_damping": 3000.0, "skyhook_damping": 2000.0}
     control |= {"groundhook_damping": 0.0, "skyhook_share": 1.0, "control_period": 0.001}
     changes = TESTED | {f"front.damper.control.{name}": value for name, value in control.items()}
+    (text,) = notices(Car.load("focus_road", changes).run(DRIVE, engine="reduced"))
+    assert text.endswith("no test shows its force there, and the effect on comfort is not computed")
+
+
+def test_a_damper_with_a_friction_function_has_its_share_alone():
+    function = CALL(lambda memory, friction, v: friction)
+    register_friction("of_the_tests", function)
+    changes = LAW | {"front.damper.friction_function": "of_the_tests"} | TESTED
     (text,) = notices(Car.load("focus_road", changes).run(DRIVE, engine="reduced"))
     assert text.endswith("no test shows its force there, and the effect on comfort is not computed")
 

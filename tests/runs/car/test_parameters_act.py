@@ -48,6 +48,9 @@ def test_a_part_with_inertia_a_force_left_out_and_a_step_of_the_reduced_engine()
         "force.a.enabled = true",
     ]
     assert idle_parameters(vehicle, ["solver.timestep=1e-3"], "mujoco") == ()
+    assert idle_parameters(vehicle, ["force.a.enabled=false"]) == ()
+    without = Car.load("sedan", [*overrides, "apply_forces=false"]).vehicle
+    assert idle_parameters(without, ["force.a.enabled=false"]) == ()
 
 
 def test_a_rod_without_inertia_has_a_radius_and_no_products():

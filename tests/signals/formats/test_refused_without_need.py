@@ -147,6 +147,26 @@ def test_modifiers_of_the_surface_are_refused(tmp_path, mods):
         read_road(crg(tmp_path / "a.crg", (0.0, 0.02), mods), 1.5)
 
 
+def test_a_road_is_parsed_once_for_a_drive_and_again_when_it_changes(tmp_path, monkeypatch):
+    from vehicle import road
+    from vehicle.signals.excitation import measured_road
+
+    read, path, car = [], tmp_path / "road.csv", Car.load("focus_road").vehicle
+    table = vars(measured_road)["read_table"]
+
+    def counted(*given):
+        read.append(given)
+        return table(*given)
+
+    monkeypatch.setattr(measured_road, "read_table", counted)
+    for times, height in enumerate((0.01, 0.02), start=1):
+        rows = [f"{0.1 * k:.1f},{height * (k % 7):.3f},0.0" for k in range(1000)]
+        path.write_text("\n".join(["distance [m],left [m],right [m]", *rows]))
+        signal = road(path, 80.0).under(car).signal()
+        assert len(read) == times
+        assert max(np.max(heights) for heights in signal.displacement.values()) > 4.0 * height
+
+
 def test_a_level_surface_is_a_level_road(tmp_path):
     """Without a force it moves nothing, so no command is advised; a car with a force drives over it."""
     from vehicle import road

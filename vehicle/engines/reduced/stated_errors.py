@@ -112,7 +112,8 @@ def misses_read(errors: Mapping[str, float], read: Collection[str]) -> bool:
 def error_sentence(errors: Mapping[str, float]) -> str:
     """Return a sentence about the channels whose RMS is off by more than `NAMED_ERROR`; empty if all are closer.
 
-    It ends with the size of the error of comfort, that of the point with the largest.
+    It ends with the size of the error of weighted comfort, that of the point with the largest. Where no channel is
+    off, it is about the comfort value that is: weighted comfort before unweighted.
     """
     comfort = [name for name in errors if name.startswith(WEIGHTED)]
     by_size = sorted(errors, key=lambda name: -abs(errors[name]))
@@ -122,11 +123,15 @@ def error_sentence(errors: Mapping[str, float]) -> str:
         texts = [f"{100.0 * errors[name]:+.0f} % ({name})" for name in off[:NAMED]]
         more = f" and {len(off) - NAMED} more" if len(off) > NAMED else ""
         parts = [f"the RMS wrong by about {', '.join(texts)}{more}"]
-    if comfort and (off or misses_main(errors)):
+    if not off:
+        large = [name for name in by_size if abs(errors[name]) > NAMED_ERROR]
+        comfort = [name for name in large if name in comfort] or large
+    if comfort:
         worst = max(comfort, key=lambda name: abs(errors[name]))
         size = 100.0 * errors[worst]
         text = "less than 0.1 %" if abs(size) < 0.1 else f"{size:+.1f} %"
-        parts.append(f"weighted comfort ({worst.partition('@')[2].replace('_', ' ')}) by {text}")
+        value, _, point = worst.partition("@")
+        parts.append(f"{value} comfort ({point.replace('_', ' ')}) {'by' if off else 'wrong by'} {text}")
     return f"the linear geometry of the reduced engine makes {', '.join(parts)}" if parts else ""
 
 

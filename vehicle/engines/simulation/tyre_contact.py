@@ -36,7 +36,7 @@ def pulling_tyres(forces: Mapping[str, Vector], record_rate: float) -> tuple[tup
     if pull > SMALL_PULL:
         return (f"{text}{PULLS}",), ()
     return (), (
-        f"{text}the pull of the linear tyre is {100.0 * pull:.1f} % of its load (RMS), which "
+        f"{text}the pull of the linear tyre is {100.0 * pull:.1f} % of its dynamic load (RMS), which "
         "moves comfort, its axes and the RMS of tyre loads by less than 2 %",
     )
 

@@ -82,17 +82,21 @@ class OneLine(logging.Handler):
 
     def emit(self, record: logging.LogRecord) -> None:
         """Write the error of a record to standard error."""
-        _say("a connection was closed", record.exc_info[1] if record.exc_info else None)
+        _say("a connection was closed", (record.exc_info and record.exc_info[1]) or record.getMessage())
 
 
 def _report(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
     """Report a message of the page that could not be handled, for example a word as the value of a slider."""
-    _say("a message of the page was ignored", context.get("exception"))
+    if (error := context.get("exception")) is not None:
+        _say("a message of the page was ignored", error)
+    else:
+        _say("the server of the page reports an event", context["message"])
 
 
-def _say(event: str, error: BaseException | None) -> None:
-    """Write an event and its error to standard error, in one line without control characters."""
-    text = " ".join(f"{type(error).__name__}: {error}".split())[:LONGEST]
+def _say(event: str, cause: BaseException | str) -> None:
+    """Write an event and its cause to standard error, in one line without control characters."""
+    description = cause if isinstance(cause, str) else f"{type(cause).__name__}: {cause}"
+    text = " ".join(description.split())[:LONGEST]
     sys.stderr.write(f"bench: {event} ({''.join(sign if sign.isprintable() else '?' for sign in text)})\n")
 
 

@@ -2,13 +2,17 @@
 
 C calls the function through ctypes or numba, which passes an exception to `sys.unraisablehook`, returns 0, and lets
 the run continue. So a hook collects the first exception, and the run is discarded.
+
+There is one hook for the runs of all threads, and the hook of before has all other exceptions. A law that is called in
+a thread without a run, as one of the core, ends the runs of all threads: it is not known whose law it is.
 """
 
 import gc
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, NamedTuple
 
 from vehicle.errors import ConfigurationError, SimulationError
 
@@ -19,6 +23,20 @@ FUNCTIONS: dict[str, Any] = {}
 def register_function(title: str, function: Any) -> None:
     """Keep the function of a law until the end of the process, so that a message can name the law."""
     FUNCTIONS.setdefault(title, function)
+
+
+class _Collector(NamedTuple):
+    """A `with` block: the law that is being registered, its thread, and exceptions with the names of their laws."""
+
+    title: str
+    thread: int
+    found: list[tuple[BaseException, str]]
+
+
+_LOCK = threading.RLock()  # an exception may be reported, by the garbage collection, where the lock is held
+_COLLECTORS: list[_Collector] = []
+_PREVIOUS: list[Callable[[Any], Any]] = []
+"""The hook of before while there are collectors."""
 
 
 @contextmanager
@@ -34,38 +52,55 @@ def exceptions_of_laws(title: str = "") -> Iterator[Callable[[], None]]:
     Raises:
         SimulationError: a law raised an exception or returned no number; a ConfigurationError at registration.
     """
-    previous_hook, exceptions = sys.unraisablehook, list[Any]()
-
-    def collect(unraisable: Any) -> None:
-        # ctypes: "Exception ignored on calling ctypes callback function"; numba: object "<numba.ccallback 'f'>".
-        if "callback" not in f"{unraisable.err_msg} {unraisable.object}":
-            previous_hook(unraisable)
-        elif not exceptions:
-            exceptions.append((unraisable.exc_value, unraisable.object))
+    collector = _Collector(title, threading.get_ident(), [])
 
     def check() -> None:
-        if not exceptions:
+        if not collector.found:
             return
-        error, function = exceptions[0]
+        error, name = collector.found[0]
         if isinstance(error, KeyboardInterrupt):
             raise error
-        name = title or _title_of(function)
         message = (
             f"{name}: the function raises {type(error).__name__}: {error}; correct it: it is called with (memory, x, "
             "v), a friction law with (memory, friction, v), and must return a number"
         )
         raise ConfigurationError(message) if title else SimulationError(f"{message}; the run is discarded")
 
-    sys.unraisablehook = collect
+    with _LOCK:
+        if not _COLLECTORS:
+            _PREVIOUS[:] = [sys.unraisablehook]
+            sys.unraisablehook = _collect
+        _COLLECTORS.append(collector)
     try:
         yield check
     finally:
-        sys.unraisablehook = previous_hook
+        with _LOCK:
+            _COLLECTORS[:] = [each for each in _COLLECTORS if each is not collector]
+            if not _COLLECTORS and sys.unraisablehook is _collect:
+                sys.unraisablehook = _PREVIOUS[0]
         check()
 
 
+def _collect(unraisable: Any) -> None:
+    """Give an exception in a law to its run, and any other one to the hook of before."""
+    with _LOCK:
+        present = [each for each in _COLLECTORS if each.thread == threading.get_ident()][-1:] or [*_COLLECTORS]
+        # ctypes: "Exception ignored on calling ctypes callback function"; numba: object "<numba.ccallback 'f'>".
+        title = _title_of(unraisable.object) if "callback" in f"{unraisable.err_msg} {unraisable.object}" else None
+        takes = [] if title is None else [each for each in present if each.title or title]
+        for each in takes:
+            each.found.append((unraisable.exc_value, each.title or title or ""))
+        previous = _PREVIOUS[0]
+    if not takes:
+        previous(unraisable)
+
+
 def _title_of(function: Any) -> str:
-    """Return the title of the law with a Python function; of all laws for a function of numba."""
+    """Return the title of the law with a Python function; empty for another function.
+
+    A function of numba, and that of an address, may be of several laws.
+    """
     # The object of ctypes refers to the Python function, without an attribute for it.
     titles = [title for title, law in FUNCTIONS.items() if any(part is function for part in gc.get_referents(law))]
-    return " or ".join(titles or FUNCTIONS)
+    unknown = (title for title, law in FUNCTIONS.items() if isinstance(law, int) or not callable(function))
+    return " or ".join(titles or unknown)

@@ -49,17 +49,19 @@ def remove_excluded(table: Mapping[str, Any], paths: Iterable[str], overrides: I
     Args:
         table: the file.
         paths: whole paths of the new value.
-        overrides: paths of all values that the user sets; those remain, and the car refuses both as given twice.
+        overrides: whole paths of all values that the user sets; those remain, and the car refuses both as given twice.
     """
-    kept = {key for path in overrides for key in path.split(".")[-2:]}  # the last key, or that before a component
+    kept = {each for path in overrides for each in (path, path.rpartition(".")[0])}  # or the key before a component
     for path in paths:
         *parents, name = path.split(".")
         law: Any = table
         for key in parents:
             law = law.get(key) if isinstance(law, Mapping) else None
         if isinstance(law, dict):
-            for key in (replaced_by({name}, ".".join(parents)) & set(law)) - kept:
-                del law[key]
+            at = ".".join(parents)
+            for key in replaced_by({name}, at) & set(law):
+                if f"{at}.{key}" not in kept:
+                    del law[key]
 
 
 def is_bushing(names: Sequence[str]) -> bool:

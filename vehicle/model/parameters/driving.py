@@ -172,6 +172,7 @@ def require_speed_once(texts: Iterable[str], speed: float) -> bool:
         path, _, value = (part.strip() for part in text.partition("="))
         if path not in ("driving.speed", "speed"):
             continue
+        agrees = False
         with contextlib.suppress(ValueError):
             agrees = float(value) == 0.0 or math.isclose(float(value), speed, rel_tol=SAME_SPEED)
         if not agrees:

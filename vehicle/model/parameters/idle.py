@@ -67,7 +67,8 @@ def idle_parameters(vehicle: Vehicle, overrides: Iterable[str], engine: str = ""
         f"{override.strip()}: has no effect; it acts only with {needed}"
         for override, whole_paths in paths.items()
         for path, (idle, needed) in off.items()
-        if idle and any(whole.startswith(path) and not whole.endswith(".viscous_law") for whole in whole_paths)
+        if idle
+        and any(whole.startswith(path) and not whole.endswith((".viscous_law", ".enabled")) for whole in whole_paths)
     )
 
 

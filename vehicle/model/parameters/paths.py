@@ -188,9 +188,13 @@ def override(table: Mapping[str, Any], assignments: Iterable[str], optional: Opt
     ranges = StaleRanges()
     texts = list(assignments)
     names = [text.partition("=")[0].strip() for text in texts]
-    for name in (name for name in names if name.rpartition(".")[2] in NAMING):
-        with contextlib.suppress(ConfigurationError):
-            remove_excluded(result, meant(result, name, optional), names)
+    if naming := [name for name in names if name.rpartition(".")[2] in NAMING]:
+        whole: dict[str, list[str]] = {}
+        for name in names:
+            with contextlib.suppress(ConfigurationError):
+                whole[name] = meant(result, name, optional)
+        for name in naming:
+            remove_excluded(result, whole.get(name, ()), [path for each in whole.values() for path in each])
     for assignment in texts:
         name, separator, text = (part.strip() for part in assignment.partition("="))
         if not separator or not name:

@@ -130,18 +130,19 @@ def _changes_of_comfort(run: Any, names: Sequence[str], sides: Sequence[int]) ->
         sides: `ABOVE`, `BELOW` or both.
     """
     dampers = run.car.vehicle.composition.dampers
-    other_laws = any(each.law.controlled or each.law.function for each in dampers if each.name in names)
+    laws = [each.law for each in dampers if each.name in names]
+    other_laws = any(law.controlled or law.function or law.friction_function for law in laws)
     if other_laws or not sides or not set(RAIL) <= set(run.channels):
         return None
     cars = [run.car]
     for side in sides:
         for constant in (True, False):
-            laws = {
+            others = {
                 each.name: continued(each.law, above=side == ABOVE, constant=constant)
                 for each in dampers
                 if each.name in names
             }
-            changed = [replace(each, law=laws.get(each.name, each.law)) for each in dampers]
+            changed = [replace(each, law=others.get(each.name, each.law)) for each in dampers]
             cars.append(_variant(run.car, tuple(changed)))
     comfort = _comfort(cars, run)
     if comfort[0] == 0.0:

@@ -13,13 +13,14 @@ Other files and edited files get a visible name, `NAME.left`. A link or a folder
 import itertools
 import os
 import shutil
+import stat
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from vehicle.errors import ConfigurationError, OutputError
-from vehicle.leftovers import finished_rows, is_plain, left_at, lock_file, old_of, say, unfinished, work_of
-from vehicle.replacement import being_made, exchange, is_being_made, synchronise, synchronise_folder
+from vehicle.leftovers import PLAIN, finished_rows, is_plain, left_at, lock_file, old_of, say, unfinished, work_of
+from vehicle.replacement import being_made, exchange, is_being_made, replaced_file, synchronise, synchronise_folder
 from vehicle.runs.output.locks import OccupiedError, claimed, folder_lock, is_claimed
 from vehicle.runs.output.written_files import (
     MARKER,
@@ -46,11 +47,11 @@ def new_folder(
         resume: begin with the rows of a killed command, else with those of the goal.
 
     Raises:
+        ConfigurationError: the rows of the goal are a link.
         OutputError: a file cannot be written; the message describes the folder.
     """
     with _failures_told(goal, goal):
-        continues_goal = resume and not unfinished(goal)
-        work = _begin(goal, rows, resume=resume)
+        work, continues_goal = _begin(goal, rows, resume=resume)
         with being_made(work), claimed(work):
             yield work
         check()
@@ -78,7 +79,7 @@ def new_files(goals: Sequence[Path]) -> Iterator[list[Path]]:
         if linked := [path.parent for path in goals if path.parent != folder and path.parent.is_symlink()]:
             raise ConfigurationError(f"{linked[0]}: is a link, and files are not written through it; remove it")
         folder.mkdir(parents=True, exist_ok=True)
-        work = _begin(goal)
+        work, _ = _begin(goal)
         new = [work / path.relative_to(folder) for path in goals]
         with being_made(work), claimed(work):
             for hidden in new:
@@ -211,16 +212,29 @@ def _put_in_order(goal: Path, left: Sequence[str]) -> list[str]:
     if os.path.lexists(old):
         # Replaced results if NAME has a list; otherwise the user has made a folder NAME meanwhile.
         said.append(_cleared(old, goal, keep=not (goal / MARKER).exists() or os.path.lexists(work)))
-    if os.path.lexists(work) and not unfinished(goal):  # finished rows wait for --resume or --force
-        said.append(_cleared(work, goal))
+    if os.path.lexists(work):
+        # Finished rows wait for --resume or --force; rows that are in NAME too are replaced results.
+        if not (name := unfinished(goal)):
+            said.append(_cleared(work, goal))
+        elif is_plain(goal / name) and _begins_with(goal / name, work / name):
+            said.append(_cleared(work, goal, counted=False))
     if not said and lock_file(goal).name in left:
         said.append(f"{goal}: an earlier command left only its lock file; it was removed")
     return said
 
 
-def _cleared(hidden: Path, goal: Path, *, keep: bool = False) -> str:
-    """Remove the files of the program from a hidden folder, or keep all; return a sentence."""
-    count = finished_rows(hidden)[1]
+def _begins_with(path: Path, beginning: Path) -> bool:
+    """Return True if a file begins with the content of another one."""
+    with path.open("rb") as whole, beginning.open("rb") as part:
+        while block := part.read(1 << 20):
+            if whole.read(len(block)) != block:
+                return False
+    return True
+
+
+def _cleared(hidden: Path, goal: Path, *, keep: bool = False, counted: bool = True) -> str:
+    """Remove the files of the program from a hidden folder, or keep all; return a sentence, with the count of rows."""
+    count = finished_rows(hidden)[1] if counted else 0
     if is_plain(hidden, folder=True) and not keep:
         discard(hidden)
     if os.path.lexists(hidden):
@@ -241,9 +255,13 @@ def _visible(goal: Path) -> Path:
     return next(path for path in map(goal.with_name, names) if not os.path.lexists(path))
 
 
-def _begin(goal: Path, rows: Sequence[str] = (), *, resume: bool = False) -> Path:
-    """Make the hidden folder; with `resume`, with the rows of a killed command or of the goal."""
-    work = work_of(goal)
+def _begin(goal: Path, rows: Sequence[str] = (), *, resume: bool = False) -> tuple[Path, bool]:
+    """Make the hidden folder; with `resume`, with the rows of a killed command or of the goal.
+
+    Returns:
+        The folder; True if it has the rows of the goal.
+    """
+    work, continues_goal = work_of(goal), False
     goes_on = resume and unfinished(goal) in rows
     if goes_on:
         discard(work, kept=rows)
@@ -258,9 +276,25 @@ def _begin(goal: Path, rows: Sequence[str] = (), *, resume: bool = False) -> Pat
             say(_cleared(work, goal))
         work.mkdir(parents=True)
     mark(work)
-    for name in rows if resume else ():
-        if not goes_on and is_plain(goal / name):
-            shutil.copyfile(goal / name, work / name)
+    for name in reversed(rows) if resume else ():  # the finished rows are the last
+        source = (work if goes_on else goal) / name
+        # A second name of a file, as in a backup of hard links, must not grow with it.
+        if os.path.lexists(source) and (not goes_on or source.lstat().st_nlink > 1):
+            note(work / name)  # before it exists, so that a killed command leaves nothing unknown
+            _copy(source, work / name)
+            continues_goal = not goes_on
         if is_plain(work / name):
             note(work / name)
-    return work
+    return work, continues_goal
+
+
+def _copy(source: Path, path: Path) -> None:
+    """Copy a file that is no link; a killed copy has another name."""
+    if not stat.S_ISREG(source.lstat().st_mode):
+        raise ConfigurationError(f"{source}: is a link, or no file, so --resume cannot continue it; put a copy there")
+    with (
+        os.fdopen(os.open(source, os.O_RDONLY | PLAIN), "rb") as old,
+        replaced_file(path) as new,
+        new.open("wb") as file,
+    ):
+        shutil.copyfileobj(old, file)

@@ -10,6 +10,7 @@ the corners, or over the points of the spline every 5 mm.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +22,7 @@ from vehicle.signals.excitation.iso_road import Contact, Side, contact_words
 from vehicle.signals.excitation.tyre_envelope import SAMPLES, TyreEnvelope
 from vehicle.signals.formats.channel import uniform_axis
 from vehicle.signals.formats.crg_format import read_surface, road_words
+from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.formats import recognised_format
 from vehicle.signals.formats.named_columns import named_columns
 from vehicle.signals.formats.reader import read_record
@@ -178,9 +180,16 @@ def read_road(path: Path, track: float, patch: float = 0.0, envelope: TyreEnvelo
         ConfigurationError: the file does not exist.
         DataError: bad data; the message names line and column.
     """
+    recognised_format(path)  # its errors are about the file
+    return replace(_road_of(path, digest(path), track), patch=patch, envelope=envelope)
+
+
+@lru_cache(maxsize=1)
+def _road_of(path: Path, content: str, track: float) -> MeasuredRoad:
+    """Read a road under point contact; the same content is read once, as a run asks for it twice."""
     recognised = recognised_format(path)
     if recognised.name == "crg":
-        return replace(_surface_road(path, track, patch), envelope=envelope)
+        return _surface_road(path, track)
     source = ""
     notices: tuple[str, ...] = ()
     try:
@@ -206,8 +215,6 @@ def read_road(path: Path, track: float, patch: float = 0.0, envelope: TyreEnvelo
         left=columns["left"],
         source=path.name,
         notices=notices,
-        patch=patch,
-        envelope=envelope,
     )
 
 
@@ -230,7 +237,7 @@ def _named_tracks(path: Path) -> tuple[dict[str, Vector], tuple[str, ...]]:
     return {"distance": columns["distance"], "left": columns[left], "right": columns[right]}, ()
 
 
-def _surface_road(path: Path, track: float, patch: float) -> MeasuredRoad:
+def _surface_road(path: Path, track: float) -> MeasuredRoad:
     """Return the two tracks of a car on an OpenCRG surface (v positive to the left)."""
     surface = read_surface(path)
     tracks = {}
@@ -249,7 +256,6 @@ def _surface_road(path: Path, track: float, patch: float) -> MeasuredRoad:
         left=tracks["left"],
         source=path.name,
         notices=(road_words(surface),),
-        patch=patch,
     )
 
 

@@ -15,6 +15,10 @@ from vehicle.signals.records.finding import Finding
 RUN = "run"
 """Reference of the first group: its lag contains the start of the record."""
 
+LATE_SENSORS, LEAST_ALIKE = 5e-3, 3
+"""Delay [s] and number of channels, all alike, from which sensors are late: a wrong friction law or mount shifts the
+response by 0.5 to 2.5 ms (examples of the documentation), and each channel by another time where it shifts more."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ChannelLag:
@@ -115,10 +119,16 @@ class GroupDelay:
         text = (
             f"the {self.group} {'lag' if self.delay > 0.0 else 'lead'} the {self.against} by "
             f"{1e3 * abs(self.delay):.3g} ms (+- {number(1e3 * self.error, 1)} ms, in {self.agreeing} of "
-            f"{self.channels} channels): wrong parameters of the car or late sensors; `tune` fits both together. Only "
-            f"if the sensors are known to lag, set --delay {option}{after}"
+            f"{self.channels} channels)"
         )
-        return [*separate, Finding(text, "delay")]
+        if abs(remainder) >= LATE_SENSORS and self.agreeing == self.channels >= LEAST_ALIKE:
+            cure = f": late sensors; set --delay {option}{after}"
+            return [*separate, Finding(text + cure, "delay", ("--delay", option))]
+        cure = (
+            ": wrong parameters of the car or late sensors; `tune` fits both together. Only if the sensors are known "
+            f"to lag, set --delay {option}{after}"
+        )
+        return [*separate, Finding(text + cure, "delay")]
 
 
 def channel_lags(parts: Sequence[Counterpart], taken_out: Mapping[str, float]) -> list[ChannelLag]:

@@ -272,13 +272,13 @@ def _findings(
 ) -> tuple[Finding, ...]:  # fmt: skip
     """Return the findings on a record, also against a run of the car at the start of the fit.
 
-    The plates of a file have its clock.
+    The plates of a file have its clock. A delay of sensors is an unknown of the fit, and no finding.
     """
     simulated = Record(time=run.time, channels=run.recording.channels, units=run.recording.units)
     lags = dict(zip(record.channels, delays.of(list(record.channels), {}, {}).tolist(), strict=True))
     beside = beside_run(measured, record, simulated, times, delay=begin, drift=drift, sensor_delays=lags)
     findings = [*findings_of(measured.notices), *beside.findings]
-    return tuple(each for each in findings if not (contained and each.kind == "clock"))
+    return tuple(each for each in findings if each.kind not in ("delay", "clock" if contained else "delay"))
 
 
 def _asked(settings: ReadingSettings) -> Choice:
