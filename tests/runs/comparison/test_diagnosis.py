@@ -75,7 +75,7 @@ def test_accepted_advice_makes_a_fit_right(logger, tmp_path, capsys):
     words = ["focus_road", "--record", str(logger), "--parameters", *FITTED, "--engine", "reduced"]
     assert tune([*words, "--accept-advice", "--output", str(tmp_path / "tune")]) == 0
     said = capsys.readouterr().err
-    assert said.count("accepted: ") == 4 and "found: the accelerations lag the plates" in said
+    assert said.count("accepted: ") == 4  # the delay is an unknown of the fit
     result = json.loads((tmp_path / "tune" / "tune.json").read_text())
     values = {each["path"]: each["value"] for each in result["parameters"]}
     (delay,) = result["delays"]
