@@ -10,11 +10,13 @@ import pytest
 
 from scenarios.signals.random_road import random_road
 from tests.documentation.pages import blocks
+from tests.patience import HANG
 from vehicle import Car, Road, register_friction, register_law, sweep
 from vehicle.engines.reduced.batch_simulation import COARSE_STEP, simulate_batch
 from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.handover.fmu.fmu_file import write_fmu
+from vehicle.model.laws import law_exceptions
 from vehicle.model.laws.law_by_address import law_by_address
 from vehicle.model.laws.law_exceptions import exceptions_of_laws
 
@@ -189,22 +191,23 @@ def test_an_exception_in_a_friction_law_ends_the_run():
             car_with("line", **{"front.damper.friction_function": "raising"}).run(ROAD, engine=engine, skip=0.5)
 
 
-def test_exceptions_belong_to_the_laws_of_their_own_thread():
+def test_exceptions_belong_to_the_laws_of_their_own_thread(monkeypatch):
     """Two overlapping blocks: each has its own exception, and a callback that is no law goes to the hook of before."""
-    register_law("raising", KEPT["raising"])
+    # Without the laws by address of other tests: the function of an address cannot be told from a callback.
+    monkeypatch.setattr(law_exceptions, "FUNCTIONS", {"damper law 'raising'": KEPT["raising"]})
     begun, ended, hook = threading.Event(), threading.Event(), sys.unraisablehook
     said: list[Any] = []
 
     def other():
         with exceptions_of_laws():
             begun.set()
-            ended.wait(10.0)
+            ended.wait(HANG)
 
     sys.unraisablehook = before = said.append
     try:
         thread = threading.Thread(target=other)
         thread.start()
-        assert begun.wait(10.0)
+        assert begun.wait(HANG)
         with exceptions_of_laws():
             LAW(lambda memory, x, v: 1 / 0)(0, 0.0, 0.0)
         assert len(said) == 1

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from typing import Any
 
 STEERING = ("Cc", "Cf")
-"""Unicode categories of control and format characters; line feed and tabulator are left as they are."""
+"""Unicode categories of control and format characters; line feed and tabulator stay."""
 
 
 class PrintableStream:
@@ -45,7 +45,7 @@ def printable(text: str) -> str:
 def printable_streams() -> Iterator[None]:
     """Let standard output and standard error be printable streams; progress bars write to their `stream`."""
     streams = sys.stdout, sys.stderr
-    # Within a command that another one calls, the streams are printable already.
+    # In a nested command the streams are printable already.
     sys.stdout, sys.stderr = (
         stream if isinstance(stream, PrintableStream) else PrintableStream(stream) for stream in streams
     )

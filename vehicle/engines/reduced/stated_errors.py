@@ -15,7 +15,7 @@ NAMED_ERROR = 0.02
 """Error of an RMS or a comfort value above which it is named; stated errors up to 2 % are exact within 0.2 points."""
 
 NAMED = 4
-"""Maximum number of channels in a sentence."""
+"""Maximum number of channels in a message."""
 
 SMALL_AXIS = 0.1
 """Share of the acceleration of a point below which an axis does not count for a warning: it is 0.5 % of the comfort."""
@@ -110,10 +110,10 @@ def misses_read(errors: Mapping[str, float], read: Collection[str]) -> bool:
 
 
 def error_sentence(errors: Mapping[str, float]) -> str:
-    """Return a sentence about the channels whose RMS is off by more than `NAMED_ERROR`; empty if all are closer.
+    """Return a message about the channels whose RMS is off by more than `NAMED_ERROR`; empty if all are closer.
 
-    It ends with the size of the error of weighted comfort, that of the point with the largest. Where no channel is
-    off, it is about the comfort value that is: weighted comfort before unweighted.
+    The message ends with the largest error of weighted comfort of all points. Where no channel is off, it names the
+    comfort value with the error: weighted comfort before unweighted.
     """
     comfort = [name for name in errors if name.startswith(WEIGHTED)]
     by_size = sorted(errors, key=lambda name: -abs(errors[name]))

@@ -12,14 +12,14 @@ BYTES = {"npz": 8.0, "h5": 8.0, "mf4": 8.0, "mat": 8.0, "uff": 8.0, "rpc": 4.0, 
 """Size of a sample of a channel in a file [byte]; csv: nine digits, sign, point and comma."""
 
 BESIDE = 0.3e9
-"""Memory of a run beside its recording [byte]: program, model, plates and one channel in its evaluation."""
+"""Memory of a run in addition to its recording [byte]: program, model, plates and one channel in its evaluation."""
 
 STATED_FROM = 1e9
 """Minimum size that is stated before the run [byte]."""
 
 
 def run_size(folder: Path, duration: float, rate: float, channels: int, formats: Sequence[str]) -> str:
-    """Return a sentence on memory and disk of a run; empty below `STATED_FROM`.
+    """Return a message on the memory and the disk of a run; empty below `STATED_FROM`.
 
     memory = 8 n c + `BESIDE`, disk = n c (sum of `BYTES` of the formats), with n samples of c channels
 
