@@ -61,3 +61,11 @@ def test_a_rod_without_inertia_has_a_radius_and_no_products():
     assert list(found.noted.values()) == [
         f"{rod}.{key}=0.01: has no effect; it acts only with {rod}.inertia" for key in keys[1:]
     ]
+
+
+def test_the_stroke_of_an_axis_without_friction_is_named():
+    car = Car.load("sedan_steering")
+    path = "steering.bushings.rack_guide_right.friction_stroke"
+    (text,) = idle_parameters(car.vehicle, [f"{path}.x=1e-4"])
+    assert text == f"{path}.x=1e-4: has no effect; it acts only with {path.replace('stroke', 'force')}.x above zero"
+    assert idle_parameters(car.vehicle, [f"{path}.y=1e-4"]) == ()

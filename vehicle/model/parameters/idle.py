@@ -53,6 +53,12 @@ def idle_parameters(vehicle: Vehicle, overrides: Iterable[str], engine: str = ""
         if isinstance(connection.law, Bushing | Hydromount):
             frictionless = not any(connection.law.friction_force)
             off[f"{connection.path}.friction_stroke"] = (frictionless, f"{connection.path}.friction_force above zero")
+            for axis, force in zip(AXES, connection.law.friction_force, strict=True):
+                idle = not frictionless and not force
+                off[f"{connection.path}.friction_stroke.{axis}"] = (
+                    idle,
+                    f"{connection.path}.friction_force.{axis} above zero",
+                )
         if isinstance(connection.law, Hydromount):
             off[f"{connection.path}.maxwell_"] = (connection.law.maxwell is None, "both Maxwell values above zero")
     off |= _by_part(vehicle)
