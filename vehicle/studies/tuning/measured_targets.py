@@ -278,7 +278,8 @@ def _findings(
     lags = dict(zip(record.channels, delays.of(list(record.channels), {}, {}).tolist(), strict=True))
     beside = beside_run(measured, record, simulated, times, delay=begin, drift=drift, sensor_delays=lags)
     findings = [*findings_of(measured.notices), *beside.findings]
-    return tuple(each for each in findings if each.kind not in ("delay", "clock" if contained else "delay"))
+    fitted = ("delay", "clock") if contained else ("delay",)
+    return tuple(each for each in findings if each.kind not in fitted)
 
 
 def _asked(settings: ReadingSettings) -> Choice:
