@@ -1,9 +1,9 @@
-"""`python -m scenarios.section_fit`: the stored factors of the body design are the minimum of the fit."""
+"""`python -m scenarios.inputs.section_fit`: the stored factors of the body design are the minimum of the fit."""
 
 import numpy as np
 import pytest
 
-from scenarios.section_fit import fit_factors, main, residuals
+from scenarios.inputs.section_fit import fit_factors, main, residuals
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.body_design import read_design
 from vehicle.model.flexbody.body_frame import body_frame
@@ -38,7 +38,7 @@ def test_the_command_prints_lines_of_a_design(monkeypatch, capsys):
     """The fit takes minutes and is tested above; here a stub replaces it."""
     design = read_design(BODY_DESIGN)
     monkeypatch.setattr(
-        "scenarios.section_fit.fit_factors", lambda frame, start, weights: dict.fromkeys(start, 1.23456789)
+        "scenarios.inputs.section_fit.fit_factors", lambda frame, start, weights: dict.fromkeys(start, 1.23456789)
     )
     assert main([]) == 0
     assert capsys.readouterr().out.splitlines() == [f"members.{name}.factor = 1.2346" for name in design.fitted_groups]

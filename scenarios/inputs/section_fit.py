@@ -1,6 +1,6 @@
 """Section factors of a body design, fitted to published and assumed modal data of the trimmed body of Bommer 2006.
 
-python -m scenarios.section_fit [--design FILE.toml] [--vehicle FILE.toml] [--set PATH=VALUE]
+python -m scenarios.inputs.section_fit [--design FILE.toml] [--vehicle FILE.toml] [--set PATH=VALUE]
 
 It prints the factors as lines of a design, from which `python -m vehicle body build` makes a body model.
 
@@ -166,7 +166,7 @@ def fit_factors(frame: BodyFrame, start: Mapping[str, float], weights: tuple[flo
 def parser() -> Parser:
     """Return the parser of the options."""
     result = Parser(
-        prog="python -m scenarios.section_fit",
+        prog="python -m scenarios.inputs.section_fit",
         description="Fit the factors of the beam sections of a body design to the published body modes of Bommer 2006 "
         f"(first {FIRST_HZ:g} Hz, torsion {TORSION_HZ:g} Hz, ninth {LAST_HZ:g} Hz) and print them as lines of a "
         "design. Takes minutes.",
