@@ -54,7 +54,7 @@ ROOMS: dict[str, set[str]] = {
     "formats": {"analysis"},
     "records": {"analysis", "formats"},
     "excitation": {"analysis", "formats", "machine", "records", "replacement"},
-    "parameters": {"formats"},
+    "parameters": {"core", "formats"},
     "laws": {"core", "formats", "parameters"},
     "flexbody": {"analysis", "formats", "parameters", "replacement"},
     "shapes": set(),

@@ -26,7 +26,8 @@ from typing import NamedTuple
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from vehicle.core import build, library
-from vehicle.core.build import SOURCES, VARIANTS, compile_core, digest
+from vehicle.core.build import VARIANTS, compile_core, digest
+from vehicle.core.header import SOURCES
 
 RUNTIME = Path(__file__).resolve().parents[1] / "vehicle" / "handover" / "fmu" / "runtime"
 FMU_BINARIES = RUNTIME.parent / "binaries"

@@ -21,7 +21,8 @@ ROOT = Path(__file__).resolve().parents[1]
 if str(ROOT) not in sys.path:
     sys.path.insert(0, str(ROOT))
 
-from vehicle.core.build import SOURCES, compile_core  # noqa: E402
+from vehicle.core.build import compile_core  # noqa: E402
+from vehicle.core.header import SOURCES  # noqa: E402
 from vehicle.core.library import COMPILERS, platform_name  # noqa: E402
 
 CHECKS = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g", "-O1"]

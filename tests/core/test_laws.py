@@ -11,6 +11,7 @@ from tests.core import laws
 from vehicle.model.laws.control_laws import act, at_rest, demanded, in_steps, pack
 from vehicle.model.laws.curve import Curve
 from vehicle.model.laws.damper import FRICTION, RECORD
+from vehicle.model.parameters.force_elements import NUMBERS
 from vehicle.model.parameters.semi_active_damper import LAWS
 
 SPEEDS = (-2.0, -0.3, -1e-9, -1e-300, 0.0, 1e-300, 1e-9, 0.3, 2.0, 1e20)
@@ -20,9 +21,11 @@ SPEEDS = (-2.0, -0.3, -1e-9, -1e-300, 0.0, 1e-300, 1e-9, 0.3, 2.0, 1e20)
 @pytest.mark.parametrize("exponent", [0.5, 1.0, 2.0, 20.0])
 def test_friction_limits(word, exponent):
     record = np.zeros(1, dtype=RECORD)
-    numbers = {"friction_limit": 65.0, "static_limit": 125.0, "stribeck_velocity": 0.03, "stribeck_exponent": exponent}
-    for name, value in numbers.items():
-        record[name] = value
+    numbers = dict.fromkeys(NUMBERS.get(word, ()), 0.7) | {
+        "friction_limit": 65.0, "static_limit": 125.0, "stribeck_velocity": 0.03, "stribeck_exponent": exponent,
+    }  # fmt: skip
+    for name in numbers.keys() & set(record.dtype.names or ()):
+        record[name] = numbers[name]
     record["smoothing"], record["friction_law"] = 1e5, list(FRICTION).index(word)
     law = FRICTION[word](**{entry.name: float(record[entry.name][0]) for entry in dataclasses.fields(FRICTION[word])})
     for speed in (*SPEEDS, 0.03, 0.05):

@@ -10,7 +10,7 @@ import subprocess
 from collections.abc import Sequence
 from pathlib import Path
 
-SOURCES = Path(__file__).parent / "source"
+from vehicle.core.header import SOURCES
 
 VARIANTS = ("forces.c", "march.c", "outputs.c", "poles.c")
 """Files in double and single precision: the march, which other libraries contain in double precision."""

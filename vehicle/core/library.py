@@ -16,8 +16,9 @@ import tempfile
 from functools import cache
 from pathlib import Path
 
-from vehicle.core.build import SOURCES, compile_core, digest
+from vehicle.core.build import compile_core, digest
 from vehicle.core.cache_folder import cache_folder
+from vehicle.core.header import SOURCES
 from vehicle.errors import MissingPartError
 
 BINARIES = Path(__file__).parent / "binaries"

@@ -6,7 +6,6 @@ layout.h states; `Packed` keeps it alive.
 """
 
 import ctypes
-import re
 import struct
 from collections.abc import Callable, Mapping
 from functools import cache, partial
@@ -15,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.core.build import SOURCES
+from vehicle.core.header import listed
 from vehicle.core.library import core
 
 NUMBERS: dict[str, type[Any]] = {"double": ctypes.c_double, "int64_t": ctypes.c_int64}
@@ -65,31 +64,16 @@ class Packed(NamedTuple):
 
 
 @cache
-def _text() -> str:
-    """Return layout.h without comments and continued lines."""
-    text = (SOURCES / "layout.h").read_text(encoding="utf-8")
-    return re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL).replace("\\\n", " ")
-
-
-def _listed(macro: str, entry: str) -> list[tuple[str, ...]]:
-    """Return the entries of a macro of layout.h: the arguments of each F(...), S(...) or A(...)."""
-    definition = re.search(rf"^#define {macro}\({entry}\)(.*)$", _text(), flags=re.MULTILINE)
-    if definition is None:
-        raise KeyError(macro)
-    return [tuple(re.split(r",\s*", arguments)) for arguments in re.findall(rf"\b{entry}\(([^)]*)\)", definition[1])]
-
-
-@cache
 def records() -> dict[str, tuple[Field, ...]]:
     """Return the fields of all records by name, in the order of layout.h."""
-    names = [*_listed("EACH_LAW", "S"), *_listed("EACH_RECORD", "S")]
-    return {name: tuple(Field(*entry) for entry in _listed(macro, "F")) for name, macro in names}
+    names = [*listed("layout.h", "EACH_LAW", "S"), *listed("layout.h", "EACH_RECORD", "S")]
+    return {name: tuple(Field(*entry) for entry in listed("layout.h", macro, "F")) for name, macro in names}
 
 
 @cache
 def array_kinds() -> dict[str, ArrayKind]:
     """Return the kinds of arrays by name."""
-    return {name: ArrayKind(element, int(count)) for name, element, count in _listed("EACH_ARRAY", "A")}
+    return {name: ArrayKind(element, int(count)) for name, element, count in listed("layout.h", "EACH_ARRAY", "A")}
 
 
 @cache

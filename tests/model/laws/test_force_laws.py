@@ -1,6 +1,9 @@
 """Each law against its printed equation, its derivative against differences, its bad parameters refused."""
 
+import ctypes
 import dataclasses
+import re
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,14 +13,16 @@ from scenarios.lumped.degressive import Degressive
 from scenarios.lumped.switch import Switch
 from tests.core.laws import friction_limit
 from tests.validation import validated
+from vehicle.core.library import core
 from vehicle.errors import ConfigurationError
+from vehicle.model.laws import damper as damper_module
 from vehicle.model.laws.coulomb import Coulomb
-from vehicle.model.laws.damper import _friction_laws, damper_law, pack
+from vehicle.model.laws.damper import RECORD, _friction_laws, damper_law, pack
 from vehicle.model.laws.elastomer import Kelvin, Maxwell
 from vehicle.model.laws.friction import Clamped
 from vehicle.model.laws.law import Parallel
 from vehicle.model.laws.stribeck import Stribeck
-from vehicle.model.parameters.force_elements import NUMBERS
+from vehicle.model.parameters.force_elements import FRICTION_LAWS, NUMBERS
 from vehicle.model.parameters.vehicle import load_vehicle
 
 STRIBECK = {
@@ -221,9 +226,34 @@ def test_a_law_whose_numbers_no_damper_must_have_is_refused_at_import(monkeypatc
         monkeypatch.setitem(
             NUMBERS, "stribeck", {key: unit for key, unit in NUMBERS["stribeck"].items() if key != name}
         )
-        with pytest.raises(ConfigurationError, match=f"friction law stribeck: NUMBERS lacks {name}, so a damper"):
+        with pytest.raises(ConfigurationError, match=f"friction law stribeck: a damper need not have {name}, and"):
             _friction_laws()
         monkeypatch.undo()
     monkeypatch.delitem(NUMBERS, "stribeck")
-    with pytest.raises(ConfigurationError, match="NUMBERS lacks stribeck_friction, stribeck_velocity, stribeck_exp"):
+    with pytest.raises(ConfigurationError, match="need not have stribeck_friction, stribeck_velocity, stribeck_exp"):
         _friction_laws()
+
+
+def test_a_law_of_the_core_without_a_class_or_a_place_for_a_number_is_refused_at_import(monkeypatch):
+    monkeypatch.setattr(damper_module, "FRICTION_LAWS", (*FRICTION_LAWS, "dry_ice"))
+    with pytest.raises(
+        ConfigurationError, match=r"dry_ice: .* add vehicle/model/laws/dry_ice.py with the class DryIce"
+    ):
+        _friction_laws()
+    monkeypatch.undo()
+    monkeypatch.setattr(damper_module, "RECORD", np.dtype([(name, float) for name in RECORD.names[:-5]]))
+    with pytest.raises(ConfigurationError, match=r"no stribeck_exponent, but only .* add them to DAMPER_LAW_FIELDS"):
+        _friction_laws()
+
+
+def test_every_friction_law_with_a_class_is_in_the_core():
+    folder = Path(damper_module.__file__).parent
+    classes = {
+        path.stem
+        for path in folder.glob("*.py")
+        if re.search(r"^class \w+\((Friction|Coulomb)\)", path.read_text(), re.M)
+    }
+    assert classes - {"friction_by_address"} == set(FRICTION_LAWS), "list it in EACH_FRICTION_LAW of laws.h"
+    function = core().core_friction_laws
+    function.restype = ctypes.c_char_p
+    assert tuple(function().decode().split()) == FRICTION_LAWS

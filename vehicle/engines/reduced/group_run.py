@@ -30,7 +30,6 @@ from vehicle.engines.reduced.validity import Validity, check_stride, rotating_bo
 from vehicle.engines.simulation.recorded_acceleration import AHEAD, WEIGHTS
 from vehicle.engines.simulation.recording import Statistics
 from vehicle.model.laws.controller_fmu import controllers
-from vehicle.model.laws.damper import require_friction_laws
 from vehicle.model.laws.law_exceptions import exceptions_of_laws
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.signals.excitation.signal import Signal
@@ -116,7 +115,6 @@ class GroupRun:
         present_load: bool = False,
         loads: LoadRows | None = None,
     ) -> None:
-        require_friction_laws()
         self.models, self.factors, self.dampers, self.tyre_load = models, factors, dampers, tyre_load
         self.interval, self.every, self.timestep, self.loads = interval, every, interval / every, loads
         self.driven, self.element = signal.wheels, element

@@ -21,7 +21,6 @@ from vehicle.engines.simulation.run_model import run_model
 from vehicle.engines.simulation.tyre_variation import run_out, with_run_out
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.laws.controller_fmu import controllers
-from vehicle.model.laws.damper import require_friction_laws
 from vehicle.signals.excitation.signal import Signal
 
 Progress = Callable[[float], None]
@@ -50,13 +49,12 @@ def simulate(
         requested: names of additional channels: loads and damper settings.
 
     Raises:
-        ConfigurationError: the recording rate is not an integer fraction of the step rate, the core lacks a friction
-            law, or the signal has too few samples for a run-out.
+        ConfigurationError: the recording rate is not an integer fraction of the step rate, or the signal has too few
+            samples for a run-out.
         MissingPartError: there is no core for this platform, or the installed MuJoCo does not match its declarations.
         SimulationError: the state is not finite, MuJoCo warned, or the energy balance does not close; the
             message contains time and joint.
     """
-    require_friction_laws()
     force_lines(car.vehicle.composition.forces)[0].require_length(signal.duration)
     every = record_every(car)
     model, space = run_model(car)

@@ -8,17 +8,15 @@ the remainder. For a law by address (`vehicle.model.laws.law_by_address`), F_c i
 the function for the remainder.
 """
 
-import ctypes
 import dataclasses
 import importlib
-from functools import cache
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from vehicle.arrays import Vector
-from vehicle.core.library import core
+from vehicle.core.records import dtype
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.curve import Curve
 from vehicle.model.laws.friction import Friction
@@ -27,26 +25,12 @@ from vehicle.model.laws.law import Constant, ForceLaw, Parallel
 from vehicle.model.laws.law_by_address import law_by_address
 from vehicle.model.parameters.force_elements import FRICTION_LAWS, NUMBERS, Damper
 
-RECORD = np.dtype(
-    [
-        (name, np.float64)
-        for name in (
-            "viscous_damping",  # D [N s/m], the smallest slope of the curve
-            "smoothing",  # eps [s/m]
-            "friction_limit",  # Fd [N]
-            "static_limit",  # Fs [N]
-            "stribeck_velocity",  # vs [m/s]
-            "stribeck_exponent",  # delta [-]
-            "rest_force",  # F_c(0) - F_gas [N]
-            "shift",  # shift - F_gas [N]
-            "friction_law",  # index in FRICTION_LAWS; in a run the address of the call of a user's own function
-            "side_force",  # growth of the limit with the side force [-]
-        )
-    ],
-    align=True,
-)
-"""Record of the laws of a damper, at least as long as the 10 parameters of an actuator; a longer record is also a field
-of the model."""
+RECORD = dtype("DamperLaw")
+"""Record of the laws of a damper (`DAMPER_LAW_FIELDS` of layout.h), at least as long as the 10 parameters of an
+actuator; a longer record is also a field of the model."""
+
+KEYS = {"friction_limit": "coulomb_friction", "static_limit": "static_friction", "side_force": "side_force_coefficient"}
+"""Parameter of a damper by the name in `RECORD` where both differ."""
 
 
 def pack(damper: Damper) -> npt.NDArray[Any]:
@@ -57,24 +41,20 @@ def pack(damper: Damper) -> npt.NDArray[Any]:
     """
     curve = damper_curve(damper)
     force_at_rest = float(curve.force(0.0)) - damper.gas_force
-    return np.array(
-        (
-            curve.least_slope,
-            damper.smoothing,
-            damper.coulomb_friction,
-            damper.static_friction,
-            # 1 is a placeholder for parameters of a law that is not chosen.
-            damper.stribeck_velocity or 1.0,
-            damper.stribeck_exponent or 1.0,
-            force_at_rest,
-            force_at_rest - curve.at_rest(),
-            FRICTION_LAWS.index(damper.friction_law)
-            if damper.friction_function is None
-            else friction_by_address(damper.friction_function).call.address,
-            damper.side_force_coefficient,
-        ),
-        dtype=RECORD,
-    )
+    numbers = {
+        "viscous_damping": curve.least_slope,
+        "rest_force": force_at_rest,
+        "shift": force_at_rest - curve.at_rest(),
+        "friction_law": FRICTION_LAWS.index(damper.friction_law)
+        if damper.friction_function is None
+        else friction_by_address(damper.friction_function).call.address,
+    }
+    # 1 is a placeholder for parameters of a law that is not chosen.
+    for name in RECORD.names or ():
+        if name not in numbers:
+            value = getattr(damper, KEYS.get(name, name))
+            numbers[name] = 1.0 if value is None else value
+    return np.array(tuple(numbers[name] for name in RECORD.names or ()), dtype=RECORD)
 
 
 def damper_curve(damper: Damper) -> Curve:
@@ -129,54 +109,41 @@ def damper_law(damper: Damper) -> Parallel:
     return Parallel(laws=(viscous_law(damper), Constant(value=-damper.gas_force), friction))
 
 
-KEYS = {"static_limit": "stribeck_friction"}
-"""Parameter of a damper by the name in `RECORD` where both differ."""
-
-
 def _friction_laws() -> dict[str, type[Friction]]:
     """Return the classes of the friction laws by their names.
 
     Raises:
-        ConfigurationError: the record of a damper lacks a parameter of a law, which would fail in the middle of a run,
-            or `NUMBERS` does not require it, so that a damper without it would run with a placeholder.
+        ConfigurationError: a law of the core has no class; the record of a damper lacks a number of a law, which would
+            fail in the middle of a run; or a damper with the law may leave it out, and would run with a placeholder.
     """
-    modules = {name: importlib.import_module(f"vehicle.model.laws.{name}") for name in FRICTION_LAWS}
     laws: dict[str, type[Friction]] = {}
-    for name, module in modules.items():
-        law = laws[name] = getattr(module, name.title().replace("_", ""))
-        missing = [entry.name for entry in dataclasses.fields(law) if entry.name not in (RECORD.names or ())]
-        if missing:
+    for name in FRICTION_LAWS:
+        title = name.title().replace("_", "")
+        try:
+            law = laws[name] = getattr(importlib.import_module(f"vehicle.model.laws.{name}"), title)
+        except (ModuleNotFoundError, AttributeError):
+            raise ConfigurationError(
+                f"friction law {name}: EACH_FRICTION_LAW of laws.h has it; add vehicle/model/laws/{name}.py with the "
+                f"class {title}"
+            ) from None
+        numbers = [entry.name for entry in dataclasses.fields(law)]
+        if missing := [number for number in numbers if number not in (RECORD.names or ())]:
             raise ConfigurationError(
                 f"friction law {name}: the record of a damper has no {', '.join(missing)}, but only "
-                f"{', '.join(RECORD.names or ())}; add them to RECORD of vehicle/model/laws/damper.py, and to `pack`"
+                f"{', '.join(RECORD.names or ())}; add them to DAMPER_LAW_FIELDS of vehicle/core/source/layout.h"
             )
-        needed = [KEYS.get(entry.name, entry.name) for entry in dataclasses.fields(law)][
-            len(dataclasses.fields(Friction)) :
-        ]
+        needed = ["stribeck_friction" if key == "static_limit" else key for key in numbers[len(COMMON) :]]
         if left_out := [key for key in needed if key not in NUMBERS.get(name, {})]:
             raise ConfigurationError(
-                f"friction law {name}: NUMBERS lacks {', '.join(left_out)}, so a damper without these would run with "
-                f"other values; add them with units to NUMBERS[{name!r}] of vehicle/model/parameters/force_elements.py"
+                f"friction law {name}: a damper need not have {', '.join(left_out)}, and without them would run with "
+                f"other values; declare them in Damper of vehicle/model/parameters/force_elements.py, with laws = "
+                f"({name!r},)"
             )
     return laws
 
 
-@cache
-def require_friction_laws() -> None:
-    """Check that the core has the friction laws of `FRICTION_LAWS` in their order.
-
-    Raises:
-        ConfigurationError: it has others.
-    """
-    function = core().core_friction_laws
-    function.restype = ctypes.c_char_p
-    compiled = tuple(function().decode().split())
-    if compiled != FRICTION_LAWS:
-        raise ConfigurationError(
-            f"friction laws: FRICTION_LAWS has {', '.join(FRICTION_LAWS)}, but laws.h of the core "
-            f"{', '.join(compiled)}; give EACH_FRICTION_LAW in vehicle/core/source/laws.h the same names in this order"
-        )
-
+COMMON = dataclasses.fields(Friction)
+"""Numbers of every friction law."""
 
 FRICTION = _friction_laws()
 """Classes of the friction laws by their names, in the order of `FRICTION_LAWS`."""

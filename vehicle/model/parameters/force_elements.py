@@ -1,9 +1,10 @@
 """Force elements: bushings with rubber friction, hydromount, main spring, stabilizer, damper."""
 
 import itertools
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
+from vehicle.core.header import listed
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.curves import require_curve
 from vehicle.model.parameters.force_table import ForceTable
@@ -19,8 +20,8 @@ MOVING: dict[str, Any] = {"at_least": 1e-6, "at_most": 10.0, "why": "dampers on 
 RUBBED: dict[str, Any] = {"at_most": 1e6, "why": "seals have 50 to 500 N; 1e5 N lock a damper completely"}
 TWISTED: dict[str, Any] = {"at_most": 1e6, "why": "a stabilizer bar has 1e4 N m/rad"}
 
-FRICTION_LAWS = ("coulomb", "stribeck", "presliding")
-"""Names of the friction laws; each is a module of `vehicle.model.laws`."""
+FRICTION_LAWS = tuple(name for (name,) in listed("laws.h", "EACH_FRICTION_LAW", "F"))
+"""Names of the friction laws of the core; each is a module of `vehicle.model.laws` too."""
 
 LIFTS = "would lift off its plate"
 """Words of a warning about a linear tyre whose load is negative."""
@@ -30,14 +31,6 @@ PULLS = (
     "--set AXLE.bushings.tyre.one_sided=true, for example with front as AXLE"
 )
 """Effect and remedy in such a warning."""
-
-NUMBERS = {
-    "linear": {"viscous": "N s/m"},
-    "degressive": {"viscous": "N s/m", "degressive_viscous": "N s/m", "degressive_velocity": "m/s"},
-    "stribeck": {"stribeck_friction": "N", "stribeck_velocity": "m/s", "stribeck_exponent": "-"},
-    "presliding": {"presliding_stiffness": "N/m"},
-}
-"""Parameters of a damper that only one law requires, with their units."""
 
 MAX_SLIDERS = 8
 """Maximum number of segments of a presliding curve: each is a friction row of the solver."""
@@ -293,14 +286,14 @@ class Damper:
     the user's own, replaces the viscous law; a function L(Fd, v) of the user's own is the limit in place of Fd.
     """
 
-    viscous: float | None = quantity("N s/m", "D, damping constant", at_least=0.0, default=None, **STRONGEST)
+    viscous: float | None = quantity(
+        "N s/m", "D, damping constant", at_least=0.0, laws=("linear", "degressive"), default=None, **STRONGEST
+    )
     viscous_law: str = quantity("-", "damping law", choices=("linear", "degressive", "table"))
-    degressive_viscous: float | None = quantity(
-        "N s/m", "Ddeg, damping constant of the degressive law below Vdeg", at_least=0.0, default=None, **STRONGEST
-    )
-    degressive_velocity: float | None = quantity(
-        "m/s", "Vdeg, velocity above which the degressive law is flatter", above=0.0, default=None, **MOVING
-    )
+    degressive_viscous: float | None = quantity("N s/m", "Ddeg, damping constant of the degressive law below Vdeg",
+        at_least=0.0, laws=("degressive",), default=None, **STRONGEST)  # fmt: skip
+    degressive_velocity: float | None = quantity("m/s", "Vdeg, velocity above which the degressive law is flatter",
+        above=0.0, laws=("degressive",), default=None, **MOVING)  # fmt: skip
     velocity: tuple[float, ...] = quantity(
         "m/s",
         "velocities of the force-velocity table; compression (bump) is negative",
@@ -323,21 +316,19 @@ class Damper:
         why="friction is complete at a few times 1/eps; above 1e9 rounding errors spoil the result",
     )  # fmt: skip
     stribeck_friction: float | None = quantity(
-        "N", "Fs, friction at rest of the Stribeck law", at_least=0.0, default=None, **RUBBED
+        "N", "Fs, friction at rest of the Stribeck law", at_least=0.0, laws=("stribeck",), default=None, **RUBBED
     )
     stribeck_velocity: float | None = quantity(
-        "m/s", "vs, critical velocity of the Stribeck law", above=0.0, default=None, **MOVING
+        "m/s", "vs, critical velocity of the Stribeck law", above=0.0, laws=("stribeck",), default=None, **MOVING
     )
-    stribeck_exponent: float | None = quantity(
-        "-", "delta, exponent of the Stribeck law", above=0.0, at_most=20.0, why="1 and 2 are usual", default=None
-    )
+    stribeck_exponent: float | None = quantity("-", "delta, exponent of the Stribeck law", above=0.0, at_most=20.0,
+        why="1 and 2 are usual", laws=("stribeck",), default=None)  # fmt: skip
     side_force_coefficient: float = quantity(
         "-", "growth of the friction limit with the side force Q on the rod: limit + coefficient |Q|", at_least=0.0,
         at_most=2.0, why="0.1 to 0.4 for a sliding bush and its lever; 0 for a damper between two joints", default=0.0,
     )  # fmt: skip
-    presliding_stiffness: float | None = quantity(
-        "N/m", "K, stiffness of the stuck damper after a reversal", above=0.0, default=None, **STIFFEST
-    )
+    presliding_stiffness: float | None = quantity("N/m", "K, stiffness of the stuck damper after a reversal",
+        above=0.0, laws=("presliding",), default=None, **STIFFEST)  # fmt: skip
     presliding_force: tuple[float, ...] = quantity(
         "-", "ends of the segments of the presliding curve, as shares of Fd", above=0.0, at_most=1.0,
         default=(0.25, 0.5, 0.75, 1.0),
@@ -393,7 +384,12 @@ class Damper:
 
     @property
     def static_friction(self) -> float:
-        """Friction limit at rest [N]: Fs for the Stribeck law, Fd for the Coulomb law and presliding."""
-        if self.friction_law in ("coulomb", "presliding") or self.stribeck_friction is None:
+        """Friction limit at rest [N]: Fs for the Stribeck law, Fd for a law without it."""
+        if "stribeck_friction" not in NUMBERS.get(self.friction_law, {}) or self.stribeck_friction is None:
             return self.coulomb_friction
         return self.stribeck_friction
+
+
+_OF_LAWS = [(law, entry) for entry in fields(Damper) for law in entry.metadata.get("laws", ())]
+NUMBERS = {law: {entry.name: entry.metadata["unit"] for of, entry in _OF_LAWS if of == law} for law, _ in _OF_LAWS}
+"""Parameters of a damper that only some laws require, with their units, by the name of the law."""

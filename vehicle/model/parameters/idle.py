@@ -4,7 +4,7 @@ import dataclasses
 from collections.abc import Iterable
 
 from vehicle.model.parameters.compose import APPLY_FORCES
-from vehicle.model.parameters.force_elements import Bushing, Hydromount, Tyre
+from vehicle.model.parameters.force_elements import FRICTION_LAWS, NUMBERS, Bushing, Hydromount, Tyre
 from vehicle.model.parameters.paths import meant, value_at
 from vehicle.model.parameters.semi_active_damper import FMU, SemiActiveDamper
 from vehicle.model.parameters.vehicle import Vehicle
@@ -34,9 +34,12 @@ def idle_parameters(vehicle: Vehicle, overrides: Iterable[str], engine: str = ""
     off = {f"body.{name}": (rigid, "body.flexible = true") for name in ("frequency_scale", "model_mass")}
     for damper in vehicle.composition.dampers:
         law, path = damper.law, damper.path
-        off[f"{path}.stribeck_"] = (law.friction_law in ("coulomb", "presliding"), f"{path}.friction_law = stribeck")
+        for name in dict.fromkeys(name for law_name in FRICTION_LAWS for name in NUMBERS.get(law_name, ())):
+            users = [law_name for law_name in FRICTION_LAWS if name in NUMBERS.get(law_name, ())]
+            off[f"{path}.{name}"] = (law.friction_law not in users, f"{path}.friction_law = {' or '.join(users)}")
         presliding = law.friction_law == "presliding"
-        off[f"{path}.presliding_"] = (not presliding, f"{path}.friction_law = presliding")
+        for name in ("presliding_force", "presliding_slope"):
+            off[f"{path}.{name}"] = (not presliding, f"{path}.friction_law = presliding")
         off[f"{path}.smoothing"] = (presliding, f"{path}.friction_law = coulomb or stribeck")
         passive = law.controlled is None
         off[f"{path}.viscous"] = (not passive, f"{path}.control.law = passive")

@@ -27,6 +27,7 @@ def quantity(
     length: int | None = None,
     choices: tuple[str, ...] | None = None,
     is_file: bool = False,
+    laws: tuple[str, ...] = (),
     default: Any = dataclasses.MISSING,
 ) -> Any:
     """Declare a field of a parameter class.
@@ -41,6 +42,7 @@ def quantity(
         length: number of components of a vector; None for a scalar.
         choices: allowed values of a text field.
         is_file: True for a text field that may be the path of a file; by default texts are names.
+        laws: laws of an element that require the value, which no other law uses; empty for a value of every law.
         default: value if a file leaves the field out; by default the field is required.
     """
     metadata = {
@@ -53,6 +55,7 @@ def quantity(
         "length": length,
         "choices": choices,
         "is_file": is_file,
+        "laws": laws,
         "default": None if default is dataclasses.MISSING else default,
     }
     if default is dataclasses.MISSING:
