@@ -105,9 +105,14 @@ def _compiled(stamp: str) -> Path:
         sources = Path(folder) / "source"
         shutil.copytree(SOURCES, sources)
         library = sources / f"core.{_suffix()}"
-        shared = [] if sys.platform == "win32" else ["-fPIC"]
+        # A law without its function would else be found missing by the loader alone, which does not name it.
+        options = [
+            "-Wno-psabi",
+            "-Werror=implicit-function-declaration",
+            *([] if sys.platform == "win32" else ["-fPIC"]),
+        ]
         try:
-            compile_core(compiler, platform_name().split("-")[0], library, ["-Wno-psabi", *shared], ["-shared", "-lm"])
+            compile_core(compiler, platform_name().split("-")[0], library, options, ["-shared", "-lm"])
         except (OSError, subprocess.CalledProcessError) as error:
             lines = (getattr(error, "stderr", "") or str(error)).strip().splitlines()
             # The first line of a compiler says only from where a file is included.

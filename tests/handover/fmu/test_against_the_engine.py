@@ -16,7 +16,7 @@ from vehicle.engines.reduced.load_outputs import direct_forces, direct_slopes
 from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.engines.simulation.recorded_acceleration import AHEAD, acceleration
 from vehicle.engines.simulation.recording import Recording
-from vehicle.model.parameters.force_elements import FRICTION_LAWS, Damper
+from vehicle.model.parameters.force_elements import FRICTION_LAWS, NUMBERS, Damper
 from vehicle.model.parameters.semi_active_damper import LAWS
 from vehicle.runs.car import Car, Road
 from vehicle.signals.excitation.input_files import find_input
@@ -249,7 +249,13 @@ def checked(law: str, overrides: tuple[str, ...], folder: Path) -> None:
 
 @pytest.mark.parametrize("law", FRICTION_LAWS)
 def test_each_friction_law(law, tmp_path):
-    checked(f"{law} friction", overrides_of({"friction_law": law, **NUMBERS_OF_FRICTION.get(law, {})}), tmp_path)
+    checked(
+        f"{law} friction",
+        overrides_of(
+            {"friction_law": law, **dict.fromkeys(NUMBERS.get(law, ()), 0.5), **NUMBERS_OF_FRICTION.get(law, {})}
+        ),
+        tmp_path,
+    )
 
 
 @pytest.mark.parametrize("law", damping_laws())

@@ -5,6 +5,7 @@ import re
 import pytest
 
 from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.force_elements import FRICTION_LAWS
 from vehicle.model.parameters.vehicle import load_vehicle
 
 INSTANCE = re.compile(r"(?<![\w.])(front|engine|rear)\.(?!toml)")
@@ -115,7 +116,7 @@ CASES = {
     "31 number for a text": ("name=3", "name: found 3, must be a text in quotes"),
     "31 unknown word": (
         "damper.friction_law=viscous",
-        "damper.friction_law: found 'viscous', must be one of coulomb, stribeck, presliding",
+        f"damper.friction_law: found 'viscous', must be one of {', '.join(FRICTION_LAWS)}",
     ),
     "32 XML in a name": (
         'name="a\\"/><b"',

@@ -120,6 +120,11 @@ TEMPLATES = {
         "joint.2.parent: found 'knuckle', but a free",
     ),
     "held by nothing": (', "main_spring_lower"]', "]", "main_spring_lower_fr has no joint; add a joint"),
+    "both wheels on one half": (
+        '{ template = "wheel", with = { hub = "knuckle" } }',
+        '{ template = "wheel", with = { hub = "knuckle:left" } }',
+        "tyre_fr has no joint; its joint names a side (knuckle:left), so it exists once. Name no side: an axle of one",
+    ),
     "a joint on the body": (
         '{ kind = "fixed", child = "main_spring_upper", parent = "body", at = "strut_top" }',
         '{ kind = "ball", child = "main_spring_upper", parent = "body", at = "strut_top" }',

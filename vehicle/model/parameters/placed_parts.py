@@ -68,10 +68,25 @@ def _held_parts(car: Mapping[str, Instance]) -> dict[str, _Held]:
         for name, side in itertools.product(i.template.parts, i.sides()):
             if (side is not None or not i.template.mirrored) and i.label(name, side) not in held:
                 raise ConfigurationError(
-                    f"{i.template.file}: parts.{name}: {i.label(name, side)} has no joint; add a joint, or set "
-                    'kind = "free" and add connections'
+                    f"{i.template.file}: parts.{name}: {i.label(name, side)} has no joint; {_remedy(i, name)}"
                 )
     return held
+
+
+def _remedy(i: Instance, name: str) -> str:
+    """Return what gives a part of one side the joint that it lacks."""
+    refs = [
+        (joint.parent, *joint.child)
+        for joint in i.template.joint
+        if any(child.partition(":")[0] == name for child in joint.child)
+    ]
+    if sided := next((ref for ref in itertools.chain.from_iterable(refs) if ":" in ref), ""):
+        half = sided.partition(":")[0]
+        return (
+            f"its joint names a side ({sided}), so it exists once. Name no side: an axle of one piece has {half} as a "
+            f'half on each side, joined by {{ kind = "fixed", child = "{half}:right", parent = "{half}:left" }}'
+        )
+    return 'add a joint, or set kind = "free" and add connections'
 
 
 def _parents_first(held: Mapping[str, _Held]) -> list[str]:
