@@ -242,7 +242,7 @@ def test_a_law_of_the_core_without_a_class_or_a_place_for_a_number_is_refused_at
         _friction_laws()
     monkeypatch.undo()
     monkeypatch.setattr(
-        damper_module, "RECORD", np.dtype([(name, float) for name in RECORD.names if name != "stribeck_exponent"])
+        damper_module, "RECORD", np.dtype([(name, float) for name in RECORD.names or () if name != "stribeck_exponent"])
     )
     with pytest.raises(ConfigurationError, match=r"no stribeck_exponent, but only .* add them to DAMPER_LAW_FIELDS"):
         _friction_laws()
