@@ -1,4 +1,4 @@
-"""Lists in the headers of the core, which are the only place of what Python and C share: records, laws."""
+"""Lists in the headers of the core: the records and laws that Python and C share."""
 
 import re
 from functools import cache
@@ -18,7 +18,7 @@ def listed(header: str, macro: str, entry: str) -> list[tuple[str, ...]]:
     """Return the entries of a macro of a header: the arguments of each F(...), S(...) or A(...).
 
     Raises:
-        KeyError: the header has no such macro.
+        KeyError: the header lacks the macro.
     """
     definition = re.search(rf"^#define {macro}\({entry}\)(.*)$", _text(header), flags=re.MULTILINE)
     if definition is None:

@@ -113,8 +113,8 @@ def _friction_laws() -> dict[str, type[Friction]]:
     """Return the classes of the friction laws by their names.
 
     Raises:
-        ConfigurationError: a law of the core has no class; the record of a damper lacks a number of a law, which would
-            fail in the middle of a run; or a damper with the law may leave it out, and would run with a placeholder.
+        ConfigurationError: a law of the core has no class, or the record of a damper lacks a number of a law, or a
+            damper with the law may leave the number out.
     """
     laws: dict[str, type[Friction]] = {}
     for name in FRICTION_LAWS:
@@ -136,7 +136,7 @@ def _friction_laws() -> dict[str, type[Friction]]:
         if left_out := [key for key in needed if key not in NUMBERS.get(name, {})]:
             raise ConfigurationError(
                 f"friction law {name}: a damper need not have {', '.join(left_out)}, and without them would run with "
-                f"other values; declare them in Damper of vehicle/model/parameters/force_elements.py, with laws = "
+                f"other values. Declare them in Damper of vehicle/model/parameters/force_elements.py, with laws = "
                 f"({name!r},)"
             )
     return laws

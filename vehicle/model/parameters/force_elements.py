@@ -392,4 +392,4 @@ class Damper:
 
 _OF_LAWS = [(law, entry) for entry in fields(Damper) for law in entry.metadata.get("laws", ())]
 NUMBERS = {law: {entry.name: entry.metadata["unit"] for of, entry in _OF_LAWS if of == law} for law, _ in _OF_LAWS}
-"""Parameters of a damper that only some laws require, with their units, by the name of the law."""
+"""Parameters of a damper that some laws require, with their units, by the name of the law."""

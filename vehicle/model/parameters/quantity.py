@@ -42,7 +42,7 @@ def quantity(
         length: number of components of a vector; None for a scalar.
         choices: allowed values of a text field.
         is_file: True for a text field that may be the path of a file; by default texts are names.
-        laws: laws of an element that require the value, which no other law uses; empty for a value of every law.
+        laws: names of the laws that require the value and alone use it; empty for a value of every law.
         default: value if a file leaves the field out; by default the field is required.
     """
     metadata = {
