@@ -78,7 +78,7 @@ def opposite_rates(axle: AxleStatics) -> tuple[float, float]:
     """
     parts, joints = axle.parts, axle.parts.joints
     both = design_slopes(axle, opposite=True)["wheel_rate_n_per_m"] or math.nan
-    # What the springs on hinges add is the difference of two solutions, with and without them.
+    # The part of the springs on hinges is the difference of two solutions, with and without these springs.
     hinges = {joint for joint in joints if axle.model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_HINGE}
     if not hinges:
         return both, 0.0

@@ -285,7 +285,7 @@ class AxleStatics:
                 continue
             moved, turned = self.jacobian(wheel, self.contact(index))
             raised, _ = self.jacobian(wheel, self.vertical_contact(index))
-            # Level force at the contact, vertical force at its own point, moment on the wheel.
+            # Level force at the contact point, vertical force at the vertical contact point, moment on the wheel.
             force += moved[:2].T @ load[:2] + raised[2] * load[2] + turned.T @ load[3:]
         return force, stiffness
 
@@ -326,7 +326,7 @@ class AxleStatics:
         center, _ = self.places(index)
         center_at_rest, patch = self.at_rest[index]
         spin = self.data.xmat[self.wheels[index]].reshape(3, 3)[:, 1]
-        # The downward vertical without its part along the axle: it lies in the plane of the wheel.
+        # The downward vertical without its part along the axle, a vector in the plane of the wheel.
         down = spin[2] * spin - np.array([0.0, 0.0, 1.0])
         beside = (patch - center_at_rest) * [1.0, 1.0, 0.0]
         return np.asarray(center + beside + (center_at_rest[2] - patch[2]) * down / np.linalg.norm(down))

@@ -116,7 +116,7 @@ class CarMatrices:
     @property
     def applied(self) -> Vector:
         """Generalised forces per unit of each history of the applied forces; (n, lines)."""
-        # Columns: cos and sin of each frequency, or a history of its own.
+        # Columns: cos and sin of each frequency, then the recorded histories.
         return self.force_rows.T.reshape(self.system.size, -1) @ self.coefficients
 
     @property

@@ -81,7 +81,7 @@ class DisplacementLaw:
 
     def force(self, position: npt.ArrayLike) -> Vector:
         """Return g(x) [N]; x in m."""
-        # sign(p) (x - p); copysign tells 0.0 from -0.0.
+        # sign(p) (x - p); copysign distinguishes 0.0 and -0.0.
         distance = np.copysign(1.0, self.breakpoints) * (np.asarray(position)[..., None] - self.breakpoints)
         return np.asarray(np.maximum(distance, 0.0) @ self.changes)
 
@@ -99,7 +99,7 @@ class DisplacementLaw:
     @property
     def stiffness_increase(self) -> float:
         """Slope of the steepest segment less that of the segment at rest [N/m], the softer of two at a breakpoint."""
-        # A car that stands on a breakpoint is in two segments; the step takes the tangent between both.
+        # At rest on a breakpoint, the car is in two segments; the step uses the tangent between both.
         at_rest = self.changes * (self.breakpoints == 0.0)
         below = np.signbit(self.breakpoints)
         return self.slopes[1] - min(0.0, float(np.sum(at_rest[~below])), -float(np.sum(at_rest[below])))

@@ -159,7 +159,7 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
     coordinates = spring_coordinates(car, model)
     for (name, spring, damping, unstrained), (qpos_index, dof) in zip(load_places.joints, coordinates, strict=True):
         unit = np.eye(model.nv)[dof]
-        # A spring in a joint acts from the position at which it has no force.
+        # The force of a joint spring counts from its unstrained position.
         strain = float(model.qpos0[qpos_index]) - unstrained
         terms_of[name] = -spring * strain, {"displacement": -spring * unit, "velocity": -damping * unit}
     body = int(load_places.bodies[0])

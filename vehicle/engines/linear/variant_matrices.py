@@ -132,7 +132,7 @@ class VariantTerms:
             if np.any(np.abs(curve_of(tables, index).knots - tables.at[index]) < BREAKPOINT_MARGIN):
                 return None
         preload, count = settled.preload, len(rest_state.jacobian)
-        # What the static forces leave unbalanced: weight - k u of joint springs + J' p + T' p.
+        # Unbalanced part of the static forces: weight - k u of joint springs + J' p + T' p.
         residual = (
             unsolved(rows.layout, rest_state.weight)
             - springs * settled.displacement
@@ -195,7 +195,7 @@ class VariantTerms:
             stiffness += course.T @ (e.rolling.hold[:3, None] * course)
         for index in np.flatnonzero(e.tables.kinds == 2).tolist():
             dof, curve = e.dampers.dofs[e.tables.elements[index]], curve_of(e.tables, index)
-            # The tangent of a stop by the difference that K of a built car has.
+            # The tangent of a stop by the central difference with which K of a built car is computed.
             end_forces = curve.force(np.array([-DIFFERENCE_STEP, DIFFERENCE_STEP]))
             stiffness[dof, dof] += (end_forces[1] - end_forces[0]) / (2.0 * DIFFERENCE_STEP)
         return stiffness
@@ -299,7 +299,7 @@ def _geometric_stiffness(rows: Rows) -> tuple[Vector, Any]:
     """Return the geometric stiffness of the weight, (n, n), and sparse H with K = H p row by row, (n n, preloads)."""
     model, e = rows.model, rows.layout
     straight = np.setdiff1d(np.arange(len(e.bushings.rows)), e.bushings.oblique)
-    # Rows with directions of their own turn with their carrier already; the others are in world axes: R' J.
+    # Oblique rows rotate with their carrier already; the others are in world axes and become R' J.
     bushing_rows, carriers = e.bushings.rows[straight], e.bushings.carriers[straight]
 
     def read(data: mujoco.MjData) -> Vector:

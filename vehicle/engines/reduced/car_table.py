@@ -254,12 +254,12 @@ def _packed_poles(rows: Sequence[Vector], pairs: int, blocks: int) -> Vector:
     pair, real, pair_sums, real_sums = rows
     p, q, n, w = len(pair), len(real), real.shape[1] - 1, real_sums.shape[1]
     factors, reals = np.zeros((blocks * BLOCK, 1 + n + w)), slice(2 * pairs, 2 * pairs + q)
-    # A row of a pair is (Re E-1, Im E-1, Re of n inputs, Im of n inputs): reshaped, each part is a row of its own.
+    # A row of a pair is (Re E-1, Im E-1, Re of n inputs, Im of n inputs): reshaped, each part is a separate row.
     factors[: 2 * p, 0] = pair[:, :2].ravel()
     factors[: 2 * p, 1 : 1 + n] = pair[:, 2:].reshape(2 * p, n)
     factors[: 2 * p, 1 + n :] = pair_sums.reshape(2 * p, w)
     factors[reals, : 1 + n], factors[reals, 1 + n :] = real, real_sums
-    # (blocks, 1 + n + w, BLOCK): the eight states of a block stand next to each other for each factor.
+    # (blocks, 1 + n + w, BLOCK): for each factor, the values of the eight states of a block are contiguous.
     return factors.reshape(blocks, BLOCK, 1 + n + w).transpose(0, 2, 1).reshape(blocks, -1)
 
 

@@ -57,7 +57,7 @@ def equivalent_laws(model: PoleModel, state: Complex, interval: float, samples: 
     outputs, count = model.law_outputs, len(model.laws)
     (real, imaginary), inputs = np.split(state[: 2 * len(model.poles), 1:], 2), state[2 * len(model.poles) :, 1:]
     wheels = outputs.height.shape[1]
-    # The spectrum of Re(row xi), as Re xi and Im xi have spectra of their own.
+    # The spectrum of Re(row xi); the state contains separate spectra of Re xi and Im xi.
     x = outputs.poles.real @ real - outputs.poles.imag @ imaginary
     x += outputs.height @ inputs[:wheels] + outputs.velocity @ inputs[wheels : 2 * wheels]
     end = len(inputs) - model.applied.shape[1]

@@ -47,7 +47,7 @@ def time_steps(signal: Signal, record_rate: float, longest: float) -> tuple[int,
         record_rate: rate of the samples [Hz].
         longest: maximum time step [s].
     """
-    # The small terms keep a duration or step that fits exactly from being rounded to the other side.
+    # The small terms are for a duration or step that is a whole multiple except for round-off.
     interval = 1.0 / record_rate
     return int(np.floor(signal.duration / interval + 1e-6)) + 1, int(np.ceil(interval / longest - 1e-9))
 

@@ -127,7 +127,7 @@ def state_spectra(model: PoleModel, spectra: Complex, interval: float, samples: 
     wheels, lines = len(model.matrices.system.inputs), spectra.shape[1]
     s = 2j * np.pi * np.arange(lines) / (samples * interval)
     at = np.flatnonzero(s.imag <= 2.0 * np.pi * BAND)
-    # z' = s z is no input of its own here.
+    # z' = s z follows from z.
     height, others = spectra[:wheels, at], spectra[wheels:, at]
     inputs, effects = np.vstack([height, s[at] * height, others]), input_effects(model)
     poles = model.poles[:, None]

@@ -76,10 +76,10 @@ class SecondOrder:
         self.model, self.forms, self.damping = model, forms, damping
         matrices, system = model.matrices, model.matrices.system
         basis = free_basis(system)
-        # Real and imaginary parts below each other: one real matrix times complex spectra.
+        # Real parts above imaginary parts: a real matrix that multiplies complex spectra.
         effects = _force_effects(model, basis)
         self.effects = np.vstack([effects.real, effects.imag]).astype(np.float32)
-        # The smallest motion that meets Jc u = -g: u2 is this motion of the gaps and a free motion of the joints.
+        # Least-norm solution of Jc u = -g: u2 is the sum of this motion of the gaps and a free motion of the joints.
         fit = -np.linalg.pinv(system.constraints)
         drifts = np.zeros_like(system.branch_rows) if system.branch_drifts is None else system.branch_drifts
         # Forces of that motion along the free motions.
@@ -179,8 +179,7 @@ class SecondOrder:
         strain = _times(self.strain_shifts, gaps)
         # x = d + tau d'.
         strain[count:] = (1.0 + s * tau) * (strain[count:] + strains)
-        # Mobility of each element at its own force, times its dynamic stiffness: the share by which it changes its
-        # strain.
+        # Mobility of each element by the same force, times its dynamic stiffness: relative change of its strain.
         products = self.strains * self.element_forces.T
         change = np.abs((products @ ahead + products.conj() @ back) * beyond)
         acting = np.flatnonzero(np.max(change, axis=1, initial=0.0) > WEAK_ELEMENT)
@@ -298,7 +297,7 @@ def _products(forms: QuadraticForms, coordinates: Vector) -> npt.NDArray[np.floa
     if not np.any(levels > 1e-12):
         # At rest.
         return np.zeros((forms.forms.shape[2], coordinates.shape[1]), dtype=np.float32)
-    # Each kind of quantity (rotations, rates, inertia, ...) counts by its own level in this motion.
+    # Each kind of quantity (rotations, rates, inertia, ...) is divided by its level in this motion.
     metric = np.tensordot(np.where(levels > 1e-12, 1.0 / np.maximum(levels, 1e-30), 0.0), forms.metrics, 1)
     # root = metric^1/2 and back = metric^-1/2; the floor keeps the inverse finite.
     usual, root = np.linalg.eigh(metric)
@@ -332,9 +331,9 @@ def _times(rows: npt.NDArray[np.float32], spectra: Complex) -> Complex:
 def _force_effects(model: PoleModel, basis: Vector) -> npt.NDArray[np.complex128]:
     """Return the effects of forces along the free motions and of rates of the branches on the poles; (p, m + b)."""
     system, poles = model.matrices.system, model.poles
-    # Eigenvectors V = (y, y', f_b) of all poles from the displacements and branches of the stored ones.
+    # Eigenvectors V = (y, y', f_b) of all poles, from the displacements and branches of the stored poles.
     free, placed = basis.shape[1], basis.shape[1] - len(system.cyclic)
-    # A stored pole of a pair has twice its vector, as its conjugate is left out.
+    # The vector of a stored pole of a pair is doubled, because the conjugate is left out.
     halves = np.where(np.arange(len(poles)) < model.pairs, 2.0, 1.0)
     vectors = np.vstack([basis[:, :placed].T @ model.modal, basis.T @ (model.modal * poles), model.branch]) / halves
     vectors = np.hstack([vectors, vectors[:, : model.pairs].conj()])

@@ -29,7 +29,7 @@ def run_model(car: CarModel) -> tuple[mujoco.MjModel, ModalSpace | None]:
     ]
     shapes = [numbers[name].reshape(3, modes.size) for name in seen]
     mass = model.dof_M0[modes.velocities]
-    # Phi m^-1/2; its right singular vectors Q' span the motions that the attachments can tell apart.
+    # Phi m^-1/2; its right singular vectors Q' span the motions that move the attachments.
     scaled = np.concatenate([np.zeros((0, modes.size)), *shapes]) / np.sqrt(mass)
     _, values, basis = np.linalg.svd(scaled, full_matrices=False)
     count = int(np.count_nonzero(values > SEEN * np.max(values, initial=0.0)))
