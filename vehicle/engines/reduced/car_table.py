@@ -211,7 +211,7 @@ class CarTable:
         initial[-self.plates :] = start[1][:, None]
         for lane, (car, part) in enumerate(self.lanes):
             pair_start, real_start = (states[part] for states in self.cars[car].start(*start))
-            # A complex array seen as reals alternates real and imaginary parts, as in a block of `poles.c`.
+            # As reals, complex states alternate real and imaginary parts, as in a block of `poles.c`.
             initial[: 2 * len(pair_start), lane] = np.ascontiguousarray(pair_start).view(np.float64)
             initial[2 * self.pairs :, lane][: len(real_start)] = real_start
         return initial
