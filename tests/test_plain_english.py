@@ -61,6 +61,14 @@ def test_comments_are_counted_without_docstrings_and_marks(plainness, tmp_path):
     assert plainness.commented(source) == (2, 3)
 
 
+@pytest.mark.parametrize("page", sorted((ROOT / "docs" / "theory").glob("*.md")), ids=lambda page: page.stem)
+def test_a_theory_page_begins_with_its_reader_and_question(page):
+    first = page.read_text(encoding="utf-8").split("\n\n")[1]
+    sentence = first.partition("?")[0]
+    assert first.startswith("For ") and ": " in sentence and "?" in first, first
+    assert not set("=<>|^") & set(sentence), "a symbol comes before the question"
+
+
 def test_private_phrases_are_counted(plainness, tmp_path):
     file = tmp_path / "a.py"
     file.write_text(
