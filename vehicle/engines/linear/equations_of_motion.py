@@ -88,6 +88,7 @@ class Equations:
             vector[:, self.turning] -= 0.5 * np.stack([y * r - z * q, z * p - x * r, x * q - y * p], axis=2)
         model, data, state, size = self.model, self.data, self.rows.state, len(u)
         position, level = np.tile(self.start, (size, 1)), self.level + height
+        # From lists of existing branches and joints to arrays over all elements and rows.
         branches = np.zeros((size, *self.present.shape))
         branches[:, self.present] = branch
         pulls = np.zeros((size, self.rows.layout.row_count))
@@ -145,5 +146,6 @@ class Equations:
             # Takes the change of the loads on slopes out of R again: the linear motion contains it.
             force += (changes * slope) @ self.slope.T
         force = (force - pull) @ self.basis
+        # The displacement of a spring is the distance of its ends; lower and upper ends alternate.
         strains[:, self.springs[0]] = np.linalg.norm(ends[:, 1::2] - ends[:, ::2], axis=2)[:, self.springs[1]]
         return np.hstack([force, gaps, rates[:, self.present], points.reshape(size, -1), deflections, strains]).T

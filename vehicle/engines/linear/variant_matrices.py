@@ -144,6 +144,7 @@ class VariantTerms:
         require_standing(vehicle, rows, static)
         system_of_laws, car_of_laws = law_matrices(rows, rest_state.jacobian, dampers, preload)
         reference = self.matrices.system
+        # Part of K that no term contains, terms of this car, and weight that rotates with new modes.
         stiffness = geometric + self._stiffness(rows, springs, preload, rest_state, change)
         stiffness += change.weight_stiffness(rest_state.weight)
         system = replace(
@@ -207,6 +208,8 @@ class VariantTerms:
 
         Rows and masses of the parts, M, generalised weight, and the geometric stiffness of the weight.
         """
+        # `geometric` begins as K of the reference car less its sum of terms: weight, and what does not depend on the
+        # car.
         masses, system = dict(self.matrices.body_masses), self.matrices.system
         mass, weight, geometric = system.mass, self.rest_state.weight, system.stiffness - self.sum
         gravity, body_rows = float(self.car.model.opt.gravity[2]), self.matrices.body_rows

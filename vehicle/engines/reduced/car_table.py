@@ -104,12 +104,13 @@ class CarTable:
                       for lane in range(lanes)]  # fmt: skip
         self.cars = cars
         laws = [law for car in cars for law in car.laws]
-        # The elements of rubber friction are distributed over the parts of a car, too.
-        # -(-a // b) rounds a/b up.
+        # The largest car of the group decides all sizes; -(-a // b) rounds a/b up. Poles and elements of rubber
+        # friction are distributed over the parts of a car.
         layers = -(-max((law.elements.shape[1] for law in laws), default=0) // split)
         pairs, reals = (-(-max(getattr(car, name) for car in cars) // split) for name in ("pairs", "reals"))
         # Real poles begin a block, so that the sums of a car do not depend on the poles of others.
         pairs = BLOCK // 2 * -(-2 * pairs // BLOCK)
+        # Record, velocity of full friction and nodes of each damper of each car; the damper with most nodes decides.
         damper_data = [[damper_nodes(damper, whole) for damper in data_of_car] for data_of_car in dampers]
         node_counts = np.max([[len(nodes) for _, _, nodes in data_of_car] for data_of_car in damper_data], axis=0)
         node_count, self.pieces = int(np.max(node_counts, initial=1)), np.asarray(node_counts - 1, dtype=np.int64)
@@ -133,6 +134,7 @@ class CarTable:
         # and z (2 m).
         self.dampers, self.pairs, self.plates, self.states = d, pairs, m, 2 * pairs + reals + 2 * (d + m) + g
         self.inputs, self.sums = counts.inputs, d + g + counts.sensors
+        # Sections follow one another in the table: each begins where the last one ends.
         sizes = section_sizes(counts)
         section_ends = np.cumsum([0, *sizes.values()]).tolist()
         first_rows = dict(zip(sizes, section_ends, strict=False))

@@ -306,6 +306,7 @@ def _products(forms: QuadraticForms, coordinates: Vector) -> npt.NDArray[np.floa
     # In c' = metric^1/2 c the principal components of the motion; shares: their RMS over that of all.
     shares, turn = np.linalg.eigh(root @ covariance @ root)
     shares = np.sqrt(np.maximum(shares, 0.0) / np.sum(shares))
+    # Patterns with a product that counts: the strongest product of each is that with the strongest pattern, the last.
     kept = shares * shares[-1] > WEAK
     # c = back turn c', c' = turn' root c.
     shares, turn, coordinates = shares[kept], back @ turn[:, kept], turn[:, kept].T @ root @ coordinates
@@ -324,6 +325,7 @@ def _products(forms: QuadraticForms, coordinates: Vector) -> npt.NDArray[np.floa
 
 def _times(rows: npt.NDArray[np.float32], spectra: Complex) -> Complex:
     """Return the product of a real and a complex matrix."""
+    # Complex columns seen as pairs of real columns.
     flat = np.ascontiguousarray(spectra, dtype=np.complex64)
     return np.asarray((rows @ flat.view(np.float32)).view(np.complex64))
 

@@ -251,6 +251,8 @@ def car_factors(
     # y = eta + direct (f, slopes, g, z'), all at the end of a step, and eta+ = E y + plate z' + mean m: what a step
     # knows at its beginning is in eta, and its end is added when the forces are solved.
     direct = np.hstack([force[:, :d] * m0, force[:, :d] * (m1 - 0.5 * m0), force[:, d:] * m0, ahead])
+    # eta+ = E (eta + direct ...) + ...: hence E times the direct terms. E - 1 instead of E, because the core adds
+    # changes.
     step = np.hstack([np.expm1(s * h), decay * direct[:, : 2 * d + g], plate + decay * ahead, mean, *extra])
     factors_of_cars, first = [], 0
     for model, car_inputs in zip(models, inputs_of_cars, strict=True):

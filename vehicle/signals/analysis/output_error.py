@@ -265,7 +265,7 @@ def _normal_equations(grid: PoleGrid, windows: _Windows, halves: NDArray[np.int_
     shape = (size, size, len(a), len(halves))
     sums = np.empty(shape, dtype=np.complex128)  # sum of s conj(t_i) t_j, t = (U, 1)
     for number, (i, j) in enumerate(upper):
-        # real and imaginary columns of a product, each times s
+        # Sums of s times real and imaginary part of the product; s of a mirrored pole is conj(s(-x)).
         columns = slice(2 * number, 2 * number + 2)
         real, imaginary = np.moveaxis(
             np.concatenate([first[0, ..., columns] + 1j * first[1, ..., columns],

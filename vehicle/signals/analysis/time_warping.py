@@ -55,6 +55,7 @@ def _batch_differences(curves: Sequence[Vector], truths: Sequence[Vector]) -> tu
     offset = np.arange(-width, width + 1)
     closed = np.where(np.abs(offset)[:, None] >= widths, np.inf, 0.0)
     before, last = np.full((2 * width + 1, pairs), np.inf), np.full((2 * width + 1, pairs), np.inf)
+    # (diagonals, cells of a diagonal, pairs)
     moves = np.zeros((2 * count - 1, width + 1, pairs), dtype=np.uint8)
     for diagonal in range(2 * count - 1):
         # Cells of a diagonal have i - j of equal parity with i + j, from -extent to extent in steps of two.
