@@ -183,10 +183,7 @@ def _rubber_laws(rows: Rows, jacobian: Vector) -> list[DisplacementLaw]:
 
 
 def _about_rest(breakpoints: Vector, changes: Vector) -> tuple[Vector, Vector]:
-    """Return breakpoints and slope changes of g; a breakpoint at rest is one on either side.
-
-    There the tangent is a central difference over `DIFFERENCE_STEP`, between the slopes of both segments.
-    """
+    """Return breakpoints and slope changes of g; a breakpoint at rest is one on either side."""
     near = np.abs(breakpoints) < DIFFERENCE_STEP
     # For slopes s1, s2 that meet at b, the central difference over +-h is k = (s1 (h + b) + s2 (h - b))/2h. Above rest
     # s2 exceeds it by (s2 - s1) (b + h)/2h, below s1 falls short by (s2 - s1) (h - b)/2h.

@@ -77,8 +77,7 @@ class Equations:
         """Return forces, gaps, branch rates, positions, tyre deflections, displacements of laws; (rows, motions).
 
         Args:
-            motions: u, u', u'', f_b, z, z', V tan(beta), forces of laws, l; (..., motions) each. On slopes the static
-                loads act at the displaced wheels: their change is in the reduced engine already.
+            motions: u, u', u'', f_b, z, z', V tan(beta), forces of laws, l; (..., motions) each.
         """
         u, v, a, branch, height, rate, slope, laws, joints = (part.T.copy() for part in motions)
         x, y, z = (u[:, self.turning[:, axis]] for axis in range(3))

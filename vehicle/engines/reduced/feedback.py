@@ -1,19 +1,9 @@
 """Inputs of a step that depend on the motion at its beginning: tyre loads on slopes, controlled dampers, own laws.
 
-A rolling tyre pushes its wheel centre along x by F_z tan(beta) (`vehicle/core/source/rolling.h`). The poles
-contain the effect of the static load F_0 on the slope z'/V, as a force b z' of the velocity of the plate. The current
-load and a slope that is not z'/V add
-
-    b (max(0, F_z) / F_0 - 1) V tan(beta) + b (V tan(beta) - z')
-
-as a force that is constant over a step: F_z is extrapolated to the middle of the step from the beginnings of this step
-and of the last one, of second order; z' in the first term is the mean over the step.
-
-The poles contain the softest setting of a controlled damper. The excess e = c - cmin acts on the mean velocity of a
-step, f = -e (v + v+)/2: second order, and dissipative at any step. This is the damper curve F_c = e v.
-
-Tyre loads and the velocities that controlled dampers measure are sums over the poles, like damper velocities. A control
-law has branches and a memory: it runs for one car, in double precision.
+The poles contain the static load of a rolling tyre on the slope z'/V, and the softest setting of a controlled damper.
+What the current load, another slope and another setting add is an input of the step; `vehicle/core/source/march.c` has
+the equations. Its sensors, tyre loads and the velocities that controlled dampers measure, are sums over the poles, like
+damper velocities.
 """
 
 from collections.abc import Mapping, Sequence

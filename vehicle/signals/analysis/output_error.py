@@ -252,9 +252,7 @@ class _NormalEquations(NamedTuple):
 def _normal_equations(grid: PoleGrid, windows: _Windows, halves: NDArray[np.int_]) -> _NormalEquations:
     """Return the normal equations of the terms with a pole, less their projection on the basis.
 
-    With s = 1 / (1 + a x), the sums over the lines of s |U|^2, s U and s are sufficient, because
-
-        x s = (1 - s) / a   and   |s|^2 = (a s - a* s*) / (a - a*).
+    With s = 1 / (1 + a x), the sums over the lines of s |U|^2, s U and s are sufficient.
     """
     size = windows.tail.shape[2]
     inputs, a = size - 1, grid.poles[:, None]

@@ -70,8 +70,6 @@ def _shapes_of(wide: bool, half_of_grid: int, half: int) -> tuple[Vector, Vector
 def sums_of_poles(grid: PoleGrid, columns: Vector, halves: NDArray[np.int_]) -> tuple[Vector, Vector]:
     """Return the sums of s(x) y and s(-x) y over the lines, s = 1 / (1 + a x), for the poles of Re z >= 0.
 
-    The even and odd parts of y are summed once for both.
-
     Args:
         grid: poles; s(-x) is returned for those with Re z > 0 only, s*(-x) is that of the mirrored pole.
         columns: y, shape (N, s, c).
