@@ -14,6 +14,9 @@ LIMITS = {
 }
 """Highest rates of a folder, in the order of `rates` of `tools/plainness.py`; lower them after an improvement."""
 
+COMMENTED = {"vehicle/engines": 4.0, "vehicle/signals/analysis": 4.0, "vehicle/core/source": 4.0}
+"""Lowest share of comment lines among the lines of code of a folder [%]: a reader finds why at each numeric step."""
+
 READER_LIMIT = 6.0
 """Highest rate of phrases that newcomers do not understand in what a user reads, per 1 000 words."""
 
@@ -41,6 +44,29 @@ def test_rates_do_not_rise(plainness, folder):
     rates = rates_of(plainness, sorted((ROOT / folder).rglob("*.py")))
     above = {name: value for (name, value), limit in zip(rates.items(), LIMITS[folder], strict=True) if value > limit}
     assert above == {}, f"run: python tools/plainness.py {folder} --list 20"
+
+
+@pytest.mark.parametrize("folder", COMMENTED)
+def test_numeric_code_has_comments(plainness, folder):
+    code, comments = plainness.share_of_comments(ROOT / folder)
+    assert 100.0 * comments / code >= COMMENTED[folder], f"run: python tools/plainness.py {folder} --comments"
+
+
+def test_comments_are_counted_without_docstrings_and_marks(plainness, tmp_path):
+    file = tmp_path / "a.py"
+    file.write_text('"""Doc.\n\nMore."""\n\n# Why.\na = (\n    1  # beside code\n)\n# fmt: skip\n')
+    assert plainness.commented(file) == (3, 1)
+    source = tmp_path / "a.c"
+    source.write_text("/* What\n * it is. */\nint a; /* beside */\n\n// Why.\nint b;\n")
+    assert plainness.commented(source) == (2, 3)
+
+
+@pytest.mark.parametrize("page", sorted((ROOT / "docs" / "theory").glob("*.md")), ids=lambda page: page.stem)
+def test_a_theory_page_begins_with_its_reader_and_question(page):
+    first = page.read_text(encoding="utf-8").split("\n\n")[1]
+    sentence = first.partition("?")[0]
+    assert first.startswith("For ") and ": " in sentence and "?" in first, first
+    assert not set("=<>|^") & set(sentence), "a symbol comes before the question"
 
 
 def test_private_phrases_are_counted(plainness, tmp_path):

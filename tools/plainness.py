@@ -1,6 +1,7 @@
 """Count candidates of compressed or private English in the sources; `plainness.py DIR [--list N] [--json FILE] [--kind K]`.
 
 Every count is a candidate, not a verdict: a reader decides. The sum per 1 000 lines is the number to bring down.
+`plainness.py DIR --comments` prints lines of code and of comments by folder, C included.
 `plainness.py DIR --reader` counts instead what a user reads: texts of console, errors, help and reports (strings and HTML
 templates). `--draw 60 --seed 1` prints sentences of these texts, to be read by someone who does not know the code.
 """
@@ -186,6 +187,39 @@ WORDS = collections.Counter[str]()
 """Words of prose that were looked at: the measure for peers with fewer docstrings."""
 
 
+MARKS = re.compile(r"# ?(?:noqa|type:|fmt:|pragma)")
+"""Comments that tools read."""
+
+
+def commented(path: Path) -> tuple[int, int]:
+    """Lines of code of a file, docstrings aside, and lines that are a comment alone; of C within functions too."""
+    source = path.read_text(encoding="utf-8")
+    if path.suffix in (".c", ".h"):
+        bare = re.sub(r"/\*.*?\*/|//[^\n]*", lambda match: "\n" * match[0].count("\n"), source, flags=re.S)
+        code = [bool(line.strip()) for line in bare.split("\n")]
+        return sum(code), sum(bool(line.strip()) for line in source.split("\n")) - sum(code)
+    code_lines, comments, starts = set[int](), 0, True
+    layout = {tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT}
+    for token in tokenize.generate_tokens(io.StringIO(source).readline):
+        if token.type == tokenize.COMMENT:
+            comments += token.line.lstrip().startswith("#") and not MARKS.match(token.string)
+        elif token.type in layout:
+            starts = True
+        elif token.type not in (tokenize.NL, tokenize.ENDMARKER):
+            # A string that begins a statement is a docstring.
+            if not (starts and token.type == tokenize.STRING):
+                code_lines.update(range(token.start[0], token.end[0] + 1))
+            starts = False
+    return len(code_lines), comments
+
+
+def share_of_comments(folder: Path) -> tuple[int, int]:
+    """Lines of code and of comments of a folder with all below it."""
+    files = [path for path in sorted(folder.rglob("*")) if path.suffix in (".py", ".c", ".h")]
+    counts = [commented(path) for path in files]
+    return sum(code for code, _ in counts), sum(comments for _, comments in counts)
+
+
 def examine(path: Path) -> tuple[collections.Counter[str], list[tuple[str, int, str]]]:
     """Candidates of a file."""
     source = path.read_text(encoding="utf-8")
@@ -249,10 +283,17 @@ def main() -> None:
     parser.add_argument("--kind", default="", help="only kinds that begin so")
     parser.add_argument("--json", type=Path, help="write the counts, to compare with later")
     parser.add_argument("--worst", type=int, default=12, help="number of files to name")
+    parser.add_argument("--comments", action="store_true", help="count lines of code and of comments, by folder")
     parser.add_argument("--reader", action="store_true", help="count what a user reads, HTML templates included")
     parser.add_argument("--draw", type=int, default=0, metavar="N", help="print N sentences that a user reads")
     parser.add_argument("--seed", type=int, default=1, help="seed of the draw (default 1)")
     options = parser.parse_args()
+    if options.comments:
+        for folder in [options.folder, *sorted(path for path in options.folder.rglob("*") if path.is_dir())]:
+            code, comments = share_of_comments(folder)
+            if code:
+                print(f"{100 * comments / code:5.1f} %  {comments:5} comments, {code:6} lines of code  {folder}")
+        return
     if options.reader or options.draw:
         paths = [path for path in sorted(options.folder.rglob("*")) if path.suffix in (".py", ".html")]
         rate, kinds, every = reader(paths or [options.folder])

@@ -77,6 +77,8 @@ EXPORT void NAME(rewrite)(Simulation *simulation, void *data) {
   const Layout *e = &simulation->layout;
   const Weights *c = &simulation->weights;
   State *s = &simulation->state;
+  /* In this order: first the rows of the present position (modes, oblique directions, contact points, fluids), then
+   * residuals and rates in element axes, then the laws with memory over the completed step, then the forces. */
   advance_modes(o, e, c, s);
   if (e->modes.size > 0) modal_rows(o, e, s);
   oblique_rows(o, e);

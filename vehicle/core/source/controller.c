@@ -21,6 +21,7 @@ EXPORT double core_controller_step(void *memory, double body, double wheel) {
   if (c->status > WARNING) return c->coefficient;
   double *measured = c->measured.at, before = c->coefficient;
   size_t count = (size_t)c->sources.n[0];
+  /* measured[0], [1] still have the velocities of the last reading: mean accelerations since then. */
   if (c->readings > 0) {
     measured[3] = (body - measured[0]) / c->period;
     measured[4] = (wheel - measured[1]) / c->period;

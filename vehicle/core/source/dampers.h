@@ -126,6 +126,7 @@ static void dampers(const Now *o, const Layout *e, const Weights *c, State *s) {
   }
   for (int64_t k = 0; k < e->controls.dampers.n[0]; k++) {
     const int64_t n = e->controls.dampers.at[k];
+    /* The viscous row with the present coefficient in place of D. */
     o->D[p->rows.at[n]] = larger(0.5 * h * s->coefficient.at[n], EMPTY_ROW);
   }
   own_dampers(o, e, c, s);

@@ -16,12 +16,14 @@ INLINE void add_effects(const March *job, int64_t force, V change, int last, int
   int is_law = force >= others;
   V *t = table_of(job), *work = t + r->work, stick = force < d ? t[r->stick + force] : (V){0};
   const V *gain = t + r->gain + force, *ramp = t + r->ramp + force;
+  /* Dampers and groups; in the last iteration only those that are still to be solved. */
   for (int64_t i = last && !is_law ? force + 1 : 0; i < others; i++)
     if (i != force) {
       V effect = gain[i * sums];
       if (force < d) effect += stick * ramp[i * d];
       work[i] += effect * change;
     }
+  /* Laws; in the last iteration only those after a law, because all laws come before the dampers. */
   for (int64_t i = last ? (is_law ? force + 1 : sums) : others; i < sums; i++)
     if (i != force) {
       V effect = gain[i * sums];
@@ -38,12 +40,16 @@ INLINE void remove_own(const March *job, int64_t d, int64_t groups, int64_t laws
   const V *force = t + r->inputs, *scalar = force + d;
   for (int64_t i = 0; i < sums; i++) {
     V a = arriving[i];
+    /* Forces of the last step as a first guess. A slope is f - f_last: zero for this guess, except that the own force,
+     * the unknown, counts from -f_last. */
     for (int64_t k = 0; k < d; k++)
       a += k != i ? t[r->gain + i * sums + k] * force[k] : -t[r->stick + k] * t[r->ramp + i * d + k] * force[k];
     for (int64_t k = d; k < sums; k++)
       if (k != i) a += t[r->gain + i * sums + k] * scalar[k];
+    /* A group is solved for its change u in the step. */
     if (i >= d && i < others) a -= t[r->place + i - d];
     if (i >= others) {
+      /* r = w - G g_n/2 of a table; r' = w - G g_n of rubber friction. */
       V effect = t[r->own + i - others] * t[r->excess + i - others];
       a -= effect;
       if (i >= others + tables) a -= effect;
@@ -60,6 +66,8 @@ INLINE void invert_laws(const March *job, int64_t d, int64_t sums, V *effect, V 
   V *t = table_of(job), *arriving = t + r->work;
   for (int64_t i = 0; i < d; i++, node += 4 * nodes) {
     const V *law = t + r->law + 3 * nodes * i;
+    /* g of v + g F(v) = a: a stuck damper acts by its mean force and by its slope. The half of F_c of the last step is
+     * known. */
     V own = t[r->gain + i * sums + i] + t[r->stick + i] * t[r->ramp + i * d + i];
     V *inverse = t + r->inverse + 2 * i, limit = t[r->limit + i];
     effect[i] = own;
@@ -93,10 +101,12 @@ INLINE void solve(const March *job, int64_t d, int64_t groups, int64_t laws) {
     for (int64_t c = 0; c < laws; c++) {
       V value = arriving[others + c], excess = t[r->excess + c], f;
       if (c < tables) {
+        /* Table: force -(g_n + g+)/2. */
         V end = law_force(job, c, value);
         f = -half * (excess + end);
         if (last) t[r->excess + c] = end;
       } else {
+        /* Rubber friction, g = -q: force (q_n + q+)/2 = (q+ - q_n)/2 - g_n. */
         V change = rubber_change(job, c - tables, value);
         f = half * change - excess;
         if (last) advance_rubber(job, c - tables, value + t[r->own + c] * change);
@@ -108,10 +118,13 @@ INLINE void solve(const March *job, int64_t d, int64_t groups, int64_t laws) {
       const V *at = node + 4 * nodes * i, *law = t + r->law + 3 * nodes * i;
       V f = at[2], hold = law[1], a = arriving[i];
       for (int64_t k = 0; k < job->pieces.at[i]; k++) {
+        /* Share of segment k that a has passed, 0 to 1; its rises of the force and of F_c/2 count in proportion. */
         V share = vmin(vmax((a - at[4 * k]) * at[4 * k + 1], zero), one);
         f += at[4 * k + 3] * share;
         hold += (law[3 * k + 4] - law[3 * k + 1]) * share;
       }
+      /* v+ = a - g F; the mean force contains the half of F_c at the beginning, and keeps that at the end for the next
+       * step. */
       t[r->velocity + i] = a - effect[i] * f;
       f = -f - t[r->hold + i];
       add_effects(job, i, f - force[i], last, d, groups, laws);
@@ -126,6 +139,7 @@ INLINE void solve(const March *job, int64_t d, int64_t groups, int64_t laws) {
     }
   }
   for (int64_t i = 0; i < d; i++) {
+    /* The slope acts if the damper stuck in this step and in the last. */
     force[d + i] = t[r->stick + i] * (force[i] - kept[i]);
     t[r->hold + i] = effect[i];
     V speed = t[r->velocity + i], stuck = pick(vmax(speed, -speed) < t[r->full + i], one, zero);

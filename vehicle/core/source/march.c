@@ -39,6 +39,7 @@ static void control(const March *job) {
     int64_t i = job->controlled.at[k], nodes = r->pieces + 1;
     act(law, job->step, (double)sensor[1][0], (double)sensor[0][0], memory);
     const double *outside = job->outside.at + 3 * k;
+    /* Curve of the step: half of F_c = e v, by the coefficient of the law and what another program gives. */
     V half = all((REAL)(0.5 * (outside[0] * (memory[PRESENT] - law->softest) + outside[1])));
     V push = all((REAL)outside[2]), *node = t + r->law + 3 * nodes * i;
     t[r->hold + i] = half * t[r->velocity + i] + push;
@@ -58,6 +59,7 @@ static void own_laws(const March *job) {
     const OwnLaw *law = job->own_laws.at + k;
     int64_t i = job->own.at[k];
     double x = (double)t[first + k][0], v = (double)t[r->velocity + i][0], change = v - (double)t[r->earlier + i][0];
+    /* Displacement at the end of the step; there the curve becomes the line through the velocities v and v + change. */
     double end = x + law->timestep * (v + 0.5 * change), slope = own_slope(law, end, v, &change);
     double force = own_force(law, end, v);
     V *node = t + r->law + 3 * nodes * i;
@@ -88,6 +90,7 @@ static void friction_limits(const March *job) {
   V *t = table_of(job), half = all((REAL)0.5);
   int64_t varying = job->laws.n[0], lanes = job->laws.n[1], first = job->tyres + 2 * job->controlled.n[0];
   for (int64_t i = 0; i < job->dampers; i++) {
+    /* Velocity in the middle: v + (v - v_earlier)/2. */
     V now = t[r->velocity + i], *limit = t + r->limit + i;
     if (varying) *limit = limits_at(now + half * (now - t[r->earlier + i]), job->laws.at + i * lanes, lanes);
     t[r->earlier + i] = now;
@@ -105,6 +108,7 @@ static void friction_limits(const March *job) {
       (*limit)[lane] = (REAL)((double)(*limit)[lane] + growth * root(x * x + y * y));
     }
   }
+  /* One car: its four columns are equal. */
   if (varying && lanes == 1)
     for (int64_t i = 0; i < job->dampers; i++) t[r->limit + i] = all(t[r->limit + i][0]);
 }
@@ -163,6 +167,7 @@ static void advance(March *job, const REAL *rate, const V *x, V *to, const V *la
   set_inputs(job, rate);
   begin_sums(job, end);
   NAME(advance_poles)(job, x, to, last, now);
+  /* Sums over the poles are added over the four parts of a car. */
   for (int64_t i = 0; i < solved; i++) t[r->work + i] = of_cars(t[r->work + i]);
   for (int64_t i = solved; i < job->sums; i++) t[r->sensors + i - solved] = of_cars(t[r->work + i]);
   NAME(solve_forces)(job);
@@ -204,6 +209,7 @@ static void add_damper_outputs(const March *job, V *y, double side) {
   for (int64_t k = 0; k < job->controlled.n[0]; k++) {
     int64_t i = job->controlled.at[k];
     double present = job->memory.at[k * job->memory.n[1] + PRESENT], excess = present - job->settings.at[k].softest;
+    /* Half of e v at the sample in place of half of e (v + v_earlier)/2: the difference is +-e (v - v_earlier)/4. */
     y[d + i] += all((REAL)(0.25 * side * excess)) * (t[r->velocity + i] - t[r->earlier + i]);
     y[3 * d + k] += all((REAL)(0.5 * present));
   }
@@ -232,11 +238,13 @@ EXPORT void NAME(march)(March *job) {
     for (int64_t k = 0; k < size * job->every; k++, rate += 4 * job->plates) {
       int64_t sample = k / job->every, phase = k % job->every;
       V *to = x + (sample + 1) * states, *now = changes + (sample + 1) * poles, *row = y + (PAST + sample) * s.width;
+      /* The first step of a sample starts from the sample before; the others advance the new sample in place. */
       advance(job, rate, phase ? to : to - states, to, phase ? now : changes, now);
       if (phase == 0) add_damper_outputs(job, row - s.width + s.speeds, -1.0);
       if (phase == job->every - 1) keep_sample(job, rate + 4 * job->plates, to, row, s);
     }
     NAME(write_outputs)(job, done, size);
+    /* The last sample, and the past outputs that second differences need, start the next inner block. */
     for (int64_t k = 0; k < states; k++) x[k] = x[size * states + k];
     for (int64_t k = 0; k < PAST * s.width; k++) y[k] = y[size * s.width + k];
   }

@@ -113,6 +113,7 @@ static void write_channels(const March *job, SampleRows s, int64_t early, int64_
     for (int64_t n = 0; row >= 0 && n < late - early; n++) {
       const V *middle = y + n * s.width + row;
       V value = *middle;
+      /* Second difference: weights over ten first differences, `weights` of group_run.py. */
       if (row < s.levels) {
         value = all(weight[0]) * middle[(1 - AHEAD) * s.width];
         for (int64_t k = 1; k < PAST; k++) value += all(weight[k]) * middle[(1 - AHEAD + k) * s.width];
@@ -127,6 +128,7 @@ static void write_channels(const March *job, SampleRows s, int64_t early, int64_
 void NAME(write_outputs)(const March *job, int64_t done, int64_t size) {
   const SampleRows s = sample_rows(job);
   const REAL *z = job->plate_z.at + done * 2 * job->plates;
+  /* First sample of this block whose distance from sample 1 of the run is a multiple of check_every. */
   int64_t check = (1 - job->first - done) % job->check_every;
   if (check < 0) check += job->check_every;
   int64_t begin = job->always ? 0 : check, stride = job->always ? 1 : job->check_every;

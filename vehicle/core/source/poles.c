@@ -27,6 +27,7 @@ INLINE void block(const V *c, int64_t n, int64_t w, const V *u, V *sums, const V
 #pragma GCC unroll 8
     for (int i = 0; i < AT_ONCE; i += 2) {
       V even = x[part + i], odd = x[part + i + 1];
+      /* (E - 1) x, of a pair as a complex product. */
       e[i] = paired ? own[i] * even - own[i + 1] * odd : own[i] * even;
       e[i + 1] = paired ? own[i] * odd + own[i + 1] * even : own[i + 1] * odd;
     }
@@ -41,6 +42,7 @@ INLINE void block(const V *c, int64_t n, int64_t w, const V *u, V *sums, const V
       if (kept) now[part + i] = last[part + i] + e[i];
     }
   }
+  /* Stored after all reads: `to` may be x. */
 #pragma GCC unroll 8
   for (int i = 0; i < BLOCK; i++) to[i] = a[i];
   const V *q = c + BLOCK + BLOCK * n;

@@ -52,6 +52,7 @@ static void assemble(double *h, const double *mass, const double *jacobian, cons
   for (int64_t k = 0; k < s->inertia.n[0]; k++) h[AT(s->inertia, k, 0) * n + AT(s->inertia, k, 1)] = mass[k];
   for (int64_t group = 0; group < s->groups.n[0]; group++) {
     const int64_t *of = ROW(s->groups, group), row = of[0], first = of[2], last = of[3];
+    /* Three rows with the same columns are added at once; of a single row the others have zero weight. */
     const double *j0 = jacobian + row * n, *j1 = j0, *j2 = j0;
     double d0 = weight[row], d1 = 0.0, d2 = 0.0;
     if (of[1] == 3) {
@@ -82,6 +83,7 @@ static void factorise(double *h, const Solution *s) {
   for (int64_t block = s->starts.n[0] - 2; block >= 0; block--) {
     const int64_t r = TILE * block, first = s->starts.at[block], last = s->starts.at[block + 1];
     double *u0 = h + r * n, *u1 = u0 + n, *u2 = u1 + n, *u3 = u2 + n;
+    /* The diagonal tile, last row first: row i loses L_ji times each later row j. */
     const double f32 = u3[r + 2] / u3[r + 3], f31 = u3[r + 1] / u3[r + 3], f30 = u3[r] / u3[r + 3];
     u2[r + 2] -= f32 * u3[r + 2], u2[r + 1] -= f32 * u3[r + 1], u2[r] -= f32 * u3[r];
     u1[r + 1] -= f31 * u3[r + 1], u1[r] -= f31 * u3[r];
@@ -97,6 +99,7 @@ static void factorise(double *h, const Solution *s) {
       FOUR(u2 + at) -= f32 * FOUR(u3 + at);
       FOUR(u1 + at) -= f31 * FOUR(u3 + at) + f21 * FOUR(u2 + at);
       FOUR(u0 + at) -= f30 * FOUR(u3 + at) + f20 * FOUR(u2 + at) + f10 * FOUR(u1 + at);
+      /* Earlier rows lose u' D^-1 u of the four rows of this tile. */
       double g[TILE][TILE], *line = h + at * n;
       for (int k = 0; k < TILE; k++) {
         g[0][k] = i0 * u0[at + k], g[1][k] = i1 * u1[at + k];
@@ -120,6 +123,7 @@ static void solve(const double *h, double *b, const Solution *s) {
   for (int64_t block = blocks - 1; block >= 0; block--) {
     const int64_t r = TILE * block;
     const double *u0 = h + r * n, *u1 = u0 + n, *u2 = u1 + n, *u3 = u2 + n;
+    /* L' D y = b from the last row to the first, then L x = y the other way. */
     const double w = b[r + 3] / u3[r + 3];
     b[r + 2] -= u3[r + 2] * w;
     const double z = b[r + 2] / u2[r + 2];

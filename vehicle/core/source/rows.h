@@ -168,6 +168,7 @@ static void elements(const Now *o, const Layout *e, const Weights *c, State *s) 
   for (int64_t n = 0; n < b->rows.n[0]; n++)
     for (int i = 0; i < 3; i++) {
       const double rate = AT(s->rate, n, i), past = AT(s->branch_past, n, i);
+      /* f2(+h) - 2 f2 + f2(-h), with f2(+h) = E p + g v, f2 = p and f2(-h) of the completed step. */
       const double curvature = (AT(c->decay, n, i) - 2.0) * past + AT(c->gain, n, i) * rate + AT(s->branch_force, n, i);
       const double branch = past + AT(c->average, n, i) * curvature;
       const double elastic = AT(b->stiffness, n, i) * AT(s->residual, n, i);

@@ -72,6 +72,8 @@ static V group_force(const V *work, int64_t corners, V value) {
   for (int64_t c = 0; c < corners; c++) {
     V left = work[2 + 2 * c], force = work[3 + 2 * c];
     Mask under = value < left;
+    /* Nearest corners on both sides of the value, with their forces; beyond all corners the smallest and largest
+     * force. */
     below = vmax(below, pick(under, below, left)), lower = vmax(lower, pick(under, low, force));
     above = vmin(above, pick(under, left, above)), upper = vmin(upper, pick(under, force, high));
   }

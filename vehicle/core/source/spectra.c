@@ -77,6 +77,8 @@ EXPORT void core_weigh(const Transform *t, double *x, double *y, double interval
     }
     double square = c * c + d * d, g = (re * c + im * d) / square;
     double h = 2 * k == n ? 0.0 : (im * c - re * d) / square; /* the line at half the sampling rate is real */
+    /* H(-f) is the conjugate of H(f): lines k and n - k have both records' content, so that one complex transform
+     * filters two real records. */
     int64_t other = (n - k) % n;
     double u = x[k], v = y[k], past_u = x[other], past_v = y[other];
     /* The conjugate, so that the second transform is the inverse. */
@@ -108,6 +110,7 @@ EXPORT void core_density(const Transform *t, const double *values, int64_t sampl
     core_transform(t, x, y);
     for (int64_t k = 0; k <= half; k++) {
       double a = x[k], b = y[k], c = x[(n - k) % n], d = y[(n - k) % n];
+      /* |X|^2 + |Y|^2 = (|Z_k|^2 + |Z_(n-k)|^2)/2 for Z of x + i y. */
       density[k] += 0.5 * (a * a + b * b + c * c + d * d);
     }
   }

@@ -36,6 +36,7 @@ static void keep_modes(int64_t row, const Order *order, const Sources *s, const 
   const double *q = ROW(s->modal, 0), *rate = ROW(s->modal, 1);
   const double *acceleration = s->acceleration.at + order->first_velocity;
   double *pull = b->modal_pull.at;
+  /* eta'' - S' (-k q - b q'), which the attachments add to q''. */
   for (int64_t j = 0; j < b->modal_pull.n[0]; j++) pull[j] = acceleration[j] - s->modal_force.at[j];
   for (int64_t k = 0; k < s->modal.n[1]; k++) {
     const double faster = b->modal_pull.n[0] ? modal_acceleration(k, q, rate, pull, &s->space) : acceleration[k];

@@ -78,6 +78,7 @@ class ForceArrows:
         for damper in composition.dampers:
             if (force := recording.channels.get(f"{damper.name}_force")) is not None:
                 part, joint = joints[damper.joint]
+                # The axis of a strut may point down in a vehicle file; the arrow begins beside it, outside the car.
                 upwards = np.multiply(joint.axis, np.copysign(1.0, joint.axis[2]) / np.linalg.norm(joint.axis))
                 point = np.add(joint.at, (0.0, np.copysign(BESIDE_DAMPER, joint.at[1]), 0.0))
                 self._add(int(model.body(part.name).id), point, upwards, -force, DAMPER)
@@ -99,6 +100,7 @@ class ForceArrows:
     def vectors(self, time: float, exposure: float) -> list[Vector]:
         """Return the vector of each arrow [m] at a time [s], from the mean force over an exposure [s] about it."""
         first, last = np.searchsorted(self.time, [time - 0.5 * exposure, time + 0.5 * exposure])
+        # At least one sample, also for a frame between two samples or after the last.
         part = slice(min(int(first), self.time.size - 1), max(int(last), int(first) + 1))
         return [LENGTH / self.top * float(np.mean(arrow.force[part])) * arrow.direction for arrow in self.arrows]
 

@@ -67,6 +67,7 @@ class Motion:
         """Return exaggerated poses of all geoms: positions [m], (geoms, 3), and orientations, (geoms, 9)."""
         position, orientation = self.poses(state, factor)
         body = self.model.geom_bodyid
+        # p = p_body + R_body p_local of each geom.
         geom_position = position[body] + np.einsum("gij,gj->gi", orientation[body], self.geom_position)
         return geom_position, (orientation[body] @ self.geom_orientation).reshape(-1, 9)
 
@@ -105,6 +106,7 @@ class RecordedMotion(Motion):
                 lift = np.interp(recording.pose_time[index], recording.time, recording[f"plate_{wheel}_displacement"])
                 data.mocap_pos[plate] = design_plates[plate] + np.array([0.0, 0.0, lift])
             mujoco.mj_kinematics(model, data)
+            # R R0' is the rotation from the design pose.
             rotation_matrix = data.xmat.reshape(-1, 3, 3) @ self.orientation.transpose(0, 2, 1)
             rotation = scipy.spatial.transform.Rotation.from_matrix(rotation_matrix).as_rotvec()
             rows.append(np.concatenate([(data.xpos - self.position).ravel(), rotation.ravel(), data.qpos[columns]]))
@@ -124,6 +126,7 @@ class RecordedMotion(Motion):
         first, last = float(self.time[0]), float(self.time[-1])
         begin, end = (float(np.clip(time + half * exposure, first, last)) for half in (-0.5, 0.5))
         if end > begin:
+            # Mean of the spline by its antiderivative, exact.
             values = (self.integral(end) - self.integral(begin)) / (end - begin)
         else:
             values = self.curve(begin)
@@ -165,6 +168,7 @@ class Coil:
         self.rest = model.mesh_vert[self.rows] @ self.frame.T + self.origin
         axis = np.subtract(spring.at[1], spring.at[0])
         height = self.rest @ (axis / np.linalg.norm(axis))
+        # s of each vertex, along the axis of the spring.
         self.share = ((height - height.min()) / np.ptp(height))[:, None]
 
     def positions(self, state: State, factor: float) -> Vector:
@@ -174,6 +178,7 @@ class Coil:
 
     def write(self, data: mujoco.MjData, positions: Vector) -> None:
         """Write the vertices to the model and reset the geom to its design pose; OpenGL must then reload the mesh."""
+        # The renderer adds pose of the geom to its vertices: take the design pose out.
         self.motion.model.mesh_vert[self.rows] = (positions - self.origin) @ self.frame
         data.geom_xpos[self.geom] = self.origin
         data.geom_xmat[self.geom] = self.frame.ravel()

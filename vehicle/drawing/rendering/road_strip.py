@@ -70,6 +70,7 @@ class RoadStrip:
                 height = recording[f"plate_{wheel.name}_displacement"]
             else:
                 height = np.interp(recording.time, profile[0], profile[1][wheel.name])
+            # Integral of the height over time, by trapezia: a mean over an exposure is a difference of two values.
             means = 0.5 * step * (height[1:] + height[:-1])
             self.integrals.append((height, np.concatenate([[0.0], np.cumsum(means)])))
 
@@ -81,6 +82,7 @@ class RoadStrip:
 
         def total(when: Vector) -> Vector:
             inside = np.clip(when, self.time[0], self.time[-1])
+            # Beyond the record the height stays, so its integral is a line.
             level = np.where(when > self.time[-1], height[-1], height[0])
             return np.asarray(np.interp(inside, self.time, integral) + level * (when - inside))
 
@@ -101,6 +103,7 @@ class RoadStrip:
             first, last = (int(np.floor((end - moved) / PIECE)) for end in self.ends)
             numbers = np.arange(first, last + 1.0 / PARTS, 1.0 / PARTS)
             height = self.height(track, np.asarray(numbers * PIECE + moved, dtype=np.float64), time, exposure)
+            # A segment keeps its inner points only if one of them is off its chord.
             straight = np.interp(numbers, numbers[::PARTS], height[::PARTS])
             bent = np.abs(height - straight)[:-1].reshape(-1, PARTS).max(axis=1) > STRAIGHT
             kept = np.append(np.repeat(bent, PARTS), True)

@@ -25,6 +25,7 @@ class RollingWheel:
         orientation = motion.orientation[body]
         self.tyre, self.rim = ([int(geom) for geom in geoms if (model.geom(geom).name == wheel.part) is tyre]
                                for tyre in (True, False))  # fmt: skip
+        # Position of each shape from the wheel centre, in the axes of the car.
         self.arms = motion.position[body] + motion.geom_position @ orientation.T - self.centre
         self.frames = orientation @ motion.geom_orientation
 
@@ -32,6 +33,7 @@ class RollingWheel:
         """Set the poses of the shapes; the factor exaggerates the motion of the hub, not the rolling."""
         (centre,) = self.motion.moved(state, factor, self.hub, self.centre)
         frame = Rotation.from_rotvec(factor * state.rotation[self.hub]).as_matrix()
+        # The rim spins in the axes of the hub; the tyre follows the hub alone.
         spin = frame @ Rotation.from_euler("y", self.rate * time).as_matrix()
         for geoms, rotation in ((self.tyre, frame), (self.rim, spin)):
             data.geom_xpos[geoms] = centre + self.arms[geoms] @ rotation.T

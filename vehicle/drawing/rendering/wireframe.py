@@ -120,6 +120,7 @@ class _Pen:
         mujoco.mj_jac(self.model, self.data, rows, None, at, self.bodies[part])
         if part == "body" and self.modal:
             distance = np.linalg.norm(self.nodes - at, axis=1)
+            # Shape of the nearest node; body axes are those of the car in the design position.
             rows[:, self.modal] = self.shapes[:, int(np.argmin(distance))].T
         return rows
 
@@ -169,10 +170,12 @@ def _box(pen: _Pen, part: PlacedPart, group: str) -> None:
     """Draw the box with the mass and moments of inertia of a part: Ixx = m (b^2 + c^2) / 12 and so on."""
     body = pen.bodies[part.name]
     mass, inertia = float(pen.model.body_mass[body]), np.asarray(pen.model.body_inertia[body])
+    # From Ixx = m (b^2 + c^2)/12 and so on: a^2 = 6 (Iyy + Izz - Ixx)/m.
     sides = np.sqrt(np.maximum(6.0 / mass * (inertia.sum() - 2.0 * inertia), 0.0))
     frame = pen.data.ximat[body].reshape(3, 3)
     signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     corners = [pen.point(pen.data.xipos[body] + frame @ (0.5 * sign * sides), part.name) for sign in signs]
+    # Corners that differ in one sign share an edge.
     edges = [(i, j) for i in range(8) for j in range(i) if np.sum(signs[i] != signs[j]) == 1]
     pen.join([(corners[i], corners[j]) for i, j in edges], group)
 
@@ -214,6 +217,7 @@ def _coil(low: Vector, high: Vector) -> Vector:
     third = np.cross(axis, across) / np.linalg.norm(axis)
     share = np.linspace(0.0, 1.0, COIL_POINTS)
     turn = 2.0 * np.pi * COIL_TURNS * share
+    # Straight ends: the radius falls to zero over the last 8 % of the length.
     radius = COIL_RADIUS * np.clip(np.minimum(share, 1.0 - share) / 0.08, 0.0, 1.0)
     round_ = np.outer(np.cos(turn), across) + np.outer(np.sin(turn), third)
     return np.asarray(low + np.outer(share, axis) + radius[:, None] * round_)

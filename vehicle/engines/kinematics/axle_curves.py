@@ -78,6 +78,7 @@ def opposite_rates(axle: AxleStatics) -> tuple[float, float]:
     """
     parts, joints = axle.parts, axle.parts.joints
     both = design_slopes(axle, opposite=True)["wheel_rate_n_per_m"] or math.nan
+    # The part of the springs on hinges is the difference of two solutions, with and without these springs.
     hinges = {joint for joint in joints if axle.model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_HINGE}
     if not hinges:
         return both, 0.0
@@ -150,6 +151,7 @@ def wheel_motions(
     now, motions = axle.position(), []
     for index, (centre, _) in enumerate(axle.at_rest):
         frame = now.frames[index]
+        # dR/dz R' = [w]x per wheel travel; w is half of its skew part.
         turn = rate.frames[index] @ frame.T
         axis = None if np.isnan(now.steering_axes[index]).any() else now.steering_axes[index]
         motions.append(

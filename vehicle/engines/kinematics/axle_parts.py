@@ -155,6 +155,7 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
     stop = {model.body(name).id for name in HELD} | {b for b in range(model.nbody) if model.body_mocapid[b] >= 0}
     bodies, new = set(numbers), set(numbers)
     while new:
+        # Neighbours of what was found last, over links in both directions, that are neither found nor held.
         new = {b for link in links for a, b in (link, link[::-1]) if a in bodies and b not in bodies | stop}
         bodies |= new
     standing, springs, treads = np.zeros((len(numbers), 6)), [], set()
@@ -227,6 +228,7 @@ def _ties(model: mujoco.MjModel, rows: Sequence[tuple[Any, ...]]) -> Ties:
     both = np.array(sites, dtype=np.intp).reshape(-1, 2)
     return Ties(
         sites=both,
+        # Transposed: all moving sites, then all carriers.
         bodies=model.site_bodyid[both.T.ravel()].astype(np.intp),
         ways=np.reshape(ways, (-1, 3, 3)).astype(float),
         stiffness=np.reshape(stiffness, (-1, 3)).astype(float),

@@ -148,6 +148,7 @@ def axle_ride(car: CarModel, axle: str, dampers: DamperState = "sliding", *, rol
     load, gravity = _mean([car.static.tyre_load[wheel.name] for wheel in wheels]), car.vehicle.gravity
     unsprung = float(equal.mass_moment) / len(wheels)
     tracks = [float(np.ptp([getattr(wheel, point)[1] for wheel in wheels])) for point in ("center", "patch")]
+    # Roll by phi: centres move by +-phi t_c/2, the couple of the wheel forces has the arm t_p.
     arm = 0.5 * tracks[0] * tracks[1]
     damping, roll_damping = (
         math.nan if motion is None else 0.0 if stuck else _wheel_damping(car, axle, free, motion)

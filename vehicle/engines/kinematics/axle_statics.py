@@ -166,8 +166,11 @@ class AxleStatics:
             force, stiffness = self._forces(loads)
             constraints, reacting, gaps = self._constraints(travel)
             rows = len(gaps)
+            # Newton: K dq + B' lambda = f, A dq = -gaps. Joints have A = B; the load acts at the contact, its height
+            # is the centre.
             system = np.block([[stiffness, reacting.T], [constraints, np.zeros((rows, rows))]])
             scale = np.ones(count + rows)
+            # Equal diagonals: metres and radians differ.
             scale[:count] = 1.0 / np.sqrt(np.maximum(np.diag(stiffness), 1.0))
             solution = _solved(system * scale[:, None] * scale, scale * np.concatenate([force, -gaps]))
             step, reactions = (scale * solution)[:count], (scale * solution)[count:]
@@ -229,9 +232,11 @@ class AxleStatics:
         gaps, axes, frames = self._gaps(ties)
         count, points = len(gaps), self.data.site_xpos[ties.sites[:, 0]]
         # The Jacobian of the carrier is that of its point under the moving part.
+        # Bodies of the moving sites come first, carriers second: their difference is the relative motion.
         moved, turned = (
             each[:count] - each[count:] for each in self._jacobians(ties.bodies, np.concatenate([points, points]))
         )
+        # Into the axes of the carriers.
         back = frames.transpose(0, 2, 1)
         relative = back @ self.data.site_xmat[ties.sites[:, 0]].reshape(-1, 3, 3)
         # sin(angle) n, the law of the runs (`vehicle/core/source/rotations.h`).
@@ -248,12 +253,15 @@ class AxleStatics:
             return force, np.eye(count)
         bodies = np.array(sorted(self.parts.bodies))
         fallen, _ = self._jacobians(bodies, data.xipos[bodies])
+        # J_g' m g.
         force += np.einsum("kic,k,i->c", fallen, model.body_mass[bodies], model.opt.gravity)
         gaps, angles, moved, turned = self._relative(self.soft)
         pull, slope = self.soft.pull(gaps)
         twist, size = self.soft.twist, (3 * len(gaps), count)
+        # J' f of all bushings: k bushings, i axes, c coordinates.
         force += np.einsum("kic,ki->c", moved, pull)
         force += np.einsum("kic,ki->c", turned, self.soft.torque - twist * angles)
+        # J' K J with J of (3 k, coordinates), without geometric stiffness.
         stiffness += (slope[..., None] * moved).reshape(size).T @ moved.reshape(size)
         stiffness += (twist[..., None] * turned).reshape(size).T @ turned.reshape(size)
         for spring in self.parts.springs:
@@ -277,6 +285,7 @@ class AxleStatics:
                 continue
             moved, turned = self.jacobian(wheel, self.contact(index))
             raised, _ = self.jacobian(wheel, self.vertical_contact(index))
+            # Level force at the contact point, vertical force at the vertical contact point, moment on the wheel.
             force += moved[:2].T @ load[:2] + raised[2] * load[2] + turned.T @ load[3:]
         return force, stiffness
 
@@ -317,6 +326,7 @@ class AxleStatics:
         center, _ = self.places(index)
         center_at_rest, patch = self.at_rest[index]
         spin = self.data.xmat[self.wheels[index]].reshape(3, 3)[:, 1]
+        # The downward vertical without its part along the axle, a vector in the plane of the wheel.
         down = spin[2] * spin - np.array([0.0, 0.0, 1.0])
         beside = (patch - center_at_rest) * [1.0, 1.0, 0.0]
         return np.asarray(center + beside + (center_at_rest[2] - patch[2]) * down / np.linalg.norm(down))
@@ -342,6 +352,7 @@ class AxleStatics:
             patch_lateral_m=float(side * patch[1]),
             patch_longitudinal_m=float(patch[0]),
             camber_deg=float(np.degrees(np.arcsin(-axle[2]))),
+            # The outer end of the axle goes down with the top outwards, and forwards with the front inwards.
             toe_deg=float(np.degrees(np.arctan2(-axle[0], side * axle[1]))),
             load_n=float("nan") if self.ideal else load,
             strut_length_m=float("nan") if nearest is None else self._length(nearest)[0] - nearest.length,
@@ -350,6 +361,7 @@ class AxleStatics:
 
 def _solved(system: Vector, right: Vector) -> Vector:
     """Return the solution of a linear system, of a singular one that with the smallest norm."""
+    # LU, unless it is near to singular: then the solution with the smallest norm.
     factors, pivots, singular = scipy.linalg.lapack.dgetrf(system)
     near, _ = scipy.linalg.lapack.dgecon(factors, np.abs(system).sum(axis=0).max())
     if singular or not near > CONDITION_SURE:

@@ -86,6 +86,7 @@ def ride_figures(car: CarModel, axles: Mapping[str, AxleRide], *, roll: bool = T
     """
     sprung = _sprung(car, axles)
     stations = [*(_axle_station(car, axle, ride, roll) for axle, ride in axles.items()), *_blocks(car, sprung.cog[1])]
+    # The weight on each station moves to the side by its height above the roll centre: a negative stiffness.
     tilt = math.fsum(station.load * (sprung.cog[2] - station.roll_centre) for station in stations)
     rolling = _sum([*(station.roll for station in stations), Support(stiffness=-tilt, damping=0.0)])
     pitch = _sum([station.vertical.times((station.x - sprung.cog[0]) ** 2) for station in stations])
@@ -117,6 +118,7 @@ def _sprung(car: CarModel, axles: Mapping[str, AxleRide]) -> MassProperties:
     unsprung = MassProperties.of_points(
         np.array([axles[wheel.axle].unsprung_mass for wheel in wheels]), np.array([wheel.center for wheel in wheels])
     )
+    # Masses and moments subtract about a common centre.
     return whole.without(unsprung)
 
 

@@ -116,6 +116,7 @@ def roll_centre(right: WheelMotion, left: WheelMotion) -> tuple[float, float]:
     """
     rises = [wheel.side * wheel.contact_velocity[1] / wheel.contact_velocity[2] for wheel in (right, left)]
     (y1, z1), (y2, z2) = right.contact[1:], left.contact[1:]
+    # Lines z = z1 + rise1 (y1 - y) and z = z2 + rise2 (y - y2): equal at y = offset/slope.
     offset, slope = z1 - z2 + rises[0] * y1 + rises[1] * y2, rises[0] + rises[1]
     # A symmetric axle has its roll centre in the middle plane, on the ground too, where both lines are the same.
     if abs(offset) < 1e-9:
@@ -124,6 +125,7 @@ def roll_centre(right: WheelMotion, left: WheelMotion) -> tuple[float, float]:
         lateral = offset / slope
     else:
         return math.nan, math.nan
+    # The ground is the line through both contact points.
     ground = z2 + (z1 - z2) * (lateral - y2) / (y1 - y2)
     return float(lateral), float(z1 + rises[0] * (y1 - lateral) - ground)
 
@@ -134,6 +136,7 @@ def steering_geometry(wheel: WheelMotion) -> tuple[float, float, float, float]:
         return (math.nan,) * 4
     low, high = wheel.steering_axis
     axis = high - low
+    # Point of the steering axis at the height of the contact.
     ground = low + axis * (wheel.contact[2] - low[2]) / axis[2]
     return (
         math.degrees(math.atan2(axis[0], axis[2])),

@@ -52,6 +52,8 @@ def body_attachments(car: CarModel, matrices: CarMatrices) -> list[Attachment]:
     modes = matrices.modal.stop - matrices.modal.start
 
     def rows(element: str, point: Vector) -> Vector:
+        # Displacement of the point: by the rigid motion of the body, then by its modes in body axes, which are those
+        # of the car.
         rigid = np.zeros((3, model.nv))
         mujoco.mj_jac(model, data, rigid, None, point, body)
         shape = numeric(model, f"shape/{element}")
@@ -81,6 +83,7 @@ def body_attachments(car: CarModel, matrices: CarMatrices) -> list[Attachment]:
                 Attachment(
                     name=spring.name,
                     channels=(f"{spring.name}_force",),
+                    # The spring pushes its ends apart.
                     rows=((along if above else -along) @ end)[None, :],
                 )
             )

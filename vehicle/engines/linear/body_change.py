@@ -143,6 +143,7 @@ def body_change(vehicle: Vehicle, reference: CarModel, trimmed: Superelement) ->
     first = int(model.joint("body").dofadr[0])
     move, hanging = np.eye(size), np.zeros((size, size))
     turns = slice(first + 3, first + 6)
+    # v_0 = v + d x w.
     move[first : first + 3, turns] = cross_matrix(shift)
     up = np.array([0.0, 0.0, 1.0])
     hanging[turns, turns] = shift[2] * np.eye(3) - np.outer(up, shift)
@@ -152,11 +153,13 @@ def body_change(vehicle: Vehicle, reference: CarModel, trimmed: Superelement) ->
         )
     scaled, modes = trimmed.scaled(factor), read_layout(model).modes.velocities
     before, after = (attached(shape, fixed_masses(vehicle, shape)) for shape in (trimmed, scaled))
+    # A = X_0^-1 X f^-1/2, and the rigid part Y_0 A - Y f^-1/2.
     elastic = np.linalg.solve(before.elastic, after.elastic) * factor**-0.5
     rigid = before.rigid @ elastic - after.rigid * factor**-0.5
     shapes, rotations = trimmed.rigid.rigid_motions(np.array([body.cog]))
     whole = move.copy()
     whole[modes, modes] = elastic
+    # The rigid motions R at the new centre of gravity: translations, then rotations; (6, 6).
     whole[first : first + 6, modes] = np.vstack([shapes[:, 0].T, rotations.T]) @ rigid
     return BodyChange(
         trimmed=scaled, body=after.body, move=move, whole=whole, shift=shift, hanging=hanging, first=first, modes=modes

@@ -116,6 +116,7 @@ class CarMatrices:
     @property
     def applied(self) -> Vector:
         """Generalised forces per unit of each history of the applied forces; (n, lines)."""
+        # Columns: cos and sin of each frequency, then the recorded histories.
         return self.force_rows.T.reshape(self.system.size, -1) @ self.coefficients
 
     @property
@@ -133,6 +134,7 @@ class CarMatrices:
         """Run-outs of the tyres, see `with_run_out`."""
         run_outs = []
         constant = self.coefficients[:, : 2 * len(self.lines.frequencies)]
+        # (wheels, 2 frequencies), reshaped to pairs of cos and sin.
         for wheel, of in zip(self.system.inputs, self.force_heights.T @ constant, strict=False):
             lines = zip(self.lines.frequencies, of.reshape(-1, 2).tolist(), strict=True)
             acting = {frequency: pair for frequency, pair in lines if any(pair)}
@@ -159,6 +161,7 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim, forces: Sequence[Pla
         # The tangent has rubber friction without its limits.
         soft = rows.anew()
         soft.layout = e._replace(rubber=e.rubber._replace(limit=np.full_like(e.rubber.limit, np.inf)))
+    # K = -dF/du of what acts at rest: passive forces, gravity in the bias, and the explicit forces of the rows.
     stiffness = -differences(soft, lambda data: data.qfrc_passive - data.qfrc_bias + data.qfrc_applied)
     data = standing_data(rows)
     mass = np.zeros((model.nv, model.nv))
@@ -174,6 +177,7 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim, forces: Sequence[Pla
             mujoco.mj_jacBodyCom(model, data, rows_of_bodies[name][:3], rows_of_bodies[name][3:], body)
             masses[name][:3, :3] = model.body_mass[body] * np.eye(3)
             frame = data.ximat[body].reshape(3, 3)
+            # Principal moments in the axes of the car: R diag(I) R'.
             masses[name][3:, 3:] = frame @ np.diag(model.body_inertia[body]) @ frame.T
     system_of_laws, car_of_laws = law_matrices(rows, jacobian, joint_dampers(model), static.preload)
     lines, coefficients = force_lines(forces)
@@ -216,6 +220,7 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim, forces: Sequence[Pla
             name.replace("/", " of ", 1): int(model.joint(name).dofadr[0])
             for name in fluid_coordinates(rows.laws, model_numbers(model))
         },
+        # Forces that change a tyre come last and have no row.
         force_rows=np.vstack([force_rows(model, data, e), np.zeros((len(forces) - len(e.applied.means), model.nv))]),
         force_slips=slips,
         force_heights=plate_heights,
@@ -240,12 +245,14 @@ def law_matrices(
     # In the design position all carriers are parallel to the vehicle frame, so rows are element axes.
     row_damping = np.zeros(e.row_count)
     row_damping[bushings.rows] = bushings.damping
+    # C = J' B J, then what acts in single coordinates.
     damping = jacobian.T @ (row_damping[:, None] * jacobian)
     damping[np.diag_indices(len(damping))] += joint_damping
     damping[dofs, dofs] += viscous
     present = bushings.branch_stiffness > 0.0
     vertical = jacobian[bushings.rows[e.tyres][:, 2]]
     tyres = {"stiffness": bushings.stiffness[e.tyres, 2], "damping": bushings.damping[e.tyres, 2]}
+    # A tyre pushes its wheel by k z + c z' along its row; (n, w).
     inputs = {f"input_{term}": vertical.T * values for term, values in tyres.items()}
     branch_rows = jacobian[bushings.rows[present]]
     over_displacement = displacement_laws(rows, jacobian, preload)
@@ -253,6 +260,7 @@ def law_matrices(
     if len(e.rolling.tyres):
         more, slope, drifting = rolling_terms(rows, preload, branch_rows)
         damping += more
+        # The static load on the slope z'/V.
         inputs["input_damping"] = inputs["input_damping"] + slope
     return (
         {
@@ -310,6 +318,7 @@ def _sensors(rows: Rows, data: mujoco.MjData) -> Vector:
     for row, (site, shape) in enumerate(zip(controls.sites.ravel(), controls.shapes, strict=True)):
         jacobian = np.zeros((3, model.nv))
         mujoco.mj_jacSite(model, data, jacobian, None, int(site))
+        # A point of the flexible body moves with its modes, too.
         jacobian[:, rows.layout.modes.velocities] += shape.reshape(3, -1)
         damper = rows.layout.dampers.dofs[controls.dampers[row // 2]]
         sensor_rows[row] = data.xaxis[model.dof_jntid[damper]] @ jacobian

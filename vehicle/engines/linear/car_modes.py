@@ -97,6 +97,7 @@ def _energy(matrices: CarMatrices, shape: Complex) -> tuple[dict[str, float], fl
         value = float(np.real(np.vdot(velocity, matrices.body_masses[body] @ velocity)))
         group = group_of(matrices, body)
         energy[group] = energy.get(group, 0.0) + value
+    # Modes are mass-normalised.
     energy["flexible"] = float(np.sum(np.abs(shape[matrices.modal]) ** 2))
     for name, dof in matrices.fluids.items():
         energy[name] = float(matrices.system.mass[dof, dof] * np.abs(shape[dof]) ** 2)

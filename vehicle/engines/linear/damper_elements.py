@@ -80,6 +80,8 @@ def slider_elements(rows: Rows) -> SliderElements:
     for group, damper in enumerate(dampers):
         elements = p.dampers == damper
         stiffness[group, : numbers[damper]], limit[group, : numbers[damper]] = p.stiffness[elements], p.share[elements]
+    # A friction line is vertical for the step; presliding dampers have their curve alone, halved as the mean of both
+    # ends of a step. The slope of a controlled damper, or of a law by address, is known during a run only.
     steepness = np.full(len(e.dofs), np.inf)
     for damper in dampers:
         steepness[damper] = 0.5 * np.max(e.pieces[e.valves[:, 1] == damper, 0], initial=0.0)
@@ -108,6 +110,7 @@ def side_rows(rows: Rows, jacobian: Vector, preload: Vector, laws: Sequence[Disp
     dampers = np.flatnonzero(e.dampers.laws["side_force"] > 0.0)
     if not dampers.size:
         return no_side_forces()
+    # (element, axis) to the number of its Maxwell branch, among those that exist.
     branches = np.cumsum(b.branch_stiffness.ravel() > 0.0).reshape(b.rows.shape) - 1
     count = int(np.count_nonzero(b.branch_stiffness > 0.0))
     static, branch = np.zeros((len(dampers), 2)), np.zeros((len(dampers), 2, count))
@@ -115,9 +118,11 @@ def side_rows(rows: Rows, jacobian: Vector, preload: Vector, laws: Sequence[Disp
     by_law = np.zeros((len(dampers), 2, len(laws)))
     for side, damper in enumerate(dampers):
         # In the design position all frames are parallel.
+        # Two directions at right angles to the slide: the rows of V' beyond the first are its null space; (2, 3).
         across = np.linalg.svd(model.jnt_axis[model.dof_jntid[e.dampers.dofs[damper]]][None])[2][1:]
         for k in np.flatnonzero(e.sides.dampers == damper):
             n = e.sides.elements[k]
+            # The rod takes the forces of its bushings: f = p - K r - B r' - f2 - g along the directions of each law.
             way = rows.directions.get(int(n), np.eye(3))
             along = e.sides.signs[k] * across @ way.T
             static[side] += along @ preload[b.rows[n]]

@@ -110,9 +110,11 @@ def decoupling(
     system, hung = matrices.system, _hung(matrices, rows, part)
     stiffness = _mount_stiffness(system, rows, hung)
     shaft = np.array(crankshaft) / np.linalg.norm(crankshaft)
+    # s = J^-1 e.
     axis = np.linalg.solve(inertia[3:, 3:], shaft)
     axis /= np.linalg.norm(axis)
     turn = np.concatenate([np.zeros(3), axis])
+    # W^2 = s'Ks / s'Ms, and what is left of M^-1 K s.
     square = float(turn @ stiffness @ turn / (turn @ inertia @ turn))
     missed = np.linalg.solve(inertia, stiffness @ turn) - square * turn
     if grounded:
@@ -125,6 +127,7 @@ def decoupling(
     modes = []
     for pole, motion in zip(poles, motions, strict=True):
         velocity = rows @ motion
+        # T_jk before its division by the sum.
         table = np.real(np.conj(velocity)[:, None] * inertia * velocity[None, :])
         share = float(np.sum(table)) / float(np.vdot(motion, system.mass @ motion).real)
         if share >= TAKES_PART and abs(pole) <= 2.0 * np.pi * HIGHEST:
@@ -159,8 +162,10 @@ def _rigid(matrices: CarMatrices, part: str) -> tuple[Vector, Vector]:
     inertia = np.diag([*[float(np.sum(masses))] * 3, 0.0, 0.0, 0.0])
     for body, mass, position in zip(bodies, masses, centres, strict=True):
         arm = cross_matrix(position - centre)
+        # Steiner: J - m [a]x [a]x.
         inertia[3:, 3:] += matrices.body_masses[body][3:, 3:] - mass * arm @ arm
     rows = matrices.body_rows[part].copy()
+    # v at the centre of the whole: v + w x a = v - [a]x w.
     rows[:3] -= cross_matrix(centre - matrices.body_centres[part]) @ rows[3:]
     return rows, inertia
 
@@ -170,6 +175,7 @@ def _hung(matrices: CarMatrices, rows: Vector, part: str) -> Vector:
     system = matrices.system
     body = np.any(matrices.body_rows["body"] != 0.0, axis=0)
     body[matrices.modal] = True
+    # Coordinates that share a spring or a joint, the body left out: what is reached from the part hangs on it.
     coupled = (system.stiffness != 0.0) | (system.constraints.T != 0.0) @ (system.constraints != 0.0)
     coupled[body], coupled[:, body] = False, False
     member = np.any(rows != 0.0, axis=0) & ~body
@@ -192,7 +198,9 @@ def _mount_stiffness(system: LinearSystem, rows: Vector, hung: Vector) -> Vector
     """Return the stiffness of a part over its motions, of what hangs on it by static condensation; (6, 6)."""
     over_part = rows @ hung
     still = scipy.linalg.null_space(over_part)
+    # Coordinates: six motions of the part in the smallest way, then motions that leave the part at rest.
     whole = np.hstack([np.linalg.pinv(over_part), still])
     stiffness = whole.T @ hung.T @ system.stiffness @ hung @ whole
     coupling, condensed = stiffness[:6, 6:], stiffness[6:, 6:]
+    # Static condensation: K_aa - K_ab K_bb^-1 K_ba.
     return np.asarray(stiffness[:6, :6] - coupling @ np.linalg.pinv(condensed) @ coupling.T)

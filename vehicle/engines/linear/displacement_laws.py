@@ -81,6 +81,7 @@ class DisplacementLaw:
 
     def force(self, position: npt.ArrayLike) -> Vector:
         """Return g(x) [N]; x in m."""
+        # sign(p) (x - p); copysign distinguishes 0.0 and -0.0.
         distance = np.copysign(1.0, self.breakpoints) * (np.asarray(position)[..., None] - self.breakpoints)
         return np.asarray(np.maximum(distance, 0.0) @ self.changes)
 
@@ -91,12 +92,14 @@ class DisplacementLaw:
         for side in (True, False):
             on_side = np.signbit(self.breakpoints) == side
             outwards = np.argsort(np.abs(self.breakpoints[on_side]), kind="stable")
+            # Outwards from rest the slope grows by a_j at each breakpoint; below rest the terms fall with x.
             extremes += np.cumsum((-1.0 if side else 1.0) * self.changes[on_side][outwards]).tolist()
         return min(extremes), max(extremes)
 
     @property
     def stiffness_increase(self) -> float:
         """Slope of the steepest segment less that of the segment at rest [N/m], the softer of two at a breakpoint."""
+        # At rest on a breakpoint, the car is in two segments; the step uses the tangent between both.
         at_rest = self.changes * (self.breakpoints == 0.0)
         below = np.signbit(self.breakpoints)
         return self.slopes[1] - min(0.0, float(np.sum(at_rest[~below])), -float(np.sum(at_rest[below])))
@@ -180,11 +183,10 @@ def _rubber_laws(rows: Rows, jacobian: Vector) -> list[DisplacementLaw]:
 
 
 def _about_rest(breakpoints: Vector, changes: Vector) -> tuple[Vector, Vector]:
-    """Return breakpoints and slope changes of g; a breakpoint at rest is one on either side.
-
-    There the tangent is a central difference over `DIFFERENCE_STEP`, between the slopes of both segments.
-    """
+    """Return breakpoints and slope changes of g; a breakpoint at rest is one on either side."""
     near = np.abs(breakpoints) < DIFFERENCE_STEP
+    # For slopes s1, s2 that meet at b, the central difference over +-h is k = (s1 (h + b) + s2 (h - b))/2h. Above rest
+    # s2 exceeds it by (s2 - s1) (b + h)/2h, below s1 falls short by (s2 - s1) (h - b)/2h.
     share = 0.5 * (breakpoints[near] / DIFFERENCE_STEP + 1.0)
     return (
         np.concatenate([breakpoints[~near], np.zeros(len(share)), np.full(len(share), -0.0)]),

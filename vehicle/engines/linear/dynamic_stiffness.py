@@ -50,10 +50,12 @@ def steady_motion(
     mass, damping, stiffness = (basis.T @ s_line @ basis for s_line in (system.mass, system.damping, system.stiffness))
     drag, push = system.input_damping @ share, system.input_stiffness @ share
     effects = system.effects @ basis
+    # K2 s tau/(1 + s tau), the force of a branch by its strain; (m, b).
     branches = system.branch_stiffness * s[:, None] * system.branch_time / (1.0 + s[:, None] * system.branch_time)
     drifts = np.zeros_like(system.branch_rows) if system.branch_drifts is None else system.branch_drifts
     motion, forces = np.empty((system.size, len(s)), dtype=complex), np.empty((len(drifts), len(s)), dtype=complex)
     for index, (s_line, branch) in enumerate(zip(s, branches, strict=True)):
+        # Strain e + g/s: a branch that drifts.
         rows = branch[:, None] * (system.branch_rows + drifts / s_line)
         dynamic = s_line**2 * mass + s_line * damping + stiffness + effects.T @ (rows @ basis)
         motion[:, index] = basis @ np.linalg.solve(dynamic, basis.T @ (s_line * drag + push))
@@ -88,6 +90,7 @@ def _friction(
     """
     if not (stuck and len(system.slide_rows)):
         return np.zeros((len(system.slide_rows), len(s)), dtype=complex)
+    # M u'' + C u' + K u + H' f_b - forces is what joints and locked pairs give.
     inertia = system.mass @ (s**2 * motion) + system.damping @ (s * motion) + system.stiffness @ motion
     locked_rows = np.vstack([system.constraints, system.slide_rows]).T
     missing = inertia + system.effects.T @ branch - driving

@@ -28,11 +28,13 @@ class Equations:
 
     def __init__(self, car: CarModel, matrices: CarMatrices) -> None:
         self.model, self.basis, self.slope = copy.copy(car.model), free_basis(matrices.system), matrices.slope
+        # D J a of the rows vanishes with the step: f = f0.
         self.model.opt.timestep = SHORT
         self.rows = Rows(self.model, car.static.preload)
         # What laws over displacement and lifting tyres exceed their tangents by are forces of the linear motion, which
         # act along the displaced elements like preloads; those on a coordinate of their own have no second order.
         layout = self.rows.layout
+        # Without tables, lift-off and rubber friction every law is its tangent.
         tables = layout.tables._replace(kinds=layout.tables.kinds[:0])
         bushings = layout.bushings._replace(one_sided=layout.bushings.one_sided[:0])
         rubber = layout.rubber
@@ -61,6 +63,7 @@ class Equations:
         model, layout = self.model, self.rows.layout
         self.start, self.level = self.data.qpos.copy(), self.data.mocap_pos[:, 2].copy()
         self.joints, self.present = layout.joints.ravel(), layout.bushings.branch_stiffness > 0.0
+        # First of the three rotations of each free or ball joint.
         kinds = {mujoco.mjtJoint.mjJNT_FREE: 3, mujoco.mjtJoint.mjJNT_BALL: 0}
         first = [int(model.jnt_dofadr[k]) + kinds[t] for k, t in enumerate(model.jnt_type.tolist()) if t in kinds]
         self.turning = np.array(first)[:, None] + np.arange(3)
@@ -74,8 +77,7 @@ class Equations:
         """Return forces, gaps, branch rates, positions, tyre deflections, displacements of laws; (rows, motions).
 
         Args:
-            motions: u, u', u'', f_b, z, z', V tan(beta), forces of laws, l; (..., motions) each. On slopes the static
-                loads act at the displaced wheels: their change is in the reduced engine already.
+            motions: u, u', u'', f_b, z, z', V tan(beta), forces of laws, l; (..., motions) each.
         """
         u, v, a, branch, height, rate, slope, laws, joints = (part.T.copy() for part in motions)
         x, y, z = (u[:, self.turning[:, axis]] for axis in range(3))
@@ -85,6 +87,7 @@ class Equations:
             vector[:, self.turning] -= 0.5 * np.stack([y * r - z * q, z * p - x * r, x * q - y * p], axis=2)
         model, data, state, size = self.model, self.data, self.rows.state, len(u)
         position, level = np.tile(self.start, (size, 1)), self.level + height
+        # From lists of existing branches and joints to arrays over all elements and rows.
         branches = np.zeros((size, *self.present.shape))
         branches[:, self.present] = branch
         pulls = np.zeros((size, self.rows.layout.row_count))
@@ -97,6 +100,7 @@ class Equations:
         changes, rolling = np.zeros(slope.shape), self.rows.layout.rolling
         static = self.preload[self.rows.layout.bushings.rows[rolling.tyres, 2]]
         preload, preloads = self.rows.weights.preload, np.tile(self.preload, (size, 1))
+        # Forces g of laws act along their elements like preloads, with the opposite sign.
         np.subtract.at(preloads.T, self.law_rows, laws.T[self.laws])
         # Views of MuJoCo's arrays: to ask for one takes as long as to fill it.
         qpos, qvel, mocap, sites, matrices = data.qpos, data.qvel, data.mocap_pos, data.site_xpos, data.xmat
@@ -104,8 +108,10 @@ class Equations:
         passive, bias, applied, tyres = data.qfrc_passive, data.qfrc_bias, data.qfrc_applied, self.rows.layout.tyres
         data.time = 0.0
         for k in range(size):
+            # Position at u from the design position, rotations by their vectors.
             mujoco.mj_integratePos(model, position[k], u[k], 1.0)
             qpos[:], qvel[:], mocap[:, 2] = position[k], v[k], level[k]
+            # -1: no step before this, so that no branch or friction element advances.
             state.plate_velocity[:, 2], state.last_time[0] = rate[k], -1.0
             state.branch_past[:] = state.branch_force[:] = branches[k]
             state.slope_velocity[:], preload[:] = slope[k], preloads[k]
@@ -115,6 +121,7 @@ class Equations:
             state.turning[:, :3] = spatial[rolling.hubs, :3]
             self.rows(model, data)
             gaps[k] = data.efc_pos[self.joints]
+            # R = M u'' + bias - passive - applied - J' l.
             mujoco.mj_mulJacTVec(model, data, pull[k], pulls[k])
             mujoco.mj_mulM(model, data, force[k], a[k])
             force[k] += bias
@@ -130,11 +137,14 @@ class Equations:
         points = points[:, self.sites]
         if self.flexible:
             turn = turns[:, modes.body].reshape(size, 1, 3, 3)
+            # x + R Phi q at points of the flexible body.
             points[:, self.flexible] += (
                 turn @ (self.shapes @ position[:, modes.positions].T).transpose(2, 0, 1)[..., None]
             )[..., 0]
         if self.slope.size:
+            # Takes the change of the loads on slopes out of R again: the linear motion contains it.
             force += (changes * slope) @ self.slope.T
         force = (force - pull) @ self.basis
+        # The displacement of a spring is the distance of its ends; lower and upper ends alternate.
         strains[:, self.springs[0]] = np.linalg.norm(ends[:, 1::2] - ends[:, ::2], axis=2)[:, self.springs[1]]
         return np.hstack([force, gaps, rates[:, self.present], points.reshape(size, -1), deflections, strains]).T

@@ -68,6 +68,7 @@ class FirstOrder:
         """Return the displacements of all coordinates (n, p) in eigenvectors (s, p) with poles (p,) [rad/s]."""
         displacements = self.shape(vectors)
         if self.system.cyclic:
+            # A cyclic coordinate has its velocity as a state: u = u'/s.
             displacements = displacements + self.basis[:, self.placed :] @ (
                 vectors[self.velocities][self.placed :] / poles
             )
@@ -91,6 +92,7 @@ def free_basis(system: LinearSystem, *, stuck: bool = False) -> Vector:
         cyclic, others = list(system.cyclic), np.setdiff1d(np.arange(system.size), system.cyclic)
         others_basis = _null_space(rows[:, others])
         basis = np.zeros((system.size, others_basis.shape[1] + len(cyclic)))
+        # Block diagonal: the motions of the other coordinates, then a unit motion of each cyclic one.
         basis[others, : others_basis.shape[1]] = others_basis
         basis[cyclic, others_basis.shape[1] + np.arange(len(cyclic))] = 1.0
         return basis
@@ -125,6 +127,7 @@ def first_order(system: LinearSystem, *, stuck: bool = False) -> FirstOrder:
     m, count = basis.shape[1], rows.shape[-2]
     position_count = m - len(system.cyclic)
     stack, w, p = mass.shape[:-2], len(system.inputs), slides.shape[-2]
+    # (N' M N) y'' = -K y - C y' - H' f_b + Bk z + Bc z' + l F + S' phi, each along N' and N, side by side.
     right = np.concatenate(
         [
             -(basis.T @ system.stiffness @ basis)[..., :position_count],
@@ -142,6 +145,7 @@ def first_order(system: LinearSystem, *, stuck: bool = False) -> FirstOrder:
     accelerations, push, drag, load, grip = np.split(np.linalg.solve(mass, right), splits, axis=-1)
     v, f = slice(position_count, position_count + m), slice(position_count + m, size)
     state = np.zeros((*stack, size, size))
+    # y' = y' for all motions with a position, then the row of y'', then f_b' = K2 (e u' + g u) - f_b/tau.
     state[..., :position_count, v] = np.eye(position_count, m)
     state[..., v, :] = accelerations
     state[..., f, v] = system.branch_stiffness[..., None] * rows

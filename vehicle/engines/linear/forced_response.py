@@ -58,6 +58,7 @@ def without_bushing_friction(matrices: CarMatrices) -> CarMatrices:
 
 def force_amplitudes(matrices: CarMatrices) -> Complex:
     """Return the complex amplitudes Z of Re(Z exp(jWt)) of the applied forces, (forces, constant frequencies)."""
+    # a cos(Wt) + b sin(Wt) = Re((a - jb) exp(jWt)).
     constant = matrices.coefficients[:, : 2 * len(matrices.lines.frequencies)]
     return np.asarray(constant[:, ::2] - 1j * constant[:, 1::2])
 
@@ -90,9 +91,11 @@ def unit_response(
     result = np.zeros((len(forces), len(rows), len(frequencies)), dtype=complex)
     for column, frequency in enumerate(frequencies):
         s = 1j * frequency
+        # K2/(s + 1/tau) of (s e + g) u + v.
         transfer = (system.branch_stiffness / (s + 1.0 / system.branch_time))[:, None]
         whole = s * s * mass + s * damping + stiffness + effects.T @ (transfer * (s * strains + drifts))
         tyres = system.input_stiffness + s * matrices.level_damping
+        # Force of each input along the free motions: l, the run-out over the tyres, and the slip in the branches.
         pushed = basis.T @ (rows_of + tyres @ plate_heights) - effects.T @ (transfer * slips)
         result[:, :, column] = (s * s * (rows @ np.linalg.solve(whole, pushed))).T
     return result

@@ -88,15 +88,18 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
     widths = _widths(matrices)
     terms_of: dict[str, tuple[float, dict[str, Vector]]] = {}
     with_law = {int(row_indices[0]): index for index, row_indices in enumerate(bushings.rows)}
+    # (element, axis) to the number of its Maxwell branch.
     branches = np.cumsum(bushings.branch_stiffness.ravel() > 0.0).reshape(bushings.rows.shape) - 1
     tyres = {int(index): plate for plate, index in enumerate(rows.layout.tyres)}
     for name, row_indices, carrier in load_places.connections:
         frame = data.xmat[carrier].reshape(3, 3)
         if row_indices[0] not in with_law:
+            # An ideal joint: three rows of the least-norm solution.
             first = 3 * [int(joint[0]) for joint in rows.layout.joints].index(int(row_indices[0]))
             terms = {key: frame.T @ rows_[first : first + 3] for key, rows_ in joint_forces.items()}
             rotation = np.zeros((3, model.nv))
             mujoco.mj_jacBody(model, data, None, rotation, carrier)
+            # f - theta x p = f + [p]x theta.
             terms["displacement"] = terms["displacement"] + frame.T @ cross_matrix(preload[row_indices]) @ rotation
             static = frame.T @ preload[row_indices]
         else:
@@ -115,10 +118,12 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
             for axis in np.flatnonzero(bushings.branch_stiffness[index] > 0.0).tolist():
                 terms["branch"][axis, branches[index, axis]] = -1.0
             if index in tyres:
+                # r = J u - z: the plate adds k z + c z'.
                 terms["height"][2, tyres[index]] = bushings.stiffness[index, 2]
                 terms["height_rate"][2, tyres[index]] = bushings.damping[index, 2]
             static = preload[row_indices]
             if oblique_axes is not None:
+                # From the directions of the law to those of the carrier.
                 static, terms = oblique_axes.T @ static, {key: oblique_axes.T @ term for key, term in terms.items()}
         for axis, letter in enumerate("xyz"):
             # A hydromount has the forces of rubber and fluid.
@@ -132,6 +137,7 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
         rows.layout.rolling.tyres, rows.layout.rolling.plates, rows.layout.rolling.speeds, strict=True
     ):
         wheel, on_plate = system.inputs[plate], np.eye(len(system.inputs))[plate]
+        # F_0/V of (z' + e).
         along = on_plate * (preload[bushings.rows[tyre, 2]] / speed)
         static, slip = terms_of[f"tyre_{wheel}_force_x"]
         terms_of[f"tyre_{wheel}_slip_force_x"] = static, slip
@@ -153,11 +159,13 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
     coordinates = spring_coordinates(car, model)
     for (name, spring, damping, unstrained), (qpos_index, dof) in zip(load_places.joints, coordinates, strict=True):
         unit = np.eye(model.nv)[dof]
+        # The force of a joint spring counts from its unstrained position.
         strain = float(model.qpos0[qpos_index]) - unstrained
         terms_of[name] = -spring * strain, {"displacement": -spring * unit, "velocity": -damping * unit}
     body = int(load_places.bodies[0])
     for name, part, offset, _ in load_places.wheels:
         centre, part_motion, body_motion = data.xpos[part] + offset, np.zeros((3, model.nv)), np.zeros((3, model.nv))
+        # Travel: height of the wheel centre less that of the same point of the body.
         mujoco.mj_jac(model, data, part_motion, None, centre, part)
         mujoco.mj_jac(model, data, body_motion, None, centre, body)
         terms_of[name] = 0.0, {"displacement": (part_motion - body_motion)[2]}
@@ -181,6 +189,7 @@ def stop_rows(matrices: CarMatrices, dampers: Sequence[Damper]) -> LoadRows:
         if damper.stop is None:
             continue
         curve = Curve.through(damper.stop.displacement, damper.stop.force)
+        # F(0), and the tangent that K contains, by the same difference.
         below, force, above = curve.force(np.array([-DIFFERENCE_STEP, 0.0, DIFFERENCE_STEP]))
         names.append(f"{name}_stop_force")
         static.append(force)
@@ -221,6 +230,7 @@ def _widths(matrices: CarMatrices) -> dict[str, int]:
 def _joint_forces(matrices: CarMatrices) -> dict[str, Vector]:
     """Return the forces of the ideal joints in world axes as rows over the motion; (3 k, ...) each."""
     system = matrices.system
+    # Least-norm f of Jc' f = ..., see the module.
     split = np.linalg.pinv(system.constraints.T)
     return {
         "displacement": split @ system.stiffness,

@@ -22,6 +22,7 @@ def modal_a(system: LinearSystem, pole: complex, shape: Complex) -> complex:
     Source: Ewins, Modal Testing, 2nd ed., section 2.8; field "Modal A" of dataset 55 of the universal files.
     """
     time = system.branch_time
+    # d/ds of K2 tau (s e + g)/(1 + s tau) is K2 tau (e - tau g)/(1 + s tau)^2.
     rate = system.branch_stiffness * time / (1.0 + pole * time) ** 2
     motion, effect = system.branch_rows @ shape, system.effects @ shape
     if system.branch_drifts is not None:

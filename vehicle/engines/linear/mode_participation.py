@@ -150,6 +150,7 @@ def _modal_forces(
     dofs = np.arange(matrices.modal.start, matrices.modal.stop)
     joints = [int(car.model.dof_jntid[dof]) for dof in dofs]
     stiffness, damping = car.model.jnt_stiffness[joints].ravel(), np.ravel(car.model.dof_damping[dofs])
+    # Force that moves the modes as they move: (s^2 + 2 zeta w s + w^2) q.
     needed = (s**2 + np.outer(damping, s) + stiffness[:, None]) * u[dofs]
     stacked = np.stack(forces, axis=1) if forces else np.zeros((len(dofs), 0, len(s)), dtype=complex)
     names = [each.name for each in attachments]

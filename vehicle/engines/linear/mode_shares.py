@@ -55,6 +55,7 @@ def mode_shares(
     poles, vectors = np.linalg.eig(form.state)
     inputs = np.linalg.solve(vectors, np.hstack([form.input, form.input_rate]).astype(complex))
     w = driven.shape[0]
+    # (b0 + s b1)/(s - p) is (b0 + p b1)/(s - p) + b1, and b1 moves no coordinate at once.
     residues = inputs[:, :w] + poles[:, None] * inputs[:, w:]
     return _shares(form, channel, lines, poles, vectors, residues @ driven, driven)
 
@@ -77,6 +78,7 @@ def forced_mode_shares(
     )
     tyres = system.input_stiffness + s * matrices.level_damping
     pushed = np.linalg.solve(form.basis.T @ system.mass @ form.basis, form.basis.T @ (rows + tyres @ runouts))
+    # x' = A x + f: velocities by forces, branches by slips.
     states = np.concatenate([np.zeros(form.placed), pushed, system.branch_stiffness * slips])
     poles, vectors = np.linalg.eig(form.state)
     return _shares(form, channel, np.array([s]), poles, vectors, np.linalg.solve(vectors, states)[:, None])
@@ -98,6 +100,7 @@ def _shares(
     if plates is not None:
         acceleration = acceleration + lines**2 * (direct @ plates)
     power = float(np.sum(np.abs(acceleration) ** 2)) or 1.0
+    # Re(a_k a*) over |a|^2, each summed over the lines.
     in_phase = (parts * np.conj(acceleration)).real.sum(axis=1) / power
     upper = np.flatnonzero(poles.imag > 0.0)
     # LAPACK returns the poles of a real matrix in pairs, the positive imaginary part first.

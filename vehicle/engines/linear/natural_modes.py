@@ -64,6 +64,7 @@ def natural_modes(form: FirstOrder) -> NaturalModes:
             "natural_modes: the model must be a single linear model; use damper='slip' or damper='stick'"
         )
     poles, vectors = np.linalg.eig(form.state)
+    # One pole of each conjugate pair; real poles oscillate in no mode, but may grow.
     selected = (poles.imag > 1e-6) | (grows(poles) & (poles.imag >= 0.0))
     order = [i for i in np.argsort(np.abs(poles), kind="stable") if selected[i]]
     motion = form.shapes(vectors[:, order], poles[order]).T.astype(complex)

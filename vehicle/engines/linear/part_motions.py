@@ -64,10 +64,12 @@ def _unit_rows(matrices: CarMatrices, bodies: list[str]) -> Vector:
         rows, body_inertia = matrices.body_rows[body], matrices.body_masses[body][3:, 3:]
         arm = cross_matrix(position - centre)
         momentum += mass * rows[:3]
+        # L = J_b w + m r x v, and Steiner's J_b - m [r]x [r]x.
         angular_momentum += body_inertia @ rows[3:] + mass * arm @ rows[:3]
         inertia += body_inertia - mass * arm @ arm
     moments, axes = np.linalg.eigh(inertia)
     real = moments > _NO_INERTIA * moments[-1]
+    # J^-1/2 = U diag(w^-1/2) U' without the axes that have no inertia.
     root = (axes[:, real] / np.sqrt(moments[real])) @ axes[:, real].T
     return np.vstack([momentum / np.sqrt(total), root @ angular_momentum])
 

@@ -95,6 +95,8 @@ def _partial_fractions(omega: Vector, poles: Complex, residues: Complex) -> Comp
         block = flat_poles[start : start + count]
         a, q, f = frequency_buffer[: len(block)], scale_buffer[: len(block)], fractions[: len(block)]
         decay_rate = -block.real[..., None]
+        # With p = -d + jb: 1/(jw - p) = (d + j (b - w))/(d^2 + (b - w)^2); d, b - w and the denominator are
+        # `decay_rate`, a, q.
         np.subtract(block.imag[..., None], omega, out=a)
         np.multiply(a, a, out=q)
         q += decay_rate * decay_rate

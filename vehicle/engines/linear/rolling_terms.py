@@ -41,16 +41,19 @@ def rolling_terms(rows: Rows, preload: Vector, branch_rows: Vector) -> tuple[Vec
         mujoco.mj_jac(model, data, centre, rotation, data.site_xpos[site] + arm, int(hub))
     damping = np.zeros((model.nv, model.nv))
     for rotation, momentum in zip(rotations, -rolling.inertias * rolling.speeds / rolling.arms[:, 2], strict=True):
+        # -H t' [e_y]x t.
         damping -= momentum * rotation.T @ ACROSS @ rotation
     course = rolling.course_rows(model.nv)
     damping += course.T @ (rolling.hold[3:6, None] * course)
     slope = np.zeros((model.nv, len(e.tyres)))
+    # F_0/V along x at each wheel centre.
     slope[:, rolling.plates] = (
         centres[:, 0] * (preload[e.bushings.rows[rolling.tyres, 2]] / rolling.speeds)[:, None]
     ).T
     # The branches of the side slip; `branch_rows` has a row for each axis with a branch.
     numbers = np.cumsum(e.bushings.branch_stiffness > 0.0).reshape(-1, 3)[rolling.tyres, 1] - 1
     drifts, effects = np.zeros_like(branch_rows), branch_rows.copy()
+    # g = V t_z and h = e + trail t_z.
     drifts[numbers] = rolling.speeds[:, None] * rotations[:, 2]
     effects[numbers] += rolling.trails[:, None] * rotations[:, 2]
     return damping, slope, {"branch_drifts": drifts, "branch_effects": effects}

@@ -177,6 +177,7 @@ class _StepCheck:
         """Return the severity of the worst violation with softened elements; 0 without a violation."""
         system, less, row = self.matrices.system, 1.0 - LEFT, element.rows
         effects = system.effects.copy()
+        # A softer branch has a smaller force; K, C and joints follow below.
         effects[element.branches[element.branches >= 0]] *= LEFT
         softer = replace(
             system,
@@ -198,7 +199,9 @@ class _StepCheck:
             return []
         basis = self.forms[False].basis
         directions = law_rows(laws, self.matrices.system.size)
+        # Acceleration by a unit force along each law, N (N' M_h N)^-1 N' r'.
         mobility = basis @ np.linalg.solve(basis.T @ rows.mass @ basis, basis.T @ directions.T)  # (n, laws)
+        # w^2 = dk r M^-1 r'.
         frequencies = np.sqrt([law.stiffness_increase for law in laws] * np.sum(directions * mobility.T, axis=1))
         worst = int(np.argmax(frequencies))
         angle = float(frequencies[worst]) * step
@@ -219,6 +222,7 @@ class _StepCheck:
 
     def _shape(self, matrix: Vector, value: complex, form: FirstOrder) -> Complex:
         """Return the displacements of the eigenvector of an eigenvalue, by one step of inverse iteration."""
+        # (A - z)^-1 enlarges the eigenvector of z most; the shift keeps the matrix from being singular.
         shifted = matrix - value * (1.0 + 1e-10) * np.eye(len(matrix))
         start = np.random.default_rng(0).standard_normal(len(matrix))
         return form.shape(np.linalg.solve(shifted, start))
@@ -242,9 +246,11 @@ class _StepCheck:
         # Eigenvalues at z = 0 (states eliminated within one step) have no continuous counterpart.
         lasting = values[(values.imag >= 0.0) & (np.abs(values) > 1e-12)]
         exact, mapped = upper_poles.astype(complex), np.log(lasting.astype(complex)) / step
+        # Pairs of exact and mapped poles with the smallest sum of relative distances; (exact, mapped).
         distance = np.minimum(np.abs(exact[:, None] - mapped) / np.abs(exact)[:, None], 1e3)
         row, column = scipy.optimize.linear_sum_assignment(distance)
         decay_floor = MINIMUM_DAMPING * np.abs(exact[row])
+        # The peak of 1/(jw - s) is 1/|Re s|.
         error = np.abs(mapped[column] - exact[row]) / np.maximum(np.abs(exact[row].real), decay_floor)
         error[np.abs(exact[row]) > HIGHEST_POLE] = 0.0
         worst = int(np.argmax(error))
@@ -266,13 +272,18 @@ class _StepCheck:
         """
         values, vectors = np.linalg.eig(one_step.matrix)
         form = self.forms[False]
+        # Without cyclic motions, whose velocities are the last.
         velocity = slice(form.placed, 2 * form.placed)
         output_rows = np.array([form.output(name)[0] for name in self.names])
         poles, shapes = self.poles, self.shapes
         # a(t) = sum_i r_i exp(s_i t); for the map, sum_i r_i z_i^n.
+        # After a step of the force x' = exp(A t) N: its velocity rows are accelerations. The map has (x+ - x)/h =
+        # A_h^n load/h.
         exact = _residues(output_rows @ shapes[velocity], np.linalg.solve(shapes, form.friction))
         stepped = _residues(output_rows @ vectors[velocity], np.linalg.solve(vectors, one_step.load) / step)
         faded, shrunk = poles - FADING, values * np.exp(-FADING * step)
+        # int exp((s_i + s_j*) t) exp(-2 t/T) dt = -1/(s_i + s_j* - 2/T); for the map the geometric series h/(1 - z_i
+        # z_j*).
         weight = -1.0 / (faded[:, None] + faded.conj())
         exact_norm = _norm(exact, weight)
         stepped_norm = _norm(stepped, step / (1.0 - shrunk[:, None] * shrunk.conj()))

@@ -82,9 +82,11 @@ def step_rows(
     weights[e.springs.rows] = weights_of_step.spring_impedance
     weights[list(softened)] *= share
     present = e.bushings.branch_stiffness > 0.0
+    # M_h = M + J' D J and the armatures of joints: the step solves M_h a = force.
     mass = matrices.system.mass + jacobian.T @ (weights[:, None] * jacobian) + np.diag(joint_weights(model))
     mass[matrices.dampers, matrices.dampers] += weights_of_step.damper_impedance
     if matrices.system.cyclic:
+        # Gyroscopic moments, the skew part (C - C')/2, act half a step later: u' + h a/2.
         mass += 0.25 * timestep * (matrices.system.damping - matrices.system.damping.T)
     return StepRows(
         timestep=timestep,
@@ -104,7 +106,9 @@ def step_map(rows: StepRows, form: FirstOrder) -> StepMap:
     drift = np.zeros_like(branch) if system.branch_drifts is None else system.branch_drifts @ basis
     effect, past_branch = system.effects @ basis, branch - 0.5 * h * drift
     e, beta = rows.decay, rows.average
+    # f2 of p = e F + g j v: the weights of F and of g j v, collected.
     force, rate = e + beta * ((e - 2.0) * e + 1.0), (1.0 + beta * (e - 1.0)) * rows.gain
+    # Columns over y, v, F and the damper forces.
     forces = np.hstack(
         [
             (-basis.T @ system.stiffness @ basis - effect.T @ (rate[:, None] * drift))[:, :position_count],
@@ -116,6 +120,7 @@ def step_map(rows: StepRows, form: FirstOrder) -> StepMap:
     acceleration = np.linalg.solve(basis.T @ rows.mass @ basis, forces)
     v, f, states = form.velocities, form.branches, form.branches.stop
     matrix = np.zeros((states, states + len(system.slide_rows)))
+    # v+ = v + h a, then y+ = y + h v+, then F+ = e F + g (j v + d (y - v h/2)) + s (j a + d (v + a h/2)).
     matrix[v] = h * acceleration
     matrix[v, v] += np.eye(size)
     matrix[:position_count] = h * matrix[v][:position_count]

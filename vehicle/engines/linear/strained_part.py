@@ -86,6 +86,7 @@ def strained_elements(car: CarModel, pole: complex, shape: Complex) -> list[Stra
         each = np.ones(len(np.atleast_2d(row)))
         element = Strained(
             path=path,
+            # The larger of the elastic and of the damping force at the pole, times the displacement.
             work=float(np.sum(np.abs(row @ shape) ** 2)) * max(stiffness + fast, speed * damping),
             rows=np.atleast_2d(row),
             stiffness=stiffness * each,
@@ -95,8 +96,10 @@ def strained_elements(car: CarModel, pole: complex, shape: Complex) -> list[Stra
         )
         elements[path] = elements[path] + element if path in elements else element
 
+    # (element, axis) in a flat array to the number of its Maxwell branch, -1 without.
     branches = np.where(b.branch_stiffness.ravel() > 0.0, np.cumsum(b.branch_stiffness.ravel() > 0.0) - 1, -1)
     friction = np.zeros_like(b.stiffness)
+    # Several elements of one axis add up.
     np.add.at(friction, (e.rubber.elements, e.rubber.axes), e.rubber.stiffness)
     for index, name in enumerate(rows.names):
         for axis, letter in enumerate(AXES):

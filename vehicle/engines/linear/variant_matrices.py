@@ -93,6 +93,7 @@ class VariantTerms:
             jacobians = np.zeros((len(bodies), 3, model.nv))
             for jacobian, body in zip(jacobians, bodies, strict=True):
                 mujoco.mj_jacBodyCom(model, data, jacobian, None, body)
+            # Heights: d(J_z)/du is the weight force per kg that turns with the parts.
             return jacobians[:, 2]
 
         return dict(zip(names, gravity * differences(self.rows, read), strict=True))
@@ -123,6 +124,7 @@ class VariantTerms:
         jacobian[rows.layout.bushings.rows[fluids.elements, 2], fluids.dofs] = fluids.factors
         turned = change.rotations(self.rest_state.turned)
         rest_state = AtRest(jacobian=to_new(jacobian), turned=turned, weight=weight)
+        # Operating points of the tables and preloads of this car.
         settled = settle(rows, rest_state, springs)
         tables = rows.layout.tables
         for index in np.flatnonzero(tables.kinds < 2).tolist():
@@ -130,6 +132,7 @@ class VariantTerms:
             if np.any(np.abs(curve_of(tables, index).knots - tables.at[index]) < BREAKPOINT_MARGIN):
                 return None
         preload, count = settled.preload, len(rest_state.jacobian)
+        # Unbalanced part of the static forces: weight - k u of joint springs + J' p + T' p.
         residual = (
             unsolved(rows.layout, rest_state.weight)
             - springs * settled.displacement
@@ -141,6 +144,7 @@ class VariantTerms:
         require_standing(vehicle, rows, static)
         system_of_laws, car_of_laws = law_matrices(rows, rest_state.jacobian, dampers, preload)
         reference = self.matrices.system
+        # Part of K that no term contains, terms of this car, and weight that rotates with new modes.
         stiffness = geometric + self._stiffness(rows, springs, preload, rest_state, change)
         stiffness += change.weight_stiffness(rest_state.weight)
         system = replace(
@@ -177,9 +181,11 @@ class VariantTerms:
     ) -> Vector:
         """Return the part of K that depends on laws and preloads; (n, n)."""
         e, j = rows.layout, rest_state.jacobian
+        # J' K_e J of bushings and springs.
         diagonal = np.zeros(e.row_count)
         diagonal[e.bushings.rows], diagonal[e.springs.rows] = e.bushings.stiffness, e.springs.stiffness
         stiffness: Vector = j.T @ (diagonal[:, None] * j)
+        # sum of p_i H_i; H_i are those of the modes of the reference car.
         preloaded = (self.by_preload @ preload).reshape(j.shape[1], -1)
         stiffness += preloaded if change.whole is None else change.whole.T @ preloaded @ change.whole
         rotations = rest_state.turned.reshape(-1, j.shape[1])
@@ -190,6 +196,7 @@ class VariantTerms:
             stiffness += course.T @ (e.rolling.hold[:3, None] * course)
         for index in np.flatnonzero(e.tables.kinds == 2).tolist():
             dof, curve = e.dampers.dofs[e.tables.elements[index]], curve_of(e.tables, index)
+            # The tangent of a stop by the central difference with which K of a built car is computed.
             end_forces = curve.force(np.array([-DIFFERENCE_STEP, DIFFERENCE_STEP]))
             stiffness[dof, dof] += (end_forces[1] - end_forces[0]) / (2.0 * DIFFERENCE_STEP)
         return stiffness
@@ -201,12 +208,15 @@ class VariantTerms:
 
         Rows and masses of the parts, M, generalised weight, and the geometric stiffness of the weight.
         """
+        # `geometric` begins as K of the reference car less its sum of terms: weight, and what does not depend on the
+        # car.
         masses, system = dict(self.matrices.body_masses), self.matrices.system
         mass, weight, geometric = system.mass, self.rest_state.weight, system.stiffness - self.sum
         gravity, body_rows = float(self.car.model.opt.gravity[2]), self.matrices.body_rows
         if change.shift.any():
             # Remove the trimmed body before its origin moves, and add it at the new origin.
             value, rows = masses["body"], body_rows["body"]
+            # M_b and m_b g J_z' of the body alone.
             mass, weight = mass - rows.T @ value @ rows, weight - gravity * value[0, 0] * rows[2]
             mass, geometric = change.displaced_matrix(mass), change.displaced_matrix(geometric)
             weight = change.displaced_rows(weight)
@@ -221,6 +231,7 @@ class VariantTerms:
                 tensor = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
                 new = np.asarray(scipy.linalg.block_diag(body_mass * np.eye(3), tensor))
                 added, masses[name] = new - masses[name], new
+                # J_b' (M_b - M_b0) J_b, and weight and geometric stiffness of the same difference.
                 mass = mass + rows.T @ added @ rows
                 weight = weight + gravity * added[0, 0] * rows[2]
                 geometric = geometric + added[0, 0] * change.displaced_matrix(self.weight_terms[name])
@@ -291,14 +302,17 @@ def _geometric_stiffness(rows: Rows) -> tuple[Vector, Any]:
     """Return the geometric stiffness of the weight, (n, n), and sparse H with K = H p row by row, (n n, preloads)."""
     model, e = rows.model, rows.layout
     straight = np.setdiff1d(np.arange(len(e.bushings.rows)), e.bushings.oblique)
+    # Oblique rows rotate with their carrier already; the others are in world axes and become R' J.
     bushing_rows, carriers = e.bushings.rows[straight], e.bushings.carriers[straight]
 
     def read(data: mujoco.MjData) -> Vector:
         """Return the generalised forces of the weight and of each unit preload, which rotates with its carrier."""
         forces = data.efc_J.reshape(e.row_count, model.nv).copy()
         forces[bushing_rows] = np.einsum("nki,nkj->nij", data.xmat[carriers].reshape(-1, 3, 3), forces[bushing_rows])
+        # Torque rows of each element in the axes of its carrier; (n, 3, coordinates).
         moments = np.einsum("nki,nkj->nij", rows.rotation(data)[1], rows.rotation_jacobian(data))
         return np.concatenate([-data.qfrc_bias[None], forces, moments.reshape(-1, model.nv)])
 
     weight, *preloads = -differences(rows, read)
+    # (preloads, n n) transposed: few entries of each H differ from zero.
     return weight, scipy.sparse.csr_array(np.reshape(preloads, (len(preloads), -1)).T)

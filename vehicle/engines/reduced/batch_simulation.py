@@ -113,6 +113,7 @@ def simulate_batch(
         models, dampers, interval / every, [wheels.index(wheel) for wheel in signal.wheels], channels
     )
     for car in {*range(len(models))} - {*factors}:
+        # In double precision one car at a time.
         run = simulate_reduced(
             models[car],
             signal,
@@ -130,6 +131,7 @@ def simulate_batch(
     groups = [
         cars[first : first + LANES]
         for cars in (list(equal) for _, equal in groupby(ordered_cars, lambda car: keys[car]))
+        # A vector has eight cars.
         for first in range(0, len(cars), LANES)
     ]
     for cars in groups:
@@ -149,6 +151,7 @@ def simulate_batch(
         every_name = [*channels, *(f"law_{index}" for index in range(len(laws)))]
         validities = group.fill(table[: len(every_name)], cars, every_name)
         for index, law in enumerate(laws):
+            # The recorded force of a damper contains that of its stop.
             name = f"{damper_names[law.element[1]]}_force" if law.element[0] == STOP else ""
             if name in channels:
                 table[channels.index(name), cars] += table[len(channels) + index, cars]
@@ -181,6 +184,7 @@ def _single_precision_factors(
         and np.min(np.abs(model.poles)) >= SLOWEST
     ]
     rolling, by_car = models[0].slope.shape[1] > 0, dict[int, CarFactors]()
+    # `groupby` joins neighbours only.
     suitable.sort(key=lambda car: _nonlinear_elements(models[car]))
     for _, equal in groupby(suitable, lambda car: _nonlinear_elements(models[car])):
         cars = list(equal)

@@ -41,12 +41,15 @@ def damper_nodes(damper: Damper, whole: bool = False) -> tuple[Table, float, Vec
         D v and F(0): x, half of the curve, friction over its limit; (nodes, 3).
     """
     curve, record = damper_curve(damper), pack(damper)
+    # The friction line (2/pi) L eps v reaches its limit L at v = pi/(2 eps).
     full = 0.5 * np.pi / damper.smoothing
     base_slope, end_segments = curve.least_slope, ((-BEYOND, curve.slopes[0]), (BEYOND, curve.slopes[-1]))
     # The curve of a controlled damper, and the line for a law by address, change in each step.
     changing = damper.controlled is not None or damper.function is not None
     ends = [end for end, slope in end_segments if slope > base_slope or changing or whole]
     nodes = np.unique(np.concatenate([curve.knots, ends, [-full, full]]))
+    # The poles contain D v, D the smallest slope, and the trim F(0). Halved: the force is the mean of both ends of a
+    # step.
     excess_force = curve.force(nodes) - curve.force(0.0) - base_slope * nodes
     if damper.friction_law == "presliding":
         # Jenkins elements have the friction; no velocity counts as stuck.
@@ -94,17 +97,20 @@ class CarTable:
         whole: bool = False,
     ) -> None:
         self.element, lanes = element, aligned_table(1, element).shape[1]
+        # Single precision: a column is a car. Double precision: column k of four has the poles k, k + 4, ... of the
+        # one car.
         split = lanes if element == DOUBLE else 1
-        # Car of each column, and its part of the poles.
         self.lanes = [(min(lane, len(cars) - 1) if split == 1 else 0, slice(lane % split, None, split))
                       for lane in range(lanes)]  # fmt: skip
         self.cars = cars
         laws = [law for car in cars for law in car.laws]
-        # The elements of rubber friction are distributed over the parts of a car, too.
+        # The largest car of the group decides all sizes; -(-a // b) rounds a/b up. Poles and elements of rubber
+        # friction are distributed over the parts of a car.
         layers = -(-max((law.elements.shape[1] for law in laws), default=0) // split)
         pairs, reals = (-(-max(getattr(car, name) for car in cars) // split) for name in ("pairs", "reals"))
         # Real poles begin a block, so that the sums of a car do not depend on the poles of others.
         pairs = BLOCK // 2 * -(-2 * pairs // BLOCK)
+        # Record, velocity of full friction and nodes of each damper of each car; the damper with most nodes decides.
         damper_data = [[damper_nodes(damper, whole) for damper in data_of_car] for data_of_car in dampers]
         node_counts = np.max([[len(nodes) for _, _, nodes in data_of_car] for data_of_car in damper_data], axis=0)
         node_count, self.pieces = int(np.max(node_counts, initial=1)), np.asarray(node_counts - 1, dtype=np.int64)
@@ -124,12 +130,16 @@ class CarTable:
             layers=layers,
         )
         d, m, g, curves, rubbers = counts.dampers, counts.plates, len(cars[0].strokes), counts.curves, counts.rubbers
+        # Terms of an output: states of the poles, mean forces and slopes of the dampers (2 d), scalar forces (g), z'
+        # and z (2 m).
         self.dampers, self.pairs, self.plates, self.states = d, pairs, m, 2 * pairs + reals + 2 * (d + m) + g
         self.inputs, self.sums = counts.inputs, d + g + counts.sensors
+        # Sections follow one another in the table: each begins where the last one ends.
         sizes = section_sizes(counts)
         section_ends = np.cumsum([0, *sizes.values()]).tolist()
         first_rows = dict(zip(sizes, section_ends, strict=False))
         blocks = -(-(2 * pairs + reals) // BLOCK)
+        # For each state E - 1, a factor for each input, and a weight in each sum.
         pole_rows = blocks * BLOCK * (1 + self.inputs + self.sums)
         self.table, self.poles = (aligned_table(rows, element) for rows in (section_ends[-1], pole_rows))
         self.initial = self.at_rest(start)
@@ -155,6 +165,7 @@ class CarTable:
                 "viscous": record["viscous_damping"][:, lane],
                 "full": np.array([full for _, full, _ in damper_data[car]]),
                 "direct": cars[car].weights_of(sensors[car])[:, cars[car].states :],
+                # At rest all poles are zero; what is left is k z + c z' of the tyres.
                 "sensors": sensors[car].height[:, columns] @ at_start[0]
                 + sensors[car].velocity[:, columns] @ at_start[1],
                 "rest": static[car] if static else np.zeros(0),
@@ -163,8 +174,11 @@ class CarTable:
                 "share": sliders.limit,
             }
             if curves:
+                # G: displacement at the end of a step by a unit of the mean force of the same law [m/N].
                 effect = np.diag(gain)[d + groups :]
                 tables, friction = cars[car].laws[: curves - rubbers], cars[car].laws[curves - rubbers :]
+                # Neighbouring elements stay in one column: a slider depends on those that move before it, `before` of
+                # vector.h.
                 rubber = _rubber(friction, effect[curves - rubbers :], split * layers)
                 values |= {name: rows.reshape(rubbers, split, layers)[:, part.start] for name, rows in rubber.items()}
                 values |= {
@@ -175,6 +189,7 @@ class CarTable:
                 }
             for name, array in values.items():
                 self.table[first_rows[name] :, lane][: array.size] = array.ravel()
+        # At rest every damper with a friction line sticks.
         for name in ("stuck", "stick"):
             self.table[first_rows[name] :][:d] = self.table[first_rows["full"] :][:d] > 0.0
         iterations = cars[0].iterations if element == DOUBLE else cars[0].single_iterations
@@ -183,6 +198,8 @@ class CarTable:
         varying = sizes["rest"] > 0
         every = [damper for data_of_car in dampers for damper in data_of_car]
         varying |= any(damper.friction_law not in CONSTANT or damper.friction_function for damper in every)
+        # One record for each car: eight columns in single precision, one of the four equal columns in double
+        # precision.
         self.laws = np.ascontiguousarray(record[:, : lanes // split] if varying else record[:0])
 
     def at_rest(self, start: Vector) -> Table:
@@ -192,9 +209,11 @@ class CarTable:
             start: (z, z') of the driven plates at the first instant; (2, m).
         """
         initial = aligned_table(self.states - self.plates, self.element)
+        # Rows: states of the poles, forces of the last step, which are zero at rest, and z'.
         initial[-self.plates :] = start[1][:, None]
         for lane, (car, part) in enumerate(self.lanes):
             pair_start, real_start = (states[part] for states in self.cars[car].start(*start))
+            # As reals, complex states alternate real and imaginary parts, as in a block of `poles.c`.
             initial[: 2 * len(pair_start), lane] = np.ascontiguousarray(pair_start).view(np.float64)
             initial[2 * self.pairs :, lane][: len(real_start)] = real_start
         return initial
@@ -209,6 +228,7 @@ class CarTable:
             Table (rows, columns), a column for each car; rows: (tiles, states and plates, TILE) in C order.
         """
         tile_count = -(-len(weights[0]) // TILE)
+        # First term after the states of the poles, see `states`.
         poles = self.states - 2 * (len(self.cars[0].slip) + self.plates) - len(self.cars[0].strokes)
         table = aligned_table(tile_count * self.states * TILE, self.element)
         view = table.reshape(tile_count, self.states, TILE, table.shape[1])
@@ -216,11 +236,13 @@ class CarTable:
             # Weights stay zero for poles that only other cars have.
             padded, p, states = np.zeros((tile_count * TILE, self.states)), self.cars[car].pairs, self.cars[car].states
             rows, count = padded[: len(weights[car])], len(weights[car])
+            # (outputs, pairs, real and imaginary part): a column takes whole pairs.
             pairs = weights[car][:, : 2 * p].reshape(count, p, 2)[:, part].reshape(count, 2 * len(range(p)[part]))
             reals = weights[car][:, 2 * p : states][:, part]
             rows[:, : pairs.shape[1]], rows[:, 2 * self.pairs :][:, : reals.shape[1]] = pairs, reals
             if part.start == 0:
                 rows[:, poles:] = weights[car][:, states:]
+            # (tiles, states, TILE): the core reads the weights of three outputs for a state at once.
             view[..., lane] = padded.reshape(tile_count, TILE, self.states).transpose(0, 2, 1)
         return table
 
@@ -234,10 +256,12 @@ def _packed_poles(rows: Sequence[Vector], pairs: int, blocks: int) -> Vector:
     pair, real, pair_sums, real_sums = rows
     p, q, n, w = len(pair), len(real), real.shape[1] - 1, real_sums.shape[1]
     factors, reals = np.zeros((blocks * BLOCK, 1 + n + w)), slice(2 * pairs, 2 * pairs + q)
+    # A row of a pair is (Re E-1, Im E-1, Re of n inputs, Im of n inputs): reshaped, each part is a separate row.
     factors[: 2 * p, 0] = pair[:, :2].ravel()
     factors[: 2 * p, 1 : 1 + n] = pair[:, 2:].reshape(2 * p, n)
     factors[: 2 * p, 1 + n :] = pair_sums.reshape(2 * p, w)
     factors[reals, : 1 + n], factors[reals, 1 + n :] = real, real_sums
+    # (blocks, 1 + n + w, BLOCK): for each factor, the values of the eight states of a block are contiguous.
     return factors.reshape(blocks, BLOCK, 1 + n + w).transpose(0, 2, 1).reshape(blocks, -1)
 
 
@@ -249,14 +273,17 @@ def _corners(laws: Sequence[DisplacementLaw], effects: Vector, count: int) -> Ve
     numbers = np.zeros((len(laws), count, 3))
     for row, law, effect in zip(numbers, laws, effects.tolist(), strict=True):
         filled = 0
+        # Outwards from rest on either side, so that the slope of a segment is the sum of the changes up to it.
         for side in (1.0, -1.0):
             chosen = np.flatnonzero(np.copysign(1.0, law.breakpoints) == side)
             chosen = chosen[np.argsort(np.abs(law.breakpoints[chosen]), kind="stable")]
             slopes = side * np.cumsum(law.changes[chosen])
             _require_rising(law, 1.0 + 0.5 * effect * slopes)
+            # A segment of slope k over x has the slope k/(1 + G k/2) over r = x + G g(x)/2.
             steepness = slopes / (1.0 + 0.5 * effect * slopes)
             part = row[filled : filled + len(chosen)]
             part[:, 0] = side
+            # The breakpoint over r, times the side: the core evaluates max(0, side r - this).
             part[:, 1] = side * (law.breakpoints[chosen] + 0.5 * effect * law.force(law.breakpoints[chosen]))
             part[:, 2] = side * np.diff(steepness, prepend=0.0)
             filled += len(chosen)
@@ -272,11 +299,14 @@ def _rubber(laws: Sequence[DisplacementLaw], effects: Vector, count: int) -> dic
     for row, (law, effect) in enumerate(zip(laws, effects.tolist(), strict=True)):
         stiffness, strokes = law.elements
         size = len(stiffness)
+        # S of `scalar_elements.h`: stiffness of the elements that slide before element i, and of all in the end.
         sliding = np.cumsum(np.append(0.0, stiffness))
         rising = 1.0 - 0.5 * effect * sliding
         _require_rising(law, rising)
         stiff[row, :size], stroke[row, :size], part[row, :size] = stiffness, strokes, rising[:-1]
+        # e_i = p_i x_i + G/2 (sum of k_j x_j before i).
         reach[row, :size] = rising[:-1] * strokes + 0.5 * effect * np.cumsum(np.append(0.0, (stiffness * strokes)[:-1]))
+        # w_i = S'/p' - S/p.
         weight[row, :size] = np.diff(sliding / rising)
     return {"stiff": stiff, "stroke": stroke, "part": part, "reach": reach, "weight": weight}
 

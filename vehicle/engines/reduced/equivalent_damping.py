@@ -57,10 +57,13 @@ def equivalent_laws(model: PoleModel, state: Complex, interval: float, samples: 
     outputs, count = model.law_outputs, len(model.laws)
     (real, imaginary), inputs = np.split(state[: 2 * len(model.poles), 1:], 2), state[2 * len(model.poles) :, 1:]
     wheels = outputs.height.shape[1]
+    # The spectrum of Re(row xi); the state contains separate spectra of Re xi and Im xi.
     x = outputs.poles.real @ real - outputs.poles.imag @ imaginary
     x += outputs.height @ inputs[:wheels] + outputs.velocity @ inputs[wheels : 2 * wheels]
     end = len(inputs) - model.applied.shape[1]
+    # The forces of the laws are the last inputs before the applied forces.
     force, result = inputs[end - count : end], np.zeros((2, count))
+    # Parseval: mean(g x)/mean(x^2) = sum Re(G X*)/sum |X|^2; the mean, line 0, is left out.
     for term, motion in zip(result, (x, s * x), strict=True):
         level = np.sum(np.abs(motion) ** 2, axis=1)
         np.divide(np.sum((force * motion.conj()).real, axis=1), level, out=term, where=level > 0.0)
@@ -84,7 +87,9 @@ def linearised_response(
     positions = model.outputs(channels).poles
     excess = (damping - model.matrices.viscous)[:, None]
     plate, rate, force = model.height[:, inputs], model.velocity[:, inputs], model.force
+    # T_vz: a plate acts by its displacement and by its velocity s z.
     slip = _transfer(model, model.slip, plate, s) + s * _transfer(model, model.slip, rate, s)
+    # I + T_vf (c - D) at each line; (m, d, d).
     coupling = np.eye(len(excess)) + np.moveaxis(_transfer(model, model.slip, force * excess.T, s), -1, 0)
     velocity = np.moveaxis(np.linalg.solve(coupling, np.moveaxis(slip, -1, 0)), 0, -1)
     direct = _transfer(model, positions, plate, s) + s * _transfer(model, positions, rate, s)
@@ -96,5 +101,6 @@ def linearised_response(
 def _transfer(model: PoleModel, rows: Complex, residues: Complex, s: Complex) -> Complex:
     """Return the FRFs of Re(rows xi) to inputs with residues (p, i) on the poles; (outputs, i, m)."""
     products = rows[:, None, :] * residues.T[None]
+    # Re(a xi) = (a xi + conj(a xi))/2: a stored pole and its conjugate; products: (outputs, inputs, poles).
     positive_part = 0.5 * products @ (1.0 / (s - model.poles[:, None]))
     return np.asarray(positive_part + 0.5 * products.conj() @ (1.0 / (s - model.poles.conj()[:, None])))

@@ -1,19 +1,9 @@
 """Inputs of a step that depend on the motion at its beginning: tyre loads on slopes, controlled dampers, own laws.
 
-A rolling tyre pushes its wheel centre along x by F_z tan(beta) (`vehicle/core/source/rolling.h`). The poles
-contain the effect of the static load F_0 on the slope z'/V, as a force b z' of the velocity of the plate. The current
-load and a slope that is not z'/V add
-
-    b (max(0, F_z) / F_0 - 1) V tan(beta) + b (V tan(beta) - z')
-
-as a force that is constant over a step: F_z is extrapolated to the middle of the step from the beginnings of this step
-and of the last one, of second order; z' in the first term is the mean over the step.
-
-The poles contain the softest setting of a controlled damper. The excess e = c - cmin acts on the mean velocity of a
-step, f = -e (v + v+)/2: second order, and dissipative at any step. This is the damper curve F_c = e v.
-
-Tyre loads and the velocities that controlled dampers measure are sums over the poles, like damper velocities. A control
-law has branches and a memory: it runs for one car, in double precision.
+The poles contain the static load of a rolling tyre on the slope z'/V, and the softest setting of a controlled damper.
+What the current load, another slope and another setting add is an input of the step; `vehicle/core/source/march.c` has
+the equations. Its sensors, tyre loads and the velocities that controlled dampers measure, are sums over the poles, like
+damper velocities.
 """
 
 from collections.abc import Mapping, Sequence
@@ -79,6 +69,7 @@ def sensor_outputs(
         rates = model.matrices.sensors @ (model.modal * model.poles)
     sides = model.matrices.sides
     if sides.dampers.size:
+        # u' of a pole is s u.
         forces = sides.displacement @ model.modal + sides.velocity @ (model.modal * model.poles)
         rates = np.concatenate([rates, forces + sides.branch @ model.branch])
     by_address = [index for index, damper in enumerate(dampers) if damper.function is not None]
@@ -90,6 +81,7 @@ def sensor_outputs(
         return velocities
     tyres, loads = list(columns), tyre_outputs(model)
     static = np.array([tyre_load[inputs[tyre]] for tyre in tyres])[:, None]
+    # F_z/F_0 - 1 is the dynamic load over the static one.
     return loads.part(tyres).changed(lambda rows: rows / static) + velocities
 
 
@@ -103,6 +95,7 @@ def sensor_laws(
     """
     inputs, matrices = model.matrices.system.inputs, model.matrices
     loads = [] if tyre_load is None else [(tyre, tyre_load[inputs[tyre]]) for tyre in columns]
+    # g acts on a load at once, F_z - g, and on velocities and displacements by the poles only.
     tyres = [[-1.0 / load if law.plate == tyre else 0.0 for law in model.laws] for tyre, load in loads]
     others = np.zeros((len(matrices.sensors), len(model.laws)))
     shape = (-1, len(model.laws))
@@ -129,6 +122,7 @@ def feedback_at_rest(
     numbers = [pack(damper.controlled) for damper in dampers if damper.controlled]
     settings = in_steps(np.reshape(numbers, (-1, NUMBERS)), timestep)
     memory = np.zeros((len(controlled), RING + 1 + int(np.max(settings["lag"], initial=0.0))))
+    # At rest a controlled damper is soft, and so are the settings that are still on their way.
     memory[:] = settings["softest"][:, None]
     by_address = [(index, damper.function) for index, damper in enumerate(dampers) if damper.function is not None]
     return Feedback(
@@ -139,6 +133,7 @@ def feedback_at_rest(
         memory=memory,
         own=np.array([index for index, _ in by_address], dtype=np.int64),
         own_laws=np.array([law_by_address(name).record(timestep) for _, name in by_address], dtype=RECORD),
+        # The whole law, and neither a coefficient nor a force of another program.
         outside=np.tile([1.0, 0.0, 0.0], (len(controlled), 1)),
         owners=owners,
         sides=sides,

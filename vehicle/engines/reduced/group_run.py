@@ -46,6 +46,7 @@ def time_steps(signal: Signal, record_rate: float, longest: float) -> tuple[int,
         record_rate: rate of the samples [Hz].
         longest: maximum time step [s].
     """
+    # The small terms are for a duration or step that is a whole multiple except for round-off.
     interval = 1.0 / record_rate
     return int(np.floor(signal.duration / interval + 1e-6)) + 1, int(np.ceil(interval / longest - 1e-9))
 
@@ -123,6 +124,7 @@ class GroupRun:
         lines = models[0].matrices.lines
         lines.require_length(signal.duration)
         self.inputs = InputSamples(self.plates, lines, self.timestep) if len(lines) else self.plates
+        # A row has (z, z', slope excess) of each plate; the first two are the start.
         start = self.inputs[0:1].reshape(-1, 3).T[:2]
         self.start, loads_of_tyres = start, tyre_load if present_load else [None] * len(models)
         self.cars, self.feedback = packed_cars(models, factors, dampers, loads_of_tyres, start, self.timestep, element)
@@ -143,6 +145,7 @@ class GroupRun:
         # friction, coefficients, then the forces of the laws over displacement.
         position_names = [name for name in channels if name in system.outputs]
         tyre_wheels = {f"tyre_{wheel}_force_z": wheel for wheel in system.inputs}
+        # First rows, each rounded up to whole tiles of three outputs.
         levels = TILE * -(-len(position_names) // TILE)
         watched = TILE * -(-len(tyre_wheels) // TILE)
         speeds = levels + watched + TILE * -(-len(load_names) // TILE)
@@ -163,6 +166,7 @@ class GroupRun:
             elif self.loads is not None and name in load_names:
                 static_values[row] = self.loads.static[load_names.index(name)]
             elif speeds + count <= rows.get(name, 0) < speeds + 2 * count:
+                # The tables count forces from rest: the output adds the static force of the law.
                 static_values[row, : len(self.models)] = [
                     damper_nodes(laws[rows[name] - speeds - count])[0]["rest_force"] for laws in self.dampers
                 ]
@@ -192,6 +196,8 @@ class GroupRun:
             "always": any(name in tyre_wheels or name in load_names for name in channels),
             "wanted": np.array([rows.get(name, -1) for name in channels], dtype=np.int64),
             "offset": static_values,
+            # Over differences d_k = y_k - y_(k-1) a sum of w_k y_k has the weights w_k + w_(k+1) + ... (Abel), because
+            # the w_k add up to zero: the large common part of the positions drops out before it costs digits.
             "weights": (np.cumsum(WEIGHTS[::-1])[None, ::-1][:, 1:] / self.interval**2).astype(self.element),
         }
         width = curves + len(laws)
@@ -207,7 +213,10 @@ class GroupRun:
             first_sample[curves:, lane] = excess
             for law, force in zip(laws, excess, strict=True):
                 if law.plate >= 0:
+                    # Its load is the linear one less g.
                     first_sample[levels + law.plate, lane] -= force
+        # An output of a damper is half of the step before and half of the step after; there is no step before the
+        # first sample.
         first_sample[speeds + 3 * count : curves] = 0.5 * self.feedback.settings["softest"][:, None]
         peaks = aligned_table(len(bodies) + 2 * watched, self.element)
         controls = [
@@ -236,6 +245,8 @@ class GroupRun:
         """Advance the cars block by block: fill the record March of the core, and call it, for each block."""
         cars, every, m = self.cars, self.every, self.cars.plates
         x = aligned_table((INNER_BLOCK + 1) * cars.states + BLOCK, self.element)
+        # In single precision, differences of the states of rolling cars would lose digits: the core keeps their
+        # changes.
         kept = self.element == SINGLE and self.models[0].slope.shape[1] > 0
         changes = aligned_table(((INNER_BLOCK + 1) * cars.rows["states"] + BLOCK) * kept, self.element)
         x[: len(cars.initial)] = cars.initial
@@ -243,14 +254,17 @@ class GroupRun:
         constant |= {"every": every, "x": x, "changes": changes, "y": y, "peaks": peaks, "out": table}
         constant |= {"cars": np.array(rows_of_cars, dtype=np.int64)}
         march = core().core_march_f if self.element == SINGLE else core().core_march_d
+        # The last accelerations need AHEAD samples after the end.
         sample, end = 1, table.shape[2] + AHEAD
         while sample < end:
             size, step = min(SAMPLES, end - sample), (sample - 1) * every
             plates = self.inputs[step : step + size * every + 1]
             rates = np.zeros((len(plates), 4 * m), dtype=self.element)
+            # Columns of the core: z', mean z' of the step that begins here, z, V tan(beta) - z'.
             rates[:, :m], rates[:, 2 * m : 3 * m], rates[:, 3 * m :] = plates[:, 1::3], plates[:, 0::3], plates[:, 2::3]
             rates[:-1, m : 2 * m] = np.diff(plates[:, 0::3], axis=0) / self.timestep
             displacements = plates[::every, 0::3]
+            # z of each sample, and its difference from the sample before.
             plate_z = np.hstack([displacements[1:], np.diff(displacements, axis=0)]).astype(self.element)
             block = {"rates": rates, "plate_z": plate_z, "first": sample, "step": step}
             record = checked("March", packed("March", constant | block), LANES if self.element == SINGLE else 1)
@@ -262,6 +276,7 @@ class GroupRun:
         car_peaks: Vector, model: PoleModel, bodies: Sequence[str], tyre_load: Mapping[str, float]
     ) -> Validity:
         """Return the validity of the motion of a car from its peaks; see `outputs.c` of the core for their order."""
+        # After the rotations a minimum and a maximum of each level alternate.
         rotations, low = car_peaks[: len(bodies)], car_peaks[len(bodies) :: 2]
         wheels = model.matrices.system.inputs
         return Validity(

@@ -71,10 +71,12 @@ def motion_rows(model: PoleModel) -> MotionRows:
 
     def over_state(poles: Complex, inputs: Vector | None = None) -> Vector:
         direct = np.zeros((len(poles), count)) if inputs is None else inputs
+        # Re(row xi) = Re row Re xi - Im row Im xi.
         return np.hstack([poles.real, -poles.imag, direct])
 
     displacement, rate = over_state(model.modal), model.modal * model.poles
     velocity, branch = over_state(rate), over_state(model.branch)
+    # u'' = Re(row s xi') with xi' = s xi + b X.
     acceleration = over_state(rate * model.poles, (rate @ effects).real)
     forces = np.hstack(
         [
@@ -86,12 +88,15 @@ def motion_rows(model: PoleModel) -> MotionRows:
             matrices.applied,
         ]
     )
+    # M u'' + C u' + K u + H' f_b - forces = Jc' l, the forces of the joints.
     needed = system.mass @ acceleration + system.damping @ velocity + system.stiffness @ displacement
     needed += system.effects.T @ branch
     needed[:, -count:] -= forces
+    # Rows that pick the inputs, which are the end of the state.
     inputs = np.eye(count, displacement.shape[1], displacement.shape[1] - count)
     height_rate, last = inputs[wheels : 2 * wheels], count - model.applied.shape[1]
     rolling = matrices.slope.size > 0
+    # No force depends on the angle of a rolling wheel.
     displacement[list(system.cyclic)] = 0.0
     return MotionRows(
         displacement=displacement,
@@ -102,6 +107,7 @@ def motion_rows(model: PoleModel) -> MotionRows:
         height_rate=height_rate,
         slope=height_rate + inputs[2 * wheels : 3 * wheels] if rolling else np.zeros_like(height_rate),
         laws=inputs[last - len(matrices.laws) : last],
+        # Of redundant joints the smallest forces that balance.
         joints=np.linalg.pinv(system.constraints.T) @ needed,
     )
 
@@ -121,6 +127,7 @@ def state_spectra(model: PoleModel, spectra: Complex, interval: float, samples: 
     wheels, lines = len(model.matrices.system.inputs), spectra.shape[1]
     s = 2j * np.pi * np.arange(lines) / (samples * interval)
     at = np.flatnonzero(s.imag <= 2.0 * np.pi * BAND)
+    # z' = s z follows from z.
     height, others = spectra[:wheels, at], spectra[wheels:, at]
     inputs, effects = np.vstack([height, s[at] * height, others]), input_effects(model)
     poles = model.poles[:, None]
@@ -144,12 +151,15 @@ def periodic_spectra(inputs: Vector, interval: float, every: int) -> tuple[Compl
         every: samples from one to the next of the result.
     """
     count, fall = inputs.shape[1], round(RETURN / interval)
+    # Rounded up; `fast_length` makes it a product of small primes.
     coarse = -(-(count + round(PAUSE / interval)) // every)
     period = fast_length(coarse)
     padded = np.tile(inputs[:, :1], period * every)
     padded[:, :count] = inputs
+    # A half cosine from the last value to the first: no jump, hence no high frequencies.
     way = 0.5 * (1.0 + np.cos(np.pi * np.arange(fall) / fall))
     padded[:, count : count + fall] += (inputs[:, -1:] - inputs[:, :1]) * way
+    # The lines up to the coarse Nyquist frequency alone: every `every`-th sample without aliasing.
     return np.fft.rfft(padded, axis=1)[:, : period // 2 + 1] / every, period
 
 
@@ -176,13 +186,16 @@ def continued(
     spectra = np.vstack([state[slow], state[poles + slow]])
 
     def present(sample: int) -> Complex:
+        # One sample of the inverse transform: (2 Re sum X_k e^(2 pi i k n/N) - X_0)/N.
         turned = spectra * np.exp(2j * np.pi * sample / samples * np.arange(spectra.shape[1]))
         real, imaginary = np.split((2.0 * np.sum(turned.real, axis=1) - turned[:, 0].real) / samples, 2)
         return np.asarray(real + 1j * imaginary)
 
+    # A difference of two solutions is free: it decays as exp(s t).
     lacking = -present(0) if start is None else start - present(0)
     decay = np.exp(model.poles[slow, None] * (interval * np.arange(samples)))
     end = present(count) + lacking * np.exp(model.poles[slow] * (interval * count))
+    # After the record it returns to its start, so that the sum stays periodic.
     way = 0.5 * (1.0 - np.cos(np.pi * np.arange(samples - count) / (samples - count)))
     decay[:, count:] += (1.0 - decay[:, count:]) * way
     difference = np.zeros((2 * poles, samples))

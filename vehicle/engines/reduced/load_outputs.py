@@ -24,6 +24,7 @@ def load_outputs(model: PoleModel, loads: LoadRows) -> Outputs:
         + loads.velocity @ rate
         + loads.acceleration @ (rate * model.poles)
         + loads.branch @ model.branch,
+        # u'' contains b_z z and b_c z' of xi'.
         height=loads.height + (loads.acceleration @ (rate @ model.height)).real,
         velocity=loads.height_rate + (loads.acceleration @ (rate @ model.velocity)).real,
     )
@@ -37,6 +38,7 @@ def direct_forces(model: PoleModel, loads: LoadRows) -> Vector:
 def direct_laws(model: PoleModel, loads: LoadRows) -> Vector:
     """Return the rows of loads over the forces g of the laws over displacement at the same instant; (loads, laws)."""
     rate = model.modal * model.poles
+    # The law adds the force -g.
     return np.asarray(loads.law - (loads.acceleration @ (rate @ model.scalar_force[:, model.groups :])).real)
 
 

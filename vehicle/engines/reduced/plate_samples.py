@@ -38,18 +38,22 @@ class LongPlateSamples:
         begin, end = float(at[0]) if at.size else last, last if after.size else float(at[-1])
         columns = []
         # Middles of the steps, with those before and after.
+        # One middle before the first step and one after the last, for the second difference.
         around = np.append(index, index[-1] + 1 + np.arange(2)) - 0.5
         middle = np.clip(self.step * around, 0.0, last)
         for wheel in signal.wheels:
             spline = signal.spline(wheel, begin, end)
             z, velocity, acceleration = (float(spline(last, order)) for order in range(3))
             displacement = np.append(spline(at), continued(z, velocity, acceleration, after))
+            # From the last sample on the plate goes on with constant acceleration, so that no jump enters the last
+            # second difference.
             columns.append(displacement - signal.displacement[wheel][0])
             columns.append(np.append(spline(at, 1), velocity + acceleration * after))
             excess = np.zeros(len(index))
             if signal.slope_velocity and len(index):
                 slope = signal.slope_spline(wheel, float(middle[0]), float(middle[-1]))
                 values = slope(middle) - spline(middle, 1)
+                # Delta2/24: see above.
                 excess = values[1:-1] - np.diff(values, 2) / 24.0
             columns.append(excess)
         return np.stack(columns, axis=1)
@@ -73,6 +77,7 @@ class InputSamples:
         time = self.step * (part.start + np.arange(len(plates)))
         columns = np.zeros((len(time), len(self.lines), 3))
         columns[:, :, 1], means = self.lines.sampled(time, self.step)
+        # The integral of h, whose difference over a step is h times the mean force: the mean "velocity" of this input.
         columns[1:, :, 0] = self.step * np.cumsum(means, axis=0)
         return np.hstack([plates, columns.reshape(len(time), 3 * len(self.lines))])
 

@@ -155,10 +155,13 @@ def pole_model(matrices: CarMatrices) -> PoleModel:
         mass = form.basis.T @ form.system.mass @ form.basis
         slope = matrices.slope.reshape(len(form.basis), -1)
         effects = np.hstack([slope, scalars.T, matrices.applied])
+        # A force along the row l changes the velocities of the free motions by (N' M N)^-1 N' l.
         further[form.velocities] = np.linalg.solve(mass, form.basis.T @ effects)
     if lines:
+        # The velocity of a tread strains the branch of its slip, without a force on a coordinate.
         further[form.branches, further.shape[1] - lines :] = matrices.slips
     inputs = np.hstack([form.input, form.input_rate, form.friction, further])
+    # x = V xi: b = V^-1 B are the residues, and the outputs are rows times V.
     poles, vectors = np.linalg.eig(form.state)
     selected = np.concatenate([np.flatnonzero(poles.imag > 0.0), np.flatnonzero(poles.imag == 0.0)])
     pairs = int(np.count_nonzero(poles.imag > 0.0))
@@ -166,11 +169,13 @@ def pole_model(matrices: CarMatrices) -> PoleModel:
     # A stored pole of a pair represents its conjugate too.
     weighted = vectors[:, selected] * np.where(np.arange(len(selected)) < pairs, 2.0, 1.0)
     modal = form.shapes(weighted, poles[selected])
+    # Ends of the columns of forces and of slopes; scalar forces and applied forces follow.
     forces, slopes = np.cumsum([2 * w + form.friction.shape[1], matrices.slope.shape[1]])
     # Displacements x = d + tau d' of the scalar elements, over the plates of their tyres.
     displacements, groups = scalars @ modal, len(scalars) - len(matrices.laws)
     rate_time = np.concatenate([np.zeros(groups), [law.rate_time for law in matrices.laws]])[:, None]
     plates = np.array([-1] * groups + [law.plate for law in matrices.laws], dtype=int)[:, None]
+    # -1 in the column of the plate of a tyre: the deflection is the wheel less the plate; (g, w).
     over = -1.0 * (plates == np.arange(w))
     return PoleModel(
         poles=poles[selected].astype(complex),
@@ -184,7 +189,10 @@ def pole_model(matrices: CarMatrices) -> PoleModel:
         slope=residues[:, forces:slopes],
         matrices=matrices,
         scalar_rows=Outputs(
-            poles=displacements + rate_time * displacements * poles[selected], height=over, velocity=rate_time * over
+            # d' of a pole is s d.
+            poles=displacements + rate_time * displacements * poles[selected],
+            height=over,
+            velocity=rate_time * over,
         ),
         scalar_force=residues[:, slopes : residues.shape[1] - lines],
         applied=residues[:, residues.shape[1] - lines :],

@@ -67,13 +67,16 @@ def quadratic_forms(car: CarModel, model: PoleModel) -> QuadraticForms:
     inertia = np.sqrt(np.diag(system.mass))[:, None] * rows.acceleration
     seen = [turns @ rows.displacement, turns @ rows.velocity, inertia, rows.branch, rows.joints]
     levels = [np.sqrt(np.sum((part @ sums) * part)) for part in seen]
+    # Each kind has the level 1, so that angles and forces count alike.
     seen = [part / max(level, 1e-30) for part, level in zip(seen, levels, strict=True)]
     usual, projection = _components(np.vstack(seen), sums)
     # Motion and forces of a pattern: those of the states that belong to its coordinate.
+    # Regression of the state on a coordinate, E(S c)/E(c^2): the motion that goes with it on average.
     of_patterns = sums @ projection.T / usual**2
     patterns = whole @ of_patterns
     bounds = np.cumsum([0, *(len(part) for part in rows)])
     # Coordinates in which each pattern has its largest size in an evaluation.
+    # At most its RMS: a pattern of forces that hardly moves would become far too large.
     size = AMPLITUDE / np.maximum(np.max(np.abs(patterns[: bounds[1]]), axis=0), 1e-30)
     size = np.minimum(size, usual)
     patterns = patterns * size
@@ -83,18 +86,22 @@ def quadratic_forms(car: CarModel, model: PoleModel) -> QuadraticForms:
         return equations.at(tuple(np.split(vectors, bounds[1:-1])))
 
     at_rest, ahead, back = at(0.0 * patterns[:, :1]), at(patterns), at(-patterns)
+    # R(w) = R(0) + odd + even: the even part is Q(w) to the third order, which is odd.
     odd, even = 0.5 * (ahead - back), 0.5 * (ahead + back) - at_rest
     forms = np.zeros((patterns.shape[1], patterns.shape[1], len(at_rest)), dtype=np.float32)
     for k in range(patterns.shape[1]):
+        # B_kk = Q(w_k), over the square of its size.
         forms[k, k], others = even[:, k] / size[k] ** 2, slice(k + 1, None)
         if k + 1 == patterns.shape[1]:
             break
         pairs = at(patterns[:, others] + patterns[:, [k]])
+        # (Q(w_j + w_k) - Q(w_j) - Q(w_k))/2, with the linear parts of both taken out of R(w_j + w_k).
         mixed = 0.5 * (pairs - at_rest - odd[:, others] - odd[:, [k]] - even[:, others] - even[:, [k]])
         forms[k, others] = (mixed / (size[k] * size[others])).T
         forms[others, k] = forms[k, others]
     points = tuple(f"{point}_acc_{axis}" for point in places_of(car.model) for axis in "xyz")
     parts = [part @ of_patterns for part in seen]
+    # Square of each kind over the coordinates: |part c|^2 = c' metric c.
     metrics = np.array([part.T @ part for part in parts])
     sizes = (
         equations.basis.shape[1],
@@ -114,8 +121,10 @@ def _components(rows: Vector, sums: Vector) -> tuple[Vector, Vector]:
     as many dimensions as there are states, with E(S S') = F F': F' rows' rows F = U diag(w) U', V = rows F U / sqrt(w).
     """
     levels = np.sqrt(np.maximum(np.diag(sums), 1e-300))
+    # E(S S') = F F' with F = root; scaled to equal diagonals first, since states have different units.
     shares, turn = np.linalg.eigh(sums / np.outer(levels, levels))
     root = levels[:, None] * turn * np.sqrt(np.maximum(shares, 0.0))
+    # V' rows S with V = rows F U / sqrt(w).
     seen = rows @ root
     squares, components = np.linalg.eigh(seen.T @ seen)
     # Below this they are rounding.
@@ -123,6 +132,7 @@ def _components(rows: Vector, sums: Vector) -> tuple[Vector, Vector]:
     usual, components = np.sqrt(squares[::-1][:count]), components[:, ::-1][:, :count]
     projection = (seen @ components / usual).T @ rows
     # A component has either sign.
+    # The largest entry decides, so that equal cars have equal patterns.
     largest = np.argmax(np.abs(projection), axis=1)
     return usual, projection * np.sign(projection[np.arange(len(projection)), largest])[:, None]
 
@@ -133,11 +143,14 @@ def _state_products(model: PoleModel) -> Vector:
     wheels, count = len(model.matrices.system.inputs), input_effects(model).shape[1]
     frequency = np.arange(PERIOD // 2 + 1) * RATE / PERIOD
     noise = np.fft.rfft(random.standard_normal((count - wheels, PERIOD)), axis=1)
+    # White velocity of the plates: the displacement falls with 1/w.
     noise[:wheels] /= 2.0 * np.pi * np.maximum(frequency, frequency[1])
     # Histories of applied forces have unit amplitude.
+    # Forces of dampers and laws fall with 1/f above 20 Hz.
     noise[wheels + model.slope.shape[1] : len(noise) - len(model.matrices.lines)] *= FORCE_LEVEL / (
         1.0 + frequency / 20.0
     )
     spectra = state_spectra(model, noise, 1.0 / RATE, PERIOD)[:, (frequency > 0.0) & (frequency <= BAND)]
     parts = np.hstack([spectra.real, spectra.imag])
+    # Parseval for a one-sided spectrum: mean(x y) = 2/N^2 sum Re(X Y*).
     return np.asarray(parts @ parts.T * (2.0 / PERIOD**2))

@@ -95,6 +95,7 @@ def simulate_reduced(
         errors, read = rms_errors_of(model, forms, dampers, signal, time, record, asked, tyre_load, seated)
     direct = np.hstack([direct_forces(model, loads), direct_laws(model, loads)]) if loads else np.zeros((0, 0))
     for load, row in zip(loads.names, direct, strict=True) if loads else ():
+        # The direct effect of the forces on u'' at the same instant, in addition to the part of the poles.
         for force, history in zip(row, table[len(names) :][: len(forces), 0], strict=True):
             table[names.index(load), 0] += force * history
     if loads and len(model.matrices.lines):
@@ -115,6 +116,7 @@ def simulate_reduced(
     }
     pulled, pulls = tuple[str, ...](), tuple[str, ...]()
     if all(history.size for history in tyre_forces.values()):
+        # With the tyre forces at every sample, pulling is judged by them and not by the checks every 16 samples.
         validity = replace(validity, loads={})
         pulled, pulls = pulling_tyres(tyre_forces, record_rate)
     if errors:

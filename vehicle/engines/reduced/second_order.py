@@ -76,21 +76,27 @@ class SecondOrder:
         self.model, self.forms, self.damping = model, forms, damping
         matrices, system = model.matrices, model.matrices.system
         basis = free_basis(system)
+        # Real parts above imaginary parts: a real matrix that multiplies complex spectra.
         effects = _force_effects(model, basis)
         self.effects = np.vstack([effects.real, effects.imag]).astype(np.float32)
+        # Least-norm solution of Jc u = -g: u2 is the sum of this motion of the gaps and a free motion of the joints.
         fit = -np.linalg.pinv(system.constraints)
         drifts = np.zeros_like(system.branch_rows) if system.branch_drifts is None else system.branch_drifts
+        # Forces of that motion along the free motions.
         inertia, drag, spring = (basis.T @ part @ fit for part in (system.mass, system.damping, system.stiffness))
         # Rows over gaps, their rates and second derivatives.
         self.gap_forces = np.hstack([spring, drag, inertia]).astype(np.float32)
+        # Rates of the branches by the gaps and by their velocities.
         self.gap_rates = np.hstack([drifts @ fit, system.branch_rows @ fit]).astype(np.float32)
         rows = np.array([system.outputs[channel][: system.size] for channel in forms.channels])
         rows = np.vstack([rows, matrices.tyre_rows, system.slide_rows])
         modal = rows @ model.modal
+        # Re(a xi) = (a xi + conj(a xi))/2.
         self.outputs = (0.5 * np.vstack([modal.real, modal.imag])).astype(np.float32)
         self.shifts = (rows @ fit).astype(np.float32)
         # Nonlinear elements: displacements over the poles and over the gaps, and effects of their forces.
         elements = np.vstack([system.slide_rows, law_rows(model.laws, system.size)])
+        # Half of a pole and half of its conjugate, likewise.
         self.strains = (0.5 * model.element_outputs.poles).astype(np.complex64)
         self.strain_shifts = (elements @ fit).astype(np.float32)
         self.element_forces = model.element_forces.astype(np.complex64)
@@ -111,26 +117,32 @@ class SecondOrder:
         samples = coordinates.shape[1]
         spectra = np.asarray(np.fft.rfft(_products(self.forms, coordinates), axis=1), dtype=np.complex64)
         frequency = np.arange(spectra.shape[1]) / (samples * interval)
+        # Without the mean: accelerations have none, and forces count from theirs.
         at = np.flatnonzero((frequency > 0.0) & (frequency <= HIGHEST))
         s = (2j * np.pi * frequency[at]).astype(np.complex64)
         force, gaps, rates, points, tyres, strains = np.split(spectra[:, at], np.cumsum(self.forms.sizes)[:-1])
         gap_rates = s * gaps
+        # -R_2 less what the motion of the gaps takes: M, C, K on its second and first derivative and on itself.
         load = -force - _times(self.gap_forces, np.vstack([gaps, gap_rates, s * gap_rates]))
         rates = rates + _times(self.gap_rates, np.vstack([gaps, gap_rates]))
         # xi and the conjugate of its spectrum at -s.
         poles, at_s = self.model.poles[:, None], 2j * np.pi * frequency[at]
         ahead, back = ((1.0 / (at_s - pole)).astype(np.complex64) for pole in (poles, poles.conj()))
+        # xi = b F/(s - p), and for the conjugate pole with the conjugate residue.
         real, imaginary = np.vsplit(_times(self.effects, np.vstack([load, rates])), 2)
         xi, mirrored = (real + 1j * imaginary) * ahead, (real - 1j * imaginary) * back
         shift = _times(self.shifts, gaps)
         drag, forces = self._element_forces(laws, s, ahead, back, xi, mirrored, gaps, strains)
+        # The nonlinear elements resist the second order.
         xi -= (forces @ drag) * ahead
         mirrored -= (forces.conj() @ drag) * back
         modal, turned = np.vsplit(self.outputs, 2)
+        # (a xi + conj(a) xi*)/2 with a = m + i t is m (xi + xi*)/2 + i t (xi - xi*)/2, plus the motion of the gaps.
         moved = _times(modal, xi + mirrored) + 1j * _times(turned, xi - mirrored) + shift
         first, end = len(points), len(points) + len(tyres)
         matrices = self.model.matrices
         result = np.zeros((len(self.channels), spectra.shape[1]), dtype=np.complex64)
+        # Acceleration s^2 y; tyre force -(k + c s) d; damper force c s x.
         result[:first, at] = s * s * (moved[:first] + points)
         stiffness = matrices.tyre_stiffness[:, None] + matrices.tyre_damping[:, None] * s
         result[first:end, at] = -stiffness * (moved[first:end] + tyres)
@@ -160,19 +172,24 @@ class SecondOrder:
         count, tau = len(self.damping), np.array([law.rate_time for law in self.model.laws]).reshape(-1, 1)
         # Dynamic stiffness beyond that in the poles; an element without acts by its tangent.
         beyond = np.zeros((len(self.strains), len(s)), dtype=np.complex64)
+        # Dampers are s (c - D), laws k + s c.
         beyond[:count] = s * (self.damping - self.model.matrices.viscous)[:, None]
         if laws is not None:
             beyond[count:] = laws[0][:, None] + s * laws[1][:, None]
         strain = _times(self.strain_shifts, gaps)
+        # x = d + tau d'.
         strain[count:] = (1.0 + s * tau) * (strain[count:] + strains)
+        # Mobility of each element by the same force, times its dynamic stiffness: relative change of its strain.
         products = self.strains * self.element_forces.T
         change = np.abs((products @ ahead + products.conj() @ back) * beyond)
         acting = np.flatnonzero(np.max(change, axis=1, initial=0.0) > WEAK_ELEMENT)
         beyond, strain = beyond[acting], strain[acting]
         forces, rows, size = self.element_forces[:, acting], self.strains[acting], len(acting)
+        # Mobility of each element by the force of each other one; (e, e, m).
         pairs = (rows[:, None] * forces.T).reshape(size**2, len(xi))
         mobility = (pairs @ ahead + pairs.conj() @ back).reshape(size, size, len(s))
         strain = strain + rows @ xi + rows.conj() @ mirrored
+        # x = x_0 - Y Z x, so (1 + Y Z) x = x_0 at each line; (m, e, e).
         coupling = np.eye(size) + np.moveaxis(mobility * beyond, -1, 0)
         strain = np.linalg.solve(coupling, strain.T[:, :, None])[:, :, 0].T
         return np.asarray(beyond * strain, dtype=np.complex64), forces
@@ -212,11 +229,13 @@ def rms_errors_of(
     )
     second, channels = SecondOrder(model, forms, damping), {name: record[name] for name in names}
     interval = float(time[1] - time[0])
+    # Samples from one product to the next: at least RATE.
     every = max(int(1.0 / (interval * RATE)), 1)
     names = [name for name in second.channels if name in channels]
     if not names:
         return {}, frozenset()
     rows = [second.channels.index(name) for name in names]
+    # Parts of about WINDOW, of a whole number of these steps.
     parts = max(round(time.size * interval / WINDOW), 1)
     length = -(-time.size // (parts * every)) * every
     # Forces count from their mean, which the second order shifts; the static load is a thousand times a weak motion.
@@ -237,9 +256,12 @@ def rms_errors_of(
         projection = second.forms.projection
         lacking, end = continued(second.model, state, interval * every, samples, linear.shape[1], end)
         gains = equivalent_laws(model, state, interval * every, samples)
+        # Periodic motion, and what slow poles keep from the part before.
         coordinates = np.fft.irfft(projection @ state, samples, axis=1) + projection[:, : len(lacking)] @ lacking
         coordinates = _faded(coordinates, linear.shape[1], interval * every)
+        # y_1 + y_2.
         more = linear + second.response(coordinates, interval * every, gains)[rows, : linear.shape[1]]
+        # Sum and sum of squares of y_1, then of y_1 + y_2: forces count from their mean over all parts.
         sums += [np.sum(values**power, axis=1) for values in (linear, more) for power in (1, 2)]
         weighted += [
             [weighted_squares(point, values[axes], interval * every) for point, axes in points.items()]
@@ -275,20 +297,27 @@ def _products(forms: QuadraticForms, coordinates: Vector) -> npt.NDArray[np.floa
     if not np.any(levels > 1e-12):
         # At rest.
         return np.zeros((forms.forms.shape[2], coordinates.shape[1]), dtype=np.float32)
+    # Each kind of quantity (rotations, rates, inertia, ...) is divided by its level in this motion.
     metric = np.tensordot(np.where(levels > 1e-12, 1.0 / np.maximum(levels, 1e-30), 0.0), forms.metrics, 1)
+    # root = metric^1/2 and back = metric^-1/2; the floor keeps the inverse finite.
     usual, root = np.linalg.eigh(metric)
     usual = np.sqrt(np.maximum(usual, 1e-9 * usual[-1]))
     root, back = (root * usual) @ root.T, (root / usual) @ root.T
+    # In c' = metric^1/2 c the principal components of the motion; shares: their RMS over that of all.
     shares, turn = np.linalg.eigh(root @ covariance @ root)
     shares = np.sqrt(np.maximum(shares, 0.0) / np.sum(shares))
+    # Patterns with a product that counts: the strongest product of each is that with the strongest pattern, the last.
     kept = shares * shares[-1] > WEAK
+    # c = back turn c', c' = turn' root c.
     shares, turn, coordinates = shares[kept], back @ turn[:, kept], turn[:, kept].T @ root @ coordinates
     first, other = np.triu_indices(len(shares))
     strong = shares[first] * shares[other] > WEAK
     first, other = first[strong], other[strong]
     count, rows = len(usual), forms.forms.shape[2]
+    # B over the principal coordinates, turn' B turn, for the strong pairs alone; (pairs, rows).
     turned = turn.T.astype(np.float32) @ forms.forms.reshape(count, -1)
     turned = np.matmul(turn.T.astype(np.float32), turned.reshape(len(shares), count, rows))[first, other]
+    # B is symmetric: a pair j, k counts twice.
     turned[first != other] *= 2.0
     turned_coordinates = coordinates.astype(np.float32)
     return np.asarray(turned.T @ (turned_coordinates[first] * turned_coordinates[other]))
@@ -296,6 +325,7 @@ def _products(forms: QuadraticForms, coordinates: Vector) -> npt.NDArray[np.floa
 
 def _times(rows: npt.NDArray[np.float32], spectra: Complex) -> Complex:
     """Return the product of a real and a complex matrix."""
+    # Complex columns seen as pairs of real columns.
     flat = np.ascontiguousarray(spectra, dtype=np.complex64)
     return np.asarray((rows @ flat.view(np.float32)).view(np.complex64))
 
@@ -303,11 +333,15 @@ def _times(rows: npt.NDArray[np.float32], spectra: Complex) -> Complex:
 def _force_effects(model: PoleModel, basis: Vector) -> npt.NDArray[np.complex128]:
     """Return the effects of forces along the free motions and of rates of the branches on the poles; (p, m + b)."""
     system, poles = model.matrices.system, model.poles
+    # Eigenvectors V = (y, y', f_b) of all poles, from the displacements and branches of the stored poles.
     free, placed = basis.shape[1], basis.shape[1] - len(system.cyclic)
+    # The vector of a stored pole of a pair is doubled, because the conjugate is left out.
     halves = np.where(np.arange(len(poles)) < model.pairs, 2.0, 1.0)
     vectors = np.vstack([basis[:, :placed].T @ model.modal, basis.T @ (model.modal * poles), model.branch]) / halves
     vectors = np.hstack([vectors, vectors[:, : model.pairs].conj()])
     inputs = np.zeros((len(vectors), free + len(model.branch)))
+    # A force changes y' by (N' M N)^-1, a rate changes f_b by K2.
     inputs[placed : placed + free, :free] = np.linalg.inv(basis.T @ system.mass @ basis)
     inputs[placed + free :, free:] = np.diag(system.branch_stiffness)
+    # V^-1 B, the rows of the stored poles.
     return np.asarray(np.linalg.solve(vectors, inputs)[: len(poles)])

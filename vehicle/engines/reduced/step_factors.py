@@ -126,7 +126,9 @@ class CarFactors:
         (lowest, highest), gain = self.steepness, np.abs(self.gains[1])
         diagonal, stiff = np.diag(gain), np.isinf(highest)
         highest = np.where(stiff, 0.0, highest)
+        # With x + G F(x) = w a force of slope k over x has the slope k/(1 + G k) over w, also for k < 0.
         slope = np.maximum(highest / (1.0 + diagonal * highest), -lowest / (1.0 + diagonal * lowest))
+        # A vertical line, as of friction: the force changes by 1/G so that the displacement does not.
         effects = np.where(stiff, 1.0 / diagonal, slope)[:, None] * gain
         # A force that is zero at every velocity does not change.
         effects = np.where(stiff | (highest > 0.0) | (lowest < 0.0), effects, 0.0)
@@ -153,8 +155,10 @@ class CarFactors:
         steep part, so the iteration of the linear equations with the absolute values of the gains is a bound. Laws over
         displacement come first, then dampers: a law changes the force of a damper that sticks, but hardly the reverse.
         """
+        # Laws over displacement are the last rows and the first unknowns.
         order = np.roll(np.arange(len(self._effects)), len(self.laws))
         effects, count = self._effects[np.ix_(order, order)], 0
+        # Gauss-Seidel of (L + U) f = b: an error e becomes -L^-1 U e, with absolute values at most L^-1 |U| e.
         error, iteration = np.ones(len(effects)), np.linalg.solve(np.tril(effects), np.triu(effects, 1))
         while count < ITERATIONS[0] or (np.max(error, initial=0.0) > accuracy and count < ITERATIONS[1]):
             error, count = iteration @ error, count + 1
@@ -166,6 +170,7 @@ class CarFactors:
         Args:
             displacements, rates: z and z' of the driven plates at the first instant; (m,) each.
         """
+        # At rest xi = eta + direct (..., z', z) = 0.
         eta = -self.direct[self.integrated, -2 * len(rates) :] @ np.append(rates, displacements)
         return eta[: self.pairs], eta[self.pairs :].real
 
@@ -181,6 +186,7 @@ class CarFactors:
         """
         strokes = self.strokes.reshape(-1, self.slip.shape[1])
         sums, p = np.concatenate([self.slip, strokes, sensors])[:, self.integrated].T, self.pairs
+        # Re(a xi) = Re a Re xi - Im a Im xi: hence the sign of the imaginary weights.
         change, inputs = self.step[:p, :1], self.step[:p, 1:]
         pairs = np.hstack([change.real, change.imag, inputs.real, inputs.imag])
         return pairs, self.step[p:].real, np.stack([sums[:p].real, -sums[:p].imag], axis=1), sums[p:].real
@@ -192,6 +198,7 @@ class CarFactors:
             rows: rows over the poles; (k, n).
         """
         integrated_rows, p = rows[:, self.integrated].conj(), self.pairs
+        # Likewise: the conjugate has the weights (Re a, -Im a).
         pairs = np.ascontiguousarray(integrated_rows[:, :p]).view(np.float64)
         return np.hstack([pairs, integrated_rows[:, p:].real, (rows @ self.direct).real])
 
@@ -229,16 +236,23 @@ def car_factors(
     )
     residue, force, s = inputs[:, :m], inputs[:, m:], s[:, None]
     phi = phi_functions(np.asarray(s * h, dtype=np.complex128), 4 if exact else 3)
+    # M_j = int_0^h exp(s (h - t)) (t/h)^j dt = h j! phi_{j+1}(s h).
     m0, m1, m2, *cubic = (h * factorial(j) * moment for j, moment in enumerate(phi))
     decay, ahead = np.exp(s * h), residue * (3.0 * m2 - 2.0 * m1)
+    # Weights of the three quadratics over the step that have unit z' at its beginning, its end, and as its mean.
     plate, mean, extra = residue * (m0 - 4.0 * m1 + 3.0 * m2), residue * 6.0 * (m1 - m2), []
     if present_load:
         extra.append(slope * m0)
+    # Near-zero poles have b_z z in place of kappa: z' integrated over the step, a cubic.
     for m3 in cubic if np.any(held) else []:
         ahead = ahead + held * h * (m3 - m2)
         plate, mean = plate + held * h * (m1 - 2.0 * m2 + m3), mean + held * h * (3.0 * m2 - 2.0 * m3)
         extra.append(held * m0)
+    # y = eta + direct (f, slopes, g, z'), all at the end of a step, and eta+ = E y + plate z' + mean m: what a step
+    # knows at its beginning is in eta, and its end is added when the forces are solved.
     direct = np.hstack([force[:, :d] * m0, force[:, :d] * (m1 - 0.5 * m0), force[:, d:] * m0, ahead])
+    # eta+ = E (eta + direct ...) + ...: hence E times the direct terms. E - 1 instead of E, because the core adds
+    # changes.
     step = np.hstack([np.expm1(s * h), decay * direct[:, : 2 * d + g], plate + decay * ahead, mean, *extra])
     factors_of_cars, first = [], 0
     for model, car_inputs in zip(models, inputs_of_cars, strict=True):
@@ -247,6 +261,7 @@ def car_factors(
         # The other poles are quasi-static.
         quasi_static = car_inputs.both / -np.where(car_inputs.slow, 1.0, car_inputs.poles)[:, None]
         rates, damper_forces, slider_forces = np.split(quasi_static, [m, m + d], axis=1)
+        # A force f + slope (t/h - 1/2) ends at f + slope/2.
         direct_factors = np.hstack([damper_forces, 0.5 * damper_forces, slider_forces, rates, car_inputs.static])
         direct_factors[car_inputs.integrated, :-m] = direct[part]
         scalars = model.scalar_rows
@@ -254,6 +269,7 @@ def car_factors(
         mean_force, ramp, mean_slider, rate, level = np.split(
             (rows @ direct_factors).real, np.cumsum([d, d, g, m]), axis=1
         )
+        # A tyre is compressed by its plate, too: x = d + tau d' over z + tau z'.
         rate[d:, :plates] += scalars.velocity[:, driven]
         level[d:, :plates] += scalars.height[:, driven]
         factors_of_cars.append(
@@ -331,6 +347,7 @@ def _integrated(model: PoleModel, inputs: Complex, timestep: float) -> Mask:
     # Damper velocities, and displacements of the acceleration channels.
     shapes = np.ascontiguousarray(model.modal).view(np.float64)
     rows = np.concatenate([model.slip, (positions @ shapes).view(np.complex128)])
+    # An acceleration grows with the square of the frequency over its displacement.
     derivative = np.where(np.arange(len(rows)) < len(model.slip), 0, 2)[:, None, None]
     # A pole represents its conjugate, whose contribution at a line is the conjugate of that of the pole at minus the
     # line.
@@ -340,14 +357,18 @@ def _integrated(model: PoleModel, inputs: Complex, timestep: float) -> Mask:
     shares = shares.reshape(len(rows), -1, 2, len(LINES))
     response = (shares[:, :, 0] + shares[:, :, 1].conj()) * LINES**derivative
     rms = np.sqrt(np.mean(_squares(response), axis=2)) + np.finfo(float).tiny
+    # Poles within the band are always integrated.
     fast_candidates, is_integrated = np.flatnonzero(np.abs(s) > abs(band)), np.ones(n, dtype=bool)
     if not fast_candidates.size:
         return is_integrated
     s = s[fast_candidates][:, None]
+    # (poles, inputs, rows): residues over the RMS of each response.
     products = (
         np.ascontiguousarray(rows.T[fast_candidates])[:, None] * (inputs[fast_candidates][:, :, None] / rms.T)
     ).reshape(len(s), -1)
+    # Error at the end of the band: 1/(jw - s) + 1/s = jw/(s (jw - s)), and the same of the conjugate pole.
     delay = products * (band / (s * (band - s))) + (products * (band / (s * (band + s)))).conj()
+    # From the smallest delay on, the longest run of poles whose total, with its cancellations, stays below the limit.
     sequence = np.argsort(np.max(_squares(delay), axis=1), kind="stable")
     total_delay = np.max(_squares(np.cumsum(delay[sequence], axis=0)), axis=1)
     negligible = np.flatnonzero(total_delay <= DELAY**2)

@@ -89,6 +89,7 @@ def rotating_bodies(matrices: CarMatrices) -> tuple[str, ...]:
     """Return one representative of each group of rigidly connected bodies, which have equal rotations."""
     representative: dict[str, str] = {}
     for body in matrices.body_rows:
+        # The first body that is met represents all that are carried by the same body.
         representative.setdefault(matrices.carried_by.get(body, body), body)
     return tuple(body for body in representative.values() if body not in matrices.spinning)
 

@@ -48,6 +48,7 @@ def force_rows(model: mujoco.MjModel, data: mujoco.MjData, layout: Layout) -> Ve
             jacobian[:3, modes.velocities] += turn @ shapes[element][:3]
             jacobian[3:, modes.velocities] += turn @ shapes[element][3:]
         frame = int(a.frames[element])
+        # J_p' f + J_r' m; directions that follow a part are rotated with it, R f and R m.
         rows[force] += (way if frame < 0 else (way.reshape(2, 3) @ data.xmat[frame].reshape(3, 3).T).ravel()) @ jacobian
     rows[a.torques[:, 1], a.torques[:, 0]] = 1.0
     return rows
@@ -62,6 +63,7 @@ def tyre_inputs(forces: Sequence[PlacedForce], layout: Layout, wheels: Sequence[
         wheels: names of the wheels, in the order of the tyres.
     """
     present = layout.bushings.branch_stiffness > 0.0
+    # (element, axis) to the number of its Maxwell branch; the slip along x is axis 0.
     branches = np.cumsum(present).reshape(present.shape) - 1
     slips = np.zeros((len(forces), int(np.count_nonzero(present))))
     plate_heights = np.zeros((len(forces), len(wheels)))
@@ -106,6 +108,7 @@ def averaged_forces(forces: Sequence[PlacedForce], step: float, rows: slice) -> 
     forces = on_parts(forces)
     lines, coefficients = force_lines(forces)
     values = lines.values(step * np.arange(rows.start - 1, rows.stop + 1))
+    # F + (F(t + h) - 2 F(t) + F(t - h))/12.
     values = values[1:-1] + FOURTH_ORDER * np.diff(values, 2, axis=0)
     return np.asarray(values @ coefficients.T + [force.mean for force in forces])
 
@@ -128,6 +131,7 @@ def force_histories(car: Composition, names: Iterable[str], time: Vector) -> dic
             lines, (coefficients,) = force_lines([by_channel[name]])
             histories[name] = lines.values(time) @ coefficients + by_channel[name].mean
         else:
+            # Angle, or speed in revolutions a minute.
             histories[name] = turned[0] if name.startswith("angle") else turned[1] * 30.0 / np.pi
     return histories
 

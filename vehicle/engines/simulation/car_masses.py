@@ -28,5 +28,6 @@ def car_masses(car: CarModel, *, body: bool = True, loads: bool = False) -> Mass
     ]
     points = MassProperties.of_points(model.body_mass[bodies], data.xipos[bodies])
     frames = data.ximat[bodies].reshape(-1, 3, 3)
+    # Sum of R diag(I) R' over the bodies, to the moments of their masses as points.
     inertia = np.einsum("bij,bj,bkj->ik", frames, model.body_inertia[bodies], frames)
     return MassProperties(mass=points.mass, cog=points.cog, inertia=points.inertia + inertia)

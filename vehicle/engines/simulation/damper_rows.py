@@ -24,11 +24,14 @@ def damper_rows(
     dofs = whole_numbers([model.jnt_dofadr[joint] for joint in joints])
     rows = _tendon_rows(model, first + len(actuators))
     valves = [
+        # A tendon of a segment follows the slide of its damper alone.
         (rows[tendon], joints.index(int(model.wrap_objid[model.tendon_adr[tendon]])))
         for tendon in friction_tendons(model, presliding=False)
     ]
     return Dampers(
         rows=rows_of([str(model.actuator(index).name) for index in actuators]),
+        # MuJoCo orders friction rows by coordinate: the argsort of an argsort is the rank of each damper in that
+        # order.
         frictions=first + np.argsort(np.argsort(dofs)),
         dofs=dofs,
         places=whole_numbers([model.jnt_qposadr[joint] for joint in joints]),

@@ -48,6 +48,7 @@ def standing_on(layout: Layout, preload: Vector | None) -> Layout:
         row = layout.bushings.rows[element, axis] if law_type == 0 else layout.springs.rows[element]
         curve = curve_of(t, index)
         if preload is not None:
+            # F(at) = -p: the law gives -F on the moving part.
             at[index] = curve.position(-preload[row])
         # A force outside the range of the curve is an error after the trim; until then the trim needs a stiffness.
         carried = preload is not None and np.isclose(curve.force(at[index]), -preload[row], rtol=1e-6, atol=1e-6)

@@ -99,6 +99,7 @@ def law_fields(names: LawNames, numbers: Numbers, timestep: float) -> dict[str, 
 
     laws = laws_of(names, numbers)
     stiffness, rubber, branched = laws[:, 0:3].copy(), _rubber(names, numbers), laws[:, 6:9] > 0.0
+    # The tangent at rest: K and all k_i of the axis; `add.at` adds to one entry several times.
     np.add.at(stiffness, (rubber["elements"], rubber["axes"]), rubber["stiffness"])
     rolling = fields("rolling", names.bushings, 5)
     user_laws = [(index, law_by_address(law)) for index, law in _words(names, numbers, "function")]
@@ -109,6 +110,7 @@ def law_fields(names: LawNames, numbers: Numbers, timestep: float) -> dict[str, 
             "stiffness": stiffness,
             "damping": laws[:, 3:6].copy(),
             "branch_stiffness": laws[:, 6:9].copy(),
+            # tau = D_2/K_2.
             "branch_time": np.divide(laws[:, 9:12], laws[:, 6:9], out=np.zeros((len(laws), 3)), where=branched),
             "further": laws[:, AVERAGED + 1 :].copy(),
             "averaged": whole_numbers(laws[:, AVERAGED] > 0.0),
@@ -140,6 +142,7 @@ def law_fields(names: LawNames, numbers: Numbers, timestep: float) -> dict[str, 
             "hold": np.array(numbers.get("hold/body", np.zeros(0))),
         },
         "round": {"radii": fields("round", names.bushings, 1)[:, 0].copy()},
+        # Extension of the chamber falls by the fluid, that of the rubber by its share of local stiffness.
         "fluids": {"factors": np.array([factor for share in shares for factor in (-1.0, float(share))])},
     }
 

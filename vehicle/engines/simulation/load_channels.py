@@ -88,8 +88,10 @@ class LoadPlaces:
         channels: dict[str, Vector] = {}
         for name, rows, carrier in self.connections:
             if int(rows[0]) in self.oblique:
+                # P' f: the rows are along the directions of the law.
                 force = total[:, rows] @ self.oblique[int(rows[0])]
             else:
+                # R' f: the rows are in world axes.
                 force = np.einsum("nji,nj->ni", frames_by_body[carrier][:, 3:].reshape(-1, 3, 3), total[:, rows])
             for column, axis in enumerate(AXES):
                 # A hydromount has the forces of rubber and fluid.
@@ -99,6 +101,7 @@ class LoadPlaces:
         for wheel, force in slopes.items():
             slip, slope = (f"tyre_{wheel}_{term}_force_x" for term in ("slip", "slope"))
             whole = f"tyre_{wheel}_force_x"
+            # The row has the force of the slip; the sum takes its name.
             channels[slip], channels[slope], channels[whole] = channels[whole], force, channels[whole] + force
         channels |= {f"{name}_force": total[:, row] for name, row in self.springs}
         for number, (name, stiffness, damping, unstrained) in enumerate(self.joints):
@@ -107,6 +110,7 @@ class LoadPlaces:
         body = frames_by_body[self.bodies[0]]
         for name, part, offset, height in self.wheels:
             centre = frames_by_body[part][:, :3] + frames_by_body[part][:, 3:].reshape(-1, 3, 3) @ offset
+            # Wheel centre in the axes of the body.
             apart = np.einsum("nji,nj->ni", body[:, 3:].reshape(-1, 3, 3), centre - body[:, :3])
             channels[name] = apart[:, 2] - height
         return {name: channels[name] for name in self.names}

@@ -75,6 +75,7 @@ class PlateArrays:
         velocity, acceleration = np.zeros_like(displacement), np.zeros_like(displacement)
         velocity[1:-1] = (displacement[2:] - displacement[:-2]) / (2.0 * step)
         acceleration[1:-1] = (displacement[2:] - 2.0 * displacement[1:-1] + displacement[:-2]) / step**2
+        # A central difference lacks a neighbour at the ends of the signal: there the derivatives of the spline.
         for edge in (0, -1):
             if index[edge] in (0, count):
                 velocity[edge] = [motion.velocity[wheel][edge] for wheel in wheels]
@@ -97,6 +98,7 @@ class PlateArrays:
                 if wheel in signal.slope_velocity:
                     values = signal.slope_spline(wheel, inside[0], inside[-1])(np.minimum(inside, signal.duration))
                     slope_velocity[: len(index), column] = values
+            # After the end the slope stays.
             slope_velocity[len(index) :] = slope_velocity[len(index) - 1]
             slope_velocity[1:-1] += FOURTH_ORDER * np.diff(slope_velocity, 2, axis=0)
         requested = slice(first - begin, last - begin)

@@ -38,6 +38,7 @@ def _weights() -> Vector:
     for factor in (*SERIES, closing):
         margin = (weights.size - term.size) // 2
         weights[margin : weights.size - margin] += factor * term
+        # The next power of u = -delta^2; each is two samples wider.
         term = -np.convolve(term, difference)
     return weights
 

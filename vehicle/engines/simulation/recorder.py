@@ -178,16 +178,19 @@ class Recorder:
         mujoco.mj_energyPos(model, data)
         mujoco.mj_energyVel(model, data)
         residual, ground = state.residual.copy(), b.one_sided
-        # A contact that lifts off keeps the energy of its unloaded spring.
+        # A contact that lifts off keeps the energy of its unloaded spring, r = p/K.
         residual[ground, 2] = np.minimum(residual[ground, 2], preload[b.rows[ground, 2]] / b.stiffness[ground, 2])
         # Static forces of rolling tyres along the road do work over their slip, see `flush`: no potential.
         residual[e.rolling.tyres, :2] = 0.0
+        # Potential of f = p - K r: K r^2/2 - p r.
         elastic = 0.5 * np.sum(b.stiffness * residual**2) - np.sum(preload[b.rows] * residual)
         turned, frames = rows.rotation(self.data)
+        # sin(angle) n in the axes of the carrier, and the potential of T = T_0 - K_rot sin(angle) n, likewise.
         twist = np.einsum("nji,nj->ni", frames, turned)
         elastic += 0.5 * np.sum(e.rotations.stiffness[:, None] * twist**2) - np.sum(
             preload[e.row_count :] * twist.ravel()
         )
+        # Lower and upper ends alternate.
         lines = state.ends[1::2] - state.ends[::2]
         extension = np.sqrt(np.sum(lines**2, axis=1)) - springs.lengths
         elastic += np.sum(0.5 * springs.stiffness * extension**2 - preload[springs.rows] * extension)
@@ -195,15 +198,19 @@ class Recorder:
             zip(e.tables.kinds, e.tables.elements, e.tables.axes, strict=True)
         ):
             curve, at, x = curve_of(e.tables, k), e.tables.at[k], state.stretch[k]
+            # The sums above have the tangent K of this law: add what its curve differs by. Stops and seats are in no
+            # sum.
             elastic += curve.energy(x) - curve.energy(at)
             if law_type < 2:
                 tangent = b.stiffness[element, axis] if law_type == 0 else springs.stiffness[element]
                 elastic -= float(curve.force(at)) * (x - at) + 0.5 * tangent * (x - at) ** 2
         rubber, (friction, strain) = e.rubber.stiffness, state.rubber[:2]
         self.rubber_at_end = 0.5 * float(np.sum(friction**2 / rubber))
+        # K contains the stiffness k of the Jenkins elements: their springs t^2/(2 k) in place of k r^2/2.
         elastic += self.rubber_at_end - 0.5 * np.sum(rubber * strain**2)
         branch = self._branch_force(self.data.efc_force[None, :], state.branch_past[None])[0]
         present = b.branch_stiffness > 0.0
+        # Spring of a branch: f2^2/(2 K2).
         elastic += 0.5 * np.sum(branch[present] ** 2 / b.branch_stiffness[present])
         return float(data.energy[0] + data.energy[1] + elastic)
 
@@ -222,6 +229,7 @@ class Recorder:
     def flush(self, motion: PlateArrays, index: int, every: int) -> None:
         """Compute channels and energies of the buffered samples and clear the buffers."""
         count, b = self.filled, Samples(*(array[: self.filled] for array in self.buffers))
+        # Samples of the record, and the steps of the block at which they were taken.
         chunk = slice(self.done, self.done + count)
         steps = slice(index - (count - 1) * every, index + 1, every)
         self._keep_positions(chunk, b.places, b.turn, b.modal_position)
@@ -229,6 +237,7 @@ class Recorder:
             self.poses[pose] = self._pose(pose)
         self.new_poses.clear()
         e, bushings = self.rows.layout, self.rows.layout.bushings
+        # Force of a row: f = f0 - D J a, its explicit part and what the solver gave.
         total = b.solved + b.explicit
         damper_force = damper_forces(b.actuator, total, e)
         stop_force, strokes = np.zeros_like(damper_force), 2 * len(self.dampers) * has_stops(e)
@@ -251,40 +260,48 @@ class Recorder:
             springs = b.load_springs[:, strokes:]
             for name, values in self.loads.channels(total, b.load_frames, springs, stops, slopes).items():
                 self.channels[name][chunk] = values
-        # The work against the static load is exact and much larger than the dissipated energy, so keep it separate.
+        # Energy balance of twelve terms: 1, 2 and 6 to 8 are put in, the others dissipated. (1) Dynamic tyre load times
+        # plate velocity. (2) Static load times rise of the plates: exact and much larger than what is dissipated, so
+        # kept out of the sum of powers.
         static = self.rows.weights.preload[bushings.rows[e.tyres, 2]]
         power_in = np.sum((tyre - static) * velocity, axis=1)
         if self.done == 0:
             self.start = motion.displacement[0].copy()
         self.lifting = float(static @ (motion.displacement[index] - self.start))
+        # MuJoCo's rate is that of the middle of the past step: half a step of J a to the present.
         rate = b.rate + 0.5 * self.step * self._row_acceleration(b.solved)
         # Tyre damping uses the plate velocity averaged over three steps; its power uses the true plate velocity.
         true_rate = rate.copy()
         true_rate[:, e.tyres, 2] += (motion.row_velocity - motion.velocity)[steps]
+        # (3) Dampers of bushings and tyres, B r' times the true rate.
         losses = bushings.damping * rate * true_rate
-        # Damping force of a contact that may lift off: elastic force less total force.
+        # (4) Contacts that may lift off, in place of (3): their damping force is elastic force less total force.
         ground = bushings.one_sided
         losses[:, ground, 2] = (b.contact - total[:, bushings.rows[ground, 2]]) * true_rate[:, ground, 2]
         loss = np.sum(losses, axis=(1, 2))
-        # Work of the Jenkins elements of rubber, with the energy that their springs hold.
+        # (5) Jenkins elements of rubber, with the energy that their springs hold: `energies` takes it out at the end.
         loss = loss + np.sum(b.rubber * true_rate[:, e.rubber.elements, e.rubber.axes], axis=1)
         branch = self._branch_force(b.solved, b.branch)
-        # Rolling car: power of slope, moments and course control on all velocities, and of the slip on what is no
-        # motion of the car: V psi, and the velocity of a tread that what turns the wheel adds, half a step later.
+        # (6) Explicit forces on all velocities: slope, moments and course control of a rolling car, applied forces.
         power_in = power_in + b.pushed
         rolling = e.rolling.tyres
+        # (7) Force of the slip times what is no motion of the car: V psi, and the velocity of a tread, half a step
+        # later, that what turns the wheel adds.
         steady = np.zeros((count, len(rolling), 2))
         steady[:, :, 1] = b.heading * e.rolling.speeds
         if motion.tread.shape[1]:
             steady[:, :, 0] = (motion.tread + 0.5 * self.step * motion.tread_change)[steps][:, e.rolling.plates]
-        # The static forces along the road, which hold a mean force, do work on the motion of the car alone.
+        # (8) Static forces along the road, which hold a mean force, on the motion of the car alone.
         held = self.rows.weights.preload[bushings.rows[rolling, :2]]
         power_in = power_in + np.sum(branch[:, rolling, :2] * steady, axis=(1, 2))
         power_in = power_in + np.sum(held * (true_rate[:, rolling, :2] - steady), axis=(1, 2))
         present = bushings.branch_stiffness > 0.0
+        # (9) Dashpots of the Maxwell branches, f2^2/(K2 tau).
         dashpots = (bushings.branch_stiffness * bushings.branch_time)[present]
         loss = loss + np.sum(branch[:, present] ** 2 / dashpots, axis=1)
+        # (10) Dampers without their stops, whose energy is stored.
         loss = loss + np.sum(damper_force * b.damper_velocity, axis=1)
+        # (11) Damping of the modes, and (12) that inside joints and of fluids.
         modal_damping = e.space.damping if e.space.damping.size else joint_dampers(self.model)[e.modes.velocities]
         loss = loss + np.sum(modal_damping * b.modal_velocity**2, axis=1)
         loss = loss + b.spring_rates**2 @ joint_dampers(self.model)[self.spring_dofs]
@@ -296,6 +313,7 @@ class Recorder:
         """Store positions (chunk, 3 points) with modal displacement, by frames (chunk, 9) and modes of the body."""
         for point, value in zip(self.places, np.split(positions, len(self.sites), axis=1), strict=True):
             if point in self.shapes:
+                # Displaced point: x + R Phi q.
                 value = value + np.einsum("nij,nj->ni", turn.reshape(-1, 3, 3), modal @ self.shapes[point].T)
             for axis, name in enumerate(AXES):
                 self.channels[f"{point}_acc_{name}"][chunk] = value[:, axis]
@@ -311,6 +329,7 @@ class Recorder:
     def _add_work(self, power_in: Vector, loss: Vector, every: int) -> None:
         """Add the work of a chunk by the trapezoidal rule, continued across chunks."""
         if self.last_powers is not None:
+            # The last sample of the chunk before is the first end of a trapezium.
             power_in = np.concatenate([[self.last_powers[0]], power_in])
             loss = np.concatenate([[self.last_powers[1]], loss])
         interval = self.step * every

@@ -94,6 +94,7 @@ def read_layout(model: mujoco.MjModel) -> Layout:
         # First row, number of rows, first column and end of the nonzero columns of a connection.
         moving = [column for site in sites for column in _above(model, model.site_bodyid[site])]
         columns = np.unique([*moving, *modal_at(name), *further.get(name, ())])
+        # Neighbouring columns form a run, which compiled code handles as one loop.
         runs, rows = np.split(columns, np.flatnonzero(np.diff(columns) > 1) + 1), rows_by_name[name]
         nonzero += [(rows.start, len(rows), run[0], run[-1] + 1) for run in runs if len(run)]
 
@@ -196,6 +197,7 @@ def _modes(
     # The residual is moving part less carrier: the sign of a shape depends on the role of the body.
     signs = [1.0 if model.site_bodyid[ends[name][0]] == body else -1.0 for name in names]
     shapes = np.reshape(signs, (-1, 1)) * _shapes(model, names, len(modal))
+    # (nodes, axes, modes)
     by_node = shapes.reshape(len(names), 3, len(modal))
     dofs = np.array(_above(model, body), dtype=np.int64)
     return Modes(
@@ -223,6 +225,7 @@ def _turning(model: mujoco.MjModel, sites: Sequence[tuple[int, int]]) -> Indices
     signs = np.zeros((len(sites), model.nv), dtype=np.int64)
     for row, ends in zip(signs, sites, strict=True):
         for site, sign in zip(ends, (1, -1), strict=True):
+            # A coordinate that rotates both ends does not rotate them relative to each other: 1 - 1 = 0.
             row[_above(model, model.site_bodyid[site])] += sign
     signs[:, ~_turns(model)] = 0
     pairs = np.argwhere(signs)
@@ -289,11 +292,14 @@ def _rolling(
         frames = np.zeros((len(rotating), 9))
         for frame, body in zip(frames, rotating, strict=True):
             mujoco.mju_quat2Mat(frame, model.body_iquat[body])
+        # I_yy = sum of R_yk^2 I_k over the principal axes k of each body that turns with the wheel; frames: (bodies,
+        # 3, 3).
         inertias.append(float(np.sum(frames.reshape(-1, 3, 3)[:, 1] ** 2 * model.body_inertia[rotating])))
     course, start = np.zeros(0), np.zeros(0)
     if wheels:
         joint = model.joint("body")
         first, position = int(joint.dofadr[0]), int(joint.qposadr[0])
+        # Velocities along x, y and in yaw, positions along x and y of the free joint of the body.
         course = np.array([first, first + 1, first + 5, position, position + 1])
         start = model.qpos0[position : position + 2].copy()
     dofs = [(n, dof, int(model.body_rootid[hub])) for n, hub in enumerate(hubs) for dof in _above(model, hub)]

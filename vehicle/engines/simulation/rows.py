@@ -40,6 +40,7 @@ def prepare_model(model: mujoco.MjModel) -> None:
 def joint_springs(model: mujoco.MjModel) -> Vector:
     """Return the stiffness of the springs inside joints, per velocity coordinate; (nv,)."""
     stiffness = np.zeros(model.nv)
+    # Versions of MuJoCo with polynomial springs have a row of coefficients for each joint; the first is the linear one.
     stiffness[model.jnt_dofadr] = model.jnt_stiffness.reshape(model.njnt, -1)[:, 0]
     return stiffness
 
@@ -167,6 +168,7 @@ class Rows:
         if not space.mass.size:
             return np.array(data.qpos[modes.positions])
         h = self.weights.timestep
+        # eta'' - S' (-k q - b q') over the completed step; then v+ = v + h q'', q+ = q + h v+ (`modes.h` of the core).
         pull = (data.qvel[modes.velocities] - self.state.modal_rate) / h - self.state.modal_force
         elastic = space.stiffness * (space.rest - q) - space.damping * v
         return np.asarray(q + h * (v + h * (elastic / space.mass + space.spread @ pull)))
@@ -176,8 +178,10 @@ class Rows:
         elements, modes = self.layout.rotations, self.layout.modes
         frames = data.site_xmat[elements.sites].reshape(-1, 2, 3, 3)
         for (element, side), psi in zip(elements.nodes, self._node_rotations(data), strict=True):
+            # c + theta x c for each axis c of the frame, theta = R Psi q.
             frames[element, side] += np.cross(psi @ data.qpos[modes.positions], frames[element, side], axisb=0, axisc=0)
         moving, carrier = frames[:, 0], frames[:, 1]
+        # Half the sum of c_k x m_k over the axes k of both frames.
         return 0.5 * np.sum(np.cross(carrier, moving, axis=1), axis=2), carrier
 
     def rotation_jacobian(self, data: mujoco.MjData) -> Vector:
@@ -213,19 +217,23 @@ def weights(model: mujoco.MjModel, layout: Layout, preload: Vector, masses: Vect
             stiffness[element, axis] = steepest
         elif law_type == 1:
             springs[element] = steepest
+    # beta of each row: larger than 1/12 where K h^2/m would be unstable.
     averaged = np.where(b.averaged[:, None] > 0, average(stiffness * h**2 / masses), FOURTH_ORDER)
     present = b.branch_time > 0.0
     tau = np.where(present, b.branch_time, 1.0)
+    # E = exp(-h/tau).
     decay = np.where(present, np.exp(-h / tau), 0.0)
     # A branch may be as stiff as the sheet metal of a mount; then its force is averaged over three steps too.
     phase = (stiffness + b.branch_stiffness) * h**2 / masses
     branch_average = average(phase)
     # Exact response of the branch to a rate that is linear over the step: mean rate and its slope.
+    # Over a step f2+ = E f2 + K2 tau (1 - E) v + s a, s = 2 theta K2 tau (h (1 + E)/2 - tau (1 - E)).
     gain = np.where(present, b.branch_stiffness * tau * -np.expm1(-h / tau), 0.0)
     series = tau * (0.5 * h * (1.0 + np.exp(-h / tau)) + tau * np.expm1(-h / tau))
     # Avoid ringing of a low-mass part with strong branch damping.
     share = np.where(phase > FITTED_PHASE**2, 0.5, implicit_share(gain * h / masses))
     slope = np.where(present, b.branch_stiffness * series * 2.0 * share, 0.0)
+    # Impedance of the branch, D_b = s + beta_b ((E - 1) s + K2 tau (1 - E) h).
     rise = branch_average * ((decay - 1.0) * slope + gain * h)
     branch = np.where(present, slope + rise, 0.0)
     laws, inertial = layout.dampers.laws, averaged[layout.tyres] * stiffness[layout.tyres] * h**2
@@ -238,6 +246,7 @@ def weights(model: mujoco.MjModel, layout: Layout, preload: Vector, masses: Vect
         gain=gain,
         slope=slope,
         average=branch_average,
+        # D = B h/2 + beta K h^2 + D_b.
         impedance=np.maximum(b.damping * h / 2 + averaged * stiffness * h**2 + branch, EMPTY_ROW),
         inertial=inertial,
         spring_impedance=np.maximum(FOURTH_ORDER * springs * h**2, EMPTY_ROW),
@@ -255,7 +264,9 @@ def _row_masses(model: mujoco.MjModel, layout: Layout) -> Vector:
     rows = data.efc_J.reshape(-1, model.nv)[layout.bushings.rows.ravel()]
     for index, way in zip(layout.bushings.oblique, layout.bushings.directions, strict=True):
         element_rows = slice(3 * index, 3 * index + 3)
+        # The rows of an oblique element are along its directions.
         rows[element_rows] = way.reshape(3, 3) @ rows[element_rows]
+    # Diagonal of J M^-1 J'.
     inverse = np.einsum("ij,ji->i", rows, np.linalg.solve(mass, rows.T))
     # The effective mass of an immovable row is infinite.
     moved = np.divide(1.0, inverse, out=np.full_like(inverse, np.inf), where=inverse > 0.0)

@@ -29,11 +29,13 @@ def run_model(car: CarModel) -> tuple[mujoco.MjModel, ModalSpace | None]:
     ]
     shapes = [numbers[name].reshape(3, modes.size) for name in seen]
     mass = model.dof_M0[modes.velocities]
+    # Phi m^-1/2; its right singular vectors Q' span the motions that move the attachments.
     scaled = np.concatenate([np.zeros((0, modes.size)), *shapes]) / np.sqrt(mass)
     _, values, basis = np.linalg.svd(scaled, full_matrices=False)
     count = int(np.count_nonzero(values > SEEN * np.max(values, initial=0.0)))
     if count >= modes.size:
         return model, None
+    # S = m^-1/2 Q, and the shapes Phi S in the body of the model.
     spread = np.ascontiguousarray(basis[:count].T / np.sqrt(mass)[:, None])
     space = ModalSpace(
         mass=mass.copy(),

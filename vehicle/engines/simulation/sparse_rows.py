@@ -104,6 +104,7 @@ def solution_of(model: mujoco.MjModel, layout: Layout, pattern_of_rows: Pattern 
         empty |= dict.fromkeys(("right", "acceleration", "weight", "limited"), np.zeros(0))
         return empty | {"size": 0, "groups": np.zeros((0, 4), dtype=np.int64), "matrix": np.zeros((0, 0))}
     nonzero, count = pattern_of_rows.nonzero, -(-model.nv // TILE)
+    # Row and column of each number of the lower triangle of M in MuJoCo's compressed rows.
     inertia = np.column_stack([np.repeat(np.arange(model.nv), model.M_rownnz), model.M_colind]).astype(np.int64)
     pattern = np.eye(count, dtype=np.bool_)
     pattern[inertia[:, 0] // TILE, inertia[:, 1] // TILE] = True
@@ -113,6 +114,7 @@ def solution_of(model: mujoco.MjModel, layout: Layout, pattern_of_rows: Pattern 
         groups.append((row, number, len(columns), len(columns) + len(tiles)))
         columns += [int(tile) for tile in tiles]
         grouped |= set(range(row, row + number))
+        # J' D J of these rows couples all tiles that they touch.
         pattern[np.ix_(tiles, tiles)] = True
     # Elimination of a row of tiles, the last one first, couples all its columns.
     for block in range(count - 1, -1, -1):
@@ -121,6 +123,7 @@ def solution_of(model: mujoco.MjModel, layout: Layout, pattern_of_rows: Pattern 
     rows_of_tiles = [np.flatnonzero(pattern[block, : block + 1]) for block in range(count)]
     single = [(row, int(np.argmax(nonzero[row]))) for row in range(len(nonzero)) if row not in grouped]
     singles = np.array(single, dtype=np.int64).reshape(-1, 2)
+    # Friction rows come after the equality rows.
     frictions = singles[singles[:, 0] >= np.min(layout.dampers.frictions, initial=len(nonzero))]
     return {
         "size": int(model.nv),  # nv; the tiles of 4 x 4 fill it up to n

@@ -79,6 +79,7 @@ def require_standing(vehicle: Vehicle, rows: Rows, static: StaticTrim) -> None:
     # Ground contacts carry no static horizontal force.
     looked[ground, :2] = False
     with np.errstate(divide="ignore", invalid="ignore"):
+        # |p|/K; a row without stiffness divides by zero and does not count.
         sag = np.where(looked, np.abs(preload[bushings.rows]) / bushings.stiffness, 0.0)
         spring_sag = np.abs(preload[springs.rows]) / springs.stiffness
     if not max(np.max(sag, initial=0.0), np.max(spring_sag, initial=0.0)) > LARGEST_SAG:

@@ -100,6 +100,7 @@ def trim(rows: Rows) -> StaticTrim:
     model.qpos_spring[:] = model.qpos0
     design, joint_stiffness = at_rest(rows), joint_springs(model)
     settled = settle(rows, design, joint_stiffness)
+    # A spring in a joint carries -k u in the design position if its unstrained position is -u.
     sprung = joint_stiffness[model.jnt_dofadr] > 0.0
     places, dofs = model.jnt_qposadr[sprung], model.jnt_dofadr[sprung]
     model.qpos_spring[places] = model.qpos0[places] - settled.displacement[dofs]
@@ -166,14 +167,17 @@ def _settled(rows: Rows, design: AtRest, joint_stiffness: Vector) -> Settled:
     row_stiffness, spins = _row_stiffness(rows), rows.layout.rolling.spins
     if len(spins):
         jacobian = jacobian.copy()
+        # A wheel does not roll while the car settles; the unit stiffness keeps the matrix regular.
         jacobian[:, spins] = 0.0
     stiffness = jacobian.T @ (row_stiffness @ jacobian)
     stiffness[spins, spins] = 1.0
+    # T' K_rot T, three rows for each element.
     flat = turned.reshape(-1, turned.shape[2])
     stiffness += flat.T @ (np.repeat(twist, 3)[:, None] * flat)
     stiffness[np.diag_indices(len(stiffness))] += joint_stiffness
     give = _factored(stiffness, jacobian[e.joints.ravel()])
     displacement, reaction = give(unsolved(e, design.weight))
+    # f_e = -K_e J u, and -lambda of the joints.
     preload = -row_stiffness @ (jacobian @ displacement)
     preload[e.joints.ravel()] = -reaction
     torque = -twist[:, None] * (turned @ displacement)
@@ -190,10 +194,12 @@ def _row_stiffness(rows: Rows) -> Vector:
     np.subtract.at(elastic, (e.rubber.elements, e.rubber.axes), e.rubber.stiffness)
     diagonal[b.rows] = elastic
     rolling = e.rolling.tyres
+    # Along the road a rolling tyre has no stiffness but that of its carcass, the spring of its branch.
     diagonal[b.rows[rolling, :2]] = b.branch_stiffness[rolling, :2]
     diagonal[b.rows[ground, :2]] *= SLIDING_SHARE
     diagonal[e.springs.rows] = e.springs.stiffness
     whole = np.diag(diagonal)
+    # K in vehicle axes is P' diag(k) P; with its level part reduced, back to the rows r = P x.
     slide = np.diag(np.sqrt([SLIDING_SHARE, SLIDING_SHARE, 1.0]))
     for index, way in rows.directions.items():
         if index in ground:
@@ -226,6 +232,7 @@ def ground_contacts(rows: Rows) -> Indices:
 def _factored(stiffness: Vector, hard: Vector) -> Callable[[Vector], tuple[Vector, Vector]]:
     """Return a solver of K u + Jc' lambda = f, Jc u = 0 for displacement and joint reactions."""
     size, count = len(stiffness), len(hard)
+    # Scaled to equal diagonals: rotations, modes and translations have different units.
     system = np.block([[stiffness, hard.T], [hard, np.zeros((count, count))]])
     scale = np.ones(size + count)
     scale[:size] = 1.0 / np.sqrt(np.maximum(np.diag(stiffness), 1.0))
@@ -261,6 +268,7 @@ def static_loads(rows: Rows, settled: Settled, left: Vector) -> StaticTrim:
     remaining, _ = settled.give(left)
     force = preload[rows.layout.bushings.rows]
     for index, way in rows.directions.items():
+        # From directions to vehicle axes.
         force[index] = way.T @ force[index]
     vertical = force[:, 2]
     # A guide on the world without vertical stiffness carries nothing.

@@ -62,6 +62,7 @@ def simulate(
     rows = Rows(model, car.static.preload, space)
     step = model.opt.timestep
     count = int(np.floor(signal.duration / step + 1e-6))
+    # The last step has a sample.
     count -= count % every
     pose_every = max(round(1.0 / (POSE_RATE * step * every)), 1)
     mocap = [int(model.body_mocapid[model.body(wheel.plate).id]) for wheel in car.vehicle.composition.wheels]
@@ -126,6 +127,7 @@ def simulate(
                 if progress is not None:
                     progress(index / count)
             index += 1
+        # Further steps after the end, whose positions the last accelerations need.
         for index in range(count, count + AHEAD * every):
             loop.move_plates(index - block.reach(index, index))
             mujoco.mj_step(model, data)

@@ -28,6 +28,7 @@ def pulling_tyres(forces: Mapping[str, Vector], record_rate: float) -> tuple[tup
         return (), ()
     worst, also = forces[low[0]], f"; also {', '.join(low[1:])}" if low[1:] else ""
     start, lowest = int(np.argmax(worst < 0.0)) / record_rate, int(np.argmin(worst))
+    # RMS of the part below zero over the standard deviation, the RMS of the dynamic load.
     pull = max(float(np.sqrt(np.mean(np.minimum(forces[wheel], 0.0) ** 2)) / np.std(forces[wheel])) for wheel in low)
     text = (
         f"tyre {low[0]} {LIFTS} at t = {start:.3f} s (lowest load {worst[lowest]:.0f} N at "

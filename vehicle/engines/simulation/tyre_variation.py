@@ -89,6 +89,7 @@ def tread_motion(
     by_wheel = np.zeros((len(lines), len(wheels)))
     for force in treads:
         by_wheel[:, wheels.index(force.tyre)] += lines.coefficients(dict(force.harmonics.items()))
+    # One mean more than steps, for the differences.
     starts: Vector = step * np.arange(first - 1.0, first + count)
     means = lines.means(starts, step) @ by_wheel
     return means[:-1], np.diff(means, axis=0) / step

@@ -54,6 +54,7 @@ def static_shapes(car: Car, rows: Vector) -> Vector:
     system = car.matrices.system
     basis = scipy.linalg.null_space(system.constraints) if len(system.constraints) else np.eye(len(system.mass))
     stiffness = 0.5 * (system.stiffness + system.stiffness.T) + HOLD**2 * system.mass
+    # T = R Z and S^-1 T'.
     held = rows @ basis
     flexibility = np.linalg.solve(basis.T @ stiffness @ basis, held.T)
     return np.asarray(basis @ flexibility @ np.linalg.inv(held @ flexibility))
@@ -67,6 +68,7 @@ def moving_picture(car: Car) -> dict[str, Any]:
     wire = car_wireframe(car.model)
     shapes = np.einsum("ijk,kl->lij", wire.motion, static_shapes(car, picture_rows(car)))
     steps = np.max(np.abs(shapes), axis=(1, 2)) / FULL
+    # Integers of -127 to 127 times a step for each shape.
     rounded = np.rint(shapes / steps[:, None, None]).astype(np.int8)
     plates = [car.matrices.system.inputs.index(wheel.name) for wheel in car.vehicle.composition.wheels]
     return {"shapes": text(rounded.tobytes()), "steps": steps.tolist(), "plates": plates}

@@ -55,6 +55,7 @@ def coupled_law(connection: PlacedConnection, flexibility: Vector) -> dict[str, 
     attachment = vectors @ np.diag(np.maximum(values, _STIFFEST)) @ vectors.T
     law = connection.law
     if law is None:
+        # An ideal joint leaves the attachment alone, along its principal axes.
         stiffness = 1.0 / np.maximum(values, _STIFFEST)
         return {"stiffness": stiffness, "damping": STRUCTURAL_LOSS_TIME * stiffness, "directions": vectors.T}
     nonlinear = {f"table_{name}": "a table" for name in AXES if getattr(law, f"table_{name}", None) is not None}
@@ -70,17 +71,22 @@ def coupled_law(connection: PlacedConnection, flexibility: Vector) -> dict[str, 
             "for each axis, or set body.attachment_flexibility = false"
         )
     axes = np.eye(3) if connection.axes is None else np.array(connection.axes)
+    # K = A' diag(k) A with the axes of the bushing as rows of A.
     bushing_stiffness = (axes.T * law.stiffness) @ axes
     share = np.linalg.inv(np.eye(3) + attachment @ bushing_stiffness)
     static = bushing_stiffness @ share
+    # Symmetric except for round-off.
     static = 0.5 * (static + static.T)
     damping = share.T @ (axes.T * law.damping) @ axes @ share
     if not isinstance(law, Hydromount) or law.maxwell is None:
         stiffness, drag, directions = _diagonalised(static, damping, np.eye(3))
         return {"stiffness": stiffness, "damping": drag, "directions": directions}
     branch = Maxwell(stiffness=law.stiffness[2], branch_stiffness=law.maxwell[0], branch_damping=law.maxwell[1])
+    # The hydromount in series with the attachment along its z axis.
     joined = in_series(1.0 / float(axes[2] @ attachment @ axes[2]), branch)
     along = share.T @ axes[2] / np.linalg.norm(share.T @ axes[2])
+    # Largest share k of along along' that leaves static - k along along' without a negative stiffness: the remainder
+    # has rank two, and two further rows carry it.
     own_part = 1.0 / float(along @ np.linalg.solve(static, along))
     remainder = static - own_part * np.outer(along, along)
     _, basis = np.linalg.eigh(remainder)
@@ -98,9 +104,11 @@ def _diagonalised(stiffness: Vector, damping: Vector, basis: Vector) -> tuple[Ve
     """Return k, b and directions (k, 3) that diagonalise two symmetric matrices in the space of a basis (3, k)."""
     inner, drag = basis.T @ stiffness @ basis, basis.T @ damping @ basis
     scale = np.trace(inner) / max(float(np.trace(drag)), 1e-12)
+    # Simultaneous diagonalisation of stiffness and damping: generalised eigenvectors of (B, K + B).
     whole = inner + scale * drag
     whole += 1e-12 * np.trace(whole) * np.eye(len(whole))  # for an axis without stiffness and damping
     shares, vectors = scipy.linalg.eigh(scale * drag, whole)  # V' whole V = 1
+    # whole = V^-T V^-1: the rows of V^-1 are the directions p_i, scaled to unit length below.
     directions = np.linalg.inv(vectors) @ basis.T
     length = np.linalg.norm(directions, axis=1)
     shares = np.clip(shares, 0.0, 1.0)

@@ -64,6 +64,7 @@ def attached(superelement: Superelement, masses: Mapping[str, float]) -> Attache
     added = np.array(list(masses.values()), dtype=float)
     positions = superelement.positions
     rigid, _ = superelement.rigid.rigid_motions(positions)
+    # T_n of each loaded node; the added mass matrix is the sum of m T_n' T_n.
     motions = np.concatenate([rigid[:, loaded_nodes], superelement.shapes[:, loaded_nodes]])  # (6 + modes, masses, 3)
     properties, node_mass = superelement.rigid.with_points(added, positions[loaded_nodes]), superelement.node_mass
     loaded = with_added_mass(superelement, np.einsum("ank,bnk,n->ab", motions, motions, added), properties)
@@ -88,10 +89,12 @@ def with_added_mass(superelement: Superelement, added: Vector, properties: MassP
     count, positions = len(superelement.frequencies), superelement.positions
     rigid, rigid_rotations = superelement.rigid.rigid_motions(positions)
     total = np.eye(6 + count) + added
+    # -r over q: M_rr^-1 M_rf.
     rigid_per_mode = np.linalg.solve(total[:6, :6], total[:6, 6:])  # (6, modes)
     omega = 2.0 * np.pi * superelement.frequencies
     squared, mix = scipy.linalg.eigh(np.diag(omega**2), total[6:, 6:] - total[6:, :6] @ rigid_per_mode)
     rigid_share = mix.T @ rigid_per_mode.T  # share of the rigid motions in each new mode, (modes, 6)
+    # New modes: Phi X - R Y.
     shapes = np.tensordot(mix.T, superelement.shapes, 1) - np.tensordot(rigid_share, rigid, 1)
     sign = signs(shapes)[:, None]
     rotations = {
@@ -99,6 +102,7 @@ def with_added_mass(superelement: Superelement, added: Vector, properties: MassP
         for node, rotation in superelement.rotations.items()
     }
     new_omega = np.sqrt(squared)
+    # Diagonal of X' diag(2 zeta w) X.
     damping = np.einsum("im,i,im->m", mix, 2.0 * superelement.damping_ratio * omega, mix)
     largest_share = np.abs(mix).argmax(axis=0)
     body = replace(

@@ -61,6 +61,7 @@ def local_stiffness(length: float, section: BeamSection) -> Vector:
             [-12.0, -s, 12.0, -s],
             [s, 2.0 * q, -s, 4.0 * q],
         ]
+        # An index of (4, 1) and (4,) addresses the 4 x 4 block of these degrees of freedom.
         k[np.array(dofs)[:, None], dofs] = stiffness / length**3 * np.array(bending)
     return k
 
@@ -85,6 +86,7 @@ def local_axes(start: ArrayLike, end: ArrayLike) -> Vector:
             f"beam: both ends are at {np.asarray(start).tolist()} m; they must be different points."
         )
     x = along / length
+    # y, the global z cross x, is horizontal, so z, x cross y, lies in the vertical plane through the beam.
     y = _cross(np.array([0.0, 0.0, 1.0]), x)
     if np.linalg.norm(y) < _PARALLEL:
         y = _cross(np.array([1.0, 0.0, 0.0]), x)

@@ -76,6 +76,7 @@ def load_mass(positions: Vector, loads: Sequence[BodyLoad], tolerance: float) ->
     """Return the mass matrix of loads on the displacements of the nodes [kg], shape (3 n, 3 n); see `followed`."""
     mass = np.zeros((positions.size, positions.size))
     for load in loads:
+        # (6, 3 n): N' diag(m 1, I) N.
         motion = followed(positions, load, tolerance).reshape(6, -1)
         mass += motion.T @ load.matrix @ motion
     return mass
@@ -102,6 +103,7 @@ def with_loads(body: Superelement, loads: Sequence[BodyLoad]) -> Superelement:
     motions = np.concatenate([rigid, body.shapes])  # (6 + modes, n, 3)
     added = np.zeros((len(motions), len(motions)))
     for load in loads:
+        # Displacement and rotation of the load in each motion T of the body; (6 + modes, 6).
         motion = np.einsum("cnj,anj->ac", followed(body.positions, load, body.hardpoint_tolerance), motions)
         added += motion @ load.matrix @ motion.T
     return with_added_mass(body, added, loaded_properties(body.rigid, loads)).body

@@ -75,6 +75,8 @@ def rigid_fit(positions: Vector, weight: Vector, point: Vector) -> Vector:
     center = weight @ positions / weight.sum()
     rows = np.concatenate([_motion(position - center) for position in positions])  # (3 k, 6)
     scale = np.repeat(weight, 3)[:, None]
+    # Weighted least squares (t, theta) = (A' W A)^-1 A' W u; pinv for carriers on a line, about which no rotation
+    # follows.
     fitted = np.linalg.pinv(rows.T @ (scale * rows)) @ (scale * rows).T  # (6, 3 k)
     moved = _motion(point - center) @ fitted
     return np.asarray(np.vstack([moved, fitted[3:]]).reshape(6, len(positions), 3))

@@ -26,6 +26,7 @@ def condense_rotations(stiffness: Vector) -> tuple[Vector, Vector]:
         ConfigurationError: a node can rotate freely.
     """
     count = stiffness.shape[0] // 6
+    # (nodes, degrees of freedom): translations t and rotations r of all nodes, node by node.
     dofs = np.arange(6 * count).reshape(count, 6)
     t, r = dofs[:, :3].ravel(), dofs[:, 3:].ravel()
     try:
@@ -81,12 +82,15 @@ def free_free_modes(
     center = node_mass @ positions / node_mass.sum()
     rigid = rigid_shapes(positions, center).reshape(6, -1)
     if added is None:
+        # With M = L L' the modes of L^-1 K L^-T are L' phi: orthonormal, and easy to separate from the rigid motions.
         rigid, dynamic = rigid * root, stiffness / np.outer(root, root)  # mass-weighted
     else:
         lower = np.linalg.cholesky(np.diag(root**2) + added)
         half = scipy.linalg.solve_triangular(lower, stiffness, lower=True)
         rigid, dynamic = rigid @ lower, scipy.linalg.solve_triangular(lower, half.T, lower=True)
     basis, _ = np.linalg.qr(rigid.T)  # (3 n, 6)
+    # Projector onto the complement of the rigid motions; these get an eigenvalue far above the elastic modes instead
+    # of 0.
     away = np.eye(len(root)) - basis @ basis.T
     shift = 10.0 * float(np.trace(dynamic))
     dynamic = away @ dynamic @ away + shift * (basis @ basis.T)
@@ -96,6 +100,7 @@ def free_free_modes(
             "body frame: a part can move with no or almost no stiffness; check the sections, materials and "
             "masses of the body design"
         )
+    # Back to displacements: phi = L^-T y.
     plain = vectors / root[:, None] if added is None else scipy.linalg.solve_triangular(lower.T, vectors)
     shapes = plain.T.reshape(count, -1, 3)
     return np.sqrt(values) / (2.0 * np.pi), signs(shapes)[:, None, None] * shapes

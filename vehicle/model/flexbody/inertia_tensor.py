@@ -123,6 +123,7 @@ def nearest_physical(inertia: ArrayLike) -> PhysicalInertia:
     floor = _FLOOR * float(values[values > 0.0].sum())
     if values[0] >= floor:
         return PhysicalInertia(inertia=tensor.copy(), change=np.zeros((3, 3)), shortfall=triangle_shortfall(tensor))
+    # S' = U diag(max(s, floor)) U', and back to moments of inertia.
     moments = (axes * np.maximum(values, floor)) @ axes.T
     physical = np.trace(moments) * np.eye(3) - moments
     return PhysicalInertia(inertia=physical, change=physical - tensor, shortfall=triangle_shortfall(tensor))

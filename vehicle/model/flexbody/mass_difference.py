@@ -82,6 +82,7 @@ def mass_difference(model: Superelement, body: TrimmedBody, loads: Sequence[Body
 
 def vehicle_lines(model: Superelement) -> list[str]:
     """Format the mass properties of a body model as TOML lines of a vehicle file, inertia about the CoG."""
+    # Round-off of symmetric bodies as zero.
     cog, tensor = (
         np.where(np.abs(array) < _ROUND_OFF * np.abs(array).max(), 0.0, array)
         for array in (np.asarray(model.cog, dtype=float), np.asarray(model.inertia, dtype=float))

@@ -40,6 +40,7 @@ class MassProperties:
         """Return the mass properties with additional point masses [kg], (n,), at positions [m], (n, 3)."""
         total = self.mass + float(masses.sum())
         cog = (self.mass * self.cog + masses @ positions) / total
+        # About the new centre of gravity, to which the old one is at a distance.
         tensor = self.inertia + _steiner(np.array([self.mass]), np.atleast_2d(self.cog - cog))
         return MassProperties(mass=total, cog=np.asarray(cog), inertia=tensor + _steiner(masses, positions - cog))
 
@@ -68,6 +69,7 @@ class MassProperties:
             Displacements of the points [kg^-1/2], shape (6, n, 3); rotations [rad kg^-1/2 / m], shape (6, 3).
         """
         shapes, turns = np.zeros((6, len(positions), 3)), np.zeros((6, 3))
+        # Rotations L^-1 with I = L L': L^-1 I L^-T = 1.
         turns[3:] = np.linalg.inv(np.linalg.cholesky(self.inertia))
         for axis in range(3):
             shapes[axis, :, axis] = 1.0 / np.sqrt(self.mass)

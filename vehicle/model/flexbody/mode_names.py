@@ -39,6 +39,7 @@ def global_patterns(positions: Vector, node_mass: Vector) -> dict[str, Vector]:
     }
     rigid = rigid_shapes(positions, center).reshape(6, -1)
     weight = np.repeat(node_mass, 3)
+    # Projection in M: p - R (R' M R)^-1 R' M p.
     gram = (rigid * weight) @ rigid.T
     patterns = {}
     for name, components in raw.items():

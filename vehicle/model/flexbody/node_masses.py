@@ -78,11 +78,13 @@ def matched_masses(
         if np.abs(gap).max() < 1e-13 * mass:  # round-off of sums of 43 terms
             return np.asarray(masses)
         try:
+            # Newton step of the convex dual: gradient A m - b, Hessian A diag(r m) A'.
             direction = -np.linalg.solve((rows * (masses * freedom)) @ rows.T, gap)
         except np.linalg.LinAlgError:
             break  # masses vanish: no positive masses have the required moments
         step, current = 1.0, dual(multiplier)
         blur = 1e-12 * abs(current)  # round-off of the dual, which exceeds its differences near the minimum
+        # Step halved until the dual falls by a ten-thousandth of the predicted decrease (Armijo).
         while dual(multiplier + step * direction) > current + 1e-4 * step * float(gap @ direction) + blur:
             step /= 2.0
             if step < 1e-9:

@@ -183,6 +183,7 @@ class Superelement:
         count = int(np.searchsorted(self.frequencies, frequency, side="right"))
         if count == len(self.frequencies):
             return self
+        # Static share of the truncated modes: sum of phi phi'/w^2.
         compliance = 1.0 / (2.0 * np.pi * self.frequencies[count:]) ** 2
         residual = dict(self.residual)
         for node in kept:

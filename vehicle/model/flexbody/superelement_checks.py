@@ -197,6 +197,7 @@ def _rigid(body: Superelement) -> Iterator[str]:
         yield "node_mass: all mass is on one line, so the body has no inertia about this line. Add mass beside it."
     if not np.allclose(rigid.inertia, np.transpose(rigid.inertia), rtol=0.0, atol=_SYMMETRY * top):
         yield f"inertia: {np.asarray(rigid.inertia).tolist()} kg m2 is not symmetric."
+    # I1 + I2 - I3 = 2 times the integral of z^2 dm, z along the axis of I3: at least 0 for real masses.
     if low_moment + middle < top * (1.0 - 1e-6):
         yield (
             f"inertia: principal moments {low_moment:.4g}, {middle:.4g} and {top:.4g} kg m2; the sum of the two "
@@ -212,12 +213,14 @@ def _modes(body: Superelement) -> Iterator[str]:
     if body.node_mass is not None:
         yield from _normalised(body, body.node_mass)
         return
+    # A translation with modal mass 1 is 1 / sqrt(m) in one of three directions: its RMS is 1 / sqrt(3 m).
     level = float(np.sqrt(np.mean(body.shapes**2)) * np.sqrt(3.0 * body.mass))
     if not 1e-2 < level < 1e2:
         yield (
             f"shapes: their RMS is {level:.3g} times that of a rigid motion with modal mass 1, must be about 1. "
             "Use shapes with modal masses of 1 kg in kg^-1/2 (from mm and tonnes: divide by sqrt(1000))."
         )
+    # Share |Q^T phi|^2 / |phi|^2, Q: orthonormal basis of the six rigid motions, (3 nodes, 6).
     motions, _ = body.rigid.rigid_motions(body.positions)
     basis, _ = np.linalg.qr(motions.reshape(6, -1).T)
     flat = body.shapes.reshape(len(body.shapes), -1)
@@ -243,6 +246,7 @@ def _modes(body: Superelement) -> Iterator[str]:
 
 
 def _normalised(body: Superelement, node_mass: Vector) -> Iterator[str]:
+    # phi^T M phi, (modes, modes).
     gram = np.einsum("ank,bnk,n->ab", body.shapes, body.shapes, node_mass)
     scale = np.diag(gram)
     for factor, unit in ((1e6, "probably mm: divide the shapes by 1000"), (1e-6, "probably km: multiply by 1000")):
@@ -260,6 +264,7 @@ def _normalised(body: Superelement, node_mass: Vector) -> Iterator[str]:
             "mass-normalised modes and the corresponding masses."
         )
     rigid, _ = body.rigid.rigid_motions(body.positions)
+    # R^T M phi, (6, modes): a free-free mode has neither momentum nor angular momentum.
     content = np.abs(np.einsum("ank,bnk,n->ab", rigid, body.shapes, node_mass))
     if content.max() > NORMALISATION:
         motion, mode = (int(k) for k in np.unravel_index(int(content.argmax()), content.shape))

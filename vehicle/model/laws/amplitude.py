@@ -39,6 +39,7 @@ def friction_elements(force: float, stroke: float) -> Jenkins:
         force: Fmax [N].
         stroke: x2 [m], above zero.
     """
+    # q from 1 (tangent at rest) to 0 (asymptote); neighbours meet at m, d.
     slopes = np.sin(0.5 * np.pi * np.arange(ELEMENTS, -1, -1) / ELEMENTS) ** 2
     middle, half = 0.5 * (slopes[:-1] + slopes[1:]), 0.5 * (slopes[:-1] - slopes[1:])
     return Jenkins.through(stroke * (1.0 / middle - 1.0), force * (1.0 - middle + half**2 / middle))
@@ -57,5 +58,6 @@ def behind_spring(elements: Jenkins, stiffness: float, local: float) -> Jenkins:
     """
     corners = elements.limit / elements.stiffness
     total = stiffness * corners + elements.backbone(corners)
+    # Corners of the backbone over the whole displacement; less the elastic line, the rest is again a friction part.
     moved = corners + total / local
     return Jenkins.through(moved, total - stiffness * local / (stiffness + local) * moved)

@@ -82,6 +82,7 @@ def in_steps(numbers: npt.ArrayLike, timestep: float) -> npt.NDArray[Any]:
     """
     values = np.asarray(numbers, dtype=float)
     records = np.concatenate([values, np.zeros((*values.shape[:-1], 1))], axis=-1)
+    # Columns 5 and 6: period and delay in steps; column 7: largest change in a step, from a rate [N s/m per s].
     records[..., 5:7] = np.rint(records[..., 5:7] / timestep)
     records[..., 5] = np.maximum(records[..., 5], 1.0)
     records[..., 7] = np.where(records[..., 7] < AT_ONCE, records[..., 7] * timestep, np.inf)

@@ -59,6 +59,7 @@ class Curve:
     def energy(self, position: float) -> float:
         """Return the integral of F from 0 to x, exactly: the elastic energy [J] of a spring."""
         corners = self.knots[(self.knots > min(position, 0.0)) & (self.knots < max(position, 0.0))]
+        # Between corners the force is a line: its mean is that in the middle, so the sum is exact.
         ends = np.sort([0.0, position, *corners])
         return float(np.sign(position) * np.sum(np.diff(ends) * self.force(0.5 * (ends[1:] + ends[:-1]))))
 
@@ -68,6 +69,7 @@ class Curve:
         if abs(float(self.force(0.0)) - force) <= scale:
             return 0.0
         rising = np.flatnonzero(self.slopes > 0.0)
+        # x = (F - b)/s on the line of each rising segment, limited to the segment: the nearest force wins.
         solutions = (force - self.offsets[rising]) / self.slopes[rising]
         edges = np.concatenate([[-np.inf], self.knots, [np.inf]])
         inside = np.clip(solutions, edges[rising], edges[rising + 1])
@@ -80,6 +82,7 @@ class Curve:
 
     def clamped(self) -> Vector:
         """Return e, m and e w of every segment steeper than D; (segments, 3)."""
+        # Outer segments end at BEYOND.
         edges = np.concatenate([self.knots[:1] - BEYOND, self.knots, self.knots[-1:] + BEYOND])
         excess = self.slopes - self.least_slope
         steeper = np.flatnonzero(excess > 0.0)

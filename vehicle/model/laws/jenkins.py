@@ -42,6 +42,7 @@ class Jenkins:
         """
         x, f = np.asarray(displacement, dtype=float), np.asarray(force, dtype=float)
         slopes = np.diff(f, prepend=0.0) / np.diff(x, prepend=0.0)
+        # The slope falls by k_i where element i begins to slide.
         stiffness = -np.diff(slopes, append=0.0)
         return cls(stiffness=stiffness, limit=stiffness * x)
 

@@ -28,5 +28,6 @@ def presliding_elements(damper: Damper) -> Vector:
     if damper.friction_law != "presliding" or damper.presliding_stiffness is None:
         return np.zeros((0, 2))
     share, slope = np.array(damper.presliding_force), np.array(damper.presliding_slope)
+    # Corners x_i of the first loading in units of L/K, with the shares p_i as forces.
     unit = Jenkins.through(np.cumsum(np.diff(share, prepend=0.0) / slope), share)
     return np.column_stack([damper.presliding_stiffness * unit.stiffness, unit.limit])

@@ -90,16 +90,20 @@ def _filled(table: Mapping[str, Any], folder: Path, prefix: str, sources: dict[s
     filled: dict[str, Any] = {}
     for key, value in table.items():
         path = f"{prefix}.{key}" if prefix else key
+        # A stop from files: its two ends become the points of one curve.
         if isinstance(value, Mapping) and key == "stop" and {"bump", "rebound"} & set(value):
             filled[key] = _stop(value, folder, path, sources)
+        # Sections of a section, at any depth.
         elif isinstance(value, Mapping):
             filled[key] = _filled(value, folder, path, sources)
         elif isinstance(value, str) and (
+            # Names of files that stay names: whole paths, so that a copy of the vehicle file elsewhere finds them.
             key == "fmu"
             or (key == "file" and prefix.startswith(("force.", "crank")))
             or (key == "pressure" and prefix.endswith(f".{ORDERS}"))
         ):
             filled[key] = _beside(folder, value).resolve().as_posix()
+        # Every other entry is kept.
         elif key != "curve":
             filled[key] = value
         else:
@@ -109,6 +113,7 @@ def _filled(table: Mapping[str, Any], folder: Path, prefix: str, sources: dict[s
                     f"{' and '.join(twice) if isinstance(value, str) else 'force'} in the same section"
                 )
             numbers, source = _numbers(table, _file(folder, value, path), path)
+            # Numbers of the vehicle file win over those of the curve, and have no source in it.
             filled |= {name: number for name, number in numbers.items() if name not in table}
             sources |= {f"{prefix}.{name}": source for name in numbers if name not in table}
     return filled

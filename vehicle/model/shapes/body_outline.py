@@ -77,6 +77,7 @@ class Outline:
         X, Y = (np.interp(station, STATION, PLAN[:, k]) for k in (0, 1))
         nx, ny = (np.interp(station, STATION, NORMAL[:, k]) for k in (0, 1))
         front, rear, side = (np.interp(height, *table.T) for table in INSETS)
+        # nx^2 + ny^2 = 1: weights of the inset of the ends and of the sides.
         inset = nx**2 * np.where(X < 2.0, front, rear) + ny**2 * side - lift
         # in a corner the inset must not move a point across the middle plane
         x, y = X - inset * nx, np.maximum(Y - inset * ny, 0.0)
@@ -84,6 +85,7 @@ class Outline:
         for axle in (0, 1):
             cx, cz = self.arch_centre(axle)
             gap = np.hypot(points[..., 0] - cx, points[..., 2] - cz) - self.arch_radius
+            # Flare of 10 mm on the side faces, which fades with the distance from the arch.
             points[..., 1] += 0.010 * ny**2 * np.exp(-((np.maximum(gap, 0) / 0.045) ** 2))
         return points
 
@@ -124,6 +126,7 @@ def outline(points: Points, size: Sizes) -> Outline:
 
 def _linear(values: Vector, knots: tuple[float, ...] | Vector, targets: tuple[float, ...] | Vector) -> Vector:
     a, b = np.asarray(knots, dtype=float), np.asarray(targets, dtype=float)
+    # Clipped to the outer segments: linear beyond the ends, which np.interp is not.
     i = np.clip(np.searchsorted(a, values) - 1, 0, len(a) - 2)
     result: Vector = b[i] + (values - a[i]) * (b[i + 1] - b[i]) / (a[i + 1] - a[i])
     return result

@@ -65,11 +65,13 @@ def lathe(profile: ArrayLike, *, sections: int = 24, closed: bool = False) -> tr
     for r, z in np.asarray(profile, dtype=float):
         around = phi[: 1 if r < ON_AXIS else sections]
         vertices.append(np.column_stack([r * np.cos(around), r * np.sin(around), np.full(len(around), z)]))
+        # A point on the axis counts as a ring of equal indices, so that all rings have equal length.
         rings.append(np.broadcast_to(count + np.arange(len(around)), sections))
         count += len(around)
     pairs = list(itertools.pairwise(rings)) + ([(rings[-1], rings[0])] if closed else [])
     faces = np.vstack([quads(low, np.roll(low, -1), np.roll(high, -1), high) for low, high in pairs])
     a, b, c = faces.T
+    # Quadrangles at the axis have triangles with a corner twice.
     faces = faces[(a != b) & (b != c) & (c != a)]
     return outward(trimesh.Trimesh(np.vstack(vertices), faces, process=False))
 
@@ -111,10 +113,12 @@ def frames(path: Vector, up: ArrayLike | None, *, closed: bool) -> tuple[Vector,
     tangents /= np.linalg.norm(tangents, axis=1)[:, None]
     if up is not None:
         wish = np.asarray(up, dtype=float)
+        # Projection of `up` onto the plane across the path.
         first = wish - (tangents @ wish)[:, None] * tangents
         first /= np.linalg.norm(first, axis=1)[:, None]
         return first, np.cross(tangents, first)
     first = np.empty_like(path)
+    # Any normal at the first point: from the axis that is farthest from the tangent.
     start = np.eye(3)[np.argmin(np.abs(tangents[0]))]
     start = start - (start @ tangents[0]) * tangents[0]
     first[0] = start / np.linalg.norm(start)
@@ -159,6 +163,7 @@ def tube(
         np.broadcast_to(np.asarray(half, dtype=float), len(centre))[:, None, None]
         for half in (radius, radius if width is None else width)
     )
+    # (path, corners, 3) by broadcasting.
     phi = (2 * np.pi * (np.arange(sides) + 0.5) / sides)[None, :, None]
     stretch = np.sqrt(2.0) if sides == 4 else 1.0  # half height and width of a bar refer to its flat faces
     return swept(
@@ -181,6 +186,7 @@ def swept(rings: Vector, *, closed: bool = False) -> trimesh.Trimesh:
     low, high = (index, np.roll(index, -1, axis=0)) if closed else (index[:-1], index[1:])
     faces = [quads(low, np.roll(low, -1, axis=1), np.roll(high, -1, axis=1), high)]
     if not closed:
+        # Flat ends as fans of triangles from corner 0.
         corner = np.arange(1, sides - 1)
         faces.append(np.column_stack([index[0, 0] + 0 * corner, index[0, corner + 1], index[0, corner]]))
         faces.append(np.column_stack([index[-1, 0] + 0 * corner, index[-1, corner], index[-1, corner + 1]]))
@@ -248,6 +254,7 @@ def joined(*meshes: trimesh.Trimesh | Sequence[trimesh.Trimesh]) -> trimesh.Trim
     flat: list[trimesh.Trimesh] = []
     for mesh in meshes:
         flat.extend([mesh] if isinstance(mesh, trimesh.Trimesh) else mesh)
+    # Faces of each mesh count its vertices from 0: shift by the vertices before.
     offsets = np.cumsum([0, *(len(mesh.vertices) for mesh in flat[:-1])])
     vertices = np.vstack([mesh.vertices for mesh in flat])
     faces = np.vstack([np.asarray(mesh.faces) + offset for mesh, offset in zip(flat, offsets, strict=True)])

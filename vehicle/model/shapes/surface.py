@@ -28,6 +28,7 @@ def spline(points: ArrayLike, count: int) -> Vector:
     tangents[1:-1] = (1 - weight) * slopes[:-1] + weight * slopes[1:]
     s = np.linspace(0, knots[-1], count)
     i = np.clip(np.searchsorted(knots, s, side="right") - 1, 0, len(p) - 2)
+    # Hermite basis on the segment of each parameter: values and tangents at both ends.
     h = np.diff(knots)[i][:, None]
     u = (s[:, None] - knots[i][:, None]) / h
     curve: Vector = (
@@ -94,6 +95,7 @@ def grid(points: Vector, *, flip: bool = False) -> trimesh.Trimesh:
     vertices = points.reshape(-1, 3)
     p, q, r = (vertices[faces[:, k]] for k in range(3))
     area = np.linalg.norm(np.cross(q - p, r - p), axis=1)
+    # A row that shrinks to a point has triangles without area.
     faces = faces[area > 1e-12]
     return trimesh.Trimesh(vertices, faces[:, ::-1] if flip else faces, process=True)
 

@@ -131,6 +131,7 @@ def shapes_at(car: Car, modes: Sequence[Mode], points: Sequence[str]) -> Complex
     """Return complex translations of output points in modes, (modes, points, 3)."""
     system = car.matrices.system
     rows = np.array([[system.output(f"{point}_acc_{axis}")[0] for axis in AXES] for point in points])
+    # Points p, axes a, coordinates n, modes m.
     return np.asarray(np.einsum("pan,mn->mpa", rows, np.array([mode.shape for mode in modes])), dtype=np.complex128)
 
 
@@ -190,6 +191,7 @@ def compare_modes(
     ).reshape(len(measured), -1)
     curve = shapes_at(car, simulated, list(nodes)).reshape(len(simulated), -1)
     table = mac(truth, curve)
+    # Pairs with the largest sum of MAC; each mode occurs once.
     rows, columns = scipy.optimize.linear_sum_assignment(table, maximize=True)
     pairs = [
         Pair(

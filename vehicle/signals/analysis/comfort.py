@@ -131,6 +131,7 @@ def settling(
     results = []
     for row in rows:
         a, b = (band_rms(time_step, half, band)[0] for half in (row[:middle], row[-middle:]))
+        # sqrt(2) for half of the record, and sqrt(2) for the difference of two halves.
         e = 2.0 * rms_standard_error(time_step, row, band)[0]
         drift = float(2.0 * (b - a) / (a + b)) if a + b > 0.0 else 0.0
         results.append(

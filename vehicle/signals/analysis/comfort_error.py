@@ -66,6 +66,7 @@ def overall_error(lines: Complex) -> Vector:
         sqrt(Var W) / (2 W) [-], 0 without vibration; (r,).
     """
     square = np.sum(np.abs(lines) ** 2, axis=(1, 2))
+    # X_k^H X_(k+1), summed over the axes; (r, m - 1).
     products = np.sum(lines[:, :, :-1].conj() * lines[:, :, 1:], axis=1)
     variance = np.sum(np.abs(products) ** 2, axis=1)
     error: Vector = np.divide(np.sqrt(variance), 2.0 * square, out=np.zeros_like(square), where=square > 0.0)

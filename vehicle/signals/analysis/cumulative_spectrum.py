@@ -64,6 +64,7 @@ class CumulativeSpectrum:
         power = spectrum.density[0, 1:] * spectrum.resolution_hz
         if weighting_name is not None:
             power = power * weighting(weighting_name).spectrum_factor(spectrum.frequency[1:]) ** 2
+        # Line k, from 1 on, covers (k - 1/2) df to (k + 1/2) df.
         self._edges = (np.arange(power.size + 1) + 0.5) * spectrum.resolution_hz
         self._below = np.concatenate([[0.0], np.cumsum(power)])
 

@@ -104,6 +104,7 @@ def _corridor(truth: Vector, curve: Vector) -> float:
     if largest == 0.0:
         return float(np.mean(distance == 0.0))
     inner, outer = INNER * largest, OUTER * largest
+    # Between both corridors the rating falls as a parabola from 1 to 0.
     share = np.where(distance > outer, 0.0, ((outer - distance) / (outer - inner)) ** 2)
     return float(np.mean(np.where(distance < inner, 1.0, share)))
 
@@ -135,6 +136,7 @@ def best_shift(truth: Vector, curve: Vector) -> int:
     limit = int(LARGEST_SHIFT * count + 1e-9)
     correlation = coefficients(truth, curve, limit)
     best, lag = correlation[limit], 0
+    # From small to large lags, so that a tie keeps the smaller lag.
     for distance in range(1, limit + 1):
         for shift in (distance, -distance):
             if correlation[limit + shift] > best + _TIE:
@@ -146,6 +148,7 @@ def _slope(values: Vector, step: float) -> Vector:
     """Return the slopes smoothed by a running mean, which is shorter towards the ends."""
     slope = np.gradient(values, step)
     half = SMOOTHED // 2
+    # A difference of cumulated sums is the sum over a window; the window stays symmetric up to the ends.
     total = np.concatenate([[0.0], np.cumsum(slope)])
     index = np.arange(values.size)
     half_width = np.minimum(half, np.minimum(index, index[::-1]))

@@ -73,8 +73,10 @@ def copy_of(time_step: float, first: Vector, second: Vector, band: tuple[float, 
     cross = np.zeros_like(x)
     size = np.abs(x * y)[window]
     driven = size > DRIVEN * size.max()
+    # Phase transform: every driven line has the weight 1, so that the correlation is a sharp peak at the delay.
     cross[window][driven] = (y * x.conj())[window][driven] / size[driven]
     shift = int(np.argmax(np.abs(np.fft.irfft(cross, length))))
+    # The second half of a circular correlation contains the negative delays.
     shift -= length if shift > length // 2 else 0
     shift = shift if abs(shift) < count // 2 else 0
     early, late = (first[: count - shift], second[shift:]) if shift >= 0 else (first[-shift:], second[:shift])
@@ -82,6 +84,7 @@ def copy_of(time_step: float, first: Vector, second: Vector, band: tuple[float, 
     x, y = (np.fft.rfft((signal - signal.mean()) * taper) for signal in (early, late))
     line = 1.0 / (early.size * time_step)
     mean = np.ones(2 * SIDE_LINES + 1)
+    # Sums over 17 lines: without averaging the coherence would be 1.
     s11, s22, s12 = (np.convolve(p, mean, mode="same") for p in (abs(x) ** 2, abs(y) ** 2, x.conj() * y))
     inside = np.zeros(s11.size, dtype=bool)
     inside[int(band[0] / line) : int(band[1] / line) + 1] = True
@@ -89,6 +92,7 @@ def copy_of(time_step: float, first: Vector, second: Vector, band: tuple[float, 
         inside &= power > DRIVEN * power[inside].max()
     coherence = np.abs(s12[inside]) ** 2 / (s11[inside] * s22[inside])
     first_power, second_power, cross_power = (np.sum(s[inside].real) for s in (s11, s22, s12))
+    # Least-squares factor Re S12/S11, if a real factor explains the power.
     factor = cross_power / first_power if cross_power**2 > DEPENDENT * first_power * second_power else np.nan
     return Copy(coherence=float(np.median(coherence)), delay=shift * time_step, factor=float(factor))
 

@@ -49,9 +49,11 @@ def mtvv(
         )
     if average == "linear":
         total = np.cumsum(square, out=square)
+        # Windows that begin before the record, where the signal is zero, count too.
         window_sums = total[length:] - total[: max(square.size - length, 0)]
         running = np.max(window_sums, initial=total[:length].max()) / length
     elif average == "exponential":
+        # Square after a first-order filter: y_n = d y_(n-1) + (1 - d) a_n^2, d = exp(-dt/tau).
         decay = float(np.exp(-step / integration_s))
         running = scipy.signal.lfilter([1.0 - decay], [1.0, -decay], square).max()
     else:

@@ -11,6 +11,7 @@ def fast_length(samples: int) -> int:
     while fives < best:
         odd = fives
         while odd < best:
+            # Smallest 2^k odd that is at least `samples`: k is the number of bits of ceil(samples/odd) - 1.
             best = min(best, odd << max(-(-samples // odd) - 1, 0).bit_length())
             odd *= 3
         fives *= 5

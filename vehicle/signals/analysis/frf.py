@@ -147,6 +147,7 @@ def frequency_responses(
     power = np.real(np.einsum("mii->mi", gxx))  # (m, p)
     reached = (power > EXCITED * np.real(np.einsum("mii->mi", gxx_all)).max(axis=0)).all(axis=1)
     size = np.sqrt(np.where(reached[:, None], power, 1.0))
+    # Inputs of unit power: D^-1 Gxx D^-1 with D = diag(size), so that its eigenvalues measure the dependence alone.
     scaled = gxx / (size[:, :, None] * size[:, None, :])  # unit diagonal, (m, p, p)
     independence = np.where(reached, np.linalg.eigvalsh(scaled)[:, 0].clip(0.0), 0.0)
     if inputs > 1:
@@ -159,6 +160,7 @@ def frequency_responses(
     inflation = np.full(
         (inputs, separable.size), np.nan
     )  # what inputs have in common raises the error: (Gxx^-1)_ii (Gxx)_ii
+    # H = Gxx^-1 Gxy = D^-1 (D^-1 Gxx D^-1)^-1 D^-1 Gxy.
     cross = gxy[separable] / size[separable][:, :, None]
     solution = np.linalg.solve(scaled[separable], cross)  # (m, p, k)
     response[:, :, separable] = np.moveaxis(solution / size[separable][:, :, None], (0, 1, 2), (2, 0, 1))
@@ -168,6 +170,7 @@ def frequency_responses(
     if cut.averages < 2.0:
         reasons.append(f"the coherence is undefined with {cut.averages:.3g} averages: a single average always gives 1")
     else:
+        # Gxy^H Gxx^-1 Gxy: power of the response that the inputs explain.
         explained = np.real(np.einsum("mpk,mpk->km", cross.conj(), solution))
         share = np.full(explained.shape, np.nan)
         np.divide(explained, syy[:, separable], out=share, where=(syy[:, separable] > 0.0) & ~still[:, None])
@@ -182,8 +185,10 @@ def frequency_responses(
         if lost.any():
             where = lines[inside][lost]
             reasons.append(f"{where.size} lines between {where[0]:g} and {where[-1]:g} Hz: {cause}")
+    # n - p + 1 averages are left, and dependent inputs reduce them further.
     averages = (cut.averages - inputs + 1.0) / inflation  # (p, m)
     noise = np.sqrt((1.0 - np.minimum(coherence, 1.0)) * syy / 2.0)  # (k, m)
+    # sqrt((1 - gamma^2) Gyy (Gxx^-1)_ii/(2 (n - p + 1))) with (Gxx^-1)_ii = inflation/Gxx_ii.
     error = noise / np.sqrt(averages * size.T**2)[:, None]  # (p, k, m)
     return tuple(
         FrequencyResponse(

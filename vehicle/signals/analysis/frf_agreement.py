@@ -60,10 +60,12 @@ def scaled_frac(frequency: npt.ArrayLike, measured: npt.ArrayLike, simulated: np
 
     def loss(logarithm: float) -> float:
         scaled_lines = lines / np.exp(logarithm)
+        # H_s(f/s), linear between the lines; no value outside the record.
         scaled = np.interp(scaled_lines, lines[defined], bottom[defined], left=np.nan, right=np.nan)
         agreement = frac(top, scaled)
         return 1.0 - agreement if np.isfinite(agreement) else 1.0
 
+    # FRAC has several maxima over the scale: a coarse search first, then a fine search around the best value.
     grid = np.linspace(-LARGEST_SCALE, LARGEST_SCALE, 81)
     losses = [loss(logarithm) for logarithm in grid]
     index = int(np.argmin(losses))
@@ -190,6 +192,7 @@ def band_errors(
         if np.count_nonzero(inside) < LEAST_LINES:
             continue
         w, ratio = share[inside], logarithm[inside]
+        # 20 lg|r| = 20/ln(10) ln|r|.
         decibel = 20.0 / np.log(10.0) * ratio.real
         errors.append(
             BandError(

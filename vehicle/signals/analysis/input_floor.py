@@ -74,6 +74,8 @@ def rounding_step(samples: Vector) -> float:
     steps = steps[steps > 1e-9 * np.ptp(samples)]
     if not steps.size:
         return 0.0
+    # If samples are rounded, all differences are whole multiples of the smallest; large multiples are left out,
+    # because an error of the step adds up there.
     ratio = steps / np.percentile(steps, 1)
     smallest = steps[ratio < 1.5]
     del steps  # free memory: as long as the record
@@ -95,6 +97,7 @@ def tapered_power(samples: Vector, rounding: float, lines: int | None = None) ->
     """
     count, mean = samples.size, samples.mean()
     all_lines = count // 2 + 1
+    # One line more, for the average over three lines.
     computed = min(lines + 1, all_lines) if lines is not None and is_long(count) else all_lines
     transform = RecordLines(count, 0, computed)
     power, total = np.zeros(computed), 0.0
@@ -107,13 +110,17 @@ def tapered_power(samples: Vector, rounding: float, lines: int | None = None) ->
             return np.asarray((samples[part] - mean) * window(part))
 
         energy = sum(float(np.sum(window(part) ** 2)) for part in transform.parts)
+        # Scaled like a rectangular window, whose energy is `count`.
         power += np.abs(transform.of(tapered)) ** 2 * count / energy / TAPERS
         if computed < all_lines:
             total += sum(float(np.sum(tapered(part) ** 2)) for part in transform.parts) * count**2 / energy / TAPERS
+    # Parseval: `total` is the sum of |X_k|^2 over all lines of both signs, so that (total + |X_0|^2)/2 is that of one
+    # side.
     if computed < all_lines and 0.5 * (total + float(power[0])) - float(np.sum(power)) > float(np.max(power)):
         return tapered_power(samples, rounding)
     power = np.convolve(power, np.full(3, 1.0 / 3.0), mode="same")
     exact = count * (ROUNDING * max(float(samples.max()), -float(samples.min()))) ** 2
+    # White noise of variance q^2/12 has the power n q^2/12 on each line of |rfft|^2.
     floor = max(count * rounding**2 / 12.0, LEAKAGE * float(np.max(power[TAPERS:])), exact)
     return power[:lines], floor
 
@@ -181,6 +188,7 @@ def silent_lines(
             smooth = _cubic_basis(half)
             drive, line_power = spectrum[lines], power[centres[selected]]
             energy = np.abs(drive) ** 2
+            # Power that remains after a fit by cubic polynomials over the window.
             roughness = np.mean(np.abs(drive - (drive @ smooth) @ smooth.T) ** 2, axis=1)
             effective_lines = energy.sum(axis=1) ** 2 / np.sum(energy**2, axis=1)  # effective number of driven lines
             octaves = np.array([power[centre // 2 : 2 * centre].max() for centre in centres[selected]])
@@ -196,6 +204,8 @@ def silent_lines(
             cause = np.where(tests.any(axis=0), 1 + np.argmax(tests, axis=0), 0)
             causes[selected] = np.where(causes[selected], causes[selected], cause)
             chance[selected] &= ~tests[[0, 1, 3, 4]].any(axis=0) & (effective_lines >= FEWEST_BY_CHANCE)
+    # A line with drive on both sides that fails by the number of its lines alone counts as driven: chance of a random
+    # input.
     driven = np.concatenate([[False], causes == 0, [False]])
     causes[chance & driven[:-2] & driven[2:]] = 0
     return causes
@@ -207,6 +217,7 @@ def cause_messages(frequency: Vector, silent: NDArray[np.int_], causes: Sequence
     for number, cause in enumerate(causes, 1):
         affected = np.flatnonzero(silent == number)
         if affected.size:
+            # Consecutive lines form a range.
             runs = np.split(affected, np.flatnonzero(np.diff(affected) > 1) + 1)
             ends = [(f"{frequency[run[0]]:.2f}", f"{frequency[run[-1]]:.2f}") for run in runs[:4]]
             spans = ", ".join(low if low == high else f"{low} to {high}" for low, high in ends)

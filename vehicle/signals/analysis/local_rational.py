@@ -147,6 +147,7 @@ def local_rational_responses(
             "at a higher rate"
         )
     halves = np.clip(np.round(RELATIVE_WIDTH * centres), least_half, MOST_HALF_WIDTH).astype(int)
+    # A window ends within the spectrum, without the line at 0 Hz.
     halves = np.minimum(halves, np.minimum(centres - 1, last - centres))
     lines_of = RecordLines(samples, 0, int(np.max(centres + halves, initial=0)) + 1)
     spectra = np.array([_without_mean(row, lines_of) for row in inputs])
@@ -166,11 +167,13 @@ def local_rational_responses(
         for members in _batches(halves[driven_centres] > least_half, group.size):
             selected = driven_centres[members]
             half = int(halves[selected].max())
+            # Windows of unequal length in one array: lines outside of a shorter window are set to zero.
             inside = np.abs(np.arange(-half, half + 1)) <= halves[selected, None]  # (s, N)
             lines = np.where(inside, centres[selected, None] + np.arange(-half, half + 1), 0)
             size = inside.sum(axis=1)
             input_windows, input_level = _scaled(spectra[:, lines] * inside, 2, size)  # (p, s, N), (p, s)
             input_windows = np.ascontiguousarray(input_windows.swapaxes(0, 1))
+            # Spectral matrix S of the inputs over the window, unit diagonal; (s, p, p).
             gram = input_windows @ input_windows.conj().swapaxes(1, 2) / size[:, None, None]
             separable = np.linalg.eigvalsh(gram)[:, 0] >= INDEPENDENT
             silent[selected[~separable]] = len(CAUSES) + 1
@@ -183,10 +186,14 @@ def local_rational_responses(
                 input_windows[separable], output_windows, halves[selected], wide=bool(halves[selected[0]] > least_half)
             )
             variance = np.real(np.einsum("skii->isk", fit.covariance))
+            # From scaled spectra back to the units of response and input.
             ratio = output_level / input_level[:, separable, None]  # (p, s, k)
             rows = np.ix_(np.arange(len(inputs)), group, selected)
+            # (s, k, p) to (p, k, s), the axes of the result.
             response[rows] = (fit.response.transpose(2, 0, 1) * ratio).swapaxes(1, 2)
+            # Half of the variance of a complex number is that of its magnitude.
             deviation[rows] = (np.sqrt(variance / 2.0) * ratio).swapaxes(1, 2)
+            # A mean over n lines with unit input has the variance noise/n.
             averages[rows] = (fit.noise / variance).swapaxes(1, 2)
             coherence[rows[1][0], selected] = _coherence(fit, gram).T
     frequency = centres * line

@@ -26,6 +26,7 @@ def mac(first: npt.ArrayLike, second: npt.ArrayLike, mass: Vector | None = None)
     a, b = (np.asarray(shapes, dtype=complex) for shapes in (first, second))
     a, b = a.reshape(len(a), -1), b.reshape(len(b), -1)
     mass_a, mass_b = (shapes if mass is None else shapes @ mass for shapes in (a, b))
+    # (a^H M a) (b^H M b) of every pair; (m, k).
     power = np.outer(np.sum(a.conj() * mass_a, axis=1).real, np.sum(b.conj() * mass_b, axis=1).real)
     criterion = np.zeros(power.shape)
     np.divide(np.abs(a.conj() @ mass_b.T) ** 2, power, out=criterion, where=power > 0.0)

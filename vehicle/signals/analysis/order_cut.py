@@ -68,6 +68,7 @@ def order_cut(
     speeds = np.zeros(len(middles))
     for segment, middle in enumerate(middles):
         part = slice(*np.searchsorted(turned, [middle - 0.5 * TURNS, middle + 0.5 * TURNS]))
+        # Hann window over the angle, times W dt = d theta; the factor 2 turns a mean into an amplitude.
         window = (1.0 + np.cos(2.0 * np.pi * (turned[part] - middle) / TURNS)) * speed[part]
         window *= 2.0 / window.sum()
         values = channels[:, part] - channels[:, part].mean(axis=1, keepdims=True)

@@ -75,6 +75,7 @@ def order_lines(
     step = max(round(length * (1.0 - OVERLAP)), 1)
     segments = 1 + (count - length) // step
     window = np.hanning(length + 2)[1:-1]
+    # The factor 2 turns a mean into an amplitude.
     window *= 2.0 / window.sum()
     frequency = turns * np.array(orders, dtype=float)
     amplitudes = np.zeros((segments, len(channels), len(orders)), dtype=complex)

@@ -82,9 +82,11 @@ def fit_windows(inputs: Complex, outputs: Complex, halves: NDArray[np.int_], *, 
     dof = (2 * halves + 1 - 3 * input_count - 3)[:, None]  # less b, t and a
     floor = EXACT * _column_power(outputs)
     windows = _Windows(inputs, halves)
+    # Projection on the terms without a pole; what remains is for the pole to explain.
     coefficients = _adjoint(windows.basis) @ outputs.swapaxes(0, 1)  # (s, 2p + 1, k)
     residual = outputs - (windows.basis @ coefficients).swapaxes(0, 1)
     total = _column_power(residual)
+    # H at the centre line, x = 0, of these terms alone.
     response = _transposed(windows.weights @ coefficients)
     covariance = np.empty((count, output_count, input_count, input_count), dtype=np.complex128)
     noise, share = np.empty((2, count, output_count))
@@ -109,6 +111,8 @@ def fit_windows(inputs: Complex, outputs: Complex, halves: NDArray[np.int_], *, 
         at = of[chosen], sharp[chosen]
         node, refined_windows = best[at] - 1, windows.of(at[0])
         refined = _refine(grid.poles[node], residual[:, at[0], at[1]].T, refined_windows, grid.sharpest)
+        # Standard error of the pole in cells of the grid. Far below a cell the refined estimate replaces the mean,
+        # above a cell the mean stays.
         power = np.maximum(refined.cost, floor[at]) / dof[at[0], 0]
         cells = np.sqrt(power) * refined.error / np.abs(refined.a) ** 2 / grid.spacing[node]
         trust = 1.0 / (1.0 + (2.0 * cells) ** 4)
@@ -141,10 +145,12 @@ def _posterior(
     residual_power: Vector = np.broadcast_to(total, right[0].shape)
     for i, row in enumerate(right):
         for j in range(i):
+            # Forward substitution with L; each unknown lowers the residual power by |row|^2/D.
             row -= equations.lower[i][j][:, block, None] * right[j]
         residual_power = residual_power - (row.real**2 + row.imag**2) * equations.weights[i][:, block, None]
     residual_power = np.maximum(residual_power, floor)
     best = np.argmin(residual_power, axis=0)
+    # RSS^-dof over its largest value, in logarithms against underflow.
     probability = np.log(residual_power)
     probability -= probability.min(axis=0)
     probability *= -dof
@@ -166,6 +172,7 @@ def _posterior(
     for i, j in np.ndindex(len(part), len(part)):
         node_covariance = equations.covariance[block, i, j] + np.sum(gain[i] * direct[j].conj(), axis=0)  # (G, s)
         real = part[i].real * part[j].real + part[i].imag * part[j].imag
+        # Mean of the covariances of all poles, and the scatter of their estimates about the mean.
         covariance[..., i, j] = np.einsum("gsk,gs->sk", residual_power, node_covariance.real) / dof + np.einsum(
             "gsk,gsk->sk", probability, real
         )
@@ -197,6 +204,7 @@ class _Windows:
         self.offset = np.where(inside, offset, 0.0)
         constant, x = inside[:, None].astype(np.float64), self.offset[:, None]
         self.tail = _transposed(np.concatenate([inputs, constant], axis=1))
+        # [U, U x, 1] = Q R, so H, the coefficient of U at x = 0, is in the first rows of R^-1 Q' Y.
         self.basis, triangle = np.linalg.qr(_transposed(np.concatenate([inputs, inputs * x, constant], axis=1)))
         self.inverse = np.linalg.inv(triangle)
         self.weights = self.inverse[:, :input_count]
@@ -224,6 +232,7 @@ class _Windows:
             with_pole: terms with the pole, s `tail`, shape (s, N, p + 1).
             adjoint: their conjugate transpose.
         """
+        # Gram matrix of the terms less their projection: P - S' S with S = basis' terms; likewise their part in H.
         power, share = adjoint @ with_pole, _adjoint(adjoint @ self.basis)
         inputs, size = self.weights.shape[1], self.tail.shape[2]
         return power - _adjoint(share) @ share, np.eye(inputs, size) - self.weights @ share
@@ -243,9 +252,7 @@ class _NormalEquations(NamedTuple):
 def _normal_equations(grid: PoleGrid, windows: _Windows, halves: NDArray[np.int_]) -> _NormalEquations:
     """Return the normal equations of the terms with a pole, less their projection on the basis.
 
-    With s = 1 / (1 + a x), the sums over the lines of s |U|^2, s U and s are sufficient, because
-
-        x s = (1 - s) / a   and   |s|^2 = (a s - a* s*) / (a - a*).
+    With s = 1 / (1 + a x), the sums over the lines of s |U|^2, s U and s are sufficient.
     """
     size = windows.tail.shape[2]
     inputs, a = size - 1, grid.poles[:, None]
@@ -256,7 +263,7 @@ def _normal_equations(grid: PoleGrid, windows: _Windows, halves: NDArray[np.int_
     shape = (size, size, len(a), len(halves))
     sums = np.empty(shape, dtype=np.complex128)  # sum of s conj(t_i) t_j, t = (U, 1)
     for number, (i, j) in enumerate(upper):
-        # real and imaginary columns of a product, each times s
+        # Sums of s times real and imaginary part of the product; s of a mirrored pole is conj(s(-x)).
         columns = slice(2 * number, 2 * number + 2)
         real, imaginary = np.moveaxis(
             np.concatenate([first[0, ..., columns] + 1j * first[1, ..., columns],
@@ -266,11 +273,14 @@ def _normal_equations(grid: PoleGrid, windows: _Windows, halves: NDArray[np.int_
     gram = np.empty((size, size, len(a) + 1, len(halves)), dtype=np.complex128)
     direct = np.empty((inputs, *gram.shape[1:]), dtype=np.complex128)
     gram[:, :, 0], direct[:, :, 0] = gram_none.transpose(1, 2, 0), direct_none.transpose(1, 2, 0)
+    # sum |s|^2 conj(t_i) t_j by |s|^2 = (a s - a* s*)/(a - a*).
     gram[:, :, 1:] = (a * sums - (a * sums.swapaxes(0, 1)).conj()) / (a - a.conj())
     direct[:, :, 1:] = np.eye(inputs, size)[:, :, None, None]
     plain = (_adjoint(windows.tail) @ windows.tail).transpose(1, 2, 0)[:, :, None]  # (p + 1, p + 1, 1, s)
+    # Products with U, with U x by x s = (1 - s)/a, and with 1.
     held = np.concatenate([sums[:-1], (plain[:-1] - sums[:-1]) / a, sums[-1:]])
     inverse = windows.inverse.transpose(1, 2, 0)  # (2p + 1, 2p + 1, s)
+    # basis' terms = R^-H (U, U x, 1)' terms, column by column, and subtract its square.
     for column in range(len(held)):
         share = inverse[0, column].conj() * held[0]  # (p + 1, G, s)
         for row in range(1, column + 1):
@@ -282,6 +292,7 @@ def _normal_equations(grid: PoleGrid, windows: _Windows, halves: NDArray[np.int_
     pivots: list[Vector] = []
     for i in range(size):
         row_of: list[Complex] = []
+        # L D L' without square roots, and L^-1 applied to the part in H, for all windows and poles at once.
         for j in range(i):
             element = gram[i, j].copy()
             for m in range(j):
@@ -355,6 +366,7 @@ def _refine(start: Complex, residual: Complex, windows: _Windows, least_imaginar
         better = (trial.cost < current.cost[active]) & (
             (pole.imag >= least_imaginary) | (np.abs(pole.real) > FARTHEST + 0.2)
         )
+        # Shorten a step that does not lower the residual, and retry from the same pole.
         scale[active] = np.where(better, 1.0, 0.3 * scale[active])
         for stored, new in zip(current, trial, strict=True):
             stored[active[better]] = new[better]

@@ -39,6 +39,7 @@ class Peak:
 
 def _vertex(x: Vector, y: Vector) -> tuple[float, float]:
     """Return position and height of the parabola through three points around a maximum, not necessarily equidistant."""
+    # Divided differences of Newton: y = y0 + left (x - x0) + curvature (x - x0)(x - x1).
     left = (y[1] - y[0]) / (x[1] - x[0])
     right = (y[2] - y[1]) / (x[2] - x[1])
     curvature = (right - left) / (x[2] - x[0])
@@ -93,6 +94,7 @@ def resonance_peaks(
         raise ConfigurationError(f"prominence: found {prominence_db!r} dB, must be a finite number above 0 dB")
 
     peaks: list[Peak] = []
+    # Ranges of defined and of undefined lines alternate.
     for span in np.split(np.arange(lines.size), np.flatnonzero(np.diff(defined.astype(np.int8))) + 1):
         if span.size < 3 or not defined[span[0]]:
             continue
@@ -139,6 +141,7 @@ def phase_resonance(frequency: Vector, response: Complex) -> float:
     crossing = np.flatnonzero((real[:-1] < 0.0) & (real[1:] >= 0.0) & positive_imaginary[:-1] & positive_imaginary[1:])
     if not crossing.size:
         return float("nan")
+    # Zero of the real part by the straight line between both lines.
     crossings = frequency[crossing] - real[crossing] * (frequency[crossing + 1] - frequency[crossing]) / (
         real[crossing + 1] - real[crossing]
     )

@@ -154,10 +154,12 @@ def repeated_samples(samples: Vector, shortest: int, rounding: float = 0.0) -> t
     if not periods.size:
         return 0, 0, 0.0
     step = rounding or rounding_step(samples)
+    # A tolerance near the range would find a period in any record.
     tolerance = max(ROUNDED * step, SAME * extent)
     if tolerance > extent / RANGE:
         return 0, 0, 0.0
     for period in _possible_periods(samples, periods, tolerance).tolist():
+        # Samples after the last difference repeat.
         other = np.flatnonzero(np.abs(samples[period:] - samples[:-period]) > tolerance)
         repeated = samples.size - period - (int(other[-1]) + 1 if other.size else 0)
         # A slow motion changes by less than the tolerance in a short time.
@@ -170,6 +172,7 @@ def repeated_samples(samples: Vector, shortest: int, rounding: float = 0.0) -> t
 def _possible_periods(samples: Vector, periods: NDArray[np.int_], tolerance: float) -> NDArray[np.int_]:
     """Return the periods after which some samples of the last half of a record are repeated."""
     for probe in np.linspace(samples.size - samples.size // 2, samples.size - 1, PROBES).astype(int).tolist():
+        # Each probe leaves the periods before which the sample was the same.
         periods = periods[np.abs(samples[probe] - samples[probe - periods]) <= tolerance]
     return periods
 
@@ -185,11 +188,14 @@ def _periodic_response(
     frequency = np.arange(period // 2 + 1) / (period * step)
     drive = np.fft.rfft(excitation[-count * period :].reshape(count, period).mean(axis=0))
     power = np.abs(drive) ** 2
+    # Rounding adds white noise of q^2/12, n q^2/12 on a line, and the mean over the periods divides it by their
+    # number.
     floor = max(DRIVEN**2 * float(power[1:].max()), ABOVE_FLOOR * period * rounding**2 / 12.0 / count)
     inside = (frequency >= band[0] * (1.0 - SAME)) & (frequency <= band[1] * (1.0 + SAME))
     lines = np.flatnonzero(inside & (power >= floor) & (frequency > 0.0))
     if lines.size < ADJACENT:
         return excitation.size, ""
+    # Nine lines around each line, shifted inwards at the ends; (lines, ADJACENT).
     windows = np.clip(np.arange(lines.size) - ADJACENT // 2, 0, lines.size - ADJACENT)[:, None] + np.arange(ADJACENT)
     shape = len(responses), lines.size
     response, coherence = np.full(shape, complex(np.nan, np.nan)), np.full(shape, np.nan)
@@ -202,6 +208,7 @@ def _periodic_response(
         spectra = np.fft.rfft(samples[-count * period :].reshape(count, period), axis=1)[:, lines]
         changes = np.linalg.norm(spectra[:-1] - spectra[-1], axis=1)
         size = float(np.linalg.norm(spectra[-1]))
+        # Periods after the last transient period differ by noise alone.
         earlier = np.flatnonzero(changes > NOISE * changes[-1])
         noisy = spectra[earlier[-1] + 1 if earlier.size else 0 :]
         if not changes[-1] <= SETTLED * size and len(noisy) < NOISE_PERIODS:
@@ -216,6 +223,7 @@ def _periodic_response(
         power_of_mean = np.abs(mean) ** 2
         scatter = _scatter(frequency[lines][windows], drive[lines][windows], mean[windows]) / power_of_mean
         distortion, noise = float(np.median(scatter)), float(np.median(variance / averaged / power_of_mean))
+        # The scatter contains the noise of the mean.
         distortion = distortion - noise if distortion > DISTINCT * noise else 0.0
         if not distortion <= DISTORTED**2:
             return period, (
@@ -225,6 +233,7 @@ def _periodic_response(
                 "is evaluated as a random record"
             )
         response[row] = mean / drive[lines]
+        # Variance of Y: noise of the mean, or distortion, which repeats and no average lowers.
         error = np.maximum(variance / averaged, distortion * power_of_mean)
         variance = np.maximum(variance, error)
         explained = np.maximum(power_of_mean - error, 0.0)
@@ -258,10 +267,12 @@ def _scatter(frequency: Vector, drive: Complex, response: Complex) -> Vector:
     Returns:
         Variance of a line, shape (m,).
     """
+    # Scaled to -1 ... 1 with the middle line at 0.
     x = frequency - np.median(frequency, axis=1, keepdims=True)
     x /= np.abs(x).max(axis=1, keepdims=True)
     columns = np.stack([*(drive * x**degree for degree in range(DEGREE + 1)), -x * response], axis=-1)
     basis = np.linalg.qr(columns)[0]
     fitted = basis @ (basis.conj().swapaxes(1, 2) @ response[:, :, None])
+    # ADJACENT lines less the unknowns b_0 ... b_DEGREE and a.
     variance: Vector = np.sum(np.abs(response - fitted[:, :, 0]) ** 2, axis=1) / (ADJACENT - DEGREE - 2)
     return variance

@@ -127,15 +127,19 @@ def phase_inputs(
     weighted = density * frequency**4
     if not weighted.max() > 0.0:
         raise DataError("record: no input moves, so there is no FRF; use an input that moves a plate")
+    # A^2/2 = S df with df = 1/PERIOD.
     amplitude = np.sqrt(2.0 * density / PERIOD)
     phase = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi, (PHASES, highest))
     ramp = np.arange(change) / change
+    # Polynomial from 0 to 1 with zero first and second derivatives at both ends.
     ramp = ramp**3 * (10.0 - 15.0 * ramp + 6.0 * ramp**2)
+    # The periodic input from `lead` before its period.
     block = np.arange(-lead, period) % period
     samples = {}
     for name in record:
         shift = 2.0 * np.pi * frequency * (delays or {}).get(name, 0.0)
         spectra = np.zeros((PHASES, period // 2 + 1), dtype=complex)
+        # rfft of A cos(2 pi k t/T + phase) is N/2 A exp(i phase) on line k.
         spectra[:, 1 : highest + 1] = 0.5 * period * amplitude * np.exp(1j * (phase - shift))
         waves = np.fft.irfft(spectra, period, axis=1)[:, block]
         before = np.vstack([np.zeros(change), waves[:-1][:, lead : lead + change]])  # goes on for a moment

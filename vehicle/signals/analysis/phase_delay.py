@@ -56,9 +56,11 @@ def phase_delay(frequency: Vector, first: npt.ArrayLike, second: npt.ArrayLike, 
     if np.count_nonzero(usable) < 3:
         return None
     omega, w = 2.0 * np.pi * frequency[usable], weight[usable] / weight[usable].sum()
+    # Unit vectors exp(i phi_k), whatever the levels.
     turn = h_2[usable] * np.conj(h_1[usable])
     turn /= np.abs(turn)
     step = 2.0 * np.pi / float(omega[-1]) / PER_PERIOD
+    # Maximum of sum w cos(phi + w d) over all delays of the grid; (delays, lines).
     grid = step * np.arange(-np.ceil(LARGEST_DELAY / step), np.ceil(LARGEST_DELAY / step) + 1)
     delay = float(grid[np.argmax((np.exp(1j * grid[:, None] * omega) @ (w * turn)).real)])
     power = float(w @ omega**2)
@@ -70,6 +72,7 @@ def phase_delay(frequency: Vector, first: npt.ArrayLike, second: npt.ArrayLike, 
             break
     phase = np.angle(turn * np.exp(1j * omega * delay))
     spread = float(w @ phase**2)
+    # Correlation of neighbouring lines leaves fewer independent lines.
     rho = float(phase[1:] @ phase[:-1]) / max(float(phase @ phase), 1e-300)
     independent = omega.size * (1.0 - rho) / (1.0 + rho) if rho > 0.0 else omega.size
     error = np.sqrt(spread / max(independent - 1.0, 1.0) / power)

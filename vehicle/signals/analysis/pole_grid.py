@@ -44,7 +44,9 @@ def pole_grid(wide: bool, half: int) -> PoleGrid:
     real, imaginary = np.linspace(0.0, FARTHEST, POSITIONS // 2 + 1), np.geomspace(sharpest, WIDEST, BANDWIDTHS)
     nodes: Complex = (real[:, None] + 1j * imaginary).ravel().astype(np.complex128)
     mirrored = nodes.size - BANDWIDTHS
+    # Mirrored at the imaginary axis; a pole on the axis has no second image.
     nodes = np.concatenate([nodes, -nodes[BANDWIDTHS:].conj()])
+    # Distance of neighbours: in position, or in bandwidth, which grows by a constant factor.
     spacing = np.minimum(real[1], (imaginary[1] / imaginary[0] - 1.0) * nodes.imag)
     return PoleGrid(-np.reciprocal(nodes), spacing, sharpest, mirrored, wide, half)
 
@@ -68,8 +70,6 @@ def _shapes_of(wide: bool, half_of_grid: int, half: int) -> tuple[Vector, Vector
 def sums_of_poles(grid: PoleGrid, columns: Vector, halves: NDArray[np.int_]) -> tuple[Vector, Vector]:
     """Return the sums of s(x) y and s(-x) y over the lines, s = 1 / (1 + a x), for the poles of Re z >= 0.
 
-    The even and odd parts of y are summed once for both.
-
     Args:
         grid: poles; s(-x) is returned for those with Re z > 0 only, s*(-x) is that of the mirrored pole.
         columns: y, shape (N, s, c).
@@ -79,11 +79,13 @@ def sums_of_poles(grid: PoleGrid, columns: Vector, halves: NDArray[np.int_]) -> 
         Real and imaginary parts, shape (2, poles, s, c), of s(x) and of s(-x).
     """
     middle, (count, width) = len(columns) // 2, columns.shape[1:]
+    # y(x) and y(-x) for x > 0: sum of s y = sum of s_even (y + y-) + s_odd (y - y-).
     after, before = columns[middle + 1 :], columns[middle - 1 :: -1]
     even, odd = np.empty((middle + 1, count * width)), (after - before).reshape(middle, -1)
     even[0] = columns[middle].ravel()
     np.add(after, before, out=even[1:].reshape(middle, count, width))
     nodes = len(grid.poles) - grid.mirrored
+    # Real parts above imaginary parts; (2 nodes, windows columns).
     sums, odd_sums = np.empty((2, 2 * nodes, count * width))
     edges = [0, *(np.flatnonzero(halves[1:] != halves[:-1]) + 1), count]
     for begin, end in itertools.pairwise(edges):
@@ -92,6 +94,7 @@ def sums_of_poles(grid: PoleGrid, columns: Vector, halves: NDArray[np.int_]) -> 
         np.matmul(shapes_even, even[: half + 1, span], out=sums[:, span])
         np.matmul(shapes_odd, odd[:half, span], out=odd_sums[:, span])
     sums, odd_sums = (values.reshape(2, nodes, count, width) for values in (sums, odd_sums))
+    # s(-x) has the odd part with the other sign.
     mirrored = sums[:, nodes - grid.mirrored :] - odd_sums[:, nodes - grid.mirrored :]
     sums += odd_sums
     return sums, mirrored
@@ -125,6 +128,7 @@ def right_sides(
         row = np.empty((len(grid.poles) + 1, *none.shape[::2]), dtype=np.complex128)
         row[0] = none[:, i]
         direct, mirror = row[1 : first.shape[1] + 1], row[first.shape[1] + 1 :]
+        # conj(s) y from the sums of Re(s) y and Im(s) y; s of a mirrored pole is the conjugate of s(-x).
         np.add(first[0].real, first[1].imag, out=direct.real)
         np.subtract(first[0].imag, first[1].real, out=direct.imag)
         np.subtract(mirrored[0].real, mirrored[1].imag, out=mirror.real)

@@ -66,6 +66,7 @@ def rail_comfort(time_step: float, xyz: Vector, *, skip: float = 0.0, from_rest:
     kept = slice(first, first + count * interval)
     squares = [weighted_record(step, row, name)[kept] ** 2 for row, name in zip(rows, WEIGHTINGS, strict=True)]
     continuous = np.sqrt([square.reshape(count, interval).mean(axis=1) for square in squares])
+    # (axes, zones, values of a zone)
     zones = continuous[:, : count // in_zone * in_zone].reshape(3, -1, in_zone)
     quantiles = np.quantile(zones, 0.95, axis=2)
     return RailComfort(continuous=continuous, mean=6.0 * np.sqrt(np.sum(quantiles**2, axis=0)))

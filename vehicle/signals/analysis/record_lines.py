@@ -62,6 +62,7 @@ class ChirpTransform:
             self.before = self.before * np.exp(-2j * np.pi / samples * (j[:size] * first % samples))
         self.length = fast_length(size + self.count - 1)
         kernel = np.zeros(self.length, dtype=np.complex128)
+        # conj(chirp) at the differences q - j >= 0, then at q - j < 0 from the end of the circle.
         kernel[: self.count] = self.after.conj()
         kernel[self.length - size + 1 :] = chirp[1:size][::-1].conj()
         self.kernel = np.fft.fft(kernel)
@@ -107,5 +108,6 @@ class RecordLines:
             return whole[self.chosen].copy()
         lines = np.zeros(self.turn.size, dtype=np.complex128)
         for part in self.parts[::-1]:
+            # Horner over the blocks, the last block first.
             lines = lines * self.turn + self.zoom(part_values(part))
         return lines

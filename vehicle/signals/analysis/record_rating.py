@@ -45,6 +45,7 @@ def rate_record(measured: Vector, simulated: Vector, step: float) -> RecordRatin
     target = int(np.clip(round(WINDOW / step), LEAST, MOST))
     windows = max(1, round(measured.size / target))
     length = measured.size // windows
+    # (windows, samples)
     truth, curve = (values[: windows * length].reshape(windows, length) for values in (measured, simulated))
     ratings = rate_curves(truth, curve, step)
     level = np.sqrt(np.mean(truth**2 + curve**2, axis=1))

@@ -148,6 +148,7 @@ def _point(
 
 def _errors(name: str, error: Vector, waves: Complex) -> dict[str, Vector]:
     """Return the columns of the error of a comfort value, (r,), and of its waves, (r, `WAVES`)."""
+    # As reals, the complex values alternate real and imaginary parts, in the order of the names.
     parts = zip(wave_names(name), waves.view(np.float64).T, strict=True)
     return {f"{name}{ERROR}": error, **dict(parts)}
 

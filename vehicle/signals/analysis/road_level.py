@@ -80,12 +80,14 @@ def road_level(time_step: float, height: ArrayLike, speed: float, *, window_s: f
             f"{FITTED[1]:g} cycles/m, must be at least {LEAST_BANDS} for a road class; record a longer road"
         )
     low, high = bands.edges[:-1][usable] / speed, bands.edges[1:][usable] / speed
+    # Mean square over the width of the band in cycles/m.
     density = bands.rms[usable] ** 2 / (high - low)
     # The mean of (n / n0)^-2 over a band is n0^2 / (low high).
     reference = float(np.exp(np.mean(np.log(density * low * high / REFERENCE**2))))
     inside = spectrum.frequency > 0.0
     return RoadLevel(
         wavenumber=spectrum.frequency[inside] / speed,
+        # G(n) = v S(f), because dn = df/v.
         density=spectrum.density[0, inside] * speed,
         reference_density=reference,
         letter=class_of(reference),

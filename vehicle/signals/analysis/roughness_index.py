@@ -94,6 +94,7 @@ def roughness_index(step: float, height: ArrayLike, *, segment: float = 100.0) -
     if length < STARTED:
         raise DataError(f"IRI: the road is {length:.4g} m long, must be at least {STARTED:g} m")
     averaged = max(1, round(AVERAGED / step))
+    # The mean slope over a length is the difference of its ends.
     slope = (profile[averaged:] - profile[:-averaged]) / (averaged * step)
     start = round(STARTED / step)
     mean_slope = (profile[start] - profile[0]) / (start * step)
@@ -101,6 +102,7 @@ def roughness_index(step: float, height: ArrayLike, *, segment: float = 100.0) -
     # Each mode of the step is a recursion of the first order.
     poles, shapes = np.linalg.eig(matrix)
     to_modes, motion = np.linalg.inv(shapes), shapes[0] - shapes[2]
+    # Both masses rise with the mean slope of the first metres, without relative motion.
     begin = to_modes @ (mean_slope * np.array([1.0, 0.0, 1.0, 0.0]))
     stroke = np.zeros(slope.size)
     for pole, gain, share, first in zip(poles, to_modes @ drive, motion, begin, strict=True):
@@ -112,5 +114,6 @@ def roughness_index(step: float, height: ArrayLike, *, segment: float = 100.0) -
     return RoughnessIndex(
         overall=float(rates.mean()),
         edges=np.append(bounds, rates.size) * step,
+        # Sum from each bound to the next.
         segments=np.add.reduceat(rates, bounds) / counts,
     )

@@ -84,6 +84,7 @@ def cut_into_segments(
         raise ConfigurationError(f"overlap: found {overlap:g}, must be 0 <= overlap < 1")
     length = round(window_s / time_step)
     step = max(1, length - round(overlap * length))
+    # Periodic Hann window: its sum over half overlap is constant.
     window = 0.5 - 0.5 * np.cos(2.0 * np.pi / length * np.arange(length))
     count = 0 if samples < length else 1 + (samples - length) // step
     averages = effective_averages(window, step, count) if count else 0.0

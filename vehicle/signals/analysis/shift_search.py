@@ -43,7 +43,9 @@ def searched_line(first: Vector, second: Vector, offset: float, largest_drift: f
     frequency, share, power = spectral_shares(first, second)
     if not share.any():
         return None
+    # Effective number of lines, (sum p)^2 / sum p^2, over half the sampling rate [1/sample].
     bandwidth = 0.5 * float(share.sum() ** 2 / (share @ share)) / frequency.size
+    # Divided by the spectrum (whitened), times the share of the signal (Wiener).
     factor = np.sqrt(share / power.clip(SMALLEST))
     whitened, whitened_second = _filtered(first, frequency, factor), _filtered(second, frequency, factor)
     shorter = min(first.size, second.size)
@@ -91,6 +93,7 @@ def _filtered(record: Vector, frequency: Vector, factor: Vector) -> Vector:
 
 def _begins(record: Vector, length: int) -> list[int]:
     """Return the first samples of the window of largest energy in each section."""
+    # Energy of every window as a difference of cumulated sums.
     total = np.concatenate([[0.0], np.cumsum(record**2)])
     energy = total[length:] - total[:-length]
     number = int(np.clip(round(2.0 * (energy.size - 1) / length) + 1, 2, SECTIONS))
@@ -110,8 +113,10 @@ def _peaks(
     window_energy = float(window @ window)
     if window_energy == 0.0:
         return []
+    # Correlation with all of the other record: convolution with the reversed window.
     cross = scipy.signal.oaconvolve(padded, window[::-1], mode="valid")
     correlation = cross / np.sqrt(window_energy * np.maximum(energies, 1e-3 * energies.max()))
+    # The padding shifts the index of a window by half of its length.
     lags = np.arange(correlation.size) - half - begin + offset
     # Among equal peaks of a periodic record, prefer the smallest lag.
     size = np.abs(correlation) * (1.0 - (1.0 - AS_GOOD) * np.abs(lags) / np.max(np.abs(lags)))
@@ -136,17 +141,21 @@ def _consensus(peaks: Vector, count: int, tolerance: float, steepest: float) -> 
     first, second, distance = (values[distance != 0.0] for values in (first, second, distance))
     slope = (lag[second] - lag[first]) / distance
     allowed = np.abs(slope) <= steepest
+    # Candidates: a level line through each peak, and the line through each pair of peaks of two windows.
     slopes = np.concatenate([np.zeros(lag.size), slope[allowed]])
     through = np.concatenate([np.arange(lag.size), first[allowed]])
+    # Height of each line at the middle of the record.
     lines = lag[through] + slopes * (middle - position[through])
     sign = np.sign(peak[through])
     score = np.zeros(lines.size)
     for number in np.unique(window):
         in_window = window == number
         deviation = np.abs(lines[:, None] + slopes[:, None] * (position[in_window] - middle) - lag[in_window])
+        # Peaks near the line and of equal sign count; of each window the largest.
         weight = np.maximum(1.0 - (deviation / tolerance) ** 2, 0.0) * (np.sign(peak[in_window]) == sign[:, None])
         score += np.max(weight * peak[in_window] ** 2, axis=1)
     candidates = np.flatnonzero(score >= AS_GOOD * score.max())
+    # Of nearly equal lines the line with the smallest shift over the record.
     best = candidates[np.argmin(np.abs(lines[candidates]) + np.abs(slopes[candidates]) * middle)]
     deviation = np.abs(lines[best] + slopes[best] * (position - middle) - lag)
     inliers = (deviation <= tolerance) & (np.sign(peak) == sign[best])

@@ -94,6 +94,7 @@ def slip_intervals(time: ArrayLike, velocity: ArrayLike, slip_velocity: float) -
     """
     slips = _slipping(_one(velocity), slip_velocity)[0]
     instants = _instants(time, slips.size)
+    # +1 where a slip begins, -1 at the sample after it; the zeros close slips at both ends of the record.
     change = np.diff(np.concatenate(([0], slips.astype(np.int8), [0])))
     starts = np.flatnonzero(change == 1)
     ends = np.minimum(np.flatnonzero(change == -1), slips.size - 1)

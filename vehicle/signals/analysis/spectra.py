@@ -71,6 +71,7 @@ def power_spectral_density(
         frequency, group_density = scipy.signal.welch(
             group, 1.0 / step, window=cut.window, nperseg=cut.length, noverlap=cut.overlap, detrend="constant"
         )
+        # Mean over all segments, from the means of batches.
         density = density + count / cut.count * group_density
     return PowerSpectralDensity(
         frequency=frequency, density=density, resolution_hz=float(frequency[1]), averages=cut.averages
@@ -94,6 +95,7 @@ def _periodogram(step: float, array: Vector, lines: slice) -> PowerSpectralDensi
     """Return the selected lines of the periodogram of signals (k, n)."""
     samples = array.shape[1]
     sides = np.full(samples // 2 + 1, 2.0)
+    # Lines at 0 Hz and at Nyquist have no mirror image.
     sides[0] = 1.0
     if samples % 2 == 0:
         sides[-1] = 1.0
@@ -105,6 +107,7 @@ def _periodogram(step: float, array: Vector, lines: slice) -> PowerSpectralDensi
         density=density,
         resolution_hz=1.0 / (samples * step),
         averages=1.0,
+        # |line|^2 = S df = c |X|^2/n^2.
         lines=spectra * (np.sqrt(sides[lines]) / samples),
     )
 

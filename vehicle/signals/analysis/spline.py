@@ -25,13 +25,17 @@ class CubicSpline:
         dx = np.diff(x)
         slope = np.diff(y) / dx
         bands, right = np.zeros((3, x.size)), np.empty(x.size)
+        # Tridiagonal system for the slopes s; rows: above, on and below the diagonal.
         bands[1, 1:-1], bands[0, 2:], bands[2, :-2] = 2.0 * (dx[:-1] + dx[1:]), dx[:-1], dx[1:]
         right[1:-1] = 3.0 * (dx[1:] * slope[:-1] + dx[:-1] * slope[1:])
+        # Not-a-knot: equal third derivative in the first two segments eliminates s_2 from the first row; likewise at
+        # the end.
         first, last = x[2] - x[0], x[-1] - x[-3]
         bands[1, 0], bands[0, 1], bands[1, -1], bands[2, -2] = dx[1], first, dx[-2], last
         right[0] = ((dx[0] + 2.0 * first) * dx[1] * slope[0] + dx[0] ** 2 * slope[1]) / first
         right[-1] = (dx[-1] ** 2 * slope[-2] + (2.0 * last + dx[-1]) * dx[-2] * slope[-1]) / last
         s = scipy.linalg.solve_banded((1, 1), bands, right, overwrite_ab=True, overwrite_b=True, check_finite=False)
+        # d_i = bend/dx_i and c_i = (m_i - s_i)/dx_i - bend.
         bend = (s[:-1] + s[1:] - 2.0 * slope) / dx
         self.x = x
         self.terms = (y[:-1], s[:-1], (slope - s[:-1]) / dx - bend, bend / dx)

@@ -34,6 +34,7 @@ def thinned(positions: Vector, edges: Indices, nodes: int = MOST_NODES, lines: i
         return np.asarray(edges, dtype=np.intp)
     length = np.linalg.norm(positions[edges[:, 0]] - positions[edges[:, 1]], axis=1)
     graph = scipy.sparse.coo_matrix((np.maximum(length, 1e-9), edges.T), shape=(len(positions),) * 2).tocsr()
+    # Fewer nodes until the lines between their regions are few enough.
     count = min(nodes, len(connected))
     while True:
         chosen = _spread(positions, connected, count)
@@ -61,6 +62,7 @@ def neighbours(positions: Vector, nearest: int = 2) -> Indices:
     distances = np.maximum(scipy.spatial.distance.squareform(scipy.spatial.distance.pdist(positions)), 1e-9)
     np.fill_diagonal(distances, 0.0)
     tree = scipy.sparse.csgraph.minimum_spanning_tree(distances).tocoo()
+    # Index 0 is the point; its neighbours follow.
     order = np.argsort(distances, axis=1)[:, 1 : nearest + 1]
     nearest_pairs = np.stack([np.repeat(np.arange(count), order.shape[1]), order.ravel()], axis=1)
     pairs = np.sort(np.concatenate([np.stack([tree.row, tree.col], axis=1), nearest_pairs]), axis=1)

@@ -136,7 +136,9 @@ def _without_noise(first: Vector, second: Vector) -> tuple[tuple[Vector, int], t
     records does not change the shift.
     """
     frequency, share, _ = spectral_shares(first, second)
+    # Highest frequency at which a quarter of the largest share is signal.
     corner = WIDER * float(frequency[np.flatnonzero(share >= 0.25 * share.max())[-1]])
+    # One period at the corner is cut off at both ends, where the filter has started.
     cut = int(np.ceil(1.0 / max(corner, 1e-9)))
     if not 0.0 < corner < HIGHEST or 4 * cut > min(first.size, second.size):
         return (first, 0), (second, 0)
@@ -149,6 +151,7 @@ def _mapped(count: int, last: int, offset: float, line: TimeShift) -> tuple[slic
     """Return the samples of the first record with a counterpart, and its position in the second record [samples]."""
     index = np.arange(count)
     position = index + (line.shift + line.drift * (index - line.middle)) - offset
+    # Positions rise with the index, because drift is below 1.
     low, high = np.searchsorted(position, (-1e-9, last + 1e-9))
     return slice(int(low), int(high)), np.clip(position[low:high], 0.0, last)
 
@@ -171,6 +174,7 @@ def _refined(first: Vector, curve: _Curve, offset: float, line: tuple[float, flo
         power = float(y @ y), float(x @ x)
         if min(power) <= 0.0:
             return best
+        # Least squares of x - g y.
         gain = float(x @ y) / power[0]
         current = replace(current, gain=gain, correlation=float(x @ y) / np.sqrt(power[0] * power[1]))
         change = _change(x, y, np.gradient(y), gain)
@@ -204,12 +208,15 @@ def _change(x: Vector, y: Vector, slope: Vector, gain: float) -> tuple[float, fl
         """Return the inner products over the windows, without means."""
         return sums(a * b) - sums(a) * sums(b) / size
 
+    # x - g y = e y + g y' d in each window, with a gain error e: normal equations of two unknowns, solved by Cramer's
+    # rule.
     residual = x - gain * y
     yy, dd, yd = inner(y, y), inner(slope, slope), inner(y, slope)
     determinant = yy * dd - yd**2
     usable = determinant > 1e-12 * max(float(np.max(yy)) * float(np.max(dd)), 1e-300)
     shift = np.zeros(windows)
     shift[usable] = ((yy * inner(slope, residual) - yd * inner(y, residual))[usable] / determinant[usable]) / gain
+    # Variance of d: residual power over the power of the slope; the mean keeps a quiet window from an infinite weight.
     residual_power = np.maximum(inner(residual, residual) - shift * gain * inner(slope, residual), 0.0) / size
     weight = np.where(usable, dd / (residual_power + residual_power.mean() + 1e-300), 0.0)
     if not weight.any():
@@ -228,14 +235,17 @@ def _line(position: Vector, value: Vector, weight: Vector) -> tuple[float, float
         normal = (matrix * trust[:, None]).T @ matrix
         solution = np.linalg.solve(normal, matrix.T @ (trust * value))
         deviation = np.sqrt(weight) * np.abs(value - matrix @ solution)
+        # Standard deviation of normal noise from the median of its magnitudes.
         scale = 1.4826 * float(np.median(deviation[weight > 0.0]))
         if scale == 0.0:
             break
+        # Tukey's biweight: 95 % efficient for normal noise.
         trust = weight * np.maximum(1.0 - (deviation / (4.685 * scale)) ** 2, 0.0) ** 2
         if np.count_nonzero(trust) < LEAST_WINDOWS:
             trust = weight
             break
     used = trust > 0.0
+    # Effective number of windows less two unknowns.
     degrees = max(float(trust.sum() ** 2 / (trust @ trust)) - 2.0, 1.0)
     spread = float(trust[used] @ (value - matrix @ solution)[used] ** 2) / float(trust.sum())
     cover = np.linalg.inv(normal) * spread * float(trust.sum()) / degrees
@@ -248,6 +258,7 @@ def _period(first: Vector, curve: _Curve, offset: float, line: TimeShift) -> flo
     x, y = first[inside], np.sign(line.correlation) * curve.at(position)
     limit = x.size // 2
     correlation = coefficients(x, y, limit)
+    # Agreement at a distance on either side of the shift: first below 90 %, then up again to a further maximum.
     side = np.maximum(correlation[limit:], correlation[limit::-1])
     below = np.flatnonzero(side < 0.9 * side[0])
     if not below.size:
@@ -283,6 +294,7 @@ def coefficients(first: Vector, second: Vector, limit: int) -> Vector:
         total = np.concatenate([[0.0], np.cumsum(values)])
         return np.asarray(np.where(from_start, total[length], total[-1] - total[count - length]))
 
+    # cov = sum x y - sum x sum y/n over the overlap, over the root of both variances.
     top, bottom = sums(first, late), sums(second, ~late)
     spread = (sums(first**2, late) - top**2 / length) * (sums(second**2, ~late) - bottom**2 / length)
     correlation = np.full(shifts.size, -np.inf)

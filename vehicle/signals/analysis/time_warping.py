@@ -55,15 +55,20 @@ def _batch_differences(curves: Sequence[Vector], truths: Sequence[Vector]) -> tu
     offset = np.arange(-width, width + 1)
     closed = np.where(np.abs(offset)[:, None] >= widths, np.inf, 0.0)
     before, last = np.full((2 * width + 1, pairs), np.inf), np.full((2 * width + 1, pairs), np.inf)
+    # (diagonals, cells of a diagonal, pairs)
     moves = np.zeros((2 * count - 1, width + 1, pairs), dtype=np.uint8)
     for diagonal in range(2 * count - 1):
+        # Cells of a diagonal have i - j of equal parity with i + j, from -extent to extent in steps of two.
         extent = min(width - 1, diagonal, 2 * count - 2 - diagonal)
         extent -= (extent - diagonal) % 2
         low, high = (diagonal - extent) // 2, (diagonal + extent) // 2 + 1
+        # Along a diagonal j falls as i rises: the reversed truth makes both slices ascend.
         cost = curve[low:high] - backwards[count - 1 - diagonal + low : count - 1 - diagonal + high]
         cost *= cost
         index = slice(width - extent, width + extent + 1, 2)
         cost += closed[index]
+        # On the last diagonal, `left` is (i - 1, j) and `right` is (i, j - 1); (i - 1, j - 1) is on the diagonal
+        # before.
         left, right = last[index.start - 1 : index.stop - 1 : 2], last[index.start + 1 : index.stop + 1 : 2]
         best = np.minimum(left, right)
         if diagonal:
@@ -92,6 +97,7 @@ def _sums_along(
         size += np.where(active, np.abs(values), 0.0)
         active &= (row > 0) | (column > 0)
         move = moves[row + column, (row - column + width) // 2, pair]
+        # Moves: 0 from i - 1, 1 from j - 1, 2 from both.
         row = np.where(active, row - (move != 1), row)
         column = np.where(active, column - (move != 0), column)
     return difference, size

@@ -18,6 +18,7 @@ def prominent_tops(values: Vector, prominence: float) -> list[tuple[int, float, 
         Sample of each maximum, the middle of a plateau rounded down; its prominence, the height over the higher one of
         both bases; and its bases, the lowest samples to the left and to the right up to the next higher sample.
     """
+    # Runs of equal samples, so that a plateau is one level.
     firsts = np.flatnonzero(np.concatenate([[True], values[1:] != values[:-1]]))
     levels, lasts = values[firsts], np.append(firsts[1:], values.size) - 1
     inner = 1 + np.flatnonzero((levels[1:-1] > levels[:-2]) & (levels[1:-1] > levels[2:]))

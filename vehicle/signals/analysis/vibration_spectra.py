@@ -97,6 +97,7 @@ def vibration_spectra(
             )
         frequency = density.frequency[inside]
         for curve in dict.fromkeys(("", weighting_of(name))):
+            # A density is multiplied by |H|^2.
             factor = weighting(curve).spectrum_factor(frequency) ** 2 if curve else 1.0
             below = CumulativeSpectrum(time_step, record, curve or None)
             spectra.append(

@@ -81,6 +81,7 @@ class Weighting:
 
         H = product of (b0 + b1 jf + b2 (jf)^2) / (a0 + a1 jf + a2 (jf)^2) with f [Hz]; see `transfer_function`.
         """
+        # Divided by powers of 2 pi: s becomes jf, w_i becomes f_i.
         root, f1, f2, f4, f5, f6 = np.sqrt(2.0), self.f1, self.f2, self.f4, self.f5, self.f6
         rows = [[0.0, 0.0, self.gain, f1**2, root * f1, 1.0], [f2**2, 0.0, 0.0, f2**2, root * f2, 1.0]]
         rows += [[1.0, 1.0 / self.f3, 0.0, 1.0, 1.0 / (self.q4 * f4), f4**-2]]

@@ -48,11 +48,13 @@ class SweptLine(NamedTuple):
         """Return the angle [rad] and its speed [rad/s], without the order, at some times [s]."""
         times, speeds = np.array(self.times), np.array(self.speeds)
         lengths, changes = np.diff(times), np.diff(speeds)
+        # Angle at the ends of the pieces: mean speed times length, exact for a linear speed.
         turned = np.append(0.0, np.cumsum(lengths * (speeds[:-1] + 0.5 * changes)))
         rising = np.clip(time, times[0], times[-1])
         piece = np.clip(np.searchsorted(times, rising, side="right") - 1, 0, len(lengths) - 1)
         since, rate = rising - times[piece], (changes / lengths)[piece]
         angle = turned[piece] + (speeds[piece] + 0.5 * rate * since) * since
+        # Constant speed before the first and after the last time.
         angle = angle + speeds[-1] * np.maximum(time - times[-1], 0.0) + speeds[0] * np.minimum(time - times[0], 0.0)
         return angle, speeds[piece] + rate * since
 
@@ -102,6 +104,7 @@ class ForceLines:
         """
         keys: list[History] = [*self.frequencies, *self.swept]
         amplitudes = np.array([force.get(key, 0.0j) for key in keys], dtype=complex)
+        # Re(Z exp(jWt)) = Re Z cos(Wt) - Im Z sin(Wt).
         waves = np.column_stack([amplitudes.real, -amplitudes.imag]).ravel()
         return np.concatenate([waves, [complex(force.get(record, 0.0)).real for record in self.records]])
 
@@ -155,6 +158,7 @@ class ForceLines:
         if self.swept or self.records or time[0] < RISE_S:
             return values, self.means(time[:-1], step)
         changes = np.diff(values, axis=0).reshape(len(time) - 1, len(self.frequencies), 2)
+        # The mean of cos is a difference of sin, that of sin the negative difference of cos, over W h.
         changes = changes[:, :, ::-1] * [1.0, -1.0] / (step * np.array(self.frequencies))[:, None]
         return values, changes.reshape(len(time) - 1, len(self))
 

@@ -126,6 +126,7 @@ def _history(record: ForceRecord, changed: int) -> RecordedForce:
     if time.size < FEWEST:
         raise DataError(f"{record.file}: {time.size} samples, must be at least {FEWEST}")
     steps = np.diff(time)
+    # Times with six decimals give steps 1e-6 s off; a step above 1 s may be 1e-6 of its length off.
     if np.max(np.abs(steps / np.mean(steps) - 1.0)) > 1e-6 * max(1.0, 1.0 / float(np.mean(steps))):
         raise DataError(f"{record.file}: times are not uniform; resample the record of {where} to a uniform grid")
     size = float(np.sqrt(np.mean(values**2)))
@@ -203,8 +204,10 @@ def _channel(record: ForceRecord, measurement: Measurement) -> int:
 
 def _highest(values: Vector, interval: float) -> float:
     """Return the frequency [Hz] above which less than `HIDDEN` of the RMS lies; with a Hann window."""
+    # A record with zeros at both ends continues itself without a step, so it needs no window.
     window = np.hanning(values.size) if max(abs(values[0]), abs(values[-1])) > 0.0 else np.ones(values.size)
     power = np.abs(np.fft.rfft(window * (values - values.mean()))) ** 2
+    # Power from each line to the last; negative below, because searchsorted needs rising values.
     above = np.cumsum(power[::-1])[::-1]
     line = int(np.searchsorted(-above, -(HIDDEN**2) * max(above[0], np.finfo(float).tiny)))
     return min(line, power.size - 1) / (values.size * interval)

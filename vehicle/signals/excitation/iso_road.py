@@ -170,12 +170,17 @@ class IsoRoad:
             )
         wavenumber = lines / length
         related = isotropic_coherence(wavenumber, self.track) if self.coherence is None else self.coherence
+        # One phase pair for each line of the road, so that a longer road of the same seed has the same phases; (2,
+        # lines).
         phase = 2.0 * np.pi * np.random.Generator(np.random.PCG64(self.seed)).random((int(lines[-1]), 2))[lines - 1].T
         sign = 1.0 if side == "right" else -1.0
+        # z = sqrt((1 + g)/2) e^(i phi) +- sqrt((1 - g)/2) e^(i psi): both tracks have power 1 and the cross spectrum
+        # g.
         numbers = np.sqrt(0.5 * (1.0 + related)) * np.exp(1j * phase[0])
         numbers = numbers + sign * np.sqrt(0.5 * (1.0 - related)) * np.exp(1j * phase[1])
         density = self.level * (wavenumber / REFERENCE) ** -2.0
         spectrum = np.zeros(steps // 2 + 1, dtype=np.complex128)
+        # A = sqrt(2 G/P), average over the patch, shift to the start, and N/2 of irfft.
         spectrum[lines] = (
             numbers
             * np.sqrt(2.0 * density / length)
@@ -192,6 +197,7 @@ class IsoRoad:
         parts = int(np.ceil(step / SAMPLES))
         fine, margin = step / parts, int(np.ceil(self.envelope.reach * parts / step)) + 1
         z = self.bare.height(start, fine, steps * parts, side, highest)
+        # The road is periodic: wrapped around by the reach of the cams on both sides.
         x = uniform_axis(z.size + 2 * margin, fine, -margin * fine)
         return self.envelope.height_and_slope(x, np.pad(z, margin, mode="wrap"), uniform_axis(steps, step, 0.0))
 
@@ -247,6 +253,7 @@ def drive(
         displacement[wheel] = z * rise + 0.0  # adding 0.0 avoids -0.0 in files
         profile[wheel] = road.bare.contact(-distance, step, period, side, 0.4 / step)[0][: steps + 1] * rise + 0.0
         if slope is not None:
+            # d(w z)/dt = V tan(beta) w + w' z.
             slopes[wheel] = speed * slope[: steps + 1] * rise + rise_rate * z + 0.0
     return Signal(
         time=uniform_time(samples=steps + 1, timestep=1.0 / rate),

@@ -114,6 +114,7 @@ class RecordedDrive:
         plates = {}
         for wheel, behind, side in self.wheels:
             tau = delayed(time - time[0], distance, grid, behind)
+            # z(tau) of the track, with the rise from rest at the time tau of the foremost wheel.
             spline = scipy.interpolate.CubicSpline(time - time[0], tracks[side] - tracks[side][0])
             reached = np.isfinite(tau)
             times = np.where(reached, tau, 0.0)
@@ -142,6 +143,7 @@ class RecordedDrive:
         measurement = read_record(self.road, self.choice.databases)
         time = self._heights(measurement)[0]
         distance = scipy.integrate.cumulative_trapezoid(self._driven(measurement, time)[0], time, initial=0.0)
+        # Position at which the road has risen; the last wheel is there after its distance behind.
         risen = np.interp(RISE_S + AFTER_RISE_S, time - time[0], distance)
         reached = int(np.searchsorted(distance, risen + max(behind for _, behind, _ in self.wheels)))
         last = float(time[min(reached, time.size - 1)] - time[0])
@@ -296,5 +298,6 @@ def delayed(time: Vector, distance: Vector, grid: Vector, behind: float) -> Vect
     # A car at rest has many times for the same position: use the last one.
     last_times = np.append(np.diff(distance) > 0.0, True)
     positions = np.interp(grid, time, distance) - behind
+    # Inverse of s(t), which increases between the chosen times.
     tau = np.interp(positions, distance[last_times], time[last_times])
     return np.where(positions < distance[0], np.nan, tau)

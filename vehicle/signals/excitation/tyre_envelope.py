@@ -156,6 +156,8 @@ class TyreEnvelope:
         z = np.concatenate((z[:1], z, z[-1:]))
         run, rise = np.diff(x), np.diff(z)
         slopes = np.divide(rise, run, out=np.zeros_like(run), where=run > 0.0)
+        # On a line of slope m the ellipse touches where its slope is m: |x/a|^c = p/(1 + p), p = (|m| a/b)^(c/(c -
+        # 1)).
         power = (np.abs(slopes) * self.half_length / self.half_height) ** (self.order / (self.order - 1.0))
         touch = self.half_length * np.sign(slopes) * (power / (1.0 + power)) ** (1.0 / self.order)
         highest = _Maxima(np.maximum(z[:-1], z[1:]))
@@ -168,6 +170,7 @@ class TyreEnvelope:
             farthest = self.half_length * self._ellipse(1.0 - np.minimum(excess / self.half_height, 1.0))
             begin, end = _segments(x, at - farthest, at + farthest)
             counts = end - begin
+            # All pairs of position and segment in one row: the segments of position i begin at starts[i].
             starts = np.cumsum(counts) - counts
             segment = np.arange(counts.sum()) + np.repeat(begin - starts, counts)
             centre = np.repeat(at, counts)
@@ -177,6 +180,7 @@ class TyreEnvelope:
             height = z[segment] + slopes[segment] * (contact - x[segment])
             # A vertical step touches with its upper edge.
             height = np.where(run[segment] > 0.0, height, np.maximum(z[segment], z[segment + 1]))
+            # Height of the cam above its lowest point at the contact.
             gap = self.half_height * (1.0 - self._ellipse(np.abs(contact - centre) / self.half_length))
             lowest[first : first + BLOCK] = np.maximum.reduceat(height - gap, starts)
         return lowest
@@ -205,5 +209,6 @@ class _Maxima:
         while len(self.levels) <= level.max():
             half, last = 1 << (len(self.levels) - 1), self.levels[-1]
             self.levels.append(np.maximum(last, np.append(last[half:], np.full(min(half, last.size), -np.inf))))
+        # Two overlapping windows of a power of two cover the range.
         table = np.array([self.levels[k] for k in range(int(level.max()) + 1)])
         return np.asarray(np.maximum(table[level, begin], table[level, end - (1 << level)]))

@@ -177,6 +177,7 @@ def _at_next_values(below: Vector, margin: float) -> int:
 
 def _edges(values: Vector, at_extreme: Mask) -> Vector:
     """Return the size of the second-last step before each flat part and after it; clipping shortens the last one."""
+    # Index of the last sample before a flat part, and of the last sample within one.
     entered = np.flatnonzero(at_extreme[2:] & ~at_extreme[1:-1]) + 1
     left = np.flatnonzero(at_extreme[:-2] & ~at_extreme[1:-1])
     return np.concatenate([np.abs(values[entered] - values[entered - 1]), np.abs(values[left + 2] - values[left + 1])])
@@ -184,6 +185,7 @@ def _edges(values: Vector, at_extreme: Mask) -> Vector:
 
 def _at_rest(at_extreme: Mask) -> bool:
     """Return True if the longest flat part is at the beginning or the end of the record."""
+    # Begins and ends of the flat parts alternate.
     changes = np.flatnonzero(np.diff(at_extreme.astype(np.int8), prepend=0, append=0))
     begins, ends = changes[::2], changes[1::2]
     at_ends = (begins == 0) | (ends == at_extreme.size)
@@ -206,6 +208,7 @@ def stuck(
         from_rest: the channel may begin at rest.
     """
     away = values - values.mean()
+    # Neighbours of opposite sign.
     crossings = int(np.count_nonzero(away[1:] * away[:-1] < 0.0))
     if crossings < 2 or switches(values):
         return None
@@ -226,6 +229,7 @@ def stuck(
     length = float(time[end] - time[begin])
     unmoved = {*rested, (begin, end)}
     moving = float(time[-1] - time[0]) - sum(float(time[last] - time[first]) for first, last in unmoved)
+    # Mean time between two crossings while the channel moves.
     interval = max(moving, 0.0) / crossings
     minimum = max(STUCK_PERIODS * interval, min(CERTAIN, CERTAIN_PERIODS * interval))
     ends = np.concatenate([[-1], moves, [values.size - 1]])

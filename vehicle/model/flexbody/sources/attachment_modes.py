@@ -50,6 +50,7 @@ def attachment_modes(body: BodyMatrices, modes: FreeModes, attachments: Sequence
     """
     load = np.hstack([attachment.toarray() for attachment in attachments])
     psi = residual_vectors(body, modes, load)
+    # psi' K psi = F' P' K^-1 P F: flexibility; nearly zero for combinations that are linearly dependent.
     flexibility, combinations = scipy.linalg.eigh(psi.T @ (body.stiffness @ psi))
     independent = flexibility > DEPENDENT * flexibility[-1]
     psi = psi @ (combinations[:, independent] / np.sqrt(flexibility[independent]))  # psi' K psi = 1
@@ -67,9 +68,11 @@ def kept_modes(inverse: Vector, mix: Vector, basis: Vector, attachments: Sequenc
         attachments: see `attachment_modes`.
         up_to: frequency limit [Hz].
     """
+    # Ascending frequency.
     shapes = (basis @ mix)[:, ::-1]
     kept = inverse[::-1] >= 1.0 / (2.0 * np.pi * up_to) ** 2
     root = np.sqrt(inverse[::-1][kept])
     higher = (attachment.T @ shapes[:, ~kept] for attachment in attachments)
+    # Static flexibility of a mode with psi' K psi = 1 is psi psi'.
     residual = [np.asarray(local @ local.T) for local in higher]
     return ReducedModes(frequencies=1.0 / (2.0 * np.pi * root), vectors=shapes[:, kept] / root, residual=residual)

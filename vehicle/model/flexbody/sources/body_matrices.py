@@ -81,6 +81,7 @@ class BodyNodes:
                 "rear), y (to the driver's right) and z (up), for example -x,-y,z"
             )
         old = np.abs(rotation).argmax(axis=0)  # vehicle axis of each source axis
+        # A column of a signed permutation has one entry, its sign; rotations have the sign of their axis.
         sign = rotation.sum(axis=0)[self.direction % 3]
         return replace(
             BodyNodes(**{field.name: getattr(self, field.name) for field in fields(BodyNodes)}),
@@ -181,6 +182,7 @@ class BodyMatrices(BodyNodes):
         """
         origin = self.rigid_motions(np.zeros(3))
         total = origin.T @ (self.mass @ origin)
+        # R' M R is [m 1, -m [c]x; ., I] for rotations about the origin.
         masses = np.diag(total)[:3]
         mass = float(masses.mean())
         if mass <= 0.0 or np.ptp(masses) > 1e-6 * mass:
@@ -218,6 +220,7 @@ class BodyMatrices(BodyNodes):
         the six, are the limit.
         """
         unit = self.rigid_motions(rigid.cog)
+        # Mass-normalised: R = unit L^-T.
         motions = np.linalg.solve(np.linalg.cholesky(unit.T @ (self.mass @ unit)), unit.T).T
         squares = np.einsum("ij,ij->j", motions**2, self.stiffness.multiply(self.stiffness) @ motions**2)
         stiffness = 6.0 * self.rounding * float(np.sqrt(2.0 / 3.0 * squares.max()))

@@ -41,6 +41,7 @@ def craig_bampton(
     """
     constraint = np.hstack([attachment.toarray() for attachment in attachments])
     displacement = free.factor.solve(constraint)
+    # Independent combinations of the attachments: two attachments at a node would make the constraints singular.
     size, combinations = scipy.linalg.eigh(constraint.T @ displacement)
     independent = size > DEPENDENT * size[-1]
     combinations = combinations[:, independent] / np.sqrt(size[independent])
@@ -68,6 +69,7 @@ def craig_bampton(
         space = scipy.linalg.null_space(constraint.T)
         shifted = body.stiffness + shift * body.mass
         inverse, mix = scipy.linalg.eigh(space.T @ (body.mass @ space), space.T @ (shifted @ space))
+        # M x = (K + s M) x/(w^2 + s): eigenvalues above 1/(limit + s) are modes below the limit.
         fixed = space @ mix[:, inverse >= 1.0 / (limit + shift)]
     else:
         # A constrained body has at most as many modes below a limit as the free body (Cauchy's interlacing).
@@ -78,6 +80,7 @@ def craig_bampton(
     rigid = free.rigid_vectors
     basis = basis - rigid @ (rigid.T @ (body.mass @ basis))  # rigid motions are combinations of constraint modes
     stiffness, mix = scipy.linalg.eigh(basis.T @ (body.stiffness @ basis))
+    # The six rigid combinations have no stiffness; the others are scaled to basis' K basis = 1.
     basis = basis @ (mix[:, 6:] / np.sqrt(stiffness[6:]))
     inverse, mix = scipy.linalg.eigh(basis.T @ (body.mass @ basis))
     return kept_modes(inverse, mix, basis, attachments, up_to), fixed.shape[1]

@@ -63,6 +63,7 @@ def free_modes(body: BodyMatrices, up_to: float) -> FreeModes:
     """
     rigid = body.mass_properties()
     unit = body.rigid_motions(rigid.cog)
+    # R = unit L^-T with unit' M unit = L L', so that R' M R = 1.
     motions = np.asarray(np.linalg.solve(np.linalg.cholesky(unit.T @ (body.mass @ unit)), unit.T).T, dtype=float)
     shift = (2.0 * np.pi * SHIFT * up_to) ** 2
     factor = _factorised(body.stiffness + shift * body.mass)
@@ -128,10 +129,12 @@ def residual_flexibility(body: BodyMatrices, modes: FreeModes, attachments: Sequ
 def residual_vectors(body: BodyMatrices, modes: FreeModes, load: Vector) -> Vector:
     """Return P' K^-1 P f for each column f of a load [N], in the shape of the load; see `residual_flexibility`."""
     kept = np.hstack([modes.rigid_vectors, modes.vectors])
+    # P f = f - M (R R' + Phi Phi') f.
     load = load - body.mass @ (kept @ (kept.T @ load))
     displacement = np.zeros_like(load)
     for _ in range(REFINEMENTS):
         change = modes.factor.solve(load - body.stiffness @ displacement)
+        # Without the parts that round-off adds along R and Phi.
         change -= kept @ (kept.T @ (body.mass @ change))
         displacement += change
         if np.abs(change).max() <= 1e-12 * np.abs(displacement).max():
@@ -143,7 +146,9 @@ def _all(body: BodyMatrices, shift: float) -> tuple[Vector, Vector]:
     """Compute all modes from M phi = (K + s M) phi / (w^2 + s), which allows massless degrees of freedom."""
     shifted = (body.stiffness + shift * body.mass).toarray()
     inverse, vectors = scipy.linalg.eigh(body.mass.toarray(), shifted)
+    # A massless degree of freedom has an infinite w^2, an eigenvalue of zero here.
     real = inverse > 1e-12 * inverse[-1]
+    # Ascending w^2, and modal mass 1.
     values = 1.0 / inverse[real][::-1] - shift
     return values, vectors[:, real][:, ::-1] / np.sqrt(inverse[real][::-1])
 

@@ -149,6 +149,7 @@ def _of_node(body: BodyNodes, name: str, position: Point, node: int) -> Interfac
 def _of_nodes(body: BodyNodes, name: str, position: Point, nodes: Any) -> Interface | str:
     """Return the interface of a point carried by the surrounding nodes, or the reason why they cannot carry it."""
     positions = body.positions[nodes]
+    # Extents of the nodes along their principal axes: a second extent of zero is a line.
     widths = np.linalg.svd(positions - positions.mean(axis=0), compute_uv=False) if len(nodes) > 2 else np.zeros(3)
     if widths[1] <= _FLAT * widths[0] or widths[0] == 0.0:
         return f"{len(nodes)} node{'s on one line' if len(nodes) > 1 else ''}, too few to define a rotation"
@@ -164,6 +165,7 @@ def _of_nodes(body: BodyNodes, name: str, position: Point, nodes: Any) -> Interf
 
     def columns(part: Vector) -> Any:
         values = part.reshape(3, -1)
+        # (3, 3 k): row i has the weights of all displacements in component i; as entries (degree of freedom, i) of N.
         rows = np.broadcast_to(dofs.ravel(), values.shape)
         axes = np.repeat(np.arange(3), values.shape[1])
         return scipy.sparse.csc_matrix((values.ravel(), (rows.ravel(), axes)), shape=(len(body.node), 3))

@@ -143,6 +143,7 @@ def normalised(
     for i in elastic:
         shape = vectors[:, i]
         if np.any(np.imag(shape)):
+            # The phase that makes the sum of squares real and positive makes the imaginary part smallest.
             rotated = shape * np.exp(-0.5j * np.angle(np.sum(shape**2)))
             part = float(np.linalg.norm(rotated.imag) / np.linalg.norm(rotated.real))
             if part > LARGEST_IMAGINARY:
