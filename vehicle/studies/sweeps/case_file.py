@@ -2,8 +2,9 @@
 
 import itertools
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,11 +16,17 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.parameter_list import flattened
 from vehicle.model.parameters.paths import assignments
 from vehicle.model.parameters.toml_file import build, read_table
+from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
+from vehicle.runs.output.folder import write_whole
 from vehicle.signals.analysis.ride_comfort import UNWEIGHTED, WEIGHTED
 from vehicle.signals.formats.csv_table import RowWriter
+from vehicle.studies.sweeps.answer import REPEAT, Part, runs_part
 from vehicle.studies.sweeps.change_error import MEANING_OF_ERROR, NO_ERROR, change_errors, half_width
+from vehicle.studies.sweeps.plan import SweepPlan, plan_sweep
+from vehicle.studies.sweeps.sweep_inputs import Source
 from vehicle.studies.sweeps.sweep_ranking import RANKED_BY, SweptCases
+from vehicle.studies.sweeps.sweep_settings import SweepSettings
 
 CASES = "cases.csv"
 """Name of the file in the folder of a sweep."""
@@ -64,6 +71,10 @@ class CaseFile:
                 raise ConfigurationError(f"CaseFile.speeds: {name!r} is not among roads; add it there, or remove it")
             if not by_road.get(name):
                 raise ConfigurationError(f"CaseFile.speeds: no speed on {name!r}; add {name!r} = [80], in km/h")
+
+    def plan(self, car: Car, inputs: Source | Sequence[Source], settings: SweepSettings) -> SweepPlan:
+        """Return the checked sweep of every car of the file; see `Design`."""
+        return plan_sweep(car, list(self.cars.values()), inputs or self.inputs, settings, partial(case_results, cases=self))
 
     @property
     def inputs(self) -> list[Road | str]:
@@ -187,6 +198,32 @@ class CaseResults:
         meaning = f"{self.name}: RMS after the weightings of a seat (ISO 2631-1); {self.error_words}"
         return [*aligned(self.rows()), meaning, self.sentence]
 
+    def write(self, folder: Path, caption: str) -> tuple[str, ...]:
+        """Write a row for each car and input; see `Answer`."""
+        write_whole(folder / CASES, self._write_rows)
+        return (CASES,)
+
+    def _write_rows(self, path: Path) -> None:
+        with path.open("w", encoding="utf-8", newline="") as file:
+            rows = RowWriter(file)
+            rows.writerow(
+                ["input", "car", f"{self.name} [m/s2]", "change [%]", "unweighted [m/s2]", "half_width_95 [%]"]
+            )
+            for number, source in enumerate(self.inputs):
+                for car, *values in zip(
+                    self.cars,
+                    self.weighted[number],
+                    self.changes[number],
+                    self.unweighted[number],
+                    self.half_widths[number],
+                    strict=True,
+                ):
+                    rows.writerow([source, car, *(f"{value:.6g}" if math.isfinite(value) else "" for value in values)])
+
+    def parts(self, table: SweptCases, caption: str, notes: Sequence[str]) -> list[Part]:
+        """Return result and runs for the report; see `Answer`."""
+        return [Part("Result", "result", "cases", {"results": self, "notes": notes}), runs_part(table), REPEAT]
+
     @property
     def error_words(self) -> str:
         """Meaning of the half widths, or the reason why an event has no error."""
@@ -209,6 +246,7 @@ class CaseResults:
             return f"{state or 'Result: '}no car ran on all inputs."
         best = min(variants, key=lambda number: float(means[number]))
         over = "over all inputs" if len(self.inputs) > 1 else f"on {self.inputs[0]}"
+        over = over if several else f"{over[0].upper()}{over[1:]}"
         if best == base:
             return f"{state}{over} no variant is smoother than the car as it is."
         doubt = ", not more than its error" if abs(means[best]) <= self.half_widths[-1, best] else ""
@@ -241,27 +279,3 @@ def case_results(table: SweptCases, cases: CaseFile) -> CaseResults:
         unweighted=table.column(name.replace(WEIGHTED, UNWEIGHTED)).reshape(len(inputs), -1),
         errors=errors.T,
     )
-
-
-def write_cases(path: Path, results: CaseResults) -> None:
-    """Write a row for each car and input.
-
-    Args:
-        path: CSV file.
-        results: see `case_results`.
-    """
-    with path.open("w", encoding="utf-8", newline="") as file:
-        rows = RowWriter(file)
-        rows.writerow(
-            ["input", "car", f"{results.name} [m/s2]", "change [%]", "unweighted [m/s2]", "half_width_95 [%]"]
-        )
-        for number, source in enumerate(results.inputs):
-            for car, *values in zip(
-                results.cars,
-                results.weighted[number],
-                results.changes[number],
-                results.unweighted[number],
-                results.half_widths[number],
-                strict=True,
-            ):
-                rows.writerow([source, car, *(f"{value:.6g}" if math.isfinite(value) else "" for value in values)])

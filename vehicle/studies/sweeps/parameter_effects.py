@@ -7,6 +7,8 @@ All cars drive on the same road, so a change has a far smaller error than the co
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -23,10 +25,10 @@ from vehicle.runs.car import Car
 from vehicle.settings import with_settings
 from vehicle.studies.sweeps.change_error import change_errors, half_width
 from vehicle.studies.sweeps.effects import Effect, Effects
-from vehicle.studies.sweeps.plan import plan_sweep
+from vehicle.studies.sweeps.plan import SweepPlan, plan_sweep
 from vehicle.studies.sweeps.sweep_inputs import Source
 from vehicle.studies.sweeps.sweep_ranking import RANKED_BY, ROUNDING
-from vehicle.studies.sweeps.sweep_settings import SHIFT, EffectSettings
+from vehicle.studies.sweeps.sweep_settings import SHARE, SHIFT, EffectSettings, SweepSettings
 from vehicle.studies.sweeps.sweep_table import SweepTable
 
 UNITS = ("N/m", "N s/m", "N", "N m/rad", "N/rad", "kg")
@@ -140,10 +142,39 @@ def parameter_effects(car: Car, inputs: Source | Sequence[Source], settings: Eff
     Raises:
         ConfigurationError: a group without parameters, a share out of range, and as in `sweep`.
     """
-    parameters = varied_parameters(car.vehicle, settings.groups)
-    changes, without = single_changes(car.vehicle, parameters, settings.share, settings.shift)
-    table = plan_sweep(car, changes, inputs, settings).run()
-    return effects_of(table, parameters, settings.share, without, settings.shift)
+    plan = SingleChanges(settings.groups, settings.share, settings.shift).plan(car, inputs, settings)
+    effects = plan.answer_of(plan.run())
+    assert isinstance(effects, Effects)
+    return effects
+
+
+@dataclass(frozen=True, slots=True)
+class SingleChanges:
+    """Design of a sweep: each parameter of a car changed alone, down and up, ranked by the effects on comfort.
+
+    Attributes:
+        groups, share, shift: see `EffectSettings`.
+    """
+
+    groups: Sequence[str] = ()
+    share: float = SHARE
+    shift: float = SHIFT
+
+    def plan(self, car: Car, inputs: Source | Sequence[Source], settings: SweepSettings) -> SweepPlan:
+        """Return the checked sweep; see `Design`.
+
+        Raises:
+            ConfigurationError: see `varied_parameters` and `single_changes`.
+        """
+        parameters = varied_parameters(car.vehicle, self.groups)
+        changes, without = single_changes(car.vehicle, parameters, self.share, self.shift)
+        return plan_sweep(
+            car,
+            changes,
+            inputs,
+            settings,
+            partial(effects_of, parameters=parameters, share=self.share, without=without, shift=self.shift),
+        )
 
 
 def effects_of(

@@ -5,10 +5,10 @@ from __future__ import annotations
 import contextlib
 import math
 import time as clock
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from vehicle.digits import duration
 from vehicle.engines.reduced.validity import ERROR_IN_RANGE, ERROR_ON_CLASS_C
@@ -20,12 +20,15 @@ from vehicle.model.parameters.paths import assignments, meant
 from vehicle.model.parameters.shipped import FOCUS_FILE, vehicle_file
 from vehicle.model.parameters.vehicle import load_vehicle, overridden
 from vehicle.runs.car import Car
-from vehicle.runs.car.outside_tests import outside_tests
+from vehicle.runs.car.fast_run import fast_run
+from vehicle.runs.car.outside_tests import RAIL, outside_tests
 from vehicle.settings import with_settings
 from vehicle.signals.excitation.road_drive import RoadDrive
-from vehicle.studies.sweeps.case import all_tyre_words, overrides_of
-from vehicle.studies.sweeps.case_evaluation import OF_A_RUN, loaded_car, reason_for_mujoco, run_of
+from vehicle.studies.sweeps.answer import Answer
+from vehicle.studies.sweeps.case import all_tyre_words, overrides_of, signal_of
+from vehicle.studies.sweeps.case_evaluation import OF_A_RUN, loaded_car, reason_for_mujoco
 from vehicle.studies.sweeps.case_table import Cases, Combinations, RowChanges
+from vehicle.studies.sweeps.comfort_ranking import ComfortRanking
 from vehicle.studies.sweeps.dispatcher import FILL
 from vehicle.studies.sweeps.measure import BatchMeasure, Measure, comfort_measure
 from vehicle.studies.sweeps.sweep import sweep_cases
@@ -51,6 +54,7 @@ class SweepPlan:
         skip: start of the evaluation [s].
         settings: settings of the runs.
         notes: messages on side effects of the varied parameters.
+        answer_of: what the table of the runs says.
     """
 
     cases: Cases
@@ -58,6 +62,7 @@ class SweepPlan:
     skip: float
     settings: SweepSettings
     notes: tuple[str, ...]
+    answer_of: Callable[[SweepTable], Answer]
 
     @property
     def tyres(self) -> str:
@@ -117,10 +122,13 @@ class SweepPlan:
         """Return messages on the first car and the first input on which its dampers leave the range of their tests."""
         count = len(self.cases.changes)
         with contextlib.suppress(*OF_A_RUN):  # the row of the case has the error message
-            if not any(damper.law.tested for damper in loaded_car(self.cases[0]).vehicle.composition.dampers):
-                return ()
             for number, (source, _) in enumerate(self.cases.inputs):
-                run = run_of(replace(self.cases[number * count], engine="reduced"))
+                car = loaded_car(self.cases[number * count])
+                tested = [each.name for each in car.vehicle.composition.dampers if each.law.tested]
+                if not tested:
+                    return ()
+                # Of the run the sentence needs these velocities alone; the seat rail is named, and computed anew.
+                run = fast_run(car, signal_of(source), [*(f"{name}_velocity" for name in tested), *RAIL])
                 if texts := outside_tests(replace(run, skip=self.skip)):
                     return tuple(f"first car on {source.name}: {text}" for text in texts)
         return ()
@@ -135,10 +143,25 @@ def _difference(reason: str) -> str:
     return "" if LIFTS in reason else f" (on class C {ERROR_ON_CLASS_C})"
 
 
+class Design(Protocol):
+    """What a sweep varies, and the question that its table answers."""
+
+    def plan(self, car: Car, inputs: Source | Sequence[Source], settings: SweepSettings) -> SweepPlan:
+        """Check cars and inputs before the first run and return the sweep; arguments and errors as in `sweep`."""
+
+
 def plan_sweep(
-    car: Car, vary: Variations, inputs: Source | Sequence[Source], settings: SweepSettings | None = None
+    car: Car,
+    vary: Variations,
+    inputs: Source | Sequence[Source],
+    settings: SweepSettings | None = None,
+    answer_of: Callable[[SweepTable], Answer] = ComfortRanking.of,
 ) -> SweepPlan:
-    """Check the arguments of a sweep and return the sweep; arguments and errors as in `sweep`."""
+    """Check the arguments of a sweep and return the sweep; arguments and errors as in `sweep`.
+
+    Args:
+        answer_of: what the table of the runs says; by default its cars in the order of comfort.
+    """
     settings, changes = settings or SweepSettings(), changes_of(vary)
     vehicle = file_of(car)
     each = _one_of_each_path(changes)
@@ -158,6 +181,7 @@ def plan_sweep(
         skip=start,
         settings=settings,
         notes=(*body_rules(car.vehicle, [text.partition("=")[0] for text in each]), *idle),
+        answer_of=answer_of,
     )
 
 

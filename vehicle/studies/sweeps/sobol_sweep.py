@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -10,15 +11,17 @@ import numpy as np
 from vehicle.errors import DataError
 from vehicle.model.parameters.ranges import Range
 from vehicle.runs.car import Car
+from vehicle.runs.output.folder import write_whole
 from vehicle.settings import with_settings
 from vehicle.signals.analysis.ride_comfort import SEAT_PREFIX, UNWEIGHTED, WEIGHTED
 from vehicle.signals.formats.csv_table import RowWriter
+from vehicle.studies.sweeps.answer import Part
 from vehicle.studies.sweeps.case_table import RowChanges
 from vehicle.studies.sweeps.indices import SobolIndices, sobol_indices, sobol_sample
-from vehicle.studies.sweeps.plan import plan_sweep
+from vehicle.studies.sweeps.plan import SweepPlan, plan_sweep
 from vehicle.studies.sweeps.sweep_inputs import Source
 from vehicle.studies.sweeps.sweep_ranking import SweptCases
-from vehicle.studies.sweeps.sweep_settings import SobolSettings
+from vehicle.studies.sweeps.sweep_settings import SobolSettings, SweepSettings
 
 SOBOL = "sobol.csv"
 """Name of the file in the folder of a sweep."""
@@ -54,25 +57,35 @@ def sobol(
 
     Source: Saltelli et al., Comput. Phys. Commun. 181 (2010).
     """
-    ranges = [Range(path=path, low=low, high=high) for path, (low, high) in vary.items()]
-    return comfort_indices(plan_sweep(car, sobol_changes(ranges, settings.base), inputs, settings).run(), ranges)
+    ranges = tuple(Range(path=path, low=low, high=high) for path, (low, high) in vary.items())
+    plan = SobolSample(ranges, settings.base).plan(car, inputs, settings)
+    return comfort_indices(plan.run(), ranges)
 
 
-def sobol_changes(ranges: Sequence[Range], base: int) -> RowChanges:
-    """Return the variations at the points of the sample, equal in every call, so that a sweep can be resumed.
+@dataclass(frozen=True, slots=True)
+class SobolSample:
+    """Design of a sweep: the points of a sample of parameters uniform between bounds, for Sobol indices of comfort.
 
-    Args:
+    Attributes:
         ranges: parameters with bounds.
         base: number of base points, a power of two, at least `indices.LEAST_BASE`.
-
-    Raises:
-        ConfigurationError: `base` is no power of two, or too small.
     """
-    return RowChanges([each.path for each in ranges], sobol_sample(ranges, base).tolist())
+
+    ranges: Sequence[Range]
+    base: int
+
+    def plan(self, car: Car, inputs: Source | Sequence[Source], settings: SweepSettings) -> SweepPlan:
+        """Return the checked sweep; its sample is equal in every call, so that it can be resumed; see `Design`.
+
+        Raises:
+            ConfigurationError: `base` is no power of two, or too small.
+        """
+        sample = RowChanges([each.path for each in self.ranges], sobol_sample(self.ranges, self.base).tolist())
+        return plan_sweep(car, sample, inputs, settings, lambda table: ComfortIndices(comfort_indices(table, self.ranges)))
 
 
 def comfort_indices(table: SweptCases, ranges: Sequence[Range]) -> dict[str, SobolIndices]:
-    """Return the indices of each comfort value of a sweep over `sobol_changes`: mean of the inputs, each over its mean.
+    """Return the indices of each comfort value of a sweep over a `SobolSample`: mean of the inputs, each over its mean.
 
     Args:
         table: the table.
@@ -93,39 +106,47 @@ def comfort_indices(table: SweptCases, ranges: Sequence[Range]) -> dict[str, Sob
         raise DataError(f"--sobol: {error}") from None
 
 
-def write_indices(path: Path, indices: Mapping[str, SobolIndices]) -> None:
-    """Write a row for each comfort value and parameter, the largest total index first.
+@dataclass(frozen=True, slots=True, eq=False)
+class ComfortIndices:
+    """Answer of a sweep at the points of a sample: the Sobol indices of each comfort value.
 
-    Args:
-        path: CSV file.
+    Attributes:
         indices: see `comfort_indices`.
     """
-    with path.open("w", encoding="utf-8", newline="") as file:
-        rows = RowWriter(file)
-        rows.writerow(["value", "parameter", *(f"{name} [-]" for name in ("S1", "S1_95", "ST", "ST_95"))])
-        for name, each in indices.items():
-            columns = (each.first, each.first_error, each.total, each.total_error)
-            for i in (-each.total).argsort():
-                rows.writerow([name, each.paths[i], *(f"{column[i]:.6g}" for column in columns)])
 
+    indices: Mapping[str, SobolIndices]
 
-def index_lines(indices: Mapping[str, SobolIndices]) -> list[str]:
-    """Return the table of the first comfort value as text, the largest total index first.
+    def write(self, folder: Path, caption: str) -> tuple[str, ...]:
+        """Write a row for each comfort value and parameter, the largest total index first; see `Answer`."""
+        write_whole(folder / SOBOL, self._write_rows)
+        return (SOBOL,)
 
-    Args:
-        indices: see `comfort_indices`.
-    """
-    name, each = next(iter(indices.items()))
-    width = max(len("parameter"), *map(len, each.paths))
-    lines = [f"{'parameter':<{width}}  {'S1':>6} {'+-':>6}  {'ST':>6} {'+-':>6}"]
-    for i in (-each.total).argsort():
-        first, total = (each.first[i], each.first_error[i]), (each.total[i], each.total_error[i])
-        lines.append(f"{each.paths[i]:<{width}}  {first[0]:6.3f} {first[1]:6.3f}  {total[0]:6.3f} {total[1]:6.3f}")
-    left = f"; {each.left_out} of {each.base} base points have a failed run and are left out" if each.left_out else ""
-    warned = [f"warning: {fault}; use {2 * each.base} base points or more" for fault in each.contradictions]
-    return [
-        *lines,
-        *warned,
-        f"shares of the variance of {name!r}: S1 of the parameter alone, ST with all its interactions; +-: half width",
-        f"of the 95 % interval, from {each.scramblings} independent samples{left}",
-    ]
+    def _write_rows(self, path: Path) -> None:
+        with path.open("w", encoding="utf-8", newline="") as file:
+            rows = RowWriter(file)
+            rows.writerow(["value", "parameter", *(f"{name} [-]" for name in ("S1", "S1_95", "ST", "ST_95"))])
+            for name, each in self.indices.items():
+                columns = (each.first, each.first_error, each.total, each.total_error)
+                for i in (-each.total).argsort():
+                    rows.writerow([name, each.paths[i], *(f"{column[i]:.6g}" for column in columns)])
+
+    def lines(self) -> list[str]:
+        """Return the table of the first comfort value as text, the largest total index first."""
+        name, each = next(iter(self.indices.items()))
+        width = max(len("parameter"), *map(len, each.paths))
+        lines = [f"{'parameter':<{width}}  {'S1':>6} {'+-':>6}  {'ST':>6} {'+-':>6}"]
+        for i in (-each.total).argsort():
+            first, total = (each.first[i], each.first_error[i]), (each.total[i], each.total_error[i])
+            lines.append(f"{each.paths[i]:<{width}}  {first[0]:6.3f} {first[1]:6.3f}  {total[0]:6.3f} {total[1]:6.3f}")
+        left = f"; {each.left_out} of {each.base} base points have a failed run and are left out" if each.left_out else ""
+        warned = [f"warning: {fault}; use {2 * each.base} base points or more" for fault in each.contradictions]
+        return [
+            *lines,
+            *warned,
+            f"shares of the variance of {name!r}: S1 of the parameter alone, ST with all its interactions; +-: half width",
+            f"of the 95 % interval, from {each.scramblings} independent samples{left}",
+        ]
+
+    def parts(self, table: SweptCases, caption: str, notes: Sequence[str]) -> list[Part]:
+        """Return no part: indices have no report."""
+        return []

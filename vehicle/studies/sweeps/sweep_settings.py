@@ -20,6 +20,10 @@ SHIFT = 0.01
 origin. Assumed: a usual step of a study of hardpoints; the sliders of the bench reach five of them."""
 
 
+SHARE = 0.2
+"""Default relative change of a parameter [-]."""
+
+
 def _jobs(text: str) -> int:
     """Return the number of processes of the option.
 
@@ -100,7 +104,7 @@ class SobolSettings(SweepSettings):
 class EffectSettings(SweepSettings):
     """Settings of the effects of single parameters."""
 
-    share: float = setting("relative change of each parameter [-]; %(default)s by default", 0.2)
+    share: float = setting("relative change of each parameter [-]; %(default)s by default", SHARE)
     shift: float = setting("change of each coordinate [m], in place of a share; %(default)s by default", SHIFT)
     groups: tuple[str, ...] | list[str] = setting(
         "parameters, as front.damper or viscous; by default all stiffnesses, dampings, friction forces and masses", ()

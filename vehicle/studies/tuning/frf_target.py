@@ -18,7 +18,7 @@ from vehicle.signals.analysis.response_name import PLATE, ResponseName, plates_o
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.formats.frf_file import FrfData, frf_data
 from vehicle.signals.records.counterpart import SAME_MOTION
-from vehicle.studies.tuning.fast_run import fast_run
+from vehicle.runs.car.fast_run import fast_run
 from vehicle.studies.tuning.response_delays import ResponseDelays
 
 LEAST_COHERENCE = 0.1

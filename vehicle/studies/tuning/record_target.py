@@ -17,7 +17,7 @@ from vehicle.signals.analysis.time_shift import time_shift
 from vehicle.signals.excitation.signal import MINIMUM_SAMPLES, Signal
 from vehicle.signals.formats.table import Record
 from vehicle.signals.records.counterpart import SAME_MOTION
-from vehicle.studies.tuning.fast_run import fast_run
+from vehicle.runs.car.fast_run import fast_run
 from vehicle.studies.tuning.response_delays import ResponseDelays
 
 KEPT = 2.0

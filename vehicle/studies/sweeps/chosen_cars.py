@@ -1,0 +1,115 @@
+"""Designs of a sweep whose cars the user names: values in every combination, the rows of a table, another measure."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import islice
+from pathlib import Path
+
+from vehicle.digits import aligned, number
+from vehicle.runs.car import Car
+from vehicle.studies.sweeps.answer import Part
+from vehicle.studies.sweeps.case import parameter_cells
+from vehicle.studies.sweeps.case_table import RowChanges
+from vehicle.studies.sweeps.order_measure import order_measure
+from vehicle.studies.sweeps.plan import Design, SweepPlan, Variations, plan_sweep
+from vehicle.studies.sweeps.sweep_inputs import Source
+from vehicle.studies.sweeps.sweep_ranking import SHOWN, SweptCases
+from vehicle.studies.sweeps.sweep_settings import SweepSettings
+from vehicle.studies.sweeps.sweep_table import read_variations
+
+
+@dataclass(frozen=True, slots=True)
+class ChosenCars:
+    """Cars with chosen values, ranked by comfort.
+
+    Attributes:
+        vary: path to values, for every combination; or a list of variations, as in `sweep`.
+    """
+
+    vary: Variations
+
+    def plan(self, car: Car, inputs: Source | Sequence[Source], settings: SweepSettings) -> SweepPlan:
+        """Return the checked sweep; see `Design`."""
+        return plan_sweep(car, self.vary, inputs, settings)
+
+
+@dataclass(frozen=True, slots=True)
+class VariationTable:
+    """Cars of the rows of a table, ranked by comfort.
+
+    Attributes:
+        file: table whose columns are parameter paths; or the table of another sweep.
+    """
+
+    file: Path
+
+    def plan(self, car: Car, inputs: Source | Sequence[Source], settings: SweepSettings) -> SweepPlan:
+        """Return the checked sweep; see `Design`.
+
+        Raises:
+            DataError: see `read_variations`.
+        """
+        return plan_sweep(car, RowChanges(*read_variations(self.file)), inputs, settings)
+
+
+@dataclass(frozen=True, slots=True)
+class OtherMeasure:
+    """Cars of another design, by another measure than comfort.
+
+    Attributes:
+        design: the cars.
+        measure: measure as text, see `order_measure`.
+    """
+
+    design: Design
+    measure: str
+
+    def plan(self, car: Car, inputs: Source | Sequence[Source], settings: SweepSettings) -> SweepPlan:
+        """Return the checked sweep; see `Design`.
+
+        Raises:
+            ConfigurationError: see `order_measure`.
+        """
+        plan = self.design.plan(car, inputs, settings)
+        return replace(plan, measure=order_measure(self.measure, plan.skip), answer_of=MeasuredRuns.of)
+
+
+@dataclass(frozen=True, slots=True)
+class MeasuredRuns:
+    """Answer of a sweep of another measure than comfort: the values of its first runs.
+
+    Attributes:
+        rows: head, and input, parameters and values of the first runs as texts.
+        left: number of further runs.
+    """
+
+    rows: list[list[str]]
+    left: int
+
+    @classmethod
+    def of(cls, table: SweptCases) -> MeasuredRuns:
+        """Return the answer of a table."""
+        base, units = table.cases[0], table.units
+        shared = {text.partition("=")[0] for text in base.overrides[: base.shared]}
+        paths = [path for path in table.paths() if path not in shared]
+        columns = [table.column(name) for name in units]
+        rows = [
+            [case.source.name, *parameter_cells(case, paths), *(number(float(each[row]), 4) for each in columns)]
+            for row, case in enumerate(islice(table.cases, SHOWN))
+        ]
+        heads = ["input", *paths, *(f"{name} [{unit}]" for name, unit in units.items())]
+        return cls([heads, *rows], len(table.cases) - len(rows))
+
+    def write(self, folder: Path, caption: str) -> tuple[str, ...]:
+        """Write no file: `table.csv` has the values."""
+        return ()
+
+    def lines(self) -> list[str]:
+        """Return the printed table; see `Answer`."""
+        return [*aligned(self.rows, left=1), *([f"and {self.left} more runs in table.csv"] if self.left else [])]
+
+    def parts(self, table: SweptCases, caption: str, notes: Sequence[str]) -> list[Part]:
+        """Return no part: a report is of comfort."""
+        return []
