@@ -4,14 +4,16 @@ import argparse
 import shlex
 from pathlib import Path
 
-from vehicle.commands.chosen_inputs import chosen_inputs
-from vehicle.commands.command_line import ProgressLine, command
-from vehicle.commands.destination import study_folder_of
+from vehicle.commands.chosen_inputs import inputs_of
+from vehicle.commands.command_line import command
+from vehicle.commands.console import Console, ProgressLine
 from vehicle.commands.input_options import signal_options
 from vehicle.commands.options import (
     command_parser,
+    destination_of,
     message_options,
     output_options,
+    read,
     setting_options,
     vehicle_options,
 )
@@ -75,7 +77,7 @@ def parser() -> Parser:
     return parser
 
 
-def _job(options: argparse.Namespace) -> None:
+def _job(options: argparse.Namespace, console: Console) -> None:
     # Heavy packages are imported after the arguments are known to be good.
     from vehicle.model.parameters.ranges import parsed_variation
     from vehicle.runs.car import Car
@@ -88,27 +90,28 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.studies.sweeps.executors import executor_factory
 
     if options.targets is not None:
-        _meet_targets(options)
+        _meet_targets(options, console)
         return
-    settings = SearchSettings.of_options(
+    settings = read(
         options,
+        SearchSettings,
         executor=None if options.executor is None else executor_factory(options.executor),
         tolerances=[parsed_tolerance(text) for text in options.tolerances or ()],
     )
     car = Car.load(options.vehicle, options.overrides)
     vary = [parsed_variation("--vary", text).range() for text in options.vary]
-    plan = plan_search(car, vary, chosen_inputs(options, car.vehicle), options.minimise, settings)
+    plan = plan_search(car, vary, inputs_of(options).inputs(car.vehicle), options.minimise, settings)
     beside = None if options.beside is None else read_other_front(options.beside, plan.trials.problem)
     rows = (CARS, SEARCH)
-    output = study_folder_of(options, options.output, rows=rows)
+    output = destination_of(options).study_folder(options.output, rows=rows)
     with study_folder(output, force=options.force, resume=options.resume, rows=rows) as folder:
         cars = plan.run(folder, progress=ProgressLine("optimise  ", enabled=not options.quiet))
-        cars.write(folder, beside=beside, command=f"python -m vehicle optimise {shlex.join(options.words)}")
+        cars.write(folder, beside=beside, command=f"python -m vehicle optimise {shlex.join(console.words)}")
     if not options.quiet:
         print(cars.text(output, beside))
 
 
-def _meet_targets(options: argparse.Namespace) -> None:
+def _meet_targets(options: argparse.Namespace, console: Console) -> None:
     """Search for the smallest change that meets the targets in a file, and write its result."""
     from vehicle.errors import ConfigurationError
     from vehicle.model.parameters.ranges import parsed_variation
@@ -127,7 +130,7 @@ def _meet_targets(options: argparse.Namespace) -> None:
         raise ConfigurationError("--targets: its file names the inputs; leave out --input and --road")
     car, figures = Car.load(options.vehicle, options.overrides), read_targets(options.targets)
     costs = dict(_cost(text) for text in options.cost)
-    output = study_folder_of(options, options.output, rows=())
+    output = destination_of(options).study_folder(options.output, rows=())
     if not options.quiet:
         length = USUAL_DURATION if options.duration is None else options.duration
         print(f"note        {outlook(len(options.vary), figures, length)}", flush=True)
@@ -143,7 +146,7 @@ def _meet_targets(options: argparse.Namespace) -> None:
         )
         write_text(folder / "vehicle.toml", parameters_text(result.car, result.sentence))
         write_own_files(folder, result.car)
-        command = f"python -m vehicle optimise {shlex.join(options.words)}"
+        command = f"python -m vehicle optimise {shlex.join(console.words)}"
         write_json(folder / "summary.json", {**result.summary(), "command": command})
     if not options.quiet:
         print(f"{output}: {result.change.runs} cars on {', '.join(result.inputs)}; vehicle.toml, summary.json")
@@ -168,4 +171,4 @@ def _cost(text: str) -> tuple[str, float]:
     return path, cost
 
 
-main = command(parser, _job)
+main = command(parser, lambda options: options, _job)

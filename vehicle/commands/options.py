@@ -1,16 +1,20 @@
-"""Options of several commands, each defined once."""
+"""Options of several commands, each defined once, and the settings read from the parsed options."""
 
 import argparse
 import math
-from collections.abc import Sequence
+import sys
+from dataclasses import fields
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from vehicle.commands.parser import Parser
-from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.car_choice import CarChoice
 from vehicle.model.parameters.shipped import CARS, vehicle_file
+from vehicle.runs.output.destination import Destination
 from vehicle.settings import Settings
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
+
+S = TypeVar("S")
 
 EXIT_CODES = (
     "Exit codes: 0 done, 2 usage, 3 bad data, 4 simulation failed, 5 library missing, 6 cannot write, 130 interrupted."
@@ -55,6 +59,48 @@ def setting_options(
         parser.add_argument(declared["flag"], **arguments)
 
 
+def read(options: argparse.Namespace, settings: type[S], /, **more: Any) -> S:
+    """Return the settings of parsed options, also those of the parts of the settings.
+
+    A field takes the option of its name, or of the `dest` of its declaration; without one it has its default.
+
+    Args:
+        settings: dataclass; its class need not be one of `Settings`.
+        more: values of further fields.
+    """
+    for each in fields(settings):  # type: ignore[arg-type]
+        if each.name in more or not each.init:
+            continue
+        declared = each.metadata
+        if "part" in declared:
+            more[each.name] = read(options, declared["part"])
+            continue
+        name, factor = declared.get("option", {}).get("dest", each.name), declared.get("factor", 1.0)
+        value = vars(options).get(name)
+        if value is not None and ("meaning" not in declared or declared["option"]):
+            value = tuple(value) if isinstance(value, list) else value
+            more[each.name] = value if factor == 1.0 else factor * value
+    return settings(**more)
+
+
+def car_of(options: argparse.Namespace) -> CarChoice:
+    """Return the choice of the car of --vehicle, or of the argument CAR, and --set."""
+    file = vars(options).get("car") or vars(options).get("vehicle")
+    return CarChoice(vehicle=file, overrides=tuple(options.overrides))
+
+
+def destination_of(options: argparse.Namespace) -> Destination:
+    """Return the destination of --output, --force and --resume; a notice is printed, except with --quiet."""
+    given = vars(options)
+    return Destination(
+        output=options.output if "output" in options.given else None,
+        force=options.force,
+        resume=given.get("resume", False),
+        tell=lambda text: None if given.get("quiet", False) else print(text, file=sys.stderr),
+        held=options.held,
+    )
+
+
 def vehicle_options(parser: argparse._ActionsContainer) -> argparse._ActionsContainer:
     """Add --vehicle and --set, which choose the car, to a group, or to a new one "the car"; return the group."""
     group = parser.add_argument_group("the car") if isinstance(parser, argparse.ArgumentParser) else parser
@@ -81,28 +127,8 @@ def set_option(parser: argparse._ActionsContainer) -> None:
     )
 
 
-def set_once(overrides: Sequence[str], flag: str, texts: Sequence[str]) -> list[str]:
-    """Return the texts "path=value" that an option sets in the car.
-
-    Args:
-        overrides: texts of --set.
-        flag: option, for the message.
-        texts: texts of the option.
-
-    Raises:
-        ConfigurationError: --set gives one of these parameters another value.
-    """
-    for text in texts:
-        path = text.partition("=")[0]
-        for other in overrides:
-            key = other.partition("=")[0].strip().removeprefix("*.")
-            if other.strip() != text and (path == key or path.endswith(f".{key}")):
-                raise ConfigurationError(f"{flag} and --set {other.strip()}: both set {path}; leave one of them out")
-    return list(texts)
-
-
 def output_options(parser: Parser, path: Path | None, *, default: str = "", metavar: str = "DIR") -> None:
-    """Add --output and --force, see `vehicle.commands.destination`.
+    """Add --output and --force, see `destination_of`.
 
     Args:
         path: folder or file without --output; None if the job chooses it.
@@ -157,18 +183,6 @@ def finite_numbers(text: str, separator: str) -> list[float]:
     except ValueError:
         return []
     return numbers if all(map(math.isfinite, numbers)) else []
-
-
-def film_name(value: str, default: str) -> Path:
-    """Return the path of a film, the value of --video or, if that is empty, a default.
-
-    Raises:
-        ConfigurationError: it does not end in .mp4.
-    """
-    name = Path(value or default)
-    if name.suffix != ".mp4":
-        raise ConfigurationError(f"--video {name}: must end in .mp4; set FILE.mp4")
-    return name
 
 
 def damper_option(parser: argparse._ActionsContainer) -> None:

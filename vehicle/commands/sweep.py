@@ -10,20 +10,23 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehicle.commands.chosen_inputs import chosen_inputs
-from vehicle.commands.command_line import ProgressLine, command
-from vehicle.commands.destination import report_path, study_folder_of
+from vehicle.commands.chosen_inputs import inputs_of
+from vehicle.commands.command_line import command
+from vehicle.commands.console import Console, ProgressLine
 from vehicle.commands.input_options import signal_options
 from vehicle.commands.options import (
     command_parser,
+    destination_of,
     message_options,
     output_options,
+    read,
     report_option,
     resume_options,
     setting_options,
     vehicle_options,
 )
 from vehicle.commands.parser import Parser
+from vehicle.runs.output.destination import ReportChoice
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
 
 if TYPE_CHECKING:
@@ -87,7 +90,7 @@ def parser() -> Parser:
     return parser
 
 
-def _job(options: argparse.Namespace) -> None:
+def _job(options: argparse.Namespace, console: Console) -> None:
     # Heavy packages are imported after the arguments are known to be good.
     from vehicle.errors import ConfigurationError, SimulationError
     from vehicle.runs.car import Car
@@ -142,13 +145,13 @@ def _job(options: argparse.Namespace) -> None:
     else:
         changes = RowChanges(*read_variations(options.table)) if options.table else every_combination(options.vary)
     make = None if options.executor is None else executor_factory(options.executor)
-    settings = SweepSettings.of_options(options, executor=make)
-    inputs = listed.inputs if listed is not None else chosen_inputs(options, car.vehicle)
+    settings = read(options, SweepSettings, executor=make)
+    inputs = listed.inputs if listed is not None else inputs_of(options).inputs(car.vehicle)
     plan = plan_sweep(car, changes, inputs, settings)
     if options.measure is not None:
         plan = replace(plan, measure=order_measure(options.measure, plan.skip))
-    output = study_folder_of(options, options.output, rows=(ROWS,))
-    report = None if options.report is None else report_path(options, output)
+    output = destination_of(options).study_folder(options.output, rows=(ROWS,))
+    report = read(options, ReportChoice).path(destination_of(options), output)
     notes = (*plan.notes, *plan.engine_notes(), *plan.range_notes())
     for text in () if options.quiet else notes:
         print(f"note        {text}")
@@ -176,7 +179,7 @@ def _job(options: argparse.Namespace) -> None:
             write_whole(folder / EFFECTS, lambda path: write_effects(path, effects))
             write_whole(folder / TORNADO, lambda path: effects.write_picture(path, caption))
         if report is not None:
-            command = f"python -m vehicle sweep {shlex.join(options.words)}"
+            command = f"python -m vehicle sweep {shlex.join(console.words)}"
             head = {"author": options.author, "project": options.project}
             page = sweep_page(
                 table,
@@ -272,4 +275,4 @@ def ranges_of(texts: Sequence[str]) -> list[Range]:
     return ranges
 
 
-main = command(parser, _job)
+main = command(parser, lambda options: options, _job)

@@ -9,16 +9,17 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehicle.commands.accepted_advice import accept, require_one_file
 from vehicle.commands.clock_options import drift_option
-from vehicle.commands.command_line import ProgressLine, command
-from vehicle.commands.destination import output_folder_of
+from vehicle.commands.command_line import command
+from vehicle.commands.console import Console, ProgressLine
 from vehicle.commands.options import (
     CAR_HELP,
     command_parser,
+    destination_of,
     head_options,
     message_options,
     output_options,
+    read,
     set_option,
     setting_options,
 )
@@ -82,7 +83,7 @@ def parser() -> Parser:
     return parser
 
 
-def _job(options: argparse.Namespace) -> None:
+def _job(options: argparse.Namespace, console: Console) -> None:
     from vehicle.model.parameters.ranges import parsed_variation
     from vehicle.runs.car import Car
     from vehicle.runs.output.folder import output_folder
@@ -106,12 +107,12 @@ def _job(options: argparse.Namespace) -> None:
     require_fittable(parameters, car.vehicle)
     files = tuple(each.file for each in options.measurements)
     if len(files) > 1:
-        require_one_file(options)
+        console.require_one_file()
     inputs = [name for each in options.measurements for name in (each.signal, each.road) if name is not None]
     protect = tuple(Path(name) for name in inputs)
-    folder = output_folder_of(options, OUTPUT, protect=(*files, *protect))
+    folder = destination_of(options).folder(OUTPUT, protect=(*files, *protect))
     targets = measured_targets(options, car)
-    accept(options, (text for target in targets for text in target.notices))
+    console.accept(text for target in targets for text in target.notices)
     if not (options.quiet or options.json):
         for text in dict.fromkeys(text for target in targets for text in target.notices):
             print(f"notice: {text}", file=sys.stderr, flush=True)
@@ -134,7 +135,7 @@ def _job(options: argparse.Namespace) -> None:
         names = write_tuning(
             work,
             tuned,
-            f"python -m vehicle tune {shlex.join(options.words)}",
+            f"python -m vehicle tune {shlex.join(console.words)}",
             posteriors,
             author=options.author,
             project=options.project,
@@ -158,7 +159,7 @@ def _posteriors(
     from vehicle.studies.tuning.posterior import emulated_car, posterior_of
 
     laws: list[tuple[str, Car, Sequence[Range]]] = [("fitted law", car, parameters)]
-    chosen = PosteriorSettings.of_options(options)
+    chosen = read(options, PosteriorSettings)
     if chosen.rival:
         rival = [parsed_variation("--rival", text) for text in chosen.rival]
         settings = [f"{each.path}={each.values[0]}" for each in rival if each.bounds is None]
@@ -179,4 +180,4 @@ def _posteriors(
     return posteriors
 
 
-main = command(parser, _job)
+main = command(parser, lambda options: options, _job)

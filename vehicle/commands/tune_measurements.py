@@ -7,13 +7,15 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vehicle.commands.clock_options import clock_of, delay_option
-from vehicle.commands.compare import mapping_options, measured_choice
+from vehicle.commands.clock_options import delay_option
 from vehicle.commands.input_options import record_options, speed_value
-from vehicle.commands.options import setting_options
+from vehicle.commands.measured_options import mapping_options
+from vehicle.commands.options import read, setting_options
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 from vehicle.signals.excitation.road_settings import RoadSettings
+from vehicle.signals.records.measured_settings import MeasuredSettings
+from vehicle.signals.records.record_settings import RecordSettings
 from vehicle.studies.tuning.fit_settings import HistorySettings, LevelSettings, ResponseSettings
 
 if TYPE_CHECKING:
@@ -133,8 +135,7 @@ def has_files(options: argparse.Namespace, content: str) -> bool:
 
 def _road_of(each: argparse.Namespace, choice: Choice) -> Road | None:
     """Return the road of a measurement file, and None without --road."""
-    from vehicle.commands.road import class_or_profile
-    from vehicle.runs.car.road import Road
+    from vehicle.runs.car.road import Road, named_road
 
     if each.road is None:
         for name in ("speed", "contact"):
@@ -150,14 +151,14 @@ def _road_of(each: argparse.Namespace, choice: Choice) -> Road | None:
             f"--road {each.road}: the speed is missing; add --speed KM/H, for example --speed 80, or --speed "
             "channel:NAME"
         )
-    return Road(class_or_profile(each.road), speed=each.speed, contact=each.contact, choice=choice)
+    return Road(named_road(each.road), speed=each.speed, contact=each.contact, choice=choice)
 
 
 def measured_targets(options: argparse.Namespace, car: Car) -> list[MeasuredTarget]:
     """Return the targets of all measurement files."""
     from vehicle.studies.tuning.measured_targets import measured_histories, measured_levels, measured_responses
 
-    choice = replace(measured_choice(options), any_level=options.any_level)
+    choice = replace(read(options, MeasuredSettings).choice(read(options, RecordSettings)), any_level=options.any_level)
     road_choice = replace(
         choice,
         channels={role: name for role, name in choice.channels.items() if role in (*ROAD_ROLES, "time")},
@@ -174,11 +175,11 @@ def measured_targets(options: argparse.Namespace, car: Car) -> list[MeasuredTarg
         "inverted": options.turned,
         "fitted": options.channels.split(",") if options.channels else (),
     }
-    delay, drift = clock_of(options)
+    delay, drift = read(options, MeasuredSettings).clock()
     targets = []
     for each in options.measurements:
         if each.content == "frf":
-            frf = ResponseSettings.of_options(options, signal=each.signal, stuck=bool(each.stuck), **shared)
+            frf = read(options, ResponseSettings, signal=each.signal, stuck=bool(each.stuck), **shared)
             targets.append(measured_responses(car, each.file, **frf.given()))
             continue
         source = _road_of(each, road_choice) or each.signal
@@ -186,8 +187,8 @@ def measured_targets(options: argparse.Namespace, car: Car) -> list[MeasuredTarg
             raise ConfigurationError(f"--reference {each.reference}: belongs to --levels N")
         times = {"signal": source, "delay": delay, "drift": drift, **shared}
         if each.levels is None:
-            targets.append(measured_histories(car, each.file, **HistorySettings.of_options(options, **times).given()))
+            targets.append(measured_histories(car, each.file, **read(options, HistorySettings, **times).given()))
         else:
             times |= {"levels": each.levels, "reference": each.reference}
-            targets.append(measured_levels(car, each.file, **LevelSettings.of_options(options, **times).given()))
+            targets.append(measured_levels(car, each.file, **read(options, LevelSettings, **times).given()))
     return targets
