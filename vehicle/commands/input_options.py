@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from vehicle.commands.accepted_advice import advice_option
 from vehicle.commands.options import setting_options
 from vehicle.commands.parser import Condition, Parser
-from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS
 from vehicle.signals.excitation.road_settings import RoadSettings
 from vehicle.signals.records.record_settings import RecordSettings
@@ -139,24 +137,6 @@ def speed_value(text: str) -> float | str:
 def recorded_over_time(options: argparse.Namespace) -> bool:
     """Return True if a road was recorded over time, with its speed."""
     return any(isinstance(speed, str) for speed in _listed(options.speed))
-
-
-def on_road(roads: Sequence[str], files: Sequence[str]) -> bool:
-    """Return True if roads move the plates, and False for files of signals.
-
-    Args:
-        roads: values of --road.
-        files: values of --input.
-
-    Raises:
-        ConfigurationError: neither or both are set.
-    """
-    if roads and files:
-        named = " ".join(f"--road {road}" for road in roads)
-        raise ConfigurationError(f"{named} and --input exclude each other; leave one of them out")
-    if not roads and not files:
-        raise ConfigurationError("the input is missing; set --input FILE, or a road, for example --road C --speed 80")
-    return bool(roads)
 
 
 def record_options(

@@ -100,7 +100,7 @@ def _job(options: argparse.Namespace, console: Console) -> None:
     )
     car = Car.load(options.vehicle, options.overrides)
     vary = [parsed_variation("--vary", text).range() for text in options.vary]
-    plan = plan_search(car, vary, inputs_of(options).inputs(car.vehicle), options.minimise, settings)
+    plan = plan_search(car, vary, inputs_of(options), options.minimise, settings)
     beside = None if options.beside is None else read_other_front(options.beside, plan.trials.problem)
     rows = (CARS, SEARCH)
     output = destination_of(options).study_folder(options.output, rows=rows)

@@ -39,12 +39,13 @@ class SignalFile:
 
     Attributes:
         path: absolute path of the file.
-        wheel: driven wheel for a file without wheel names; `Vehicle.shaker_wheel` of the car.
+        wheel: driven wheel for a file without wheel names; empty before a car is known, whose `Vehicle.shaker_wheel`
+            it is.
         accept_implausible: accept levels above those of any shaker.
     """
 
     path: Path
-    wheel: str
+    wheel: str = ""
     accept_implausible: bool = False
 
     @property

@@ -24,7 +24,7 @@ from vehicle.signals.formats.csv_table import RowWriter
 from vehicle.studies.sweeps.answer import REPEAT, Part, runs_part
 from vehicle.studies.sweeps.change_error import MEANING_OF_ERROR, NO_ERROR, change_errors, half_width
 from vehicle.studies.sweeps.plan import SweepPlan, plan_sweep
-from vehicle.studies.sweeps.sweep_inputs import Source
+from vehicle.studies.sweeps.sweep_inputs import Inputs
 from vehicle.studies.sweeps.sweep_ranking import RANKED_BY, SweptCases
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
 
@@ -72,9 +72,10 @@ class CaseFile:
             if not by_road.get(name):
                 raise ConfigurationError(f"CaseFile.speeds: no speed on {name!r}; add {name!r} = [80], in km/h")
 
-    def plan(self, car: Car, inputs: Source | Sequence[Source], settings: SweepSettings) -> SweepPlan:
-        """Return the checked sweep of every car of the file; see `Design`."""
-        return plan_sweep(car, list(self.cars.values()), inputs or self.inputs, settings, partial(case_results, cases=self))
+    def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
+        """Return the checked sweep of every car of the file, on its inputs; see `Design`."""
+        own = Car.load(self.vehicle, car.overrides) if self.vehicle else car
+        return plan_sweep(own, list(self.cars.values()), self.inputs, settings, partial(case_results, cases=self))
 
     @property
     def inputs(self) -> list[Road | str]:

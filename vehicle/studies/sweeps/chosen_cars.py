@@ -2,37 +2,57 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
+from typing import Any
 
 from vehicle.digits import aligned, number
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.ranges import parsed_variation
 from vehicle.runs.car import Car
 from vehicle.studies.sweeps.answer import Part
 from vehicle.studies.sweeps.case import parameter_cells
-from vehicle.studies.sweeps.case_table import RowChanges
+from vehicle.studies.sweeps.case_table import Combinations, RowChanges
 from vehicle.studies.sweeps.order_measure import order_measure
-from vehicle.studies.sweeps.plan import Design, SweepPlan, Variations, plan_sweep
-from vehicle.studies.sweeps.sweep_inputs import Source
+from vehicle.studies.sweeps.plan import Design, SweepPlan, plan_sweep
+from vehicle.studies.sweeps.sweep_inputs import Inputs
 from vehicle.studies.sweeps.sweep_ranking import SHOWN, SweptCases
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
 from vehicle.studies.sweeps.sweep_table import read_variations
 
 
 @dataclass(frozen=True, slots=True)
-class ChosenCars:
-    """Cars with chosen values, ranked by comfort.
+class EveryCombination:
+    """Cars with every combination of values, ranked by comfort.
 
     Attributes:
-        vary: path to values, for every combination; or a list of variations, as in `sweep`.
+        values: path to values; or texts "PATH=A,B,C" or "PATH=A:B:N", N equally spaced values. The last path varies
+            fastest.
     """
 
-    vary: Variations
+    values: Mapping[str, Sequence[Any]] | Sequence[str]
 
-    def plan(self, car: Car, inputs: Source | Sequence[Source], settings: SweepSettings) -> SweepPlan:
-        """Return the checked sweep; see `Design`."""
-        return plan_sweep(car, self.vary, inputs, settings)
+    def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
+        """Return the checked sweep; see `Design`.
+
+        Raises:
+            ConfigurationError: a text of another form, or a path that occurs twice.
+        """
+        values = self.values if isinstance(self.values, Mapping) else every_combination(self.values)
+        return plan_sweep(car, values, inputs, settings)
+
+
+def every_combination(texts: Sequence[str]) -> Combinations:
+    """Return all combinations of the values of texts, see `EveryCombination`."""
+    columns: dict[str, list[str]] = {}
+    for text in texts:
+        variation = parsed_variation("--vary", text)
+        if variation.path in columns:
+            raise ConfigurationError(f"--vary {variation.path}: given twice; list all its values in one option")
+        columns[variation.path] = [f"{variation.path}={value}" for value in variation.listed()]
+    return Combinations(list(columns.values()))
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +65,7 @@ class VariationTable:
 
     file: Path
 
-    def plan(self, car: Car, inputs: Source | Sequence[Source], settings: SweepSettings) -> SweepPlan:
+    def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
         """Return the checked sweep; see `Design`.
 
         Raises:
@@ -66,7 +86,7 @@ class OtherMeasure:
     design: Design
     measure: str
 
-    def plan(self, car: Car, inputs: Source | Sequence[Source], settings: SweepSettings) -> SweepPlan:
+    def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
         """Return the checked sweep; see `Design`.
 
         Raises:

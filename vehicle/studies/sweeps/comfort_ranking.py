@@ -1,4 +1,4 @@
-"""Answer of a sweep over chosen cars: the cars in the order of comfort, their picture, and their parts of the report."""
+"""Answer of a sweep over chosen cars: the cars in the order of comfort, their picture and their report."""
 
 from __future__ import annotations
 

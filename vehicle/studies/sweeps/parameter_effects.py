@@ -26,7 +26,7 @@ from vehicle.settings import with_settings
 from vehicle.studies.sweeps.change_error import change_errors, half_width
 from vehicle.studies.sweeps.effects import Effect, Effects
 from vehicle.studies.sweeps.plan import SweepPlan, plan_sweep
-from vehicle.studies.sweeps.sweep_inputs import Source
+from vehicle.studies.sweeps.sweep_inputs import Inputs
 from vehicle.studies.sweeps.sweep_ranking import RANKED_BY, ROUNDING
 from vehicle.studies.sweeps.sweep_settings import SHARE, SHIFT, EffectSettings, SweepSettings
 from vehicle.studies.sweeps.sweep_table import SweepTable
@@ -127,7 +127,7 @@ def _scaled(vehicle: Vehicle, path: str, parameters: Mapping[str, tuple[float, s
 
 
 @with_settings(EffectSettings)
-def parameter_effects(car: Car, inputs: Source | Sequence[Source], settings: EffectSettings) -> Effects:
+def parameter_effects(car: Car, inputs: Inputs, settings: EffectSettings) -> Effects:
     """Change each parameter of a car alone, down and up, and rank the parameters by their effect on comfort.
 
     As `sweep`, a script must call this function below `if __name__ == "__main__":`.
@@ -160,7 +160,7 @@ class SingleChanges:
     share: float = SHARE
     shift: float = SHIFT
 
-    def plan(self, car: Car, inputs: Source | Sequence[Source], settings: SweepSettings) -> SweepPlan:
+    def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
         """Return the checked sweep; see `Design`.
 
         Raises:

@@ -32,7 +32,7 @@ from vehicle.studies.sweeps.comfort_ranking import ComfortRanking
 from vehicle.studies.sweeps.dispatcher import FILL
 from vehicle.studies.sweeps.measure import BatchMeasure, Measure, comfort_measure
 from vehicle.studies.sweeps.sweep import sweep_cases
-from vehicle.studies.sweeps.sweep_inputs import Source, common_start, file_of, inputs_of, require_speed_of_roads
+from vehicle.studies.sweeps.sweep_inputs import Inputs, common_start, file_of, inputs_of, require_speed_of_roads
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
 from vehicle.studies.sweeps.sweep_table import SweepTable
 
@@ -49,6 +49,7 @@ class SweepPlan:
     """Checked sweep, ready to run.
 
     Attributes:
+        name: name of the car.
         cases: the runs.
         measure: measure of each run.
         skip: start of the evaluation [s].
@@ -57,6 +58,7 @@ class SweepPlan:
         answer_of: what the table of the runs says.
     """
 
+    name: str
     cases: Cases
     measure: Measure
     skip: float
@@ -146,14 +148,14 @@ def _difference(reason: str) -> str:
 class Design(Protocol):
     """What a sweep varies, and the question that its table answers."""
 
-    def plan(self, car: Car, inputs: Source | Sequence[Source], settings: SweepSettings) -> SweepPlan:
+    def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
         """Check cars and inputs before the first run and return the sweep; arguments and errors as in `sweep`."""
 
 
 def plan_sweep(
     car: Car,
     vary: Variations,
-    inputs: Source | Sequence[Source],
+    inputs: Inputs,
     settings: SweepSettings | None = None,
     answer_of: Callable[[SweepTable], Answer] = ComfortRanking.of,
 ) -> SweepPlan:
@@ -176,6 +178,7 @@ def plan_sweep(
     if idle and all(_all_idle(vehicle, state, each, settings.engine) for state in states):
         raise ConfigurationError(f"vary: every run would be the same car: {'; '.join(idle)}")
     return SweepPlan(
+        name=car.vehicle.name,
         cases=cases,
         measure=settings.measure or comfort_measure(car.vehicle, start),
         skip=start,
@@ -186,7 +189,7 @@ def plan_sweep(
 
 
 @with_settings(SweepSettings)
-def sweep(car: Car, vary: Variations, inputs: Source | Sequence[Source], settings: SweepSettings) -> SweepTable:
+def sweep(car: Car, vary: Variations, inputs: Inputs, settings: SweepSettings) -> SweepTable:
     """Run a car with varied parameters on one or several inputs, and tabulate comfort and slip.
 
     The runs are distributed to processes, so a script must call this function below `if __name__ == "__main__":`.

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from vehicle.errors import DataError
-from vehicle.model.parameters.ranges import Range
+from vehicle.errors import ConfigurationError, DataError
+from vehicle.model.parameters.ranges import Range, parsed_variation
 from vehicle.runs.car import Car
 from vehicle.runs.output.folder import write_whole
 from vehicle.settings import with_settings
@@ -19,7 +19,7 @@ from vehicle.studies.sweeps.answer import Part
 from vehicle.studies.sweeps.case_table import RowChanges
 from vehicle.studies.sweeps.indices import SobolIndices, sobol_indices, sobol_sample
 from vehicle.studies.sweeps.plan import SweepPlan, plan_sweep
-from vehicle.studies.sweeps.sweep_inputs import Source
+from vehicle.studies.sweeps.sweep_inputs import Inputs
 from vehicle.studies.sweeps.sweep_ranking import SweptCases
 from vehicle.studies.sweeps.sweep_settings import SobolSettings, SweepSettings
 
@@ -32,7 +32,7 @@ QUANTITIES = (f"{SEAT_PREFIX}{WEIGHTED}", f"{SEAT_PREFIX}{UNWEIGHTED}", WEIGHTED
 
 @with_settings(SobolSettings)
 def sobol(
-    car: Car, vary: Mapping[str, tuple[float, float]], inputs: Source | Sequence[Source], settings: SobolSettings
+    car: Car, vary: Mapping[str, tuple[float, float]], inputs: Inputs, settings: SobolSettings
 ) -> dict[str, SobolIndices]:
     """Return the Sobol indices of comfort for parameters uniform between bounds, the mean over all inputs.
 
@@ -57,9 +57,9 @@ def sobol(
 
     Source: Saltelli et al., Comput. Phys. Commun. 181 (2010).
     """
-    ranges = tuple(Range(path=path, low=low, high=high) for path, (low, high) in vary.items())
-    plan = SobolSample(ranges, settings.base).plan(car, inputs, settings)
-    return comfort_indices(plan.run(), ranges)
+    answer = (plan := SobolSample(vary, settings.base).plan(car, inputs, settings)).answer_of(plan.run())
+    assert isinstance(answer, ComfortIndices)
+    return dict(answer.indices)
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,21 +67,32 @@ class SobolSample:
     """Design of a sweep: the points of a sample of parameters uniform between bounds, for Sobol indices of comfort.
 
     Attributes:
-        ranges: parameters with bounds.
+        bounds: path to lower and upper bound; or texts "PATH=LOW:HIGH".
         base: number of base points, a power of two, at least `indices.LEAST_BASE`.
     """
 
-    ranges: Sequence[Range]
+    bounds: Mapping[str, tuple[float, float]] | Sequence[str]
     base: int
 
-    def plan(self, car: Car, inputs: Source | Sequence[Source], settings: SweepSettings) -> SweepPlan:
+    def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
         """Return the checked sweep; its sample is equal in every call, so that it can be resumed; see `Design`.
 
         Raises:
-            ConfigurationError: `base` is no power of two, or too small.
+            ConfigurationError: a text of another form, a path that occurs twice, or a wrong `base`.
         """
-        sample = RowChanges([each.path for each in self.ranges], sobol_sample(self.ranges, self.base).tolist())
-        return plan_sweep(car, sample, inputs, settings, lambda table: ComfortIndices(comfort_indices(table, self.ranges)))
+        ranges = self.ranges()
+        sample = RowChanges([each.path for each in ranges], sobol_sample(ranges, self.base).tolist())
+        return plan_sweep(car, sample, inputs, settings, lambda table: ComfortIndices(comfort_indices(table, ranges)))
+
+    def ranges(self) -> list[Range]:
+        """Return the parameters with their bounds."""
+        if isinstance(self.bounds, Mapping):
+            return [Range(path=path, low=low, high=high) for path, (low, high) in self.bounds.items()]
+        ranges = [parsed_variation("--vary", text).range() for text in self.bounds]
+        paths = [each.path for each in ranges]
+        if twice := next((path for path in paths if paths.count(path) > 1), ""):
+            raise ConfigurationError(f"--vary {twice}: given twice; give its bounds once")
+        return ranges
 
 
 def comfort_indices(table: SweptCases, ranges: Sequence[Range]) -> dict[str, SobolIndices]:
@@ -138,13 +149,14 @@ class ComfortIndices:
         for i in (-each.total).argsort():
             first, total = (each.first[i], each.first_error[i]), (each.total[i], each.total_error[i])
             lines.append(f"{each.paths[i]:<{width}}  {first[0]:6.3f} {first[1]:6.3f}  {total[0]:6.3f} {total[1]:6.3f}")
-        left = f"; {each.left_out} of {each.base} base points have a failed run and are left out" if each.left_out else ""
+        failed = f"; {each.left_out} of {each.base} base points have a failed run and are left out"
         warned = [f"warning: {fault}; use {2 * each.base} base points or more" for fault in each.contradictions]
         return [
             *lines,
             *warned,
-            f"shares of the variance of {name!r}: S1 of the parameter alone, ST with all its interactions; +-: half width",
-            f"of the 95 % interval, from {each.scramblings} independent samples{left}",
+            f"shares of the variance of {name!r}: S1 of the parameter alone, ST with all its interactions; +-: half "
+            "width",
+            f"of the 95 % interval, from {each.scramblings} independent samples{failed if each.left_out else ''}",
         ]
 
     def parts(self, table: SweptCases, caption: str, notes: Sequence[str]) -> list[Part]:

@@ -16,12 +16,16 @@ from vehicle.signals.excitation.recorded_road import RecordedDrive
 from vehicle.signals.excitation.road_drive import RoadDrive
 from vehicle.signals.excitation.signal import Signal
 from vehicle.studies.sweeps.case import Input, SignalFile, signal_of
+from vehicle.studies.sweeps.input_choice import InputChoice
 
 Source = Input | Road | Path | str
 """Input of a run: a file, the name of a shipped file, a road, a signal, or a user-defined input."""
 
+Inputs = InputChoice | Source | Sequence[Source]
+"""One or several inputs."""
 
-def inputs_of(car: Car, sources: Source | Sequence[Source]) -> list[Input]:
+
+def inputs_of(car: Car, sources: Inputs) -> list[Input]:
     """Return the inputs of the runs of a car.
 
     Args:
@@ -35,7 +39,8 @@ def inputs_of(car: Car, sources: Source | Sequence[Source]) -> list[Input]:
         ConfigurationError: no input, a missing file, or a road that the car cannot drive on.
         DataError: an input cannot be read, or was sampled below 125 Hz.
     """
-    listed = list(sources) if isinstance(sources, Sequence) and not isinstance(sources, str) else [sources]
+    chosen = sources.inputs() if isinstance(sources, InputChoice) else sources
+    listed = list(chosen) if isinstance(chosen, Sequence) and not isinstance(chosen, str) else [chosen]
     if not listed:
         raise ConfigurationError("inputs: no input; pass a file, or a road, as road('C', 80)")
     inputs: list[Input] = []
@@ -44,6 +49,8 @@ def inputs_of(car: Car, sources: Source | Sequence[Source]) -> list[Input]:
             inputs.append(source.under(car.vehicle, car.overrides))
         elif isinstance(source, str | Path):
             inputs.append(SignalFile(path=find_input(source).resolve(), wheel=car.vehicle.shaker_wheel))
+        elif isinstance(source, SignalFile) and not source.wheel:
+            inputs.append(replace(source, wheel=car.vehicle.shaker_wheel))
         else:
             inputs.append(source)
     for entry in inputs:

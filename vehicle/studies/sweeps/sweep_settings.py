@@ -38,6 +38,13 @@ def _jobs(text: str) -> int:
     return number
 
 
+def _executor(text: str) -> Callable[[], Executor]:
+    """Return the function of the option that creates an executor."""
+    from vehicle.studies.sweeps.executors import executor_factory
+
+    return executor_factory(text)
+
+
 def skip_setting() -> Any:
     """Declare the start of the evaluation, see `vehicle.signals.excitation.evaluation_start`."""
     return setting(
@@ -62,6 +69,7 @@ class PoolSettings(Settings):
     executor: Callable[[], Executor] | Executor | None = setting(
         "function that returns an executor, in place of `jobs`; or an executor, which stays open and is not replaced "
         "if it breaks",
+        type=_executor,
         metavar="WHERE",
         help="dask://host:port, or module:factory for an executor of your own",
     )

@@ -1,0 +1,149 @@
+"""Study of a sweep: a design on its inputs, run into a folder with the files and the report of its answer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from vehicle.errors import SimulationError
+from vehicle.model.parameters.car_choice import CarChoice
+from vehicle.runs.car import Car
+from vehicle.runs.output.destination import Destination, ReportChoice
+from vehicle.runs.output.folder import study_folder, write_text
+from vehicle.settings import part
+from vehicle.studies.sweeps.differences import DIFFERENCES
+from vehicle.studies.sweeps.plan import Design, SweepPlan
+from vehicle.studies.sweeps.store import ROWS
+from vehicle.studies.sweeps.sweep_inputs import Inputs
+from vehicle.studies.sweeps.sweep_settings import SweepSettings
+
+OUTPUT = Path("runs/sweep")
+"""Folder of a sweep without a name."""
+
+SHOWN = 5
+"""Maximum number of failed runs in the printed lines."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SweepStudy:
+    """Study of a sweep, as the command runs it.
+
+    Attributes:
+        design: what varies, and the question that the table answers.
+        car: the car.
+        inputs: files or names of shipped ones, roads, signals; a `CaseFile` has its own.
+        runs: settings of the runs.
+        destination: folder of the results.
+        report: report beside the table.
+        allow_failed: take a table with failed runs as success.
+    """
+
+    design: Design
+    car: CarChoice = CarChoice()
+    inputs: Inputs = ()
+    runs: SweepSettings = part(SweepSettings)
+    destination: Destination = field(default_factory=Destination)
+    report: ReportChoice = field(default_factory=ReportChoice)
+    allow_failed: bool = False
+
+    def plan(self) -> PlannedStudy:
+        """Check everything before the first run, and lock the folder.
+
+        Raises:
+            VehicleError: as in `sweep`; a folder that cannot be written.
+        """
+        car = Car.load(self.car.vehicle, self.car.overrides)
+        plan = self.design.plan(car, self.inputs, self.runs)
+        folder = self.destination.study_folder(OUTPUT, rows=(ROWS,))
+        report = self.report.path(self.destination, folder)
+        notes = (*plan.notes, *plan.engine_notes(), *plan.range_notes())
+        return PlannedStudy(study=self, plan=plan, folder=folder, report=report, notes=notes)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PlannedStudy:
+    """Checked study, ready to run.
+
+    Attributes:
+        study: the study.
+        plan: its sweep.
+        folder: folder of the results, locked.
+        report: path of the report, a plain name in the folder; None without one.
+        notes: messages on side effects of the varied parameters and on the engine.
+    """
+
+    study: SweepStudy
+    plan: SweepPlan
+    folder: Path
+    report: Path | None
+    notes: tuple[str, ...]
+
+    def run(
+        self,
+        *,
+        command: str = "",
+        progress: Callable[[float], None] | None = None,
+        notice: Callable[[str], None] | None = None,
+    ) -> StudyResult:
+        """Run the sweep, and write the table, the files of its answer and the report.
+
+        Args:
+            command: command line of the study, for the report.
+            progress: called with the finished fraction.
+            notice: called with messages, as that a cluster has no workers.
+
+        Raises:
+            VehicleError: see `vehicle.studies.sweeps.sweep.sweep_cases`.
+        """
+        plan, destination, report = self.plan, self.study.destination, self.report
+        caption = f"tyres {plan.tyres}, evaluated from {plan.skip:g} s on"
+        made = study_folder(self.folder, force=destination.force, resume=destination.resume, rows=(ROWS,))
+        with destination.held, made as folder:
+            table = plan.run(folder=folder, progress=progress, notice=notice)
+            answer = plan.answer_of(table)
+            files = answer.write(folder, caption)
+            if report is not None:
+                from vehicle.studies.sweeps.sweep_page import sweep_page
+
+                head = {"author": self.study.report.author, "project": self.study.report.project}
+                page = sweep_page(table, answer, plan.name, caption=caption, command=command, notes=self.notes, **head)
+                write_text(folder / report if report.parent == Path() else report, page)
+                files = (str(report), *files)
+            failed, lines = table.failed, answer.lines()
+            if (folder / DIFFERENCES).exists():
+                files = (*files, f"{DIFFERENCES} (comfort against the first car)")
+        counts = f"{len(plan.cases)} runs, {len(failed)} failed, {caption}"
+        first = f"{self.folder}: {counts}; {', '.join(('table.csv', *files, 'sweep.json, rows.jsonl, timing.csv'))}"
+        reasons = [f"failed      {case.label}: {reason}" for case, reason in failed[:SHOWN]]
+        return StudyResult(lines=(first, *lines, *reasons), runs=len(plan.cases), failed=len(failed))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class StudyResult:
+    """Result of a study, whose numbers are in its folder.
+
+    Attributes:
+        lines: folder and files, the answer, and the first failed runs.
+        runs, failed: numbers of runs, and of failed ones.
+    """
+
+    lines: tuple[str, ...]
+    runs: int
+    failed: int
+
+    def __str__(self) -> str:
+        """Return the printed lines."""
+        return "\n".join(self.lines)
+
+    def require_success(self) -> None:
+        """Check that no run has failed.
+
+        Raises:
+            SimulationError: a run has failed.
+        """
+        if self.failed:
+            raise SimulationError(
+                f"{self.failed} of {self.runs} runs failed; the table is written, with the reason in their "
+                "rows; --allow-failed takes that as success"
+            )
