@@ -13,8 +13,7 @@ from vehicle.commands.sweep import main
 from vehicle.model.parameters.ranges import Range
 from vehicle.signals.excitation.signal_file import write_signal
 from vehicle.studies.sweeps.indices import sobol_indices
-from vehicle.studies.sweeps.plan import plan_sweep
-from vehicle.studies.sweeps.sobol_sweep import comfort_indices, index_lines, sobol_changes
+from vehicle.studies.sweeps.sobol_sweep import ComfortIndices, SobolSample, comfort_indices
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
 
 BOUNDS = {"damper.viscous": (1500.0, 3000.0), "damper.coulomb_friction": (50.0, 250.0)}
@@ -61,7 +60,7 @@ def test_command_and_python_give_the_indices_of_the_table(inputs, tmp_path, caps
 def test_failed_runs_are_left_out_and_counted(inputs):
     """A table of the same form, whose comfort is known."""
 
-    cases = plan_sweep(Car.load(), sobol_changes(RANGES, 64), inputs, SweepSettings(engine="reduced")).cases
+    cases = SobolSample(BOUNDS, 64).plan(Car.load(), inputs, SweepSettings(engine="reduced")).cases
     values = np.array([sum(float(text.partition("=")[2]) for text in case.overrides) for case in cases])
     values[[3, 256 + 20]] = np.nan
     table: Any = SimpleNamespace(cases=cases, units={"weighted": "m/s2"}, column=lambda name: values)
@@ -70,7 +69,9 @@ def test_failed_runs_are_left_out_and_counted(inputs):
     exact = np.array([1500.0**2, 200.0**2]) / (1500.0**2 + 200.0**2)
     assert np.all(np.abs(indices.total - exact) < 3.0 * indices.total_error)
     assert (indices.base, indices.left_out) == (64, 2)
-    assert "2 of 64 base points have a failed run and are left out" in "\n".join(index_lines({"weighted": indices}))
+    assert "2 of 64 base points have a failed run and are left out" in "\n".join(
+        ComfortIndices({"weighted": indices}).lines()
+    )
     assert indices.contradictions == ()
     table.column = lambda name: np.ones(len(cases))
     with pytest.raises(DataError, match="--sobol: values: all values are equal"):

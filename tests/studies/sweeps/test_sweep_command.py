@@ -8,9 +8,10 @@ import re
 import pytest
 
 from vehicle import Car, Road
-from vehicle.commands.sweep import every_combination, main
+from vehicle.commands.sweep import main
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.studies.sweeps.case import SignalFile
+from vehicle.studies.sweeps.chosen_cars import every_combination
 from vehicle.studies.sweeps.plan import plan_sweep
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
 from vehicle.studies.sweeps.sweep_table import read_variations

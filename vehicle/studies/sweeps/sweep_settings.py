@@ -86,7 +86,10 @@ class RunSettings(PoolSettings):
     """Settings of the runs of a sweep."""
 
     time_limit: float | None = setting(
-        "maximum computing time of a run [s]; a run that takes longer is a failed row", type=float, metavar="S"
+        "maximum computing time of a run [s]; a run that takes longer is a failed row",
+        within="(0, inf)",
+        type=float,
+        metavar="S",
     )
     retry_failed: bool = setting("run failed rows again", False, action="store_true")
     notice: Callable[[str], None] | None = setting("called with messages, as that a cluster has no workers")
