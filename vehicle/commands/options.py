@@ -47,7 +47,8 @@ def setting_options(
         declared = all_declared[name]
         default, factor = declared["default"], declared["factor"]
         if isinstance(default, tuple):  # numbers, or values to append to
-            default = ":".join(f"{each:g}" for each in default) if "type" in declared["option"] else list(default)
+            numbers = default and "type" in declared["option"]
+            default = ":".join(f"{each:g}" for each in default) if numbers else list(default)
         arguments: dict[str, Any] = {
             "dest": name,
             "default": default / factor if isinstance(default, float) else default,

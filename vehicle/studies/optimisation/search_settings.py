@@ -10,7 +10,14 @@ from vehicle.settings import engine_setting, setting
 from vehicle.studies.sweeps.sweep_settings import PoolSettings, skip_setting
 
 if TYPE_CHECKING:
-    from vehicle.studies.optimisation.problem import Tolerances
+    from vehicle.studies.optimisation.problem import Tolerance, Tolerances
+
+
+def _tolerance(text: str) -> Tolerance:
+    """Return the tolerance of the option."""
+    from vehicle.studies.optimisation.problem import parsed_tolerance
+
+    return parsed_tolerance(text)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -44,6 +51,7 @@ class SearchSettings(PoolSettings):
         (),
         flag="--tolerance",
         action="append",
+        type=_tolerance,
         metavar="PATH=SIZE",
         help="half of the band of a parameter, varied or not: in its unit, or in percent: 15%%; of a "
         "coordinate in m: 0.002; may be repeated",
