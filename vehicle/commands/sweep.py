@@ -177,12 +177,10 @@ def _design(options: argparse.Namespace) -> Design:
 
 
 def _job(study: SweepStudy, console: Console) -> None:
-    planned = study.plan()
-    for text in planned.notes:
-        console.say(f"note        {text}")
-    result = planned.run(
+    result = study.run(
         command=console.command("vehicle sweep"),
-        progress=console.progress("sweep     ", runs=len(planned.plan.cases)),
+        begin=console.progress,
+        tell=lambda note: console.say(f"note        {note}"),
         notice=lambda text: print(f"note: {text}", file=sys.stderr, flush=True),
     )
     console.say(result)

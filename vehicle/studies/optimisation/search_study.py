@@ -22,20 +22,13 @@ from vehicle.studies.optimisation.search_settings import SearchSettings
 from vehicle.studies.optimisation.stored_search import SEARCH
 from vehicle.studies.optimisation.target_search import meet_targets, outlook
 from vehicle.studies.sweeps.sweep_inputs import Inputs
+from vehicle.studies.sweeps.sweep_study import Begin, unseen
 
 OUTPUT = Path("runs/optimise")
 """Folder of a search without a name."""
 
 ROWS = (CARS, SEARCH)
 """Files of finished cars."""
-
-Begin = Callable[[str], Callable[[float], None]]
-"""Begins to show the progress of a work of this name; the result is called with the finished fraction."""
-
-
-def unseen(work: str) -> Callable[[float], None]:
-    """Show no progress."""
-    return lambda fraction: None
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

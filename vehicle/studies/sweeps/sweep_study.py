@@ -13,7 +13,7 @@ from vehicle.runs.output.destination import Destination, ReportChoice
 from vehicle.runs.output.folder import study_folder, write_text
 from vehicle.settings import part
 from vehicle.studies.sweeps.differences import DIFFERENCES
-from vehicle.studies.sweeps.plan import Design, SweepPlan
+from vehicle.studies.sweeps.plan import Design
 from vehicle.studies.sweeps.store import ROWS
 from vehicle.studies.sweeps.sweep_inputs import Inputs
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
@@ -23,6 +23,15 @@ OUTPUT = Path("runs/sweep")
 
 SHOWN = 5
 """Maximum number of failed runs in the printed lines."""
+
+Begin = Callable[..., Callable[[float], None]]
+"""Begins to show the progress of a work of a name, and of `runs` runs; the result is called with the finished fraction.
+"""
+
+
+def unseen(work: str, runs: int = 0) -> Callable[[float], None]:
+    """Show no progress."""
+    return lambda fraction: None
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -47,75 +56,51 @@ class SweepStudy:
     report: ReportChoice = field(default_factory=ReportChoice)
     allow_failed: bool = False
 
-    def plan(self) -> PlannedStudy:
-        """Check everything before the first run, and lock the folder.
-
-        Raises:
-            VehicleError: as in `sweep`; a folder that cannot be written.
-        """
-        car = Car.load(self.car.vehicle, self.car.overrides)
-        plan = self.design.plan(car, self.inputs, self.runs)
-        folder = self.destination.study_folder(OUTPUT, rows=(ROWS,))
-        report = self.report.path(self.destination, folder)
-        notes = (*plan.notes, *plan.engine_notes(), *plan.range_notes())
-        return PlannedStudy(study=self, plan=plan, folder=folder, report=report, notes=notes)
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class PlannedStudy:
-    """Checked study, ready to run.
-
-    Attributes:
-        study: the study.
-        plan: its sweep.
-        folder: folder of the results, locked.
-        report: path of the report, a plain name in the folder; None without one.
-        notes: messages on side effects of the varied parameters and on the engine.
-    """
-
-    study: SweepStudy
-    plan: SweepPlan
-    folder: Path
-    report: Path | None
-    notes: tuple[str, ...]
-
     def run(
         self,
         *,
         command: str = "",
-        progress: Callable[[float], None] | None = None,
+        begin: Begin = unseen,
+        tell: Callable[[str], object] = unseen,
         notice: Callable[[str], None] | None = None,
     ) -> StudyResult:
         """Run the sweep, and write the table, the files of its answer and the report.
 
         Args:
             command: command line of the study, for the report.
-            progress: called with the finished fraction.
-            notice: called with messages, as that a cluster has no workers.
+            begin: shows the progress.
+            tell: called with the messages on side effects of the varied parameters and on the engine, before the runs.
+            notice: called with messages during the runs, as that a cluster has no workers.
 
         Raises:
-            VehicleError: see `vehicle.studies.sweeps.sweep.sweep_cases`.
+            VehicleError: as in `sweep`; a folder that cannot be written.
         """
-        plan, destination, report = self.plan, self.study.destination, self.report
+        plan = self.design.plan(Car.load(self.car.vehicle, self.car.overrides), self.inputs, self.runs)
+        to = self.destination
+        output = to.study_folder(OUTPUT, rows=(ROWS,))
+        report = self.report.path(to, output)
+        notes = (*plan.notes, *plan.engine_notes(), *plan.range_notes())
+        for text in notes:
+            tell(text)
         caption = f"tyres {plan.tyres}, evaluated from {plan.skip:g} s on"
-        made = study_folder(self.folder, force=destination.force, resume=destination.resume, rows=(ROWS,))
-        with destination.held, made as folder:
-            table = plan.run(folder=folder, progress=progress, notice=notice)
+        with to.held, study_folder(output, force=to.force, resume=to.resume, rows=(ROWS,)) as folder:
+            table = plan.run(folder=folder, progress=begin("sweep     ", runs=len(plan.cases)), notice=notice)
             answer = plan.answer_of(table)
             files = answer.write(folder, caption)
             if report is not None:
                 from vehicle.studies.sweeps.sweep_page import sweep_page
 
-                head = {"author": self.study.report.author, "project": self.study.report.project}
-                page = sweep_page(table, answer, plan.name, caption=caption, command=command, notes=self.notes, **head)
+                head = {"author": self.report.author, "project": self.report.project}
+                page = sweep_page(table, answer, plan.name, caption=caption, command=command, notes=notes, **head)
                 write_text(folder / report if report.parent == Path() else report, page)
                 files = (str(report), *files)
+            # Read before the folder of the rows gets its name.
             failed, lines = table.failed, answer.lines()
             if (folder / DIFFERENCES).exists():
                 files = (*files, f"{DIFFERENCES} (comfort against the first car)")
         counts = f"{len(plan.cases)} runs, {len(failed)} failed, {caption}"
-        first = f"{self.folder}: {counts}; {', '.join(('table.csv', *files, 'sweep.json, rows.jsonl, timing.csv'))}"
-        reasons = [f"failed      {case.label}: {reason}" for case, reason in failed[:SHOWN]]
+        first = f"{output}: {counts}; {', '.join(('table.csv', *files, 'sweep.json, rows.jsonl, timing.csv'))}"
+        reasons = (f"failed      {case.label}: {reason}" for case, reason in failed[:SHOWN])
         return StudyResult(lines=(first, *lines, *reasons), runs=len(plan.cases), failed=len(failed))
 
 
