@@ -29,7 +29,7 @@ from vehicle.signals.analysis.ride_comfort import MEANING, UNWEIGHTED, WEIGHTED
 from vehicle.studies.sweeps.case import all_tyre_words
 from vehicle.studies.sweeps.case_table import table_cases
 from vehicle.studies.sweeps.indices import LEAST_BASE, SobolIndices, sobol_indices, sobol_sample
-from vehicle.studies.sweeps.sobol_sweep import ComfortIndices
+from vehicle.studies.sweeps.sobol_sweep import index_lines
 from vehicle.studies.sweeps.sweep import sweep
 
 Matrix = npt.NDArray[np.float64]
@@ -111,7 +111,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
             f"Sum of S1 {np.sum(indices[name].first):.2f}; from half the sample to the whole, no ST moved by more than "
             f"{indices[name].drift:.3f}."
         )
-        notes.append("\n".join(["```text", *ComfortIndices({name: indices[name]}).lines(), "```"]))
+        notes.append("\n".join(["```text", *index_lines({name: indices[name]}), "```"]))
     return Findings(
         title="Global sensitivity of comfort",
         claims=[],

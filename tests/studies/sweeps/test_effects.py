@@ -11,7 +11,7 @@ from vehicle.commands.sweep import main
 from vehicle.errors import ConfigurationError
 from vehicle.studies.sweeps.case import parameter_cells
 from vehicle.studies.sweeps.differences import DifferencesWriter
-from vehicle.studies.sweeps.effects import Effect, Effects
+from vehicle.studies.sweeps.effects import Effect, Effects, effect_sentence, write_effects
 from vehicle.studies.sweeps.parameter_effects import (
     effects_of,
     parameter_effects,
@@ -154,20 +154,20 @@ def test_a_coordinate_is_moved_by_a_length_whatever_its_origin():
 
 
 def test_sentence():
-    assert of(effect("a", -4.0, 3.0), effect("b", 1.0, -1.0), effect("c", 0.1, 0.0)).sentence == (
+    assert effect_sentence(of(effect("a", -4.0, 3.0), effect("b", 1.0, -1.0), effect("c", 0.1, 0.0))) == (
         "a matters most: -20 % makes the ride 4 % smoother, +20 % makes the ride 3 % rougher; then come b and c."
     )
-    assert of(effect("a", NAN, 3.0)).sentence == "a matters most: +20 % makes the ride 3 % rougher."
-    assert of(effect("a", -1.0, 0.9, 1.2)).sentence.startswith("No effect is larger than its error")
+    assert effect_sentence(of(effect("a", NAN, 3.0))) == "a matters most: +20 % makes the ride 3 % rougher."
+    assert effect_sentence(of(effect("a", -1.0, 0.9, 1.2))).startswith("No effect is larger than its error")
     # 3.0 and 2.5 differ by less than sqrt(0.5^2 + 0.4^2); 2.5 and 0.9 by more than sqrt(0.4^2 + 0.3^2).
     close = of(effect("a", -9.0, 9.0, 1.0), effect("b", 3.0, -1.0, 0.5), effect("c", 2.5, -1.0, 0.4))
-    assert close.sentence.endswith("then come b and c; not decided within the errors: rank of b and c.")
+    assert effect_sentence(close).endswith("then come b and c; not decided within the errors: rank of b and c.")
     decided = of(effect("a", -9.0, 9.0, 1.0), effect("b", 2.5, -1.0, 0.4), effect("c", 0.9, -0.3, 0.3))
-    assert decided.sentence.endswith("then come b and c.")
+    assert effect_sentence(decided).endswith("then come b and c.")
     # An effect inside its error does not come next, but may be larger than the one that does.
     noise = of(effect("a", -3.0, 3.0, 0.5), effect("b", 2.8, -1.0, 3.5))
-    assert noise.sentence.endswith("3 % rougher; not decided within the errors: rank of a.")
-    assert of().sentence == "No varied parameter changes the comfort here."
+    assert effect_sentence(noise).endswith("3 % rougher; not decided within the errors: rank of a.")
+    assert effect_sentence(of()) == "No varied parameter changes the comfort here."
 
 
 def test_effects_without_a_sense_are_marked():
@@ -179,7 +179,7 @@ def test_effects_without_a_sense_are_marked():
 
 def test_table_file_and_picture(tmp_path):
     effects = of(effect("a", -4.0, NAN, 0.5), effect("b", 1.0, -1.0), without=("c",))
-    effects.write_rows(tmp_path / "effects.csv")
+    write_effects(tmp_path / "effects.csv", effects)
     assert (tmp_path / "effects.csv").read_text(encoding="utf-8").splitlines() == [
         "parameter,unit,value,low,high,change_low [%],change_high [%],half_width_95 [%]",
         "a,N,10,8,12,-4,,0.5",

@@ -12,11 +12,10 @@ from vehicle.errors import ConfigurationError
 from vehicle.signals.analysis.ride_comfort import wave_names
 from vehicle.studies.sweeps.case import Case, SignalFile
 from vehicle.studies.sweeps.case_result import Result
-from vehicle.studies.sweeps.chosen_cars import MeasuredRuns
-from vehicle.studies.sweeps.comfort_ranking import ComfortRanking
+from vehicle.studies.sweeps.comfort_ranking import ranking_answer
 from vehicle.studies.sweeps.sweep_page import sweep_page
 from vehicle.studies.sweeps.sweep_picture import can_be_drawn, draw_ranked
-from vehicle.studies.sweeps.sweep_ranking import ranked_cars, ranking_lines
+from vehicle.studies.sweeps.sweep_ranking import measure_lines, ranked_cars, ranking_lines
 from vehicle.studies.sweeps.sweep_table import SweepTable
 
 UNITS = {"unweighted": "m/s2", "weighted": "m/s2"}
@@ -72,7 +71,7 @@ def test_loads_are_states_within_which_cars_are_ranked():
 
 def test_another_measure_has_its_table():
     table = replace(table_of([("30",), ("10",)], ["front.spring"]), units={"weighted": "m/s2"})
-    lines = MeasuredRuns.of(table).lines()
+    lines = measure_lines(table)
     assert lines[0].split() == ["input", "front.spring", "weighted", "[m/s2]"] and len(lines) == 5
     assert lines[1].split() == [table.cases[0].source.name, "30", "1"]
 
@@ -168,7 +167,7 @@ def test_the_report_names_best_and_base_with_the_numbers_of_the_table(tmp_path):
 
 def test_a_note_on_the_valid_range_stands_at_the_verdict():
     table = table_of([("30",), ("10",)], ["damper.viscous"])
-    page = sweep_page(table, ComfortRanking.of(table), "focus", caption="", notes=("outside the valid range: a",))
+    page = sweep_page(table, ranking_answer(table, ""), "focus", caption="", notes=("outside the valid range: a",))
     before = page.index("Base car, the first of the sweep")
     assert before < page.index("<p>outside the valid range: a</p>") < page.rindex("All runs")
 

@@ -1,10 +1,10 @@
-"""Answer of a sweep: what its table says, in files beside the table, in printed lines and in parts of the report."""
+"""Answer of a sweep: what its table says, in printed lines, in files beside the table and in parts of the report."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from vehicle.digits import number
 from vehicle.studies.sweeps.case import parameter_cells
@@ -34,28 +34,19 @@ class Part:
     label: str = ""
 
 
-class Answer(Protocol):
-    """What the table of a sweep says."""
+@dataclass(frozen=True, slots=True, eq=False)
+class Answer:
+    """What the table of a sweep says.
 
-    def write(self, folder: Path, caption: str) -> tuple[str, ...]:
-        """Write the files of the answer beside the table and return their names.
+    Attributes:
+        lines: the printed table, and the result in words.
+        files: name of a file beside the table to the function that writes it to a path.
+        parts: parts of the report, with `REPEAT`, for messages on side effects and on the engine.
+    """
 
-        Args:
-            folder: folder of the sweep.
-            caption: tyres and evaluated span, for a picture.
-        """
-
-    def lines(self) -> list[str]:
-        """Return the printed table, and the result in words."""
-
-    def parts(self, table: SweptCases, caption: str, notes: Sequence[str]) -> list[Part]:
-        """Return the parts of the report, with `REPEAT`; none for an answer without a report.
-
-        Args:
-            table: table of the sweep.
-            caption: see `write`.
-            notes: messages on side effects of the varied parameters and on the engine.
-        """
+    lines: Sequence[str]
+    files: Mapping[str, Callable[[Path], object]] = field(default_factory=dict)
+    parts: Callable[[Sequence[str]], list[Part]] = lambda notes: []
 
 
 REPEAT = Part("How to repeat the sweep", "repeat", "repeat_sweep", {"best": ""})

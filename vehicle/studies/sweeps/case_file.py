@@ -2,9 +2,8 @@
 
 import itertools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,10 +17,8 @@ from vehicle.model.parameters.paths import assignments
 from vehicle.model.parameters.toml_file import build, read_table
 from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
-from vehicle.runs.output.folder import write_whole
 from vehicle.signals.analysis.ride_comfort import UNWEIGHTED, WEIGHTED
 from vehicle.signals.formats.csv_table import RowWriter
-from vehicle.studies.sweeps.answer import REPEAT, Part, runs_part
 from vehicle.studies.sweeps.change_error import MEANING_OF_ERROR, NO_ERROR, change_errors, half_width
 from vehicle.studies.sweeps.plan import SweepPlan, plan_sweep
 from vehicle.studies.sweeps.sweep_inputs import Inputs
@@ -75,7 +72,16 @@ class CaseFile:
     def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
         """Return the checked sweep of every car of the file, on its inputs; see `Design`."""
         own = Car.load(self.vehicle, car.overrides) if self.vehicle else car
-        return plan_sweep(own, list(self.cars.values()), self.inputs, settings, partial(case_results, cases=self))
+        return plan_sweep(own, list(self.cars.values()), self.inputs, settings, self._answer)
+
+    def _answer(self, table: SweptCases, caption: str) -> Answer:
+        results = case_results(table, self)
+
+        def parts(notes: Sequence[str]) -> list[Part]:
+            values = {"results": results, "notes": notes}
+            return [Part("Result", "result", "cases", values), runs_part(table), REPEAT]
+
+        return Answer(results.lines(), {CASES: partial(write_cases, results=results)}, parts)
 
     @property
     def inputs(self) -> list[Road | str]:
@@ -199,32 +205,6 @@ class CaseResults:
         meaning = f"{self.name}: RMS after the weightings of a seat (ISO 2631-1); {self.error_words}"
         return [*aligned(self.rows()), meaning, self.sentence]
 
-    def write(self, folder: Path, caption: str) -> tuple[str, ...]:
-        """Write a row for each car and input; see `Answer`."""
-        write_whole(folder / CASES, self._write_rows)
-        return (CASES,)
-
-    def _write_rows(self, path: Path) -> None:
-        with path.open("w", encoding="utf-8", newline="") as file:
-            rows = RowWriter(file)
-            rows.writerow(
-                ["input", "car", f"{self.name} [m/s2]", "change [%]", "unweighted [m/s2]", "half_width_95 [%]"]
-            )
-            for number, source in enumerate(self.inputs):
-                for car, *values in zip(
-                    self.cars,
-                    self.weighted[number],
-                    self.changes[number],
-                    self.unweighted[number],
-                    self.half_widths[number],
-                    strict=True,
-                ):
-                    rows.writerow([source, car, *(f"{value:.6g}" if math.isfinite(value) else "" for value in values)])
-
-    def parts(self, table: SweptCases, caption: str, notes: Sequence[str]) -> list[Part]:
-        """Return result and runs for the report; see `Answer`."""
-        return [Part("Result", "result", "cases", {"results": self, "notes": notes}), runs_part(table), REPEAT]
-
     @property
     def error_words(self) -> str:
         """Meaning of the half widths, or the reason why an event has no error."""
@@ -280,3 +260,27 @@ def case_results(table: SweptCases, cases: CaseFile) -> CaseResults:
         unweighted=table.column(name.replace(WEIGHTED, UNWEIGHTED)).reshape(len(inputs), -1),
         errors=errors.T,
     )
+
+
+def write_cases(path: Path, results: CaseResults) -> None:
+    """Write a row for each car and input.
+
+    Args:
+        path: CSV file.
+        results: see `case_results`.
+    """
+    with path.open("w", encoding="utf-8", newline="") as file:
+        rows = RowWriter(file)
+        rows.writerow(
+            ["input", "car", f"{results.name} [m/s2]", "change [%]", "unweighted [m/s2]", "half_width_95 [%]"]
+        )
+        for number, source in enumerate(results.inputs):
+            for car, *values in zip(
+                results.cars,
+                results.weighted[number],
+                results.changes[number],
+                results.unweighted[number],
+                results.half_widths[number],
+                strict=True,
+            ):
+                rows.writerow([source, car, *(f"{value:.6g}" if math.isfinite(value) else "" for value in values)])

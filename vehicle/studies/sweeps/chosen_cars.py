@@ -4,21 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from vehicle.digits import aligned, number
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.ranges import parsed_variation
 from vehicle.runs.car import Car
-from vehicle.studies.sweeps.answer import Part
-from vehicle.studies.sweeps.case import parameter_cells
+from vehicle.studies.sweeps.answer import Answer
 from vehicle.studies.sweeps.case_table import Combinations, RowChanges
 from vehicle.studies.sweeps.order_measure import order_measure
 from vehicle.studies.sweeps.plan import Design, SweepPlan, plan_sweep
 from vehicle.studies.sweeps.sweep_inputs import Inputs
-from vehicle.studies.sweeps.sweep_ranking import SHOWN, SweptCases
+from vehicle.studies.sweeps.sweep_ranking import measure_lines
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
 from vehicle.studies.sweeps.sweep_table import read_variations
 
@@ -93,43 +90,5 @@ class OtherMeasure:
             ConfigurationError: see `order_measure`.
         """
         plan = self.design.plan(car, inputs, settings)
-        return replace(plan, measure=order_measure(self.measure, plan.skip), answer_of=MeasuredRuns.of)
-
-
-@dataclass(frozen=True, slots=True)
-class MeasuredRuns:
-    """Answer of a sweep of another measure than comfort: the values of its first runs.
-
-    Attributes:
-        rows: head, and input, parameters and values of the first runs as texts.
-        left: number of further runs.
-    """
-
-    rows: list[list[str]]
-    left: int
-
-    @classmethod
-    def of(cls, table: SweptCases) -> MeasuredRuns:
-        """Return the answer of a table."""
-        base, units = table.cases[0], table.units
-        shared = {text.partition("=")[0] for text in base.overrides[: base.shared]}
-        paths = [path for path in table.paths() if path not in shared]
-        columns = [table.column(name) for name in units]
-        rows = [
-            [case.source.name, *parameter_cells(case, paths), *(number(float(each[row]), 4) for each in columns)]
-            for row, case in enumerate(islice(table.cases, SHOWN))
-        ]
-        heads = ["input", *paths, *(f"{name} [{unit}]" for name, unit in units.items())]
-        return cls([heads, *rows], len(table.cases) - len(rows))
-
-    def write(self, folder: Path, caption: str) -> tuple[str, ...]:
-        """Write no file: `table.csv` has the values."""
-        return ()
-
-    def lines(self) -> list[str]:
-        """Return the printed table; see `Answer`."""
-        return [*aligned(self.rows, left=1), *([f"and {self.left} more runs in table.csv"] if self.left else [])]
-
-    def parts(self, table: SweptCases, caption: str, notes: Sequence[str]) -> list[Part]:
-        """Return no part: a report is of comfort."""
-        return []
+        measure = order_measure(self.measure, plan.skip)
+        return replace(plan, measure=measure, answer_of=lambda table, _: Answer(measure_lines(table)))

@@ -5,57 +5,38 @@ from __future__ import annotations
 import math
 import shlex
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from vehicle.digits import number
 from vehicle.runs.car import Car
-from vehicle.runs.output.folder import write_whole
 from vehicle.signals.analysis.ride_comfort import MEANING, SEAT_VALUE, UNWEIGHTED, WEIGHTED
-from vehicle.studies.sweeps.answer import REPEAT, Part, runs_part
+from vehicle.studies.sweeps.answer import REPEAT, Answer, Part, runs_part
 from vehicle.studies.sweeps.sweep_picture import PICTURE, can_be_drawn, draw_ranked
 from vehicle.studies.sweeps.sweep_ranking import RankedCars, SweptCases, ranked_cars, ranking_lines
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class ComfortRanking:
-    """Cars of a sweep in the order of comfort.
+def ranking_answer(table: SweptCases, caption: str) -> Answer:
+    """Return the answer of a sweep over chosen cars.
 
-    Attributes:
-        cars: the cars; None for another measure than comfort, or if every car has a failed run.
+    Args:
+        table: the table; without ranked cars the answer has no lines.
+        caption: tyres and evaluated span.
     """
+    cars = ranked_cars(table)
+    if cars is None:
+        return Answer([], parts=lambda notes: [runs_part(table), REPEAT])
+    drawn = partial(draw_ranked, cars=cars, caption=caption) if can_be_drawn(cars) else None
 
-    cars: RankedCars | None
-
-    @classmethod
-    def of(cls, table: SweptCases) -> ComfortRanking:
-        """Return the answer of a table."""
-        return cls(ranked_cars(table))
-
-    def write(self, folder: Path, caption: str) -> tuple[str, ...]:
-        """Write the picture of two or more cars whose varied parameters are numbers; see `Answer`."""
-        cars = self.cars
-        if cars is None or not can_be_drawn(cars):
-            return ()
-        write_whole(folder / PICTURE, lambda path: draw_ranked(path, cars, caption))
-        return (PICTURE,)
-
-    def lines(self) -> list[str]:
-        """Return the printed table, most comfortable car first; empty without cars."""
-        return [] if self.cars is None else ranking_lines(self.cars)
-
-    def parts(self, table: SweptCases, caption: str, notes: Sequence[str]) -> list[Part]:
-        """Return result, cars, runs and the settings of the best car for the report; see `Answer`."""
-        cars = self.cars
-        if cars is None:
-            return [runs_part(table), REPEAT]
-        drawn = (lambda path: draw_ranked(path, cars, caption)) if can_be_drawn(cars) else None
+    def parts(notes: Sequence[str]) -> list[Part]:
         definitions = [f"{cars.prefix}{name}: {MEANING[name]}" for name in (WEIGHTED, UNWEIGHTED)]
         values = {"sentences": best_sentences(cars), "notes": notes, "definitions": definitions, "cars": cars}
         result = Part("Result", "result", "result", values, drawn, "Comfort over the varied parameters")
         return [result, _cars_part(cars), runs_part(table), replace(REPEAT, values={"best": _best(cars, table)})]
+
+    return Answer(ranking_lines(cars), {} if drawn is None else {PICTURE: drawn}, parts)
 
 
 def _best(cars: RankedCars, table: SweptCases) -> str:

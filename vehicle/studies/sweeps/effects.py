@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -14,11 +14,9 @@ import numpy as np
 from vehicle.arrays import Vector
 from vehicle.digits import aligned, number
 from vehicle.drawing.rendering.tornado_plot import draw_tornado, plot_tornado
-from vehicle.runs.output.folder import write_whole
 from vehicle.signals.formats.csv_table import RowWriter
-from vehicle.studies.sweeps.answer import REPEAT, Part
+from vehicle.studies.sweeps.answer import REPEAT, Answer, Part
 from vehicle.studies.sweeps.change_error import MEANING_OF_ERROR, NO_ERROR
-from vehicle.studies.sweeps.sweep_ranking import SweptCases
 
 EFFECTS, TORNADO = "effects.csv", "effects.png"
 """Names of the files in the folder of a sweep."""
@@ -73,14 +71,11 @@ class Effect:
         return abs(self.largest - other.largest) > math.hypot(*widths)
 
     @property
-    def changes(self) -> tuple[float, float]:
-        """Both changes of comfort [%], at the low value first."""
-        return self.change_low, self.change_high
-
-    @property
     def largest(self) -> float:
         """Larger change of comfort [%]; 0 if both runs failed."""
-        return max((abs(change) for change in self.changes if math.isfinite(change)), default=0.0)
+        return max(
+            (abs(change) for change in (self.change_low, self.change_high) if math.isfinite(change)), default=0.0
+        )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -103,7 +98,7 @@ class Effects:
 
     def __str__(self) -> str:
         """Return the printed table and the result in words."""
-        return "\n".join(self.lines())
+        return "\n".join(effect_lines(self))
 
     def __repr__(self) -> str:
         """Return the parameters with the largest effects in a line."""
@@ -146,97 +141,107 @@ class Effects:
     def bars(self) -> tuple[list[str], Vector, Vector, list[tuple[str, str]]]:
         """Labels, changes at low and high value [%], (bars, 2), half widths [%], (bars,), and names of their ends."""
         labels = [f"{each.path}  {number(each.value)} {each.unit}" for each in self.shown]
-        changes = np.array([each.changes for each in self.shown])
+        changes = np.array([(each.change_low, each.change_high) for each in self.shown])
         widths = np.array([each.half_width for each in self.shown])
         return labels, changes, widths, [each.ends for each in self.shown]
 
-    def lines(self) -> list[str]:
-        """Return the lines of the table of the largest effects, and the result in words."""
-        marked = any(each.mark for each in self.shown)
-        steps = {each.step for each in self.shown}
-        # Where coordinates are among the parameters, each row has its own step.
-        ends = self.shown[0].ends if len(steps) == 1 else ("step", "down", "up")
-        heads = ["parameter", "value", *ends, "+-", *([""] if marked else [])]
-        rows = [
-            [
-                each.path,
-                f"{number(each.value, 4)} {each.unit}",
-                *([each.step] if len(steps) > 1 else []),
-                *(f"{change:+.2f} %" if math.isfinite(change) else "failed" for change in each.changes),
-                f"{each.half_width:.2f}" if math.isfinite(each.half_width) else "-",
-                *([each.mark] if marked else []),
-            ]
-            for each in self.shown
+
+def effect_lines(effects: Effects) -> list[str]:
+    """Return the lines of the table of the largest effects, and the result in words."""
+    marked = any(each.mark for each in effects.shown)
+    steps = {each.step for each in effects.shown}
+    # Where coordinates are among the parameters, each row has its own step.
+    ends = effects.shown[0].ends if len(steps) == 1 else ("step", "down", "up")
+    heads = ["parameter", "value", *ends, "+-", *([""] if marked else [])]
+    rows = [
+        [
+            each.path,
+            f"{number(each.value, 4)} {each.unit}",
+            *([each.step] if len(steps) > 1 else []),
+            *(
+                f"{change:+.2f} %" if math.isfinite(change) else "failed"
+                for change in (each.change_low, each.change_high)
+            ),
+            f"{each.half_width:.2f}" if math.isfinite(each.half_width) else "-",
+            *([each.mark] if marked else []),
         ]
-        lines = aligned([heads, *rows])
-        if len(self.effects) > len(rows):
-            lines.append(f"and {len(self.effects) - len(rows)} parameters with smaller effects in {EFFECTS}")
-        over = f", means of {self.inputs} inputs" if self.inputs > 1 else ""
-        base = f"{self.base:.4g} m/s2 of the unchanged car"
-        lines.append(f"change of {self.name!r}, {base}{over}; {self.error_words}")
-        if self.without:
-            shown = ", ".join(self.without[:3]) + (" ..." if len(self.without) > 3 else "")
-            lines.append(f"without effect here: {len(self.without)} parameters ({shown})")
-        return [*lines, self.sentence]
+        for each in effects.shown
+    ]
+    lines = aligned([heads, *rows])
+    if len(effects.effects) > len(rows):
+        lines.append(f"and {len(effects.effects) - len(rows)} parameters with smaller effects in {EFFECTS}")
+    over = f", means of {effects.inputs} inputs" if effects.inputs > 1 else ""
+    base = f"{effects.base:.4g} m/s2 of the unchanged car"
+    lines.append(f"change of {effects.name!r}, {base}{over}; {effects.error_words}")
+    if effects.without:
+        shown = ", ".join(effects.without[:3]) + (" ..." if len(effects.without) > 3 else "")
+        lines.append(f"without effect here: {len(effects.without)} parameters ({shown})")
+    return [*lines, effect_sentence(effects)]
 
-    @property
-    def sentence(self) -> str:
-        """Return text with the parameters of largest effect."""
-        if not self.effects:
-            return "No varied parameter changes the comfort here."
-        first, *others = self.effects
-        if math.isfinite(first.half_width) and first.largest <= first.half_width:
-            return "No effect is larger than its error: take a longer road, or a larger change."
-        turns = [
-            f"{end} makes the ride {number(abs(change), 2)} % {'rougher' if change > 0.0 else 'smoother'}"
-            for end, change in zip(first.ends, first.changes, strict=True)
-            if math.isfinite(change)
-        ]
-        following = [each for each in others[:2] if not each.largest <= each.half_width]
-        text = f"{first.path} matters most: {', '.join(turns)}"
-        if following:
-            text += f"; then come {' and '.join(each.path for each in following)}"
-        named = (first, *following)
-        # A parameter that is not named counts too: it may be before a named one.
-        unsure = [each.path for each in named if not all(each.is_apart(o) for o in self.effects if o is not each)]
-        if unsure:
-            text += f"; not decided within the errors: rank of {' and '.join(unsure)}"
-        return f"{text}."
 
-    def parts(self, table: SweptCases, caption: str, notes: Sequence[str]) -> list[Part]:
-        """Return the part of the report with the chart and all effects; see `Answer`."""
-        heads = ["parameter", "unit", "value", "low", "high", "change at low [%]", "change at high [%]", "± 95 % [%]"]
-        rows = []
-        for each in self.effects:
-            changes = (f"{change:+.2f}" if math.isfinite(change) else "failed" for change in each.changes)
-            width = number(each.half_width if math.isfinite(each.half_width) else None, 2)
-            width = ", ".join(filter(None, (width, each.mark.replace("+-", "±"))))
-            values = (number(value, 4) for value in (each.value, each.low, each.high))
-            rows.append((each.path, each.unit, *values, *changes, width))
-        values_of_part = {"sentence": self.sentence, "notes": notes, "heads": heads, "rows": rows, "effects": self}
-        picture = partial(self.write_picture, caption=caption)
-        label = "Changes of comfort by single parameters"
-        return [Part("Result", "result", "effects", values_of_part, picture, label), REPEAT]
+def effect_sentence(effects: Effects) -> str:
+    """Return text with the parameters of largest effect."""
+    if not effects.effects:
+        return "No varied parameter changes the comfort here."
+    first, *others = effects.effects
+    if math.isfinite(first.half_width) and first.largest <= first.half_width:
+        return "No effect is larger than its error: take a longer road, or a larger change."
+    turns = [
+        f"{end} makes the ride {number(abs(change), 2)} % {'rougher' if change > 0.0 else 'smoother'}"
+        for end, change in zip(first.ends, (first.change_low, first.change_high), strict=True)
+        if math.isfinite(change)
+    ]
+    following = [each for each in others[:2] if not each.largest <= each.half_width]
+    text = f"{first.path} matters most: {', '.join(turns)}"
+    if following:
+        text += f"; then come {' and '.join(each.path for each in following)}"
+    named = (first, *following)
+    # A parameter that is not named counts too: it may be before a named one.
+    unsure = [each.path for each in named if not all(each.is_apart(o) for o in effects.effects if o is not each)]
+    if unsure:
+        text += f"; not decided within the errors: rank of {' and '.join(unsure)}"
+    return f"{text}."
 
-    def write(self, folder: Path, caption: str) -> tuple[str, ...]:
-        """Write the table of all effects and the chart of the largest; see `Answer`."""
-        write_whole(folder / EFFECTS, self.write_rows)
-        write_whole(folder / TORNADO, partial(self.write_picture, caption=caption))
-        return EFFECTS, TORNADO
 
-    def write_rows(self, path: Path) -> None:
-        """Write a row for each parameter, the largest effect first, then those without effect.
+def write_effects(path: Path, effects: Effects) -> None:
+    """Write a row for each parameter, the largest effect first, then those without effect.
 
-        Args:
-            path: CSV file.
-        """
-        with path.open("w", encoding="utf-8", newline="") as file:
-            rows = RowWriter(file)
-            heads = ("value", "low", "high", "change_low [%]", "change_high [%]", "half_width_95 [%]")
-            rows.writerow(["parameter", "unit", *heads])
-            for each in self.effects:
-                numbers = (each.value, each.low, each.high, *each.changes, each.half_width)
-                cells = (f"{value:.6g}" if math.isfinite(value) else "" for value in numbers)
-                rows.writerow([each.path, each.unit, *cells])
-            for path_without_effect in self.without:
-                rows.writerow([path_without_effect, *[""] * 4, "0", "0", ""])
+    Args:
+        path: CSV file.
+        effects: the effects.
+    """
+    with path.open("w", encoding="utf-8", newline="") as file:
+        rows = RowWriter(file)
+        heads = ("value", "low", "high", "change_low [%]", "change_high [%]", "half_width_95 [%]")
+        rows.writerow(["parameter", "unit", *heads])
+        for each in effects.effects:
+            numbers = (each.value, each.low, each.high, each.change_low, each.change_high, each.half_width)
+            rows.writerow(
+                [each.path, each.unit, *(f"{value:.6g}" if math.isfinite(value) else "" for value in numbers)]
+            )
+        for each_path in effects.without:
+            rows.writerow([each_path, *[""] * 4, "0", "0", ""])
+
+
+def effects_answer(effects: Effects, caption: str) -> Answer:
+    """Return the answer of a sweep over single changes; `caption` names tyres and evaluated span."""
+    draw = partial(effects.write_picture, caption=caption)
+    files = {EFFECTS: partial(write_effects, effects=effects), TORNADO: draw}
+    return Answer(effect_lines(effects), files, partial(_parts, effects, draw))
+
+
+def _parts(effects: Effects, draw: Callable[[Path], object], notes: Sequence[str]) -> list[Part]:
+    """Return the part of the report with the chart and all effects."""
+    heads = ["parameter", "unit", "value", "low", "high", "change at low [%]", "change at high [%]", "± 95 % [%]"]
+    rows = []
+    for each in effects.effects:
+        changes = (
+            f"{change:+.2f}" if math.isfinite(change) else "failed" for change in (each.change_low, each.change_high)
+        )
+        width = number(each.half_width if math.isfinite(each.half_width) else None, 2)
+        width = ", ".join(filter(None, (width, each.mark.replace("+-", "±"))))
+        rows.append(
+            (each.path, each.unit, *(number(value, 4) for value in (each.value, each.low, each.high)), *changes, width)
+        )
+    values = {"sentence": effect_sentence(effects), "notes": notes, "heads": heads, "rows": rows, "effects": effects}
+    return [Part("Result", "result", "effects", values, draw, "Changes of comfort by single parameters"), REPEAT]

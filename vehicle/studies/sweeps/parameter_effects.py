@@ -6,9 +6,8 @@ All cars drive on the same road, so a change has a far smaller error than the co
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -24,7 +23,7 @@ from vehicle.names import AXES
 from vehicle.runs.car import Car
 from vehicle.settings import with_settings
 from vehicle.studies.sweeps.change_error import change_errors, half_width
-from vehicle.studies.sweeps.effects import Effect, Effects
+from vehicle.studies.sweeps.effects import Effect, Effects, effects_answer
 from vehicle.studies.sweeps.plan import SweepPlan, plan_sweep
 from vehicle.studies.sweeps.sweep_inputs import Inputs
 from vehicle.studies.sweeps.sweep_ranking import RANKED_BY, ROUNDING
@@ -142,10 +141,8 @@ def parameter_effects(car: Car, inputs: Inputs, settings: EffectSettings) -> Eff
     Raises:
         ConfigurationError: a group without parameters, a share out of range, and as in `sweep`.
     """
-    plan = SingleChanges(settings.groups, settings.share, settings.shift).plan(car, inputs, settings)
-    effects = plan.answer_of(plan.run())
-    assert isinstance(effects, Effects)
-    return effects
+    changes, effects = SingleChanges(settings.groups, settings.share, settings.shift).of(car.vehicle)
+    return effects(plan_sweep(car, changes, inputs, settings).run())
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,20 +157,17 @@ class SingleChanges:
     share: float = SHARE
     shift: float = SHIFT
 
-    def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
-        """Return the checked sweep; see `Design`.
+    def of(self, vehicle: Vehicle) -> tuple[list[tuple[str, ...]], Callable[[SweepTable], Effects]]:
+        """Return the changes of a car, and the function that returns the effects in their table."""
+        parameters = varied_parameters(vehicle, self.groups)
+        changes, without = single_changes(vehicle, parameters, self.share, self.shift)
+        return changes, lambda table: effects_of(table, parameters, self.share, without, self.shift)
 
-        Raises:
-            ConfigurationError: see `varied_parameters` and `single_changes`.
-        """
-        parameters = varied_parameters(car.vehicle, self.groups)
-        changes, without = single_changes(car.vehicle, parameters, self.share, self.shift)
+    def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
+        """Return the checked sweep; see `Design`; errors: see `varied_parameters` and `single_changes`."""
+        changes, effects = self.of(car.vehicle)
         return plan_sweep(
-            car,
-            changes,
-            inputs,
-            settings,
-            partial(effects_of, parameters=parameters, share=self.share, without=without, shift=self.shift),
+            car, changes, inputs, settings, lambda table, caption: effects_answer(effects(table), caption)
         )
 
 

@@ -28,7 +28,7 @@ from vehicle.studies.sweeps.answer import Answer
 from vehicle.studies.sweeps.case import all_tyre_words, overrides_of, signal_of
 from vehicle.studies.sweeps.case_evaluation import OF_A_RUN, loaded_car, reason_for_mujoco
 from vehicle.studies.sweeps.case_table import Cases, Combinations, RowChanges
-from vehicle.studies.sweeps.comfort_ranking import ComfortRanking
+from vehicle.studies.sweeps.comfort_ranking import ranking_answer
 from vehicle.studies.sweeps.dispatcher import FILL
 from vehicle.studies.sweeps.measure import BatchMeasure, Measure, comfort_measure
 from vehicle.studies.sweeps.sweep import sweep_cases
@@ -64,7 +64,7 @@ class SweepPlan:
     skip: float
     settings: SweepSettings
     notes: tuple[str, ...]
-    answer_of: Callable[[SweepTable], Answer]
+    answer_of: Callable[[SweepTable, str], Answer]
 
     @property
     def tyres(self) -> str:
@@ -157,7 +157,7 @@ def plan_sweep(
     vary: Variations,
     inputs: Inputs,
     settings: SweepSettings | None = None,
-    answer_of: Callable[[SweepTable], Answer] = ComfortRanking.of,
+    answer_of: Callable[[SweepTable, str], Answer] = ranking_answer,
 ) -> SweepPlan:
     """Check the arguments of a sweep and return the sweep; arguments and errors as in `sweep`.
 

@@ -11,11 +11,10 @@ import numpy as np
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.parameters.ranges import Range, parsed_variation
 from vehicle.runs.car import Car
-from vehicle.runs.output.folder import write_whole
 from vehicle.settings import with_settings
 from vehicle.signals.analysis.ride_comfort import SEAT_PREFIX, UNWEIGHTED, WEIGHTED
 from vehicle.signals.formats.csv_table import RowWriter
-from vehicle.studies.sweeps.answer import Part
+from vehicle.studies.sweeps.answer import Answer
 from vehicle.studies.sweeps.case_table import RowChanges
 from vehicle.studies.sweeps.indices import SobolIndices, sobol_indices, sobol_sample
 from vehicle.studies.sweeps.plan import SweepPlan, plan_sweep
@@ -57,9 +56,8 @@ def sobol(
 
     Source: Saltelli et al., Comput. Phys. Commun. 181 (2010).
     """
-    answer = (plan := SobolSample(vary, settings.base).plan(car, inputs, settings)).answer_of(plan.run())
-    assert isinstance(answer, ComfortIndices)
-    return dict(answer.indices)
+    sample = SobolSample(vary, settings.base)
+    return comfort_indices(sample.plan(car, inputs, settings).run(), sample.ranges())
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +80,9 @@ class SobolSample:
         """
         ranges = self.ranges()
         sample = RowChanges([each.path for each in ranges], sobol_sample(ranges, self.base).tolist())
-        return plan_sweep(car, sample, inputs, settings, lambda table: ComfortIndices(comfort_indices(table, ranges)))
+        return plan_sweep(
+            car, sample, inputs, settings, lambda table, _: indices_answer(comfort_indices(table, ranges))
+        )
 
     def ranges(self) -> list[Range]:
         """Return the parameters with their bounds."""
@@ -117,48 +117,44 @@ def comfort_indices(table: SweptCases, ranges: Sequence[Range]) -> dict[str, Sob
         raise DataError(f"--sobol: {error}") from None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class ComfortIndices:
-    """Answer of a sweep at the points of a sample: the Sobol indices of each comfort value.
+def write_indices(path: Path, indices: Mapping[str, SobolIndices]) -> None:
+    """Write a row for each comfort value and parameter, the largest total index first.
 
-    Attributes:
+    Args:
+        path: CSV file.
         indices: see `comfort_indices`.
     """
+    with path.open("w", encoding="utf-8", newline="") as file:
+        rows = RowWriter(file)
+        rows.writerow(["value", "parameter", *(f"{name} [-]" for name in ("S1", "S1_95", "ST", "ST_95"))])
+        for name, each in indices.items():
+            columns = (each.first, each.first_error, each.total, each.total_error)
+            for i in (-each.total).argsort():
+                rows.writerow([name, each.paths[i], *(f"{column[i]:.6g}" for column in columns)])
 
-    indices: Mapping[str, SobolIndices]
 
-    def write(self, folder: Path, caption: str) -> tuple[str, ...]:
-        """Write a row for each comfort value and parameter, the largest total index first; see `Answer`."""
-        write_whole(folder / SOBOL, self._write_rows)
-        return (SOBOL,)
+def index_lines(indices: Mapping[str, SobolIndices]) -> list[str]:
+    """Return the table of the first comfort value as text, the largest total index first.
 
-    def _write_rows(self, path: Path) -> None:
-        with path.open("w", encoding="utf-8", newline="") as file:
-            rows = RowWriter(file)
-            rows.writerow(["value", "parameter", *(f"{name} [-]" for name in ("S1", "S1_95", "ST", "ST_95"))])
-            for name, each in self.indices.items():
-                columns = (each.first, each.first_error, each.total, each.total_error)
-                for i in (-each.total).argsort():
-                    rows.writerow([name, each.paths[i], *(f"{column[i]:.6g}" for column in columns)])
+    Args:
+        indices: see `comfort_indices`.
+    """
+    name, each = next(iter(indices.items()))
+    width = max(len("parameter"), *map(len, each.paths))
+    lines = [f"{'parameter':<{width}}  {'S1':>6} {'+-':>6}  {'ST':>6} {'+-':>6}"]
+    for i in (-each.total).argsort():
+        first, total = (each.first[i], each.first_error[i]), (each.total[i], each.total_error[i])
+        lines.append(f"{each.paths[i]:<{width}}  {first[0]:6.3f} {first[1]:6.3f}  {total[0]:6.3f} {total[1]:6.3f}")
+    left = f"; {each.left_out} of {each.base} base points have a failed run and are left out" if each.left_out else ""
+    warned = [f"warning: {fault}; use {2 * each.base} base points or more" for fault in each.contradictions]
+    return [
+        *lines,
+        *warned,
+        f"shares of the variance of {name!r}: S1 of the parameter alone, ST with all its interactions; +-: half width",
+        f"of the 95 % interval, from {each.scramblings} independent samples{left}",
+    ]
 
-    def lines(self) -> list[str]:
-        """Return the table of the first comfort value as text, the largest total index first."""
-        name, each = next(iter(self.indices.items()))
-        width = max(len("parameter"), *map(len, each.paths))
-        lines = [f"{'parameter':<{width}}  {'S1':>6} {'+-':>6}  {'ST':>6} {'+-':>6}"]
-        for i in (-each.total).argsort():
-            first, total = (each.first[i], each.first_error[i]), (each.total[i], each.total_error[i])
-            lines.append(f"{each.paths[i]:<{width}}  {first[0]:6.3f} {first[1]:6.3f}  {total[0]:6.3f} {total[1]:6.3f}")
-        failed = f"; {each.left_out} of {each.base} base points have a failed run and are left out"
-        warned = [f"warning: {fault}; use {2 * each.base} base points or more" for fault in each.contradictions]
-        return [
-            *lines,
-            *warned,
-            f"shares of the variance of {name!r}: S1 of the parameter alone, ST with all its interactions; +-: half "
-            "width",
-            f"of the 95 % interval, from {each.scramblings} independent samples{failed if each.left_out else ''}",
-        ]
 
-    def parts(self, table: SweptCases, caption: str, notes: Sequence[str]) -> list[Part]:
-        """Return no part: indices have no report."""
-        return []
+def indices_answer(indices: Mapping[str, SobolIndices]) -> Answer:
+    """Return the answer of a sweep over a `SobolSample`, which has no report."""
+    return Answer(index_lines(indices), {SOBOL: lambda path: write_indices(path, indices)})

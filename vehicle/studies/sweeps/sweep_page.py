@@ -38,7 +38,7 @@ def sweep_page(
     made = {"command": command, "engines": ", ".join(table.made.get("engines_asked", ()))}
     made["program"] = table.made.get("program", "")
     parts: list[tuple[str, str, Markup]] = []
-    for part in answer.parts(table, caption, notes):
+    for part in answer.parts(notes):
         figure = Markup() if part.draw is None else drawing(part.draw, part.label)
         parts.append((part.title, part.anchor, fill(part.template, figure=figure, **made, **part.values)))
     inputs = ", ".join(str(source) for source in table.made.get("inputs", {}))

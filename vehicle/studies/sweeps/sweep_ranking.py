@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any, Protocol
 
 import numpy as np
@@ -277,3 +278,18 @@ def ranking_lines(cars: RankedCars) -> list[str]:
     elif best:
         lines.append(f"most comfortable: {best} ({cars.change_text(cars.best)} % weighted{cars.doubt})")
     return lines
+
+
+def measure_lines(table: SweptCases) -> list[str]:
+    """Return the printed table of a sweep of another measure than comfort: parameters and values of the first runs."""
+    base, units = table.cases[0], table.units
+    shared = {text.partition("=")[0] for text in base.overrides[: base.shared]}
+    paths = [path for path in table.paths() if path not in shared]
+    columns = [table.column(name) for name in units]
+    rows = [
+        [case.source.name, *parameter_cells(case, paths), *(number_text(float(each[row]), 4) for each in columns)]
+        for row, case in enumerate(islice(table.cases, SHOWN))
+    ]
+    lines = aligned([["input", *paths, *(f"{name} [{unit}]" for name, unit in units.items())], *rows], left=1)
+    left = len(table.cases) - len(rows)
+    return [*lines, f"and {left} more runs in table.csv"] if left else lines

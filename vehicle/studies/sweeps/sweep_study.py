@@ -10,7 +10,7 @@ from vehicle.errors import SimulationError
 from vehicle.model.parameters.car_choice import CarChoice
 from vehicle.runs.car import Car
 from vehicle.runs.output.destination import Destination, ReportChoice
-from vehicle.runs.output.folder import study_folder, write_text
+from vehicle.runs.output.folder import study_folder, write_files, write_text
 from vehicle.settings import part
 from vehicle.studies.sweeps.differences import DIFFERENCES
 from vehicle.studies.sweeps.plan import Design
@@ -85,23 +85,22 @@ class SweepStudy:
         caption = f"tyres {plan.tyres}, evaluated from {plan.skip:g} s on"
         with to.held, study_folder(output, force=to.force, resume=to.resume, rows=(ROWS,)) as folder:
             table = plan.run(folder=folder, progress=begin("sweep     ", runs=len(plan.cases)), notice=notice)
-            answer = plan.answer_of(table)
-            files = answer.write(folder, caption)
+            answer = plan.answer_of(table, caption)
+            write_files(folder, answer.files)
             if report is not None:
                 from vehicle.studies.sweeps.sweep_page import sweep_page
 
                 head = {"author": self.report.author, "project": self.report.project}
                 page = sweep_page(table, answer, plan.name, caption=caption, command=command, notes=notes, **head)
                 write_text(folder / report if report.parent == Path() else report, page)
-                files = (str(report), *files)
             # Read before the folder of the rows gets its name.
-            failed, lines = table.failed, answer.lines()
-            if (folder / DIFFERENCES).exists():
-                files = (*files, f"{DIFFERENCES} (comfort against the first car)")
+            failed, differences = table.failed, (folder / DIFFERENCES).exists()
+        files = ["table.csv", *([] if report is None else [str(report)]), *answer.files]
+        files += [f"{DIFFERENCES} (comfort against the first car)"] if differences else []
         counts = f"{len(plan.cases)} runs, {len(failed)} failed, {caption}"
-        first = f"{output}: {counts}; {', '.join(('table.csv', *files, 'sweep.json, rows.jsonl, timing.csv'))}"
+        first = f"{output}: {counts}; {', '.join([*files, 'sweep.json, rows.jsonl, timing.csv'])}"
         reasons = (f"failed      {case.label}: {reason}" for case, reason in failed[:SHOWN])
-        return StudyResult(lines=(first, *lines, *reasons), runs=len(plan.cases), failed=len(failed))
+        return StudyResult(lines=(first, *answer.lines, *reasons), runs=len(plan.cases), failed=len(failed))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
