@@ -2,8 +2,9 @@
 
 import itertools
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
 from vehicle.signals.analysis.ride_comfort import UNWEIGHTED, WEIGHTED
 from vehicle.signals.formats.csv_table import RowWriter
+from vehicle.studies.sweeps.answer import REPEAT, Answer, Part, runs_part
 from vehicle.studies.sweeps.change_error import MEANING_OF_ERROR, NO_ERROR, change_errors, half_width
 from vehicle.studies.sweeps.plan import SweepPlan, plan_sweep
 from vehicle.studies.sweeps.sweep_inputs import Inputs

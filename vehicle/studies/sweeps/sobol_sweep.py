@@ -80,9 +80,12 @@ class SobolSample:
         """
         ranges = self.ranges()
         sample = RowChanges([each.path for each in ranges], sobol_sample(ranges, self.base).tolist())
-        return plan_sweep(
-            car, sample, inputs, settings, lambda table, _: indices_answer(comfort_indices(table, ranges))
-        )
+
+        def answer(table: SweptCases, caption: str) -> Answer:
+            indices = comfort_indices(table, ranges)
+            return Answer(index_lines(indices), {SOBOL: lambda path: write_indices(path, indices)})
+
+        return plan_sweep(car, sample, inputs, settings, answer)
 
     def ranges(self) -> list[Range]:
         """Return the parameters with their bounds."""
@@ -153,8 +156,3 @@ def index_lines(indices: Mapping[str, SobolIndices]) -> list[str]:
         f"shares of the variance of {name!r}: S1 of the parameter alone, ST with all its interactions; +-: half width",
         f"of the 95 % interval, from {each.scramblings} independent samples{left}",
     ]
-
-
-def indices_answer(indices: Mapping[str, SobolIndices]) -> Answer:
-    """Return the answer of a sweep over a `SobolSample`, which has no report."""
-    return Answer(index_lines(indices), {SOBOL: lambda path: write_indices(path, indices)})

@@ -136,9 +136,8 @@ class SweepTable:
         check_file(path, ending=".html", force=force)
         evaluated = f"evaluated from {self.made.get('evaluated_from_s') or 0:g} s on"
         name = ", ".join(self.made.get("vehicles", ("car",)))
-        page = sweep_page(
-            self, ranking_answer(self, evaluated), name, caption=evaluated, author=author, project=project
-        )
+        answer = ranking_answer(self, evaluated)
+        page = sweep_page(self, answer, name, caption=evaluated, author=author, project=project)
         write_text(path, page)
         return path
 
