@@ -165,14 +165,13 @@ def _design(options: argparse.Namespace) -> Design:
         raise ConfigurationError(
             "--sobol: needs --vary PATH=LOW:HIGH, and has no report; leave out --table and --report"
         )
-    if options.cases is not None:
-        cases: Design = options.cases
-        return cases
+    vary, design = tuple(options.vary), options.cases
     if options.each is not None:
-        return SingleChanges(options.vary, *options.each)
-    if options.sobol is not None:
-        return SobolSample(options.vary, options.sobol)
-    design = VariationTable(options.table) if options.table else EveryCombination(options.vary)
+        design = SingleChanges(vary, *options.each)
+    elif options.sobol is not None:
+        design = SobolSample(vary, options.sobol)
+    elif design is None:
+        design = VariationTable(options.table) if options.table else EveryCombination(vary)
     return design if options.measure is None else OtherMeasure(design, options.measure)
 
 
