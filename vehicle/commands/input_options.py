@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.accepted_advice import advice_option
-from vehicle.commands.options import setting_options
+from vehicle.commands.options import read, setting_options
 from vehicle.commands.parser import Condition, Parser
 from vehicle.names import CORNERS
 from vehicle.signals.excitation.road_settings import RoadSettings
 from vehicle.signals.records.record_settings import RecordSettings
+
+if TYPE_CHECKING:
+    from vehicle.studies.sweeps.input_choice import InputChoice
 
 FILE_NEEDS = "--input (a road moves the plates of all wheels)"
 RECORD_NEEDS = "--input, or to a road recorded over time (--speed channel:NAME)"
@@ -137,6 +140,13 @@ def speed_value(text: str) -> float | str:
 def recorded_over_time(options: argparse.Namespace) -> bool:
     """Return True if a road was recorded over time, with its speed."""
     return any(isinstance(speed, str) for speed in _listed(options.speed))
+
+
+def inputs_of(options: argparse.Namespace) -> InputChoice:
+    """Return the inputs of parsed options, of which --input, --road, --speed and --seed may be repeated."""
+    from vehicle.studies.sweeps.input_choice import InputChoice
+
+    return read(options, InputChoice, settings=read(options, RoadSettings, seed=None))
 
 
 def record_options(

@@ -6,10 +6,9 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehicle.commands.chosen_inputs import inputs_of
 from vehicle.commands.command_line import command
 from vehicle.commands.console import Console
-from vehicle.commands.input_options import signal_options
+from vehicle.commands.input_options import inputs_of, signal_options
 from vehicle.commands.options import (
     car_of,
     command_parser,

@@ -8,10 +8,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehicle.commands.chosen_inputs import inputs_of
 from vehicle.commands.command_line import command
 from vehicle.commands.console import Console
-from vehicle.commands.input_options import signal_options
+from vehicle.commands.input_options import inputs_of, signal_options
 from vehicle.commands.options import (
     car_of,
     command_parser,
@@ -25,7 +24,7 @@ from vehicle.commands.options import (
     vehicle_options,
 )
 from vehicle.commands.parser import Parser
-from vehicle.errors import ConfigurationError
+from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.runs.output.destination import ReportChoice
 from vehicle.studies.sweeps.sweep_settings import SHIFT, SweepSettings
 
@@ -183,8 +182,11 @@ def _job(study: SweepStudy, console: Console) -> None:
         notice=lambda text: print(f"note: {text}", file=sys.stderr, flush=True),
     )
     console.say(result)
-    if not study.allow_failed:
-        result.require_success()
+    if result.failed and not study.allow_failed:
+        raise SimulationError(
+            f"{result.failed} of {result.runs} runs failed; the table is written, with the reason in their rows; "
+            "--allow-failed takes that as success"
+        )
 
 
 main = command(parser, settings_of, _job)

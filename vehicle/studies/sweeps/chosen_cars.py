@@ -32,11 +32,7 @@ class EveryCombination:
     values: Mapping[str, Sequence[Any]] | Sequence[str]
 
     def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
-        """Return the checked sweep; see `Design`.
-
-        Raises:
-            ConfigurationError: a text of another form, or a path that occurs twice.
-        """
+        """Return the checked sweep; see `Design`. A text of another form, or a path twice, is a ConfigurationError."""
         values = self.values if isinstance(self.values, Mapping) else every_combination(self.values)
         return plan_sweep(car, values, inputs, settings)
 
@@ -63,11 +59,7 @@ class VariationTable:
     file: Path
 
     def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
-        """Return the checked sweep; see `Design`.
-
-        Raises:
-            DataError: see `read_variations`.
-        """
+        """Return the checked sweep; see `Design`, and for the errors of the table `read_variations`."""
         return plan_sweep(car, RowChanges(*read_variations(self.file)), inputs, settings)
 
 
@@ -84,11 +76,7 @@ class OtherMeasure:
     measure: str
 
     def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
-        """Return the checked sweep; see `Design`.
-
-        Raises:
-            ConfigurationError: see `order_measure`.
-        """
+        """Return the checked sweep; see `Design`, and for a wrong measure `order_measure`."""
         plan = self.design.plan(car, inputs, settings)
         measure = order_measure(self.measure, plan.skip)
         return replace(plan, measure=measure, answer_of=lambda table, _: Answer(measure_lines(table)))

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import NamedTuple
 
-from vehicle.errors import SimulationError
 from vehicle.model.parameters.car_choice import CarChoice
 from vehicle.runs.car import Car
 from vehicle.runs.output.destination import Destination, ReportChoice
@@ -25,12 +25,11 @@ SHOWN = 5
 """Maximum number of failed runs in the printed lines."""
 
 Begin = Callable[..., Callable[[float], None]]
-"""Begins to show the progress of a work of a name, and of `runs` runs; the result is called with the finished fraction.
-"""
+"""Shows the progress of a work, by its name and the number of its `runs`; the result takes the finished fraction."""
 
 
-def unseen(work: str, runs: int = 0) -> Callable[[float], None]:
-    """Show no progress."""
+def unseen(text: str, runs: int = 0) -> Callable[[float], None]:
+    """Show no progress, and no message."""
     return lambda fraction: None
 
 
@@ -100,34 +99,16 @@ class SweepStudy:
         counts = f"{len(plan.cases)} runs, {len(failed)} failed, {caption}"
         first = f"{output}: {counts}; {', '.join([*files, 'sweep.json, rows.jsonl, timing.csv'])}"
         reasons = (f"failed      {case.label}: {reason}" for case, reason in failed[:SHOWN])
-        return StudyResult(lines=(first, *answer.lines, *reasons), runs=len(plan.cases), failed=len(failed))
+        return StudyResult("\n".join([first, *answer.lines, *reasons]), len(plan.cases), len(failed))
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class StudyResult:
-    """Result of a study, whose numbers are in its folder.
+class StudyResult(NamedTuple):
+    """Result of a study, whose numbers are in its folder: its printed text, and the numbers of runs and failed ones."""
 
-    Attributes:
-        lines: folder and files, the answer, and the first failed runs.
-        runs, failed: numbers of runs, and of failed ones.
-    """
-
-    lines: tuple[str, ...]
+    text: str
     runs: int
     failed: int
 
     def __str__(self) -> str:
-        """Return the printed lines."""
-        return "\n".join(self.lines)
-
-    def require_success(self) -> None:
-        """Check that no run has failed.
-
-        Raises:
-            SimulationError: a run has failed.
-        """
-        if self.failed:
-            raise SimulationError(
-                f"{self.failed} of {self.runs} runs failed; the table is written, with the reason in their "
-                "rows; --allow-failed takes that as success"
-            )
+        """Return the printed text."""
+        return self.text

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import NamedTuple
 
 from vehicle.model.parameters.car_choice import CarChoice
 from vehicle.model.parameters.ranges import Range, parsed_variation
@@ -95,7 +96,9 @@ class TuningStudy:
         to, protected = self.destination, self.measurements.protected
         with to.held, output_folder(folder, force=to.force, protect=protected) as work:
             files = write_tuning(work, tuned, command, posteriors, author=self.author, project=self.project)
-        return WrittenFit(tuned=tuned, posteriors=tuple(posteriors), folder=folder, files=files)
+        more = posterior_lines(posteriors, car.vehicle) if posteriors else []
+        text = "\n".join([tuning_text(tuned), *more, f"{folder}: {', '.join(files)}"])
+        return WrittenFit(text, tuned, folder)
 
     def _posteriors(
         self, car: Car, parameters: Sequence[Range], targets: Sequence[FrfTarget], begin: Begin
@@ -126,24 +129,13 @@ class TuningStudy:
         return car, [*shared, *ranges_of(car.vehicle, middles)]
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class WrittenFit:
-    """Fit whose files are written.
+class WrittenFit(NamedTuple):
+    """Fit whose files are written: the printed text, the fitted car, and the folder."""
 
-    Attributes:
-        tuned: the fitted car.
-        posteriors: distributions of the parameters of the fitted law and of its rival.
-        folder: folder of the files.
-        files: their names.
-    """
-
+    text: str
     tuned: TunedCar
-    posteriors: tuple[NamedPosterior, ...]
     folder: Path
-    files: tuple[str, ...]
 
     def __str__(self) -> str:
         """Return the printed text: values, what the data leave open, posterior, files."""
-        vehicle = self.tuned.start.vehicle
-        more = posterior_lines(self.posteriors, vehicle) if self.posteriors else []
-        return "\n".join([tuning_text(self.tuned), *more, f"{self.folder}: {', '.join(self.files)}"])
+        return self.text
