@@ -14,7 +14,7 @@ from vehicle.signals.excitation.road_settings import RoadSettings
 from vehicle.signals.records.record_settings import RecordSettings
 
 if TYPE_CHECKING:
-    from vehicle.studies.sweeps.input_choice import InputChoice
+    from vehicle.studies.sweeps.sweep_inputs import InputChoice
 
 FILE_NEEDS = "--input (a road moves the plates of all wheels)"
 RECORD_NEEDS = "--input, or to a road recorded over time (--speed channel:NAME)"
@@ -144,7 +144,7 @@ def recorded_over_time(options: argparse.Namespace) -> bool:
 
 def inputs_of(options: argparse.Namespace) -> InputChoice:
     """Return the inputs of parsed options, of which --input, --road, --speed and --seed may be repeated."""
-    from vehicle.studies.sweeps.input_choice import InputChoice
+    from vehicle.studies.sweeps.sweep_inputs import InputChoice
 
     return read(options, InputChoice, settings=read(options, RoadSettings, seed=None))
 

@@ -25,7 +25,7 @@ from vehicle.studies.optimisation.search_study import SearchStudy, TargetStudy
 from vehicle.studies.sweeps.case import SignalFile
 from vehicle.studies.sweeps.case_evaluation import evaluate
 from vehicle.studies.sweeps.case_table import table_cases
-from vehicle.studies.sweeps.input_choice import InputChoice
+from vehicle.studies.sweeps.sweep_inputs import InputChoice
 
 LOOSE = "damper.coulomb_friction=10"
 SKIP = 1.0

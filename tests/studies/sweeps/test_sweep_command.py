@@ -16,10 +16,10 @@ from vehicle.runs.output.destination import Destination, ReportChoice
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.studies.sweeps.case import SignalFile
 from vehicle.studies.sweeps.chosen_cars import EveryCombination, OtherMeasure, VariationTable, every_combination
-from vehicle.studies.sweeps.input_choice import InputChoice
 from vehicle.studies.sweeps.parameter_effects import SingleChanges
 from vehicle.studies.sweeps.plan import plan_sweep
 from vehicle.studies.sweeps.sobol_sweep import SobolSample
+from vehicle.studies.sweeps.sweep_inputs import InputChoice
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
 from vehicle.studies.sweeps.sweep_study import SweepStudy
 from vehicle.studies.sweeps.sweep_table import read_variations
