@@ -114,7 +114,7 @@ def settings_of(options: argparse.Namespace) -> SearchStudy | TargetStudy:
     """Return the study of parsed options.
 
     Raises:
-        ConfigurationError: options without effect beside --targets.
+        ConfigurationError: options without effect with --targets.
     """
     # Heavy packages are imported after the arguments are known to be good.
     from vehicle.studies.optimisation.search_study import SearchStudy, TargetStudy
@@ -135,7 +135,7 @@ def _job(study: SearchStudy | TargetStudy, console: Console) -> None:
     text = study.run(
         command=console.command("vehicle optimise"),
         begin=console.progress,
-        tell=lambda note: console.say(f"note        {note}"),
+        note=lambda text: console.say(f"note        {text}"),
     )
     console.say(text)
 

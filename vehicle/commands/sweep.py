@@ -178,7 +178,7 @@ def _job(study: SweepStudy, console: Console) -> None:
     result = study.run(
         command=console.command("vehicle sweep"),
         begin=console.progress,
-        tell=lambda note: console.say(f"note        {note}"),
+        note=lambda text: console.say(f"note        {text}"),
         notice=lambda text: print(f"note: {text}", file=sys.stderr, flush=True),
     )
     console.say(result)

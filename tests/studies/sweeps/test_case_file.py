@@ -158,7 +158,7 @@ def test_the_best_of_one_state_is_a_sentence(tmp_path):
     cases = CaseFile(vehicle="sedan", roads=("A",), speeds=(60.0,), duration=3.0, variants={"soft": SOFT, "hard": HARD})
     for speeds, beginning in (((60.0,), "On road_A_60 the smoothest variant is"), ((60.0, 80.0), "Over all inputs ")):
         plan = replace(cases, speeds=speeds).plan(Car.load(), (), SweepSettings(engine="reduced"))
-        assert plan.name == "sedan" and plan.answer_of(plan.run(), "").lines[-1].startswith(beginning)
+        assert plan.name == "sedan" and plan.evaluation_of(plan.run(), "").lines[-1].startswith(beginning)
 
 
 def test_states_alone_have_no_best(tmp_path, capsys, monkeypatch):

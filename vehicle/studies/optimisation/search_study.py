@@ -1,4 +1,4 @@
-"""Studies of a search, run into a folder: a Pareto front, or the smallest change that meets targets."""
+"""Studies of a search, run into a folder: a Pareto front, or the smallest change to reach targets."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class SearchStudy:
     Attributes:
         car: the car.
         vary: path to bounds, or ranges.
-        inputs: files or names of shipped ones, roads, signals.
+        inputs: files, names of shipped files, roads or signals.
         minimise: objectives.
         settings: settings of the search.
         beside: folder of another search with these objectives, drawn with its distance.
@@ -53,13 +53,13 @@ class SearchStudy:
     beside: Path | None = None
     destination: Destination = field(default_factory=Destination)
 
-    def run(self, *, command: str = "", begin: Begin = unseen, tell: Callable[[str], object] = unseen) -> str:
+    def run(self, *, command: str = "", begin: Begin = unseen, note: Callable[[str], object] = unseen) -> str:
         """Run the search, write its files and return the printed table of its named cars.
 
         Args:
             command: command line of the study, for its files.
             begin: shows the progress.
-            tell: called with a message before a search without an end that is known.
+            note: called with a message on the size of a search for targets.
 
         Raises:
             VehicleError: as in `optimise`; a folder that cannot be written.
@@ -77,7 +77,7 @@ class SearchStudy:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class TargetStudy:
-    """Study of the smallest change with which a car meets targets, see `meet_targets`.
+    """Study of the smallest change with which a car reaches targets, see `meet_targets`.
 
     Attributes:
         car: the car.
@@ -97,7 +97,7 @@ class TargetStudy:
     jobs: int = 1
     destination: Destination = field(default_factory=Destination)
 
-    def run(self, *, command: str = "", begin: Begin = unseen, tell: Callable[[str], object] = unseen) -> str:
+    def run(self, *, command: str = "", begin: Begin = unseen, note: Callable[[str], object] = unseen) -> str:
         """Run the search, write its files and return the printed result; arguments as in `SearchStudy.run`.
 
         Raises:
@@ -106,7 +106,7 @@ class TargetStudy:
         car, figures = Car.load(self.car.vehicle, self.car.overrides), read_targets(self.targets)
         to = self.destination
         output = to.study_folder(OUTPUT)
-        tell(outlook(len(self.vary), figures, USUAL_DURATION if self.duration is None else self.duration))
+        note(outlook(len(self.vary), figures, USUAL_DURATION if self.duration is None else self.duration))
         with to.held, study_folder(output, force=to.force) as folder:
             result = meet_targets(
                 car,

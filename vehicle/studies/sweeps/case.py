@@ -39,8 +39,7 @@ class SignalFile:
 
     Attributes:
         path: absolute path of the file.
-        wheel: driven wheel for a file without wheel names; empty before a car is known, whose `Vehicle.shaker_wheel`
-            it is.
+        wheel: driven wheel for a file without wheel names; empty for `Vehicle.shaker_wheel` of the car.
         accept_implausible: accept levels above those of any shaker.
     """
 

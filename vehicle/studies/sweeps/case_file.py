@@ -20,8 +20,8 @@ from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
 from vehicle.signals.analysis.ride_comfort import UNWEIGHTED, WEIGHTED
 from vehicle.signals.formats.csv_table import RowWriter
-from vehicle.studies.sweeps.answer import REPEAT, Answer, Part, runs_part
 from vehicle.studies.sweeps.change_error import MEANING_OF_ERROR, NO_ERROR, change_errors, half_width
+from vehicle.studies.sweeps.evaluation import REPEAT, Evaluation, Part, runs_part
 from vehicle.studies.sweeps.plan import SweepPlan, plan_sweep
 from vehicle.studies.sweeps.sweep_inputs import Inputs
 from vehicle.studies.sweeps.sweep_ranking import RANKED_BY, SweptCases
@@ -73,17 +73,17 @@ class CaseFile:
 
     def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
         """Return the checked sweep of every car of the file, on its inputs; see `Design`."""
-        own = Car.load(self.vehicle, car.overrides) if self.vehicle else car
-        return plan_sweep(own, list(self.cars.values()), self.inputs, settings, self._answer)
+        chosen = Car.load(self.vehicle, car.overrides) if self.vehicle else car
+        return plan_sweep(chosen, list(self.cars.values()), self.inputs, settings, self._evaluation)
 
-    def _answer(self, table: SweptCases, caption: str) -> Answer:
+    def _evaluation(self, table: SweptCases, caption: str) -> Evaluation:
         results = case_results(table, self)
 
         def parts(notes: Sequence[str]) -> list[Part]:
             values = {"results": results, "notes": notes}
             return [Part("Result", "result", "cases", values), runs_part(table), REPEAT]
 
-        return Answer(results.lines(), {CASES: partial(write_cases, results=results)}, parts)
+        return Evaluation(results.lines(), {CASES: partial(write_cases, results=results)}, parts)
 
     @property
     def inputs(self) -> list[Road | str]:

@@ -10,8 +10,8 @@ from typing import Any
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.ranges import parsed_variation
 from vehicle.runs.car import Car
-from vehicle.studies.sweeps.answer import Answer
 from vehicle.studies.sweeps.case_table import Combinations, RowChanges
+from vehicle.studies.sweeps.evaluation import Evaluation
 from vehicle.studies.sweeps.order_measure import order_measure
 from vehicle.studies.sweeps.plan import Design, SweepPlan, plan_sweep
 from vehicle.studies.sweeps.sweep_inputs import Inputs
@@ -79,4 +79,4 @@ class OtherMeasure:
         """Return the checked sweep; see `Design`, and for a wrong measure `order_measure`."""
         plan = self.design.plan(car, inputs, settings)
         measure = order_measure(self.measure, plan.skip)
-        return replace(plan, measure=measure, answer_of=lambda table, _: Answer(measure_lines(table)))
+        return replace(plan, measure=measure, evaluation_of=lambda table, _: Evaluation(measure_lines(table)))

@@ -1,4 +1,4 @@
-"""Answer of a sweep over chosen cars: the cars in the order of comfort, their picture and their report."""
+"""Evaluation of a sweep over chosen cars: the cars in the order of comfort, their picture and their report."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ import numpy as np
 from vehicle.digits import number
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.ride_comfort import MEANING, SEAT_VALUE, UNWEIGHTED, WEIGHTED
-from vehicle.studies.sweeps.answer import REPEAT, Answer, Part, runs_part
+from vehicle.studies.sweeps.evaluation import REPEAT, Evaluation, Part, runs_part
 from vehicle.studies.sweeps.sweep_picture import PICTURE, can_be_drawn, draw_ranked
 from vehicle.studies.sweeps.sweep_ranking import RankedCars, SweptCases, ranked_cars, ranking_lines
 
 
-def ranking_answer(table: SweptCases, caption: str) -> Answer:
-    """Return the answer of a sweep over chosen cars.
+def ranking_evaluation(table: SweptCases, caption: str) -> Evaluation:
+    """Return the evaluation of a sweep over chosen cars.
 
     Args:
-        table: the table; without ranked cars the answer has no lines.
+        table: the table; without ranked cars there are no lines.
         caption: tyres and evaluated span.
     """
     cars = ranked_cars(table)
     if cars is None:
-        return Answer([], parts=lambda notes: [runs_part(table), REPEAT])
+        return Evaluation([], parts=lambda notes: [runs_part(table), REPEAT])
     drawn = partial(draw_ranked, cars=cars, caption=caption) if can_be_drawn(cars) else None
 
     def parts(notes: Sequence[str]) -> list[Part]:
@@ -36,7 +36,7 @@ def ranking_answer(table: SweptCases, caption: str) -> Answer:
         result = Part("Result", "result", "result", values, drawn, "Comfort over the varied parameters")
         return [result, _cars_part(cars), runs_part(table), replace(REPEAT, values={"best": _best(cars, table)})]
 
-    return Answer(ranking_lines(cars), {} if drawn is None else {PICTURE: drawn}, parts)
+    return Evaluation(ranking_lines(cars), {} if drawn is None else {PICTURE: drawn}, parts)
 
 
 def _best(cars: RankedCars, table: SweptCases) -> str:

@@ -15,8 +15,8 @@ from vehicle.arrays import Vector
 from vehicle.digits import aligned, number
 from vehicle.drawing.rendering.tornado_plot import draw_tornado, plot_tornado
 from vehicle.signals.formats.csv_table import RowWriter
-from vehicle.studies.sweeps.answer import REPEAT, Answer, Part
 from vehicle.studies.sweeps.change_error import MEANING_OF_ERROR, NO_ERROR
+from vehicle.studies.sweeps.evaluation import REPEAT, Evaluation, Part
 
 EFFECTS, TORNADO = "effects.csv", "effects.png"
 """Names of the files in the folder of a sweep."""
@@ -223,11 +223,11 @@ def write_effects(path: Path, effects: Effects) -> None:
             rows.writerow([each_path, *[""] * 4, "0", "0", ""])
 
 
-def effects_answer(effects: Effects, caption: str) -> Answer:
-    """Return the answer of a sweep over single changes; `caption` names tyres and evaluated span."""
+def effects_evaluation(effects: Effects, caption: str) -> Evaluation:
+    """Return the evaluation of a sweep over single changes; `caption` names tyres and evaluated span."""
     draw = partial(effects.write_picture, caption=caption)
     files = {EFFECTS: partial(write_effects, effects=effects), TORNADO: draw}
-    return Answer(effect_lines(effects), files, partial(_parts, effects, draw))
+    return Evaluation(effect_lines(effects), files, partial(_parts, effects, draw))
 
 
 def _parts(effects: Effects, draw: Callable[[Path], object], notes: Sequence[str]) -> list[Part]:

@@ -23,7 +23,7 @@ from vehicle.names import AXES
 from vehicle.runs.car import Car
 from vehicle.settings import with_settings
 from vehicle.studies.sweeps.change_error import change_errors, half_width
-from vehicle.studies.sweeps.effects import Effect, Effects, effects_answer
+from vehicle.studies.sweeps.effects import Effect, Effects, effects_evaluation
 from vehicle.studies.sweeps.plan import SweepPlan, plan_sweep
 from vehicle.studies.sweeps.sweep_inputs import Inputs
 from vehicle.studies.sweeps.sweep_ranking import RANKED_BY, ROUNDING
@@ -167,7 +167,7 @@ class SingleChanges:
         """Return the checked sweep; see `Design`; errors: see `varied_parameters` and `single_changes`."""
         changes, effects = self.of(car.vehicle)
         return plan_sweep(
-            car, changes, inputs, settings, lambda table, caption: effects_answer(effects(table), caption)
+            car, changes, inputs, settings, lambda table, caption: effects_evaluation(effects(table), caption)
         )
 
 

@@ -24,12 +24,12 @@ from vehicle.runs.car.fast_run import fast_run
 from vehicle.runs.car.outside_tests import RAIL, outside_tests
 from vehicle.settings import with_settings
 from vehicle.signals.excitation.road_drive import RoadDrive
-from vehicle.studies.sweeps.answer import Answer
 from vehicle.studies.sweeps.case import all_tyre_words, overrides_of, signal_of
 from vehicle.studies.sweeps.case_evaluation import OF_A_RUN, loaded_car, reason_for_mujoco
 from vehicle.studies.sweeps.case_table import Cases, Combinations, RowChanges
-from vehicle.studies.sweeps.comfort_ranking import ranking_answer
+from vehicle.studies.sweeps.comfort_ranking import ranking_evaluation
 from vehicle.studies.sweeps.dispatcher import FILL
+from vehicle.studies.sweeps.evaluation import Evaluation
 from vehicle.studies.sweeps.measure import BatchMeasure, Measure, comfort_measure
 from vehicle.studies.sweeps.sweep import sweep_cases
 from vehicle.studies.sweeps.sweep_inputs import Inputs, common_start, file_of, inputs_of, require_speed_of_roads
@@ -55,7 +55,7 @@ class SweepPlan:
         skip: start of the evaluation [s].
         settings: settings of the runs.
         notes: messages on side effects of the varied parameters.
-        answer_of: what the table of the runs says.
+        evaluation_of: returns the evaluation of the table, for a caption with tyres and evaluated span.
     """
 
     name: str
@@ -64,7 +64,7 @@ class SweepPlan:
     skip: float
     settings: SweepSettings
     notes: tuple[str, ...]
-    answer_of: Callable[[SweepTable, str], Answer]
+    evaluation_of: Callable[[SweepTable, str], Evaluation]
 
     @property
     def tyres(self) -> str:
@@ -129,7 +129,7 @@ class SweepPlan:
                 tested = [each.name for each in car.vehicle.composition.dampers if each.law.tested]
                 if not tested:
                     return ()
-                # Of the run the sentence needs these velocities alone; the seat rail is named, and computed anew.
+                # `outside_tests` reads only these velocities; it runs the comfort of its laws again.
                 run = fast_run(car, signal_of(source), [*(f"{name}_velocity" for name in tested), *RAIL])
                 if texts := outside_tests(replace(run, skip=self.skip)):
                     return tuple(f"first car on {source.name}: {text}" for text in texts)
@@ -146,7 +146,7 @@ def _difference(reason: str) -> str:
 
 
 class Design(Protocol):
-    """What a sweep varies, and the question that its table answers."""
+    """Design of a sweep: the varied parameters, and the evaluation of their table."""
 
     def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
         """Check cars and inputs before the first run and return the sweep; arguments and errors as in `sweep`."""
@@ -157,12 +157,12 @@ def plan_sweep(
     vary: Variations,
     inputs: Inputs,
     settings: SweepSettings | None = None,
-    answer_of: Callable[[SweepTable, str], Answer] = ranking_answer,
+    evaluation_of: Callable[[SweepTable, str], Evaluation] = ranking_evaluation,
 ) -> SweepPlan:
     """Check the arguments of a sweep and return the sweep; arguments and errors as in `sweep`.
 
     Args:
-        answer_of: what the table of the runs says; by default its cars in the order of comfort.
+        evaluation_of: returns the evaluation of a table; by default its cars in the order of comfort.
     """
     settings, changes = settings or SweepSettings(), changes_of(vary)
     vehicle = file_of(car)
@@ -184,7 +184,7 @@ def plan_sweep(
         skip=start,
         settings=settings,
         notes=(*body_rules(car.vehicle, [text.partition("=")[0] for text in each]), *idle),
-        answer_of=answer_of,
+        evaluation_of=evaluation_of,
     )
 
 

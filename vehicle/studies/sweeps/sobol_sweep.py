@@ -14,8 +14,8 @@ from vehicle.runs.car import Car
 from vehicle.settings import with_settings
 from vehicle.signals.analysis.ride_comfort import SEAT_PREFIX, UNWEIGHTED, WEIGHTED
 from vehicle.signals.formats.csv_table import RowWriter
-from vehicle.studies.sweeps.answer import Answer
 from vehicle.studies.sweeps.case_table import RowChanges
+from vehicle.studies.sweeps.evaluation import Evaluation
 from vehicle.studies.sweeps.indices import SobolIndices, sobol_indices, sobol_sample
 from vehicle.studies.sweeps.plan import SweepPlan, plan_sweep
 from vehicle.studies.sweeps.sweep_inputs import Inputs
@@ -81,11 +81,11 @@ class SobolSample:
         ranges = self.ranges()
         sample = RowChanges([each.path for each in ranges], sobol_sample(ranges, self.base).tolist())
 
-        def answer(table: SweptCases, caption: str) -> Answer:
+        def evaluation(table: SweptCases, caption: str) -> Evaluation:
             indices = comfort_indices(table, ranges)
-            return Answer(index_lines(indices), {SOBOL: lambda path: write_indices(path, indices)})
+            return Evaluation(index_lines(indices), {SOBOL: lambda path: write_indices(path, indices)})
 
-        return plan_sweep(car, sample, inputs, settings, answer)
+        return plan_sweep(car, sample, inputs, settings, evaluation)
 
     def ranges(self) -> list[Range]:
         """Return the parameters with their bounds."""

@@ -1,4 +1,4 @@
-"""Report of a sweep: what its answer says, and how to repeat the sweep."""
+"""Report of a sweep: its evaluation, and the command that repeats it."""
 
 from collections.abc import Sequence
 
@@ -7,7 +7,7 @@ from markupsafe import Markup
 from vehicle.runs.report.markup import templates
 from vehicle.runs.report.page import document, head_line
 from vehicle.runs.report.svg_figure import drawing
-from vehicle.studies.sweeps.answer import Answer
+from vehicle.studies.sweeps.evaluation import Evaluation
 from vehicle.studies.sweeps.sweep_ranking import SweptCases
 
 fill = templates(__file__)
@@ -15,7 +15,7 @@ fill = templates(__file__)
 
 def sweep_page(
     table: SweptCases,
-    answer: Answer,
+    evaluation: Evaluation,
     name: str,
     *,
     caption: str,
@@ -28,19 +28,19 @@ def sweep_page(
 
     Args:
         table: table of the sweep.
-        answer: what the table says.
+        evaluation: evaluation of the table.
         name: name of the car.
         caption: tyres and evaluated span.
         command: command line that made the sweep; empty for a sweep in Python.
         notes: messages on side effects of the varied parameters and on the engine.
         author, project: names in the head of the page; may be empty.
     """
-    made = {"command": command, "engines": ", ".join(table.made.get("engines_asked", ()))}
-    made["program"] = table.made.get("program", "")
+    facts = {"command": command, "engines": ", ".join(table.made.get("engines_asked", ()))}
+    facts["program"] = table.made.get("program", "")
     parts: list[tuple[str, str, Markup]] = []
-    for part in answer.parts(notes):
+    for part in evaluation.parts(notes):
         figure = Markup() if part.draw is None else drawing(part.draw, part.label)
-        parts.append((part.title, part.anchor, fill(part.template, figure=figure, **made, **part.values)))
+        parts.append((part.title, part.anchor, fill(part.template, figure=figure, **facts, **part.values)))
     inputs = ", ".join(str(source) for source in table.made.get("inputs", {}))
     counts = f"{len(table.cases)} runs, {len(table.failed)} failed"
     head = f"{name} on {inputs}; {counts}; {caption}"

@@ -1,4 +1,4 @@
-"""Study of a sweep: a design on its inputs, run into a folder with the files and the report of its answer."""
+"""Study of a sweep: a design on its inputs, run into a folder with the files and the report of its evaluation."""
 
 from __future__ import annotations
 
@@ -38,12 +38,12 @@ class SweepStudy:
     """Study of a sweep, as the command runs it.
 
     Attributes:
-        design: what varies, and the question that the table answers.
+        design: varied parameters, and evaluation of their table.
         car: the car.
-        inputs: files or names of shipped ones, roads, signals; a `CaseFile` has its own.
+        inputs: files, names of shipped files, roads or signals; those of a `CaseFile` are in it.
         runs: settings of the runs.
         destination: folder of the results.
-        report: report beside the table.
+        report: report of the evaluation.
         allow_failed: take a table with failed runs as success.
     """
 
@@ -60,15 +60,15 @@ class SweepStudy:
         *,
         command: str = "",
         begin: Begin = unseen,
-        tell: Callable[[str], object] = unseen,
+        note: Callable[[str], object] = unseen,
         notice: Callable[[str], None] | None = None,
     ) -> StudyResult:
-        """Run the sweep, and write the table, the files of its answer and the report.
+        """Run the sweep, and write the table, the files of its evaluation and the report.
 
         Args:
             command: command line of the study, for the report.
             begin: shows the progress.
-            tell: called with the messages on side effects of the varied parameters and on the engine, before the runs.
+            note: called with the messages on side effects of the varied parameters and on the engine, before the runs.
             notice: called with messages during the runs, as that a cluster has no workers.
 
         Raises:
@@ -80,30 +80,30 @@ class SweepStudy:
         report = self.report.path(to, output)
         notes = (*plan.notes, *plan.engine_notes(), *plan.range_notes())
         for text in notes:
-            tell(text)
+            note(text)
         caption = f"tyres {plan.tyres}, evaluated from {plan.skip:g} s on"
         with to.held, study_folder(output, force=to.force, resume=to.resume, rows=(ROWS,)) as folder:
             table = plan.run(folder=folder, progress=begin("sweep     ", runs=len(plan.cases)), notice=notice)
-            answer = plan.answer_of(table, caption)
-            write_files(folder, answer.files)
+            evaluation = plan.evaluation_of(table, caption)
+            write_files(folder, evaluation.files)
             if report is not None:
                 from vehicle.studies.sweeps.sweep_page import sweep_page
 
                 head = {"author": self.report.author, "project": self.report.project}
-                page = sweep_page(table, answer, plan.name, caption=caption, command=command, notes=notes, **head)
+                page = sweep_page(table, evaluation, plan.name, caption=caption, command=command, notes=notes, **head)
                 write_text(folder / report if report.parent == Path() else report, page)
             # Read before the folder of the rows gets its name.
             failed, differences = table.failed, (folder / DIFFERENCES).exists()
-        files = ["table.csv", *([] if report is None else [str(report)]), *answer.files]
+        files = ["table.csv", *([] if report is None else [str(report)]), *evaluation.files]
         files += [f"{DIFFERENCES} (comfort against the first car)"] if differences else []
         counts = f"{len(plan.cases)} runs, {len(failed)} failed, {caption}"
         first = f"{output}: {counts}; {', '.join([*files, 'sweep.json, rows.jsonl, timing.csv'])}"
         reasons = (f"failed      {case.label}: {reason}" for case, reason in failed[:SHOWN])
-        return StudyResult("\n".join([first, *answer.lines, *reasons]), len(plan.cases), len(failed))
+        return StudyResult("\n".join([first, *evaluation.lines, *reasons]), len(plan.cases), len(failed))
 
 
 class StudyResult(NamedTuple):
-    """Result of a study, whose numbers are in its folder: its printed text, and the numbers of runs and failed ones."""
+    """Result of a study, whose numbers are in its folder: its printed text, number of runs, number of failed runs."""
 
     text: str
     runs: int

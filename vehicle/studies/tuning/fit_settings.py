@@ -37,7 +37,7 @@ class MeasurementFile:
     Attributes:
         file: the file.
         content: "frf" for FRFs, "record" for time histories.
-        signal: file of the plate displacement; None for the plate in the file.
+        signal: file of the plate displacement; by default the plate in the file.
         stuck: of FRFs: the dampers stick at this level.
         road, speed, contact: of time histories: road in the forms of `shaker`, speed [km/h], tyre contact.
         levels, reference: of time histories: see `LevelSettings`.

@@ -47,7 +47,7 @@ class MeasurementSettings:
 
     @property
     def protected(self) -> tuple[Path, ...]:
-        """Files that are read, which no result may replace."""
+        """Files of the measurements, signals and roads, which must not be replaced."""
         named = (name for each in self.files for name in (each.signal, each.road) if name is not None)
         return (*(each.file for each in self.files), *map(Path, named))
 
@@ -105,7 +105,7 @@ def _road(each: MeasurementFile, choice: Choice) -> Road | None:
     """Return the road of a measurement file, and None without one.
 
     Raises:
-        ConfigurationError: a road without a speed, a speed without a road, or a road beside a signal.
+        ConfigurationError: a road without a speed, a speed without a road, or a road and a signal.
     """
     if each.road is None:
         for name in ("speed", "contact"):

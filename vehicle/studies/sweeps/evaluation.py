@@ -1,4 +1,4 @@
-"""Answer of a sweep: what its table says, in printed lines, in files beside the table and in parts of the report."""
+"""Evaluation of the table of a sweep: printed lines, further files, and parts of the report."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -35,12 +35,12 @@ class Part:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Answer:
-    """What the table of a sweep says.
+class Evaluation:
+    """Evaluation of the table of a sweep.
 
     Attributes:
         lines: the printed table, and the result in words.
-        files: name of a file beside the table to the function that writes it to a path.
+        files: name of a further file to the function that writes it to a path.
         parts: parts of the report, with `REPEAT`, for messages on side effects and on the engine.
     """
 
@@ -50,7 +50,7 @@ class Answer:
 
 
 REPEAT = Part("How to repeat the sweep", "repeat", "repeat_sweep", {"best": ""})
-"""Last part of a report; `best` has the options --set of the best car, if the answer names one."""
+"""Last part of a report; `best` has the options --set of the best car, which may be empty."""
 
 
 def runs_part(table: SweptCases) -> Part:
