@@ -30,7 +30,7 @@ from scenarios.tuning.data import (
     make_measurements,
 )
 from scenarios.tuning.figures import parameter_figure
-from vehicle.commands.command_line import ProgressLine
+from vehicle.commands.console import ProgressLine
 from vehicle.model.parameters.paths import overrides_of
 from vehicle.model.parameters.ranges import Range
 from vehicle.runs.car import Car, Run

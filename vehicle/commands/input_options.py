@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.commands.accepted_advice import advice_option
-from vehicle.commands.options import setting_options
+from vehicle.commands.options import read, setting_options
 from vehicle.commands.parser import Condition, Parser
 from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS
-from vehicle.signals.excitation.road_settings import RoadSettings
+from vehicle.signals.excitation.input_settings import DriveInput, PlateSettings
+from vehicle.signals.excitation.road_settings import LEVEL, RoadSettings
 from vehicle.signals.records.record_settings import RecordSettings
 
 FILE_NEEDS = "--input (a road moves the plates of all wheels)"
@@ -157,6 +158,20 @@ def on_road(roads: Sequence[str], files: Sequence[str]) -> bool:
     if not roads and not files:
         raise ConfigurationError("the input is missing; set --input FILE, or a road, for example --road C --speed 80")
     return bool(roads)
+
+
+def input_of(options: argparse.Namespace) -> PlateSettings | DriveInput:
+    """Return the input of parsed options; with --rpm alone it is a level road.
+
+    Raises:
+        ConfigurationError: no input, two inputs, or a value out of range.
+    """
+    if not options.road and not options.input and vars(options).get("rpm"):
+        # The engine alone shakes the car, which stands or drives on a level road.
+        return read(options, DriveInput, road=LEVEL, speed=options.speed or 0.0)
+    if on_road(_listed(options.road), _listed(options.input)):
+        return read(options, DriveInput)
+    return read(options, PlateSettings)
 
 
 def record_options(

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-import argparse
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.body.model_file import output_options, require_output, write
 from vehicle.commands.body.show_body import report
-from vehicle.commands.options import message_options, vehicle_options
+from vehicle.commands.console import Console
+from vehicle.commands.options import message_options, setting_options, vehicle_options
+from vehicle.model.parameters.car_choice import CarChoice
+from vehicle.runs.output.destination import Destination
+from vehicle.settings import Settings, part, setting
 
 if TYPE_CHECKING:
     from vehicle.model.flexbody.body_design import BodyDesign
@@ -22,18 +25,7 @@ def add(tasks: Any) -> None:
         "build", help="compute a body model from a body design (a frame of beams through the points of the car)"
     )
     design = built.add_argument_group("the design")
-    design.add_argument(
-        "--design",
-        type=Path,
-        metavar="FILE.toml",
-        help="file of the body design; default: the design named in the vehicle file",
-    )
-    design.add_argument(
-        "--fit",
-        action="store_true",
-        help="fit the factors of the beam sections to the published body modes of Bommer 2006 (first 19 Hz, "
-        "torsion 25.5 Hz, ninth 43 Hz), and print them as lines of a design. Takes minutes",
-    )
+    setting_options(design, BuildSettings, "design", "fit")
     output_options(built)
     vehicle_options(built)
     message_options(built, quiet=True)
@@ -56,19 +48,38 @@ def _fitted(design: BodyDesign, vehicle: Vehicle, *, quiet: bool) -> BodyDesign:
     return replace(design, members=members)
 
 
-def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
+@dataclass(frozen=True, kw_only=True, slots=True)
+class BuildSettings(Settings):
+    """Car, its body design (None for that of the vehicle file), whether its sections are fitted, and the new file."""
+
+    car: CarChoice = part(CarChoice)
+    destination: Destination = part(Destination)
+    design: Path | None = setting(
+        "file of the body design; default: the design named in the vehicle file", type=Path, metavar="FILE.toml"
+    )
+    fit: bool = setting(
+        "fit the factors of the beam sections to the published body modes of Bommer 2006 (first 19 Hz, "
+        "torsion 25.5 Hz, ninth 43 Hz), and print them as lines of a design. Takes minutes",
+        False,
+        action="store_true",
+    )
+
+
+def run(settings: BuildSettings, console: Console) -> None:
     """Compute the body model from its design, write it, and print its properties."""
     from vehicle.model.flexbody.body_design import read_design
     from vehicle.model.flexbody.body_frame import design_superelement
     from vehicle.model.flexbody.body_model import body_file
 
-    require_output(options)
-    file = options.design or body_file(vehicle, options.vehicle.parent if options.vehicle else None)
+    vehicle = settings.car.load()
+    output = require_output(settings.destination, settings.design, settings.car.vehicle)
+    file = settings.design or body_file(vehicle, settings.car.folder)
     design = read_design(file)
-    if options.fit:
-        design = _fitted(design, vehicle, quiet=options.quiet)
+    if settings.fit:
+        design = _fitted(design, vehicle, quiet=console.quiet)
     model = design_superelement(design, vehicle.points, vehicle.composition.attachments(), vehicle.body)
-    write(options, model)
-    if options.quiet:
-        return
-    print("\n".join(report(model, vehicle)))
+    write(output, model)
+    console.say("\n".join(report(model, vehicle)))
+
+
+SETTINGS = BuildSettings

@@ -49,7 +49,6 @@ class PlateSettings(Settings):
             choice: channels, units and times; those of `record`.
 
         Raises:
-            ConfigurationError: `wheel` is set, but the columns of the file state their wheels.
             DataError: see `read_signal`.
         """
         from vehicle.signals.excitation.input_files import find_input

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from vehicle.errors import ConfigurationError
-from vehicle.settings import Settings, engine_setting, require_within, setting
+from vehicle.settings import Settings, engine_setting, require_within, setting, skip_setting
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -32,16 +32,6 @@ def _jobs(text: str) -> int:
         raise ConfigurationError(f"--jobs {text!r}: must be a whole number") from None
     require_within("--jobs", number, "[1, inf)")
     return number
-
-
-def skip_setting() -> Any:
-    """Declare the start of the evaluation, see `vehicle.signals.excitation.evaluation_start`."""
-    return setting(
-        "begin the evaluation (comfort, SEAT, slip shares, densities) S seconds after the start; on a road 2 by "
-        "default, more below 19 km/h, since a road rises from rest during the first second; 0 with --input",
-        type=float,
-        metavar="S",
-    )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
