@@ -7,6 +7,7 @@ from importlib import import_module
 import pytest
 
 import vehicle
+from vehicle.commands.options import read
 from vehicle.errors import ConfigurationError
 from vehicle.settings import Settings, require_within
 from vehicle.studies.optimisation.search_settings import SearchSettings
@@ -46,7 +47,7 @@ def test_the_options_left_out_are_the_defaults_of_python(name):
     settings, command = DECLARED[name]
     needed = {"drive": ["--target", "FILE"], "tune": ["focus"]}.get(command, [])
     options = import_module(f"vehicle.commands.{command}").parser().parse_args(needed)
-    assert settings.of_options(options) == settings()
+    assert read(options, settings) == settings()
 
 
 @pytest.mark.parametrize(

@@ -50,13 +50,13 @@ def setting(
     return field(default=default, metadata=declared | {"default": default})
 
 
-def part(settings: Callable[[], S]) -> S:
+def part(settings: Callable[[], A]) -> A:
     """Declare a field that holds settings of their own, as those of a road in those of a run.
 
     Args:
         settings: class of `Settings`; by default each has its defaults.
     """
-    made: S = field(default_factory=settings, metadata={"part": settings})
+    made: A = field(default_factory=settings, metadata={"part": settings})
     return made
 
 
@@ -133,6 +133,15 @@ def require_within(flag: str, number: float, within: str, factor: float = 1.0) -
             allowed += f"{'' if opened else ','} and {'up to' if closed else 'below'} {high}"
     text = str(number) if isinstance(number, int) else f"{number:g}"
     raise ConfigurationError(f"{flag} {text}{'' if factor == 1.0 else ' %'}: must be {allowed}")
+
+
+def finite_numbers(text: str, separator: str) -> list[float]:
+    """Return the numbers of the parts of a text; none if a part is no finite number."""
+    try:
+        numbers = [float(part) for part in text.split(separator)]
+    except ValueError:
+        return []
+    return numbers if all(map(math.isfinite, numbers)) else []
 
 
 def pair(flag: str, needed: str, *, above: float | None = None) -> Callable[[str], tuple[float, float]]:
@@ -220,4 +229,15 @@ def engine_setting(default: str) -> Any:
         "but linear geometry, no film; auto: reduced inside its valid range, otherwise mujoco; default: %(default)s",
         default,
         choices=ENGINES,
+    )
+
+
+def skip_setting() -> Any:
+    """Declare the start of the evaluation, see `vehicle.signals.excitation.evaluation_start`."""
+    return setting(
+        "begin the evaluation (comfort, SEAT, slip shares, densities) S seconds after the start; on a road 2 by "
+        "default, more below 19 km/h, since a road rises from rest during the first second; 0 with --input",
+        within="[0, inf)",
+        type=float,
+        metavar="S",
     )

@@ -16,6 +16,7 @@ from typing import Any, TypeVar
 
 from vehicle.commands.accepted_advice import ROUNDS, retried
 from vehicle.commands.console import Console, asked_to_end, moving_lines
+from vehicle.commands.options import read
 from vehicle.commands.parser import Parser, idle_options
 from vehicle.commands.printable import printable_streams
 from vehicle.errors import ConfigurationError, OutputError, VehicleError
@@ -221,19 +222,21 @@ def _mention_leftovers(arguments: Sequence[str], output: Path | None) -> None:
 
 def command(
     parser: Callable[[], Parser],
-    settings_of: Callable[[argparse.Namespace], Settings],
+    settings: type[Settings] | Callable[[argparse.Namespace], Settings],
     job: Callable[[Settings, Console], None],
 ) -> Callable[..., int]:
     """Return the `main` function of a command: from its arguments to its exit code, see `parse_and_run`.
 
     Args:
         parser: makes the parser of the options.
-        settings_of: makes the settings of the parsed options.
+        settings: class of the settings, or function that makes them of the parsed options.
         job: work of the command.
     """
-    return lambda arguments=None: parse_and_run(
-        parser(), lambda options, console: job(settings_of(options), console), arguments
-    )
+
+    def work(options: argparse.Namespace, console: Console) -> None:
+        job(read(options, settings) if isinstance(settings, type) else settings(options), console)
+
+    return lambda arguments=None: parse_and_run(parser(), work, arguments)
 
 
 FAULT = "a fault of the program"

@@ -59,6 +59,10 @@ class Console:
         if not self.quiet:
             print(text, flush=True)
 
+    def notice(self, text: object) -> None:
+        """Print a notice on the error output."""
+        print(f"notice: {text}", file=sys.stderr, flush=True)
+
     def accept(self, notices: Iterable[str]) -> None:
         """Raise the findings among notices that --accept-advice has to apply: the command begins again with them.
 

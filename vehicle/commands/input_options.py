@@ -10,7 +10,8 @@ from vehicle.commands.accepted_advice import advice_option
 from vehicle.commands.options import read, setting_options
 from vehicle.commands.parser import Condition, Parser
 from vehicle.names import CORNERS
-from vehicle.signals.excitation.road_settings import RoadSettings
+from vehicle.signals.excitation.input_settings import DriveInput, PlateSettings, on_road
+from vehicle.signals.excitation.road_settings import LEVEL, RoadSettings
 from vehicle.signals.records.record_settings import RecordSettings
 
 if TYPE_CHECKING:
@@ -147,6 +148,20 @@ def inputs_of(options: argparse.Namespace) -> InputChoice:
     from vehicle.studies.sweeps.sweep_inputs import InputChoice
 
     return read(options, InputChoice, settings=read(options, RoadSettings, seed=None))
+
+
+def input_of(options: argparse.Namespace) -> PlateSettings | DriveInput:
+    """Return the input of parsed options; with --rpm alone it is a level road.
+
+    Raises:
+        ConfigurationError: no input, two inputs, or a value out of range.
+    """
+    if not options.road and not options.input and vars(options).get("rpm"):
+        # The engine alone shakes the car, which stands or drives on a level road.
+        return read(options, DriveInput, road=LEVEL, speed=options.speed or 0.0)
+    if on_road(_listed(options.road), _listed(options.input)):
+        return read(options, DriveInput)
+    return read(options, PlateSettings)
 
 
 def record_options(

@@ -1,8 +1,9 @@
 """Options of several commands, each defined once, and the settings read from the parsed options."""
 
 import argparse
-import math
 import sys
+from collections.abc import Callable
+from contextlib import ExitStack
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, TypeVar
@@ -57,11 +58,13 @@ def setting_options(
             **more,
         }
         arguments["help"] += note
+        if not declared["flag"].startswith("-"):  # an argument without an option
+            del arguments["dest"], arguments["default"]
         parser.add_argument(declared["flag"], **arguments)
 
 
 def read(options: argparse.Namespace, settings: type[S], /, **more: Any) -> S:
-    """Return the settings of parsed options, also those of the parts of the settings.
+    """Return the settings of parsed options, with their parts: car, destination, and settings of their own.
 
     A field takes the option of its name, or of the `dest` of its declaration; without one it has its default.
 
@@ -70,11 +73,12 @@ def read(options: argparse.Namespace, settings: type[S], /, **more: Any) -> S:
         more: values of further fields.
     """
     for each in fields(settings):  # type: ignore[arg-type]
-        if each.name in more or not each.init:
+        if each.name in more:
             continue
         declared = each.metadata
         if "part" in declared:
-            more[each.name] = read(options, declared["part"])
+            of_part = PARTS.get(declared["part"])
+            more[each.name] = of_part(options) if of_part else read(options, declared["part"])
             continue
         name, factor = declared.get("option", {}).get("dest", each.name), declared.get("factor", 1.0)
         value = vars(options).get(name)
@@ -95,11 +99,15 @@ def destination_of(options: argparse.Namespace) -> Destination:
     given = vars(options)
     return Destination(
         output=options.output if "output" in options.given else None,
-        force=options.force,
+        force=given.get("force", False),
         resume=given.get("resume", False),
         tell=lambda text: None if given.get("quiet", False) else print(text, file=sys.stderr),
-        held=options.held,
+        held=given.get("held") or ExitStack(),
     )
+
+
+PARTS: dict[Any, Callable[[argparse.Namespace], Any]] = {CarChoice: car_of, Destination: destination_of}
+"""Reader of a part of settings that has no options of the names of its fields."""
 
 
 def vehicle_options(parser: argparse._ActionsContainer) -> argparse._ActionsContainer:
@@ -175,15 +183,6 @@ def report_option(parser: Parser, content: str, folder: str) -> None:
         help=f"also write a report: {content}; default: report.html in the folder of {folder}",
     )
     head_options(parser.scoped_group("a report", needs="--report", active=lambda options: options.report is not None))
-
-
-def finite_numbers(text: str, separator: str) -> list[float]:
-    """Return the numbers of the parts of a text; none if a part is no finite number."""
-    try:
-        numbers = [float(part) for part in text.split(separator)]
-    except ValueError:
-        return []
-    return numbers if all(map(math.isfinite, numbers)) else []
 
 
 def damper_option(parser: argparse._ActionsContainer) -> None:

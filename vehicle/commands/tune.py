@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -121,7 +120,7 @@ def _job(study: TuningStudy, console: Console) -> None:
         console.accept(notices)
         if not (console.quiet or console.json):
             for text in notices:
-                print(f"notice: {text}", file=sys.stderr, flush=True)
+                console.notice(text)
 
     fit = study.run(command=console.command("vehicle tune"), begin=console.progress, noticed=noticed)
     if console.json:

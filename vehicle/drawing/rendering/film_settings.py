@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from vehicle.errors import ConfigurationError
 from vehicle.settings import Settings, setting
-
-if TYPE_CHECKING:
-    from vehicle.drawing.rendering.shot import Take
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -24,21 +21,21 @@ class FilmSettings(Settings):
     video: str | None = None
     video_start: float | None = setting(
         "start of the film in the record [s]; default: chosen by the program",
-        within="[0, inf)", type=float, metavar="S",
+        within="[0, inf)", type=float, metavar="S"
     )  # fmt: skip
     video_duration: float | None = setting(
         "length of the film [s]; default: 10, less for a bump or an obstacle. A film in slow motion shows a "
         "shorter part of the record",
-        within="[0.1, inf)", type=float, metavar="S",
+        within="[0.1, inf)", type=float, metavar="S"
     )  # fmt: skip
     slow_motion: float | None = setting(
         "play N times slower; default: 1, at least 4 for a bump or an obstacle, and more if a wheel moves faster "
         "than 15 Hz; --video-start and --video-duration do not change it",
-        within="[1, inf)", type=float, metavar="N",
+        within="[1, inf)", type=float, metavar="N"
     )  # fmt: skip
     exaggeration: float | None = setting(
         "show the motion N times larger; default: chosen by the program",
-        within="[0.001, inf)", type=float, metavar="N",
+        within="[0.001, inf)", type=float, metavar="N"
     )  # fmt: skip
 
     def path(self, default: str) -> Path:
@@ -71,18 +68,11 @@ class FilmSettings(Settings):
                 "within the record"
             )
 
-    def take(self, **more: Any) -> Take:
-        """Return the settings of the film of a record.
-
-        Args:
-            more: further settings of a `Take`.
-        """
-        from vehicle.drawing.rendering.shot import Take
-
-        return Take(
-            start=self.video_start,
-            duration=self.video_duration,
-            slow=self.slow_motion,
-            exaggeration=self.exaggeration,
-            **more,
-        )
+    def values(self) -> dict[str, Any]:
+        """Return the settings of a `Take` by name."""
+        return {
+            "start": self.video_start,
+            "duration": self.video_duration,
+            "slow": self.slow_motion,
+            "exaggeration": self.exaggeration,
+        }

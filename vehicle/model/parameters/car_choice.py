@@ -31,6 +31,11 @@ class CarChoice:
 
         return load_vehicle(self.vehicle, self.overrides)
 
+    @property
+    def folder(self) -> Path | None:
+        """Folder of the vehicle file, for the files that it names; None for the car of Bommer 2006."""
+        return None if self.vehicle is None else self.vehicle.parent
+
     def require_once(self, option: str, texts: Sequence[str]) -> None:
         """Check that the parameters that an option sets are not changed to another value too.
 

@@ -19,8 +19,8 @@ from vehicle.signals.excitation.iso_road import Side
 from vehicle.signals.excitation.measured_road import read_road
 from vehicle.signals.excitation.obstacle import SHAPES, is_obstacle
 from vehicle.signals.excitation.recorded_road import PREFIX, RecordedDrive
-from vehicle.signals.excitation.road_drive import LEVEL, RoadDrive
-from vehicle.signals.excitation.road_settings import RoadSettings
+from vehicle.signals.excitation.road_drive import RoadDrive
+from vehicle.signals.excitation.road_settings import LEVEL, RoadSettings
 from vehicle.signals.records.choice import Choice
 
 Drive = RoadDrive | RecordedDrive

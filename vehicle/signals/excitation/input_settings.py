@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,6 +16,24 @@ from vehicle.signals.records.record_settings import RecordSettings
 if TYPE_CHECKING:
     from vehicle.signals.excitation.signal import Signal
     from vehicle.signals.records.choice import Choice
+
+
+def on_road(roads: Sequence[str], files: Sequence[str]) -> bool:
+    """Return True if roads move the plates, and False for files of signals.
+
+    Args:
+        roads: values of --road.
+        files: values of --input.
+
+    Raises:
+        ConfigurationError: neither or both are set.
+    """
+    if roads and files:
+        named = " ".join(f"--road {road}" for road in roads)
+        raise ConfigurationError(f"{named} and --input exclude each other; leave one of them out")
+    if not roads and not files:
+        raise ConfigurationError("the input is missing; set --input FILE, or a road, for example --road C --speed 80")
+    return bool(roads)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -49,7 +68,6 @@ class PlateSettings(Settings):
             choice: channels, units and times; those of `record`.
 
         Raises:
-            ConfigurationError: `wheel` is set, but the columns of the file state their wheels.
             DataError: see `read_signal`.
         """
         from vehicle.signals.excitation.input_files import find_input

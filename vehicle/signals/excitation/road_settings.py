@@ -4,6 +4,9 @@ from dataclasses import dataclass
 
 from vehicle.settings import Settings, setting
 
+LEVEL = "level"
+"""Name of the road without any height, for a car that its own forces shake."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RoadSettings(Settings):

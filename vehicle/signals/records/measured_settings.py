@@ -35,7 +35,7 @@ class MeasuredSettings(Settings):
     drift: float = setting(
         "correct a slow clock of the measurement by these parts per million: times are multiplied by 1 + "
         "PPM / 1e6, then --delay is added; default: 0",
-        0.0, within="[-100000, 100000]", type=float, metavar="PPM",
+        0.0, within="[-100000, 100000]", type=float, metavar="PPM"
     )  # fmt: skip
 
     def clock(self) -> tuple[float, float]:

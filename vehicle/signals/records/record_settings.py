@@ -36,12 +36,12 @@ class RecordSettings(Settings):
     last: float | None = setting("use the file up to this time [s]", flag="--to", type=float, metavar="S")
     resample: float | None = setting(
         "resample the record at this rate first [Hz], with an anti-alias filter; for irregular times",
-        within=ABOVE_0, type=float, metavar="HZ",
+        within=ABOVE_0, type=float, metavar="HZ"
     )  # fmt: skip
     detrend: bool = setting("subtract the best straight line (offset and drift)", False, action="store_true")
     highpass: float | None = setting(
         "corner frequency of a high-pass without phase shift [Hz]; needed to integrate velocities and accelerations",
-        within=ABOVE_0, type=float, metavar="HZ",
+        within=ABOVE_0, type=float, metavar="HZ"
     )  # fmt: skip
 
     def choice(self, role: str, known: Collection[str] = (), *, others: bool = False) -> Choice | None:

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from vehicle.settings import engine_setting, setting
-from vehicle.studies.sweeps.sweep_settings import PoolSettings, skip_setting
+from vehicle.settings import engine_setting, setting, skip_setting
+from vehicle.studies.sweeps.sweep_settings import PoolSettings
 
 if TYPE_CHECKING:
     from vehicle.studies.optimisation.problem import Tolerance, Tolerances

@@ -14,7 +14,7 @@ from vehicle.runs.car.road import Road, road_of
 from vehicle.settings import Settings, part
 from vehicle.signals.excitation.evaluation_start import evaluation_start
 from vehicle.signals.excitation.input_files import find_input
-from vehicle.signals.excitation.input_settings import DriveInput
+from vehicle.signals.excitation.input_settings import DriveInput, on_road
 from vehicle.signals.excitation.recorded_road import RecordedDrive
 from vehicle.signals.excitation.road_drive import RoadDrive
 from vehicle.signals.excitation.road_settings import RoadSettings
@@ -50,14 +50,7 @@ class InputChoice(Settings):
         Raises:
             ConfigurationError: no input, a file that does not exist, or a speed without a road.
         """
-        if self.road and self.input:
-            named = " ".join(f"--road {road}" for road in self.road)
-            raise ConfigurationError(f"{named} and --input exclude each other; leave one of them out")
-        if not self.road and not self.input:
-            raise ConfigurationError(
-                "the input is missing; set --input FILE, or a road, for example --road C --speed 80"
-            )
-        return self._roads() if self.road else self._files()
+        return self._roads() if on_road(self.road, self.input) else self._files()
 
     def _roads(self) -> list[Road]:
         speeds: Sequence[float | str | None] = self.speed or (None,)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from vehicle.errors import ConfigurationError
-from vehicle.settings import Settings, engine_setting, require_within, setting
+from vehicle.settings import Settings, engine_setting, require_within, setting, skip_setting
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -43,16 +43,6 @@ def _executor(text: str) -> Callable[[], Executor]:
     from vehicle.studies.sweeps.executors import executor_factory
 
     return executor_factory(text)
-
-
-def skip_setting() -> Any:
-    """Declare the start of the evaluation, see `vehicle.signals.excitation.evaluation_start`."""
-    return setting(
-        "begin the evaluation (comfort, SEAT, slip shares, densities) S seconds after the start; on a road 2 by "
-        "default, more below 19 km/h, since a road rises from rest during the first second; 0 with --input",
-        type=float,
-        metavar="S",
-    )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
