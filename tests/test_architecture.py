@@ -90,7 +90,7 @@ ROOMS: dict[str, set[str]] = {
     | {"replacement", "sweeps", "targets"},
     "commands": {"analysis", "assembly", "bench", "car", "comparison", "core", "dampers", "design", "excitation"}
     | {"flexbody", "fmu", "formats", "kinematics", "linear", "mounts", "optimisation", "output"}
-    | {"page", "parameters", "records", "rendering", "replication", "report", "sweeps", "targets"}
+    | {"page", "parameters", "records", "rendering", "replication", "report", "sweeps"}
     | {"threads", "tuning", "version"},
     "__init__": {"car", "comparison", "dampers", "excitation", "fmu", "formats", "handed_down", "laws", "mounts"}
     | {"optimisation", "output", "page", "parameters", "records", "replication", "sweeps", "tuning"},

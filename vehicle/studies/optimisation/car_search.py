@@ -153,7 +153,7 @@ def optimise(
         car: loaded by `Car.load`.
         vary: path to (lower, upper) bound in the unit of the parameter, as {"front.damper.viscous": (800, 4000)};
             "*.damper.viscous" sets all dampers alike.
-        inputs: files or names of shipped ones, roads, signals; one or several.
+        inputs: files, names of shipped files, roads, signals; one or several.
         minimise: objectives, as "unweighted", "weighted", "tyre_load", "travel"; with several inputs
             "weighted@NAME", "weighted@mean" or "weighted@worst".
 

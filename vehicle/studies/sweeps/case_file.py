@@ -41,7 +41,7 @@ class CaseFile:
     Attributes:
         roads: classes of ISO 8608 and obstacles, as "C" and "cleat:20x50".
         speeds: speeds on each of them [km/h]; or a table of each road to its speeds, as {C = [80], D = [50]}.
-        signals: signal files, or names of shipped ones.
+        signals: signal files, or names of shipped files.
         duration: length of a class [s]; by default that of a run.
         vehicle: name or file of the car; by default that of the command.
         states: name of a laden state to its changed parameters.

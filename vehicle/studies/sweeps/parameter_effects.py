@@ -133,7 +133,7 @@ def parameter_effects(car: Car, inputs: Inputs, settings: EffectSettings) -> Eff
 
     Args:
         car: car loaded by `Car.load`.
-        inputs: files or names of shipped ones, roads, signals; one or several.
+        inputs: files, names of shipped files, roads, signals; one or several.
 
     Returns:
         Effects, largest first; printed as a table and as text.

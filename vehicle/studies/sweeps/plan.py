@@ -199,7 +199,7 @@ def sweep(car: Car, vary: Variations, inputs: Inputs, settings: SweepSettings) -
         vary: path to values, as {"damper.coulomb_friction": [62.5, 125]}, for every combination; or a list of
             variations, each path to value, in which {} is the car itself. If the variations of a list change different
             parameters, the car itself is the first row without being named, so that each is compared with it.
-        inputs: files or names of shipped ones, roads, signals; one or several.
+        inputs: files, names of shipped files, roads, signals; one or several.
 
     Returns:
         A row for each run with its engine, the inputs varying slowest; a failed run is a row with an error message.

@@ -44,7 +44,7 @@ def sobol(
     Args:
         car: car loaded by `Car.load`; its overrides apply to every run.
         vary: path to lower and upper bound, in the unit of the parameter.
-        inputs: files or names of shipped ones, roads, signals; one or several.
+        inputs: files, names of shipped files, roads, signals; one or several.
 
     Returns:
         Name of the comfort value, as "weighted", to its indices (`first`, `total`) and the half widths of their 95 %
