@@ -86,7 +86,7 @@ ROOMS: dict[str, set[str]] = {
     | {"parameters", "reduced", "rendering", "report", "simulation", "threads"},
     "tuning": {"analysis", "car", "comparison", "excitation", "flexbody", "formats", "output", "parameters"}
     | {"records", "reduced", "rendering", "report", "threads"},
-    "optimisation": {"analysis", "car", "formats", "output", "parameters", "rendering"}
+    "optimisation": {"analysis", "car", "excitation", "formats", "output", "parameters", "rendering"}
     | {"replacement", "sweeps", "targets"},
     "commands": {"analysis", "assembly", "bench", "car", "comparison", "core", "dampers", "design", "excitation"}
     | {"flexbody", "fmu", "formats", "kinematics", "linear", "mounts", "optimisation", "output"}
