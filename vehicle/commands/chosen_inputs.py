@@ -27,7 +27,7 @@ class InputChoice(Settings):
 
     Attributes:
         input: files, or the names of shipped files.
-        wheel: wheel that a column without a wheel in its name moves; None for that of the vehicle file.
+        wheel: moves by a column without a wheel in its name; by default that of the vehicle file.
         any_level: accept levels beyond a shaker.
         road: roads in the forms of `shaker`.
         speed: speed on all roads, or on each [km/h].

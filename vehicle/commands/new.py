@@ -48,7 +48,7 @@ def parser() -> Parser:
         help="class of the car, which sets default masses, lengths and ride frequencies; electric-suv has an "
         "electric drive, no engine",
     )
-    setting_options(parser, NewSettings, "chrono_tyre", "numbers")
+    setting_options(parser, NewSettings, "numbers")
     for title, names in GROUPS.items():
         group = parser.add_argument_group(title)
         for name in names:
@@ -88,8 +88,7 @@ class NewSettings(Settings):
     """Settings of a new car.
 
     Attributes:
-        stated: name to stated number; None for those that are not stated.
-        destination: tells whether files of an earlier run are replaced.
+        stated: name to stated number, which may be None.
     """
 
     folder: Path = setting(
@@ -99,14 +98,10 @@ class NewSettings(Settings):
         metavar="NAME",
     )
     source: str | None = setting(
-        "car to start from: a shipped car with four wheels (sedan, focus_road), the file of a car, or "
-        "chrono:FILE.json of a Project Chrono vehicle. Default with --car-class: sedan. Axles and "
-        "powertrain are scaled with the mass",
+        "car to start from: a shipped car with four wheels (sedan, focus_road) or the file of a car. Default "
+        "with --car-class: sedan. Axles and powertrain are scaled with the mass",
         flag="--from",
         metavar="CAR",
-    )
-    chrono_tyre: Path | None = setting(
-        "tyre of all wheels, for a Chrono vehicle whose file names no tyre", type=Path, metavar="FILE.json"
     )
     numbers: Path | None = setting(
         "file with the values of these options ('_' for '-', for example kerb_mass = 1450) and loads as [load.driver]",
@@ -132,7 +127,6 @@ def _job(settings: NewSettings, console: Console) -> None:
     from vehicle.runs.car.motion_figures import motion_figures
     from vehicle.runs.output.folder import output_folder, write_files, write_text
     from vehicle.runs.output.free_names import named
-    from vehicle.studies.design.chrono_car import PREFIX, new_chrono_car
     from vehicle.studies.design.new_car import new_car, template_files
     from vehicle.studies.design.stated_numbers import stated_numbers
 
@@ -150,24 +144,15 @@ def _job(settings: NewSettings, console: Console) -> None:
                 "--from is missing; give the car to start from, for example --from sedan, or a --car-class"
             )
         from_car = "sedan"
-    foreign = Path(from_car.removeprefix(PREFIX)) if from_car.startswith(PREFIX) else None
-    if settings.chrono_tyre is not None and foreign is None:
-        raise ConfigurationError(
-            "--chrono-tyre: belongs to --from chrono:FILE.json; other cars state their tyres in the car file"
-        )
-    source = vehicle_file(from_car) if foreign is None else foreign
+    source = vehicle_file(from_car)
     try:
         folder = named(settings.destination.held, settings.folder, force=force, protect=(source,))
     except ConfigurationError as error:
         raise ConfigurationError(str(error).replace("--output", "NAME", 1)) from None
-    if foreign is None:
-        result = new_car(name, from_car, stated)
-    else:
-        result = new_chrono_car(name, foreign, settings.chrono_tyre, stated)
-    templates = template_files(source, result.car) if foreign is None else ()
+    result = new_car(name, from_car, stated)
     with output_folder(folder, force=force) as temporary:
         write_text(temporary / "vehicle.toml", result.text)
-        write_files(temporary, {file.name: file.read_bytes() for file in templates})
+        write_files(temporary, {file.name: file.read_bytes() for file in template_files(source, result.car)})
     file = folder / "vehicle.toml"
     figures = motion_figures(result.car)
     console.result(_checks(result, file, figures), _report(result, file, figures))
