@@ -51,13 +51,13 @@ def setting(
 
 
 def part(settings: Callable[[], A]) -> A:
-    """Declare a field that holds settings of their own, as those of a road in those of a run.
+    """Declare a field with further settings, for example the settings of a road in those of a run.
 
     Args:
         settings: class of `Settings`; by default each has its defaults.
     """
-    made: A = field(default_factory=settings, metadata={"part": settings})
-    return made
+    default: A = field(default_factory=settings, metadata={"part": settings})
+    return default
 
 
 FINITE = "(-inf, inf)"

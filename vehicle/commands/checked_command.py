@@ -41,21 +41,21 @@ def _refusal(arguments: Sequence[str]) -> tuple[str, list[Finding]]:
         return str(error), []
 
 
-def _comfort(words: Sequence[str]) -> Iterable[str]:
+def _comfort(options_text: Sequence[str]) -> Iterable[str]:
     from vehicle.commands.comfort import ComfortSettings, evaluated, parser
 
-    settings = read(parser().parse_args(words), ComfortSettings)
+    settings = read(parser().parse_args(options_text), ComfortSettings)
     return evaluated(settings.inputs[0], settings).notices
 
 
-def _shaker(words: Sequence[str]) -> Iterable[str]:
+def _shaker(options_text: Sequence[str]) -> Iterable[str]:
     from vehicle.commands.input_options import input_of
     from vehicle.commands.shaker import parser
     from vehicle.handover.page.shaken_run import plate_signal
     from vehicle.runs.car.road import road_of
     from vehicle.signals.excitation.evaluation_start import evaluation_start
 
-    options = parser().parse_args(words)
+    options = parser().parse_args(options_text)
     source, car = input_of(options), car_of(options)
     vehicle = car.load()
     if isinstance(source, PlateSettings):
@@ -67,11 +67,11 @@ def _shaker(words: Sequence[str]) -> Iterable[str]:
     return signal.notices
 
 
-def _compare(words: Sequence[str]) -> Iterable[str]:
+def _compare(options_text: Sequence[str]) -> Iterable[str]:
     from vehicle.commands.compare import parser, settings_of
     from vehicle.signals.formats.reader import read_record
 
-    settings = settings_of(parser().parse_args(words))
+    settings = settings_of(parser().parse_args(options_text))
     (file,) = settings.files
     choice = settings.measured.choice(settings.record)
     measurement = read_record(file, choice.databases)

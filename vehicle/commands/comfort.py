@@ -108,7 +108,7 @@ def _picked(record: RecordSettings, picks: Sequence[str]) -> tuple[str | None, C
     if len(points) > 1 or (points and len(picks) > 1):
         raise ConfigurationError("--channel: give one point of a run, or channels as x=NAME, y=NAME and z=NAME")
     channels = replace(record, picks=tuple(text for text in picks if "=" in text))
-    return (points[0] if points else None), channels.choice("", known=AXES)
+    return (points[0] if points else None), channels.choice("", further=AXES)
 
 
 def evaluated(file: str, settings: ComfortSettings) -> RecordComfort:

@@ -15,11 +15,12 @@ from typing import Any
 from vehicle.commands.accepted_advice import OPTION, is_new
 from vehicle.digits import duration
 from vehicle.errors import ConfigurationError
+from vehicle.runs.output.listener import Listener
 from vehicle.signals.records.finding import FindingError, findings_of
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Console:
+class Console(Listener):
     """Console of a command.
 
     Attributes:
@@ -28,8 +29,7 @@ class Console:
         json: print results as JSON.
         accept_advice: apply the options that findings name.
         accepted: options that were applied, with their values.
-        idle: title of a group of options that only the command can find without effect, to the refusal of the one
-            that was typed.
+        idle: title of a group of options to the error message, for groups that only the command can judge.
     """
 
     words: tuple[str, ...] = ()

@@ -92,7 +92,7 @@ def _job(settings: DamperFitSettings, console: Console) -> None:
     named = pairs("--unit", settings.record.units, "")  # by role, or by the name or number of a column
     fits = fit_damper(
         settings.files,
-        settings.record.choice("", known=("time", "displacement", "force", "velocity", *named)),
+        settings.record.choice("", further=("time", "displacement", "force", "velocity", *named)),
         compression=None if settings.positive is None else settings.positive == "compression",
         conditions=pairs("--condition", settings.condition, ""),
         pattern=settings.pattern,

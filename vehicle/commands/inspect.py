@@ -36,7 +36,7 @@ def parser() -> Parser:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class InspectSettings(Settings):
-    """Files to inspect, and the CAN databases that decode them."""
+    """Files to inspect, with their CAN databases."""
 
     files: tuple[str, ...] = setting(
         "measurement file (format recognised by its content), shipped input, or folder. Several give one table",
@@ -54,12 +54,12 @@ def _job(settings: InspectSettings, console: Console) -> None:
     def one(name: str) -> dict[str, Any]:
         measurement = read_record(find_input(name), settings.databases)
         findings: list[Finding] = []
-        words, reason = command_for(measurement, name, settings.databases, findings)
-        comparison, left_out = comparison_for(measurement, name, words, findings)
+        advised, reason = command_for(measurement, name, settings.databases, findings)
+        comparison, left_out = comparison_for(measurement, name, advised, findings)
         return {
             **contents(measurement),
             "findings": findings,
-            "command": words or None,
+            "command": advised or None,
             "command_reason": reason,
             "comparison": comparison or None,
             "comparison_left_out": left_out,

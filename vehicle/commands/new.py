@@ -88,8 +88,7 @@ class NewSettings(Settings):
     """Settings of a new car.
 
     Attributes:
-        stated: name to stated number; None for those that are not stated.
-        destination: tells whether files of an earlier run are replaced.
+        stated: name to stated number, which may be None.
     """
 
     folder: Path = setting(
@@ -99,8 +98,8 @@ class NewSettings(Settings):
         metavar="NAME",
     )
     source: str | None = setting(
-        "car to start from: a shipped car with four wheels (sedan, focus_road) or the file of a car. Default with "
-        "--car-class: sedan. Axles and powertrain are scaled with the mass",
+        "car to start from: a shipped car with four wheels (sedan, focus_road) or the file of a car. Default "
+        "with --car-class: sedan. Axles and powertrain are scaled with the mass",
         flag="--from",
         metavar="CAR",
     )

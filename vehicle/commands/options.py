@@ -64,7 +64,7 @@ def setting_options(
 
 
 def read(options: argparse.Namespace, settings: type[S], /, **more: Any) -> S:
-    """Return the settings of parsed options, with their parts: car, destination, and settings of their own.
+    """Return the settings of parsed options, and those of their parts.
 
     A field takes the option of its name, or of the `dest` of its declaration; without one it has its default.
 

@@ -190,6 +190,6 @@ def idle_options(options: argparse.Namespace) -> dict[str, str]:
 
 
 def _refusal(scope: Scope, typed: dict[str, str]) -> str:
-    """Return the message on the first option of a group that was typed; empty if there is none."""
+    """Return the message on the first option of a group on the command line, or an empty text."""
     word = next((typed[action.dest] for action in scope.options if action.dest in typed), "")
     return word and f"{word}: belongs to {scope.needs}"

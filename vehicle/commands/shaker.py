@@ -99,12 +99,12 @@ def _steady_points(settings: ShakerSettings, engine_given: bool, speed: float | 
         raise ConfigurationError("--rpm A:B:STEP: steady points are runs on a road; leave out --input")
     car, destination = settings.car, settings.destination
     road, file = str(settings.source.road), destination.output
-    words = ["--rpm", str(settings.rpm), "--road", road]
+    arguments = ["--rpm", str(settings.rpm), "--road", road]
     for flag, value in (("--vehicle", car.vehicle), ("--speed", speed), ("--duration", settings.duration)):
-        words += [] if value is None else [flag, str(value)]
-    words += [word for text in car.overrides for word in ("--set", text)]
-    words += ["--engine", settings.engine] if engine_given else []
-    words += [] if file is None else ["--output", str(file), *(["--force"] if destination.force else [])]
+        arguments += [] if value is None else [flag, str(value)]
+    arguments += [word for text in car.overrides for word in ("--set", text)]
+    arguments += ["--engine", settings.engine] if engine_given else []
+    arguments += [] if file is None else ["--output", str(file), *(["--force"] if destination.force else [])]
     return OrderSettings(
         car=car,
         destination=destination,
@@ -113,7 +113,7 @@ def _steady_points(settings: ShakerSettings, engine_given: bool, speed: float | 
         road=road,
         duration=settings.duration or USUAL_LENGTH,
         engine=settings.engine if engine_given else USUAL_ENGINE,
-        words=tuple(words),
+        words=tuple(arguments),
     )
 
 

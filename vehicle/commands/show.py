@@ -38,7 +38,7 @@ def parser() -> Parser:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ShowSettings(Settings):
-    """Car to show, words of parameters to search for, and folder of its files; none are written without `output`."""
+    """Car to show; files are written only to an `output`."""
 
     car: CarChoice = part(CarChoice)
     destination: Destination = part(Destination)

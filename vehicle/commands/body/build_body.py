@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from vehicle.commands.body.model_file import output_options, require_output, write
 from vehicle.commands.body.show_body import report
@@ -13,9 +13,6 @@ from vehicle.commands.options import message_options, setting_options, vehicle_o
 from vehicle.model.parameters.car_choice import CarChoice
 from vehicle.runs.output.destination import Destination
 from vehicle.settings import Settings, part, setting
-
-if TYPE_CHECKING:
-    pass
 
 
 def add(tasks: Any) -> None:
@@ -32,7 +29,7 @@ def add(tasks: Any) -> None:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BuildSettings(Settings):
-    """Car, its body design (None for that of the vehicle file), and the new file."""
+    """Car, body design, and the new file."""
 
     car: CarChoice = part(CarChoice)
     destination: Destination = part(Destination)

@@ -42,7 +42,7 @@ def add(tasks: Any) -> None:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BodiesSettings(Settings):
-    """Two files of body models, the car with their points, and the folder of files; none without `output`."""
+    """Body models to compare at the points of a car; files are written only to an `output`."""
 
     file: Path = setting("body model, .toml or .npz", flag="file", type=Path, metavar="FILE")
     other: Path = setting("file of the other body model, .toml or .npz", flag="other", type=Path, metavar="OTHER")

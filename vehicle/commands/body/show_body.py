@@ -47,7 +47,7 @@ def add(tasks: Any) -> None:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BodySettings(Settings):
-    """File of a body model (None for the body of the car), car, and folder of files; none without `output`."""
+    """Body model to show, by default the body of the car; files are written only to an `output`."""
 
     car: CarChoice = part(CarChoice)
     destination: Destination = part(Destination)

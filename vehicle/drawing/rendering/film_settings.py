@@ -15,7 +15,7 @@ class FilmSettings(Settings):
     """Settings of the film of a run.
 
     Attributes:
-        video: path of the film; "" for a default, None for no film.
+        video: path of the film, or "" for the default path; without it no film is made.
     """
 
     video: str | None = None

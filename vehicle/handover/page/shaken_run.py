@@ -14,7 +14,7 @@ from vehicle.model.parameters.car_choice import CarChoice
 from vehicle.model.parameters.recorded_channels import recorded_channels
 from vehicle.model.parameters.semi_active_damper import FMU
 from vehicle.runs.output.folder import output_folder
-from vehicle.runs.output.listener import Listener, Nobody
+from vehicle.runs.output.listener import Listener
 from vehicle.signals.excitation.crank_speed import RPM, crank_overrides, measured_speed
 from vehicle.signals.excitation.evaluation_start import evaluation_start
 from vehicle.signals.excitation.input_files import find_input
@@ -54,15 +54,15 @@ def shake(
 
     Args:
         settings: input, car, files.
-        listener: told of the progress; nobody by default.
-        tell: called with the summary and the car before the film and the report, which take the longest.
+        listener: receives progress and notices.
+        tell: called with the summary and the car before the slow film and report.
         command: command line that makes this run, for the summary.
 
     Raises:
         VehicleError: wrong settings, bad data, a failed run, or files that cannot be written.
     """
     with settings.destination.held:
-        return _shake(settings, listener or Nobody(), tell, command)
+        return _shake(settings, listener or Listener(), tell, command)
 
 
 def _shake(
@@ -117,7 +117,7 @@ def _shake(
     channels = None if settings.channels is None else recorded_channels(settings.channels, car.vehicle)
     measured = None
     if settings.measured.measured is not None:
-        # The channels of the measurement have their units only: its times are its own.
+        # Rate and excerpt of the options belong to the input; the measurement takes its units only.
         asked = settings.measured.choice(RecordSettings(units=source.record.units), of_input)
         measured = settings.measured.read(channels or car.vehicle.channels, asked)
     # A car that cannot be run is refused before anything is written.

@@ -23,7 +23,7 @@ class ShakerSettings(Settings):
         source: signals of the plates, or a drive on a road.
         destination: folder of the files; by default "runs" with the name of the input.
         film: film of the run.
-        measured: measurement beside the run.
+        measured: measurement to compare with the run.
         report: report of the run.
         figures: write pictures (PNG).
     """

@@ -18,7 +18,7 @@ class CarChoice:
     """Choice of a car.
 
     Attributes:
-        vehicle: vehicle file; None for the car of Bommer 2006.
+        vehicle: vehicle file; by default the car of Bommer 2006.
         overrides: changed parameters, as "path=value".
     """
 
@@ -33,7 +33,7 @@ class CarChoice:
 
     @property
     def folder(self) -> Path | None:
-        """Folder of the vehicle file, for the files that it names; None for the car of Bommer 2006."""
+        """Folder of the vehicle file."""
         return None if self.vehicle is None else self.vehicle.parent
 
     def require_once(self, option: str, texts: Sequence[str]) -> None:

@@ -18,7 +18,7 @@ REPORT = "report.html"
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Destination:
-    """Where results are written: a folder or file that the user names, or the next free name after a default.
+    """Folder or file of results: named by the user, or the next free name after a default.
 
     A chosen path is locked until `held` is closed.
 
@@ -26,7 +26,7 @@ class Destination:
         output: folder or file; None takes the default of the study.
         force: replace files of an earlier run.
         resume: continue an unfinished study.
-        tell: called with the notice that the default exists and another name is taken.
+        tell: called with a notice if the default exists.
         held: exit stack that holds the locks.
     """
 
@@ -37,7 +37,7 @@ class Destination:
     held: ExitStack = field(default_factory=ExitStack, compare=False, repr=False)
 
     def folder(self, default: Path, *, protect: tuple[Path, ...] = ()) -> Path:
-        """Choose and lock the folder of the results.
+        """Choose the folder of the results, and lock it.
 
         Args:
             default: folder without `output`; if it exists, the next free name is taken, with a notice.
@@ -52,7 +52,7 @@ class Destination:
         return self._said(default, free_folder(self.held, default, protect=protect))
 
     def study_folder(self, default: Path, *, rows: Sequence[str] = ()) -> Path:
-        """Choose and lock the folder of a study, a sweep or a search; its files are made in `study_folder`.
+        """Choose the folder of a sweep or a search, and lock it; its files are made in `study_folder`.
 
         Args:
             default: folder without `output`, see `folder`.
@@ -89,7 +89,7 @@ class Destination:
         return files
 
     def file(self, default: Path, *, ending: str = "", protect: tuple[Path, ...] = ()) -> Path:
-        """Choose and lock the file of the results; errors are those of `folder`.
+        """Choose the file of the results, and lock it; errors are those of `folder`.
 
         Args:
             default: file without `output`; if it exists, the next free name is taken, with a notice.
@@ -129,10 +129,10 @@ class Destination:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ReportChoice:
-    """Report beside the results.
+    """Report of the results.
 
     Attributes:
-        report: its path; "" for `REPORT` in the folder of the results, None for no report.
+        report: its path, or "" for `REPORT` in the folder of the results; without it no report is made.
         author, project: names at its top.
     """
 
@@ -141,7 +141,7 @@ class ReportChoice:
     project: str = ""
 
     def path(self, destination: Destination, folder: Path) -> Path | None:
-        """Return the path of the report, a plain name in the folder of the results; None for no report.
+        """Return the path of the report; a plain name is in the folder of the results.
 
         Raises:
             ConfigurationError: the name does not end in .html, or the path is not free.

@@ -43,7 +43,7 @@ def measured_speed(source: Input, rpm: str | None) -> tuple[Input, list[str]]:
     """Return the input without a channel of the crankshaft, and the changed parameters of the car that name it.
 
     Args:
-        rpm: speed that is given without a channel; None for none.
+        rpm: speed that is given without a channel, or None.
 
     Raises:
         ConfigurationError: the speed is given twice, or the channel is not one of a file of plates from its start.

@@ -42,7 +42,7 @@ class PlateSettings(Settings):
 
     Attributes:
         input: file, or the name of a shipped file.
-        wheel: wheel that a column without a wheel in its name moves, "fr"; None for that of the vehicle file.
+        wheel: moves by a column without a wheel in its name; by default that of the vehicle file.
         any_level: accept levels beyond a shaker, and plates so similar that their FRFs cannot be separated.
         interpolate: fill gaps in the displacement by interpolation.
         remove_mean: subtract the mean of the displacement.
@@ -100,11 +100,11 @@ class DriveInput(Settings):
     record: RecordSettings = part(RecordSettings)
 
     def choice(self) -> Choice | None:
-        """Return the channels of a road recorded over time; None of another road.
+        """Return the channels of a road recorded over time, or None.
 
         The rate is that of the run; the times are those of the file.
         """
-        return replace(self.record, rate=None).choice("height", known=("speed",)) if self.over_time else None
+        return replace(self.record, rate=None).choice("height", further=("speed",)) if self.over_time else None
 
     @property
     def over_time(self) -> bool:

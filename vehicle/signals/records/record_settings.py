@@ -44,12 +44,12 @@ class RecordSettings(Settings):
         within=ABOVE_0, type=float, metavar="HZ"
     )  # fmt: skip
 
-    def choice(self, role: str, known: Collection[str] = (), *, others: bool = False) -> Choice | None:
+    def choice(self, role: str, further: Collection[str] = (), *, others: bool = False) -> Choice | None:
         """Return the choice of channels, units and times; None if it has only defaults.
 
         Args:
             role: role of a channel without ROLE=.
-            known: further roles that a unit may name.
+            further: roles without a channel that a unit may name.
             others: True if units without a channel of their role belong to another file, as the measured one.
 
         Raises:
@@ -59,7 +59,7 @@ class RecordSettings(Settings):
 
         channels = pairs("--channel", self.picks, role)
         asked = pairs("--unit", self.units, "")
-        units = {name: unit for name, unit in asked.items() if not name or name in channels or name in known}
+        units = {name: unit for name, unit in asked.items() if not name or name in channels or name in further}
         unknown = next((name for name in asked if name not in units), None)
         if unknown is not None and not others:
             raise ConfigurationError(
