@@ -83,8 +83,8 @@ def test_a_table_of_variations(tmp_path):
         (["--vary", "a=1", "--vary", "a=2"], "given twice", 2),
         (["--vary", "damper.viscous=1:2"], "contains bounds, must be values", 2),
         (["--vary", "damper.viscous=1000", "--skip", "3"], "--skip 3 s: must be at least 0 and below the 3 s ", 2),
-        (["--vary", "damper.viscous=1000", "--skip", "-5"], "--skip -5 s: must be at least 0", 2),
-        (["--vary", "damper.viscous=1000", "--skip", "nan"], "--skip nan s: must be at least 0", 2),
+        (["--vary", "damper.viscous=1000", "--skip", "-5"], "--skip -5: must be at least 0", 2),
+        (["--vary", "damper.viscous=1000", "--skip", "nan"], "--skip nan: must be at least 0", 2),
         (["--vary", "damper.viscous=1000", "--jobs", "0"], "--jobs 0: must be at least 1", 2),
         (
             ["--vary", "damper.viscous=1000", "--set", "damper.vicsous=1"],
