@@ -65,7 +65,7 @@ def test_a_number_of_a_command_is_refused_with_option_value_and_interval(flag, w
     outside = [float("nan"), float("-inf"), *([] if within.endswith("]") else [float("inf")])]
     outside += [value for value in (low - 1.0, high + 1.0) if math.isfinite(value)]
     for value in outside:
-        required = {each.name: () for each in fields(settings) if each.default is MISSING is each.default_factory}
+        required = {each.name: () for each in fields(settings) if each.default is MISSING is each.default_factory}  # type: ignore[arg-type]
         with pytest.raises(
             ConfigurationError, match=rf"^{flag} {value:g}( %)?: must be (above|at least|a finite|{low:g})"
         ):

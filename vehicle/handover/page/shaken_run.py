@@ -58,6 +58,9 @@ def shake(
         tell: called with the summary and the car before the slow film and report.
         command: command line that makes this run, for the summary.
 
+    Returns:
+        Folder and summary of the run.
+
     Raises:
         VehicleError: wrong settings, bad data, a failed run, or files that cannot be written.
     """
