@@ -13,8 +13,8 @@ import numpy as np
 from scenarios.car_runs import CarRuns
 from scenarios.claims import Findings
 from vehicle.commands.command_line import parse_and_run
-from vehicle.commands.destination import study_folder_of
-from vehicle.commands.options import message_options, output_options, setting_options, vehicle_options
+from vehicle.commands.console import Console
+from vehicle.commands.options import destination_of, message_options, output_options, setting_options, vehicle_options
 from vehicle.commands.parser import Parser
 from vehicle.runs.car import Run
 from vehicle.runs.output.folder import study_folder
@@ -86,10 +86,10 @@ class Study(Generic[Subject]):
         """
 
         @one_blas_thread()
-        def job(options: argparse.Namespace) -> None:
+        def job(options: argparse.Namespace, console: Console) -> None:
             started = clock.perf_counter()
             subject = self.load(options)
-            output = study_folder_of(options, options.output)
+            output = destination_of(options).study_folder(options.output)
             with study_folder(output, force=options.force) as folder:
                 findings = self.study(subject, folder, options)
                 line = findings if isinstance(findings, str) else findings.write(folder)

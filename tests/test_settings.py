@@ -1,14 +1,18 @@
 """Settings of functions and commands: one declaration for Python, its documentation, the checks and the options."""
 
 import inspect
+import math
 import re
+from dataclasses import MISSING, fields
 from importlib import import_module
 
 import pytest
 
 import vehicle
+from vehicle.commands import COMMANDS, module_of
+from vehicle.commands.options import read
 from vehicle.errors import ConfigurationError
-from vehicle.settings import Settings, require_within
+from vehicle.settings import FINITE, Settings, require_within
 from vehicle.studies.optimisation.search_settings import SearchSettings
 from vehicle.studies.replication.drive_settings import DriveSettings
 from vehicle.studies.sweeps.sweep_settings import SobolSettings, SweepSettings
@@ -26,6 +30,46 @@ DECLARED: dict[str, tuple[type[Settings], str]] = {
 
 OF_PYTHON_ALONE = {"executor", "progress", "notice", "measure", "folder", "base"}
 """Settings that a command gives another value than that of an option of the same meaning."""
+
+
+def all_settings(base: type[Settings] = Settings) -> list[type[Settings]]:
+    """Return the classes of settings of all commands."""
+    for command in COMMANDS:
+        import_module(module_of(command)).parser()
+    return [each for below in base.__subclasses__() for each in (below, *all_settings(below))]
+
+
+NUMBERS = {
+    (each["flag"], each["within"]): (settings, name)
+    for settings in all_settings()
+    for name, each in settings.declared().items()
+    if each["option"].get("type") in (int, float)
+}
+"""Option and interval of a number to the settings that declare it, for all commands."""
+
+UNLIMITED = {"--from", "--to"}
+"""Options without limits: a time of a file may be negative."""
+
+LIMITED_LATER = {"--time-limit", "--samples", "--quantile", "--spacing", "--window", "--averages", "--lowpass"} | {
+    *("--levels", "--discrepancy")
+}
+"""Options of studies whose limits depend on other values, and are checked with them."""
+
+
+@pytest.mark.parametrize(("flag", "within"), NUMBERS)
+def test_a_number_of_a_command_is_refused_with_option_value_and_interval(flag, within):
+    settings, name = NUMBERS[flag, within]
+    assert within or flag in UNLIMITED | LIMITED_LATER, f"{flag}: needs an interval"
+    factor = settings.declared()[name]["factor"]
+    low, high = (float(end) for end in (within or FINITE)[1:-1].split(","))
+    outside = [float("nan"), float("-inf"), *([] if within.endswith("]") else [float("inf")])]
+    outside += [value for value in (low - 1.0, high + 1.0) if math.isfinite(value)]
+    for value in outside:
+        required = {each.name: () for each in fields(settings) if each.default is MISSING is each.default_factory}  # type: ignore[arg-type]
+        with pytest.raises(
+            ConfigurationError, match=rf"^{flag} {value:g}( %)?: must be (above|at least|a finite|{low:g})"
+        ):
+            settings(**required, **{name: factor * value})
 
 
 @pytest.mark.parametrize("name", DECLARED)
@@ -46,7 +90,7 @@ def test_the_options_left_out_are_the_defaults_of_python(name):
     settings, command = DECLARED[name]
     needed = {"drive": ["--target", "FILE"], "tune": ["focus"]}.get(command, [])
     options = import_module(f"vehicle.commands.{command}").parser().parse_args(needed)
-    assert settings.of_options(options) == settings()
+    assert read(options, settings) == settings()
 
 
 @pytest.mark.parametrize(

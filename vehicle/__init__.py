@@ -54,6 +54,7 @@ if TYPE_CHECKING:
     from vehicle.errors import VehicleError as VehicleError
     from vehicle.handover.fmu.fmu_file import write_fmu as write_fmu
     from vehicle.handover.page.report_file import write_report as write_report
+    from vehicle.handover.page.shaken_run import shake as shake
     from vehicle.model.laws.friction_by_address import register_friction as register_friction
     from vehicle.model.laws.law_by_address import register_law as register_law
     from vehicle.model.parameters.shipped import shipped_cars as shipped_cars
@@ -150,6 +151,7 @@ _MODULES = {
     "save_comparison": "vehicle.runs.output.comparison_files",
     "save_drive": "vehicle.studies.replication.drive_files",
     "save_run": "vehicle.runs.output.saved_run",
+    "shake": "vehicle.handover.page.shaken_run",
     "shipped_cars": "vehicle.model.parameters.shipped",
     "shipped_inputs": "vehicle.signals.excitation.input_files",
     "sobol": "vehicle.studies.sweeps.sobol_sweep",

@@ -1,15 +1,16 @@
 """Settings of a function and of its command, each declared once: a field of a dataclass with unit, limits and option.
 
-From the declarations come the options of the command (`vehicle.commands.options.setting_options`), the checks of the
-values, and the arguments of the function in Python with their documentation (`with_settings`).
+From the declarations come the options of the command (`vehicle.commands.options.setting_options`), their reading
+(`read`, in the same place), the checks of the values, and the arguments of the function in Python with their
+documentation (`with_settings`).
 """
 
 import inspect
-from argparse import Namespace
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import field, fields
 from functools import update_wrapper
-from typing import Any, Concatenate, ParamSpec, Protocol, Self, TypeVar, overload
+from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar, overload
 
 from vehicle.errors import ConfigurationError
 from vehicle.names import ENGINES
@@ -49,6 +50,20 @@ def setting(
     return field(default=default, metadata=declared | {"default": default})
 
 
+def part(settings: Callable[[], A]) -> A:
+    """Declare a field with further settings, for example the settings of a road in those of a run.
+
+    Args:
+        settings: class of `Settings`; by default each has its defaults.
+    """
+    default: A = field(default_factory=settings, metadata={"part": settings})
+    return default
+
+
+FINITE = "(-inf, inf)"
+"""Interval of a number without limits: not a number and infinite are refused."""
+
+
 class Settings:
     """Base of a dataclass of settings, whose values are checked when it is made."""
 
@@ -63,32 +78,18 @@ class Settings:
             if "meaning" in each.metadata
         }
 
-    @classmethod
-    def of_options(cls, options: Namespace, **more: Any) -> Self:
-        """Return the settings of parsed options.
-
-        Args:
-            options: of the command; a setting without an option has its default.
-            more: values of further settings.
-        """
-        for name, declared in cls.declared().items():
-            option = declared["option"]
-            if name not in more and option and (value := getattr(options, option.get("dest", name), None)) is not None:
-                value = tuple(value) if isinstance(value, list) else value
-                more[name] = value if declared["factor"] == 1.0 else declared["factor"] * value
-        return cls(**more)
-
     def __post_init__(self) -> None:
         """Check the values.
 
         Raises:
-            ConfigurationError: a value is out of its interval.
+            ConfigurationError: a value is out of its interval, or no finite number.
         """
         for name, declared in self.declared().items():
             value = getattr(self, name)
-            if declared["within"] and value is not None:
-                number = value if declared["factor"] == 1.0 else value / declared["factor"]
-                require_within(declared["flag"], number, declared["within"], declared["factor"])
+            for each in value if isinstance(value, tuple) else (value,):
+                if isinstance(each, int | float) and not isinstance(each, bool):
+                    number = each if declared["factor"] == 1.0 else each / declared["factor"]
+                    require_within(declared["flag"], number, declared["within"] or FINITE, declared["factor"])
 
     def given(self, *, without: tuple[str, ...] = ()) -> dict[str, Any]:
         """Return the settings that are not left at their default, by name.
@@ -120,14 +121,27 @@ def require_within(flag: str, number: float, within: str, factor: float = 1.0) -
     above = number > float(low) if opened else number >= float(low)
     if above and (number <= float(high) if closed else number < float(high)):
         return
-    if closed and not opened:
+    if within == FINITE:
+        allowed = "a finite number"
+    elif closed and not opened:
         allowed = f"{low} to {high}"
     else:
         allowed = f"above {low}" if opened else f"at least {low}"
-        if high != "inf":
+        if math.isinf(number) and high == "inf":
+            allowed += " and finite"
+        elif high != "inf":
             allowed += f"{'' if opened else ','} and {'up to' if closed else 'below'} {high}"
     text = str(number) if isinstance(number, int) else f"{number:g}"
     raise ConfigurationError(f"{flag} {text}{'' if factor == 1.0 else ' %'}: must be {allowed}")
+
+
+def finite_numbers(text: str, separator: str) -> list[float]:
+    """Return the numbers of the parts of a text; none if a part is no finite number."""
+    try:
+        numbers = [float(part) for part in text.split(separator)]
+    except ValueError:
+        return []
+    return numbers if all(map(math.isfinite, numbers)) else []
 
 
 def pair(flag: str, needed: str, *, above: float | None = None) -> Callable[[str], tuple[float, float]]:
@@ -215,4 +229,15 @@ def engine_setting(default: str) -> Any:
         "but linear geometry, no film; auto: reduced inside its valid range, otherwise mujoco; default: %(default)s",
         default,
         choices=ENGINES,
+    )
+
+
+def skip_setting() -> Any:
+    """Declare the start of the evaluation, see `vehicle.signals.excitation.evaluation_start`."""
+    return setting(
+        "begin the evaluation (comfort, SEAT, slip shares, densities) S seconds after the start; on a road 2 by "
+        "default, more below 19 km/h, since a road rises from rest during the first second; 0 with --input",
+        within="[0, inf)",
+        type=float,
+        metavar="S",
     )

@@ -5,6 +5,7 @@ from functools import partial
 
 from scenarios.course.lessons import EXERCISES
 from vehicle.commands.command_line import parse_and_run
+from vehicle.commands.console import Console
 from vehicle.commands.options import message_options
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
@@ -19,7 +20,7 @@ def parser() -> Parser:
     return options
 
 
-def check(options: argparse.Namespace) -> None:
+def check(options: argparse.Namespace, console: Console) -> None:
     """Print the verdict on a solution.
 
     Raises:

@@ -21,15 +21,16 @@ The remaining residuals make the fit unique and have low weights: modes spread o
 above the range, symmetric or antisymmetric modes, no node that moves far more than its surroundings, factors near one.
 """
 
-import argparse
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import scipy
 
 from vehicle.arrays import Vector
-from vehicle.commands.command_line import parse_and_run
+from vehicle.commands.command_line import command
+from vehicle.commands.console import Console
 from vehicle.commands.options import message_options, vehicle_options
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
@@ -40,7 +41,8 @@ from vehicle.model.flexbody.mode_names import global_patterns, modal_assurance
 from vehicle.model.flexbody.node_masses import NodeProperties
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.flexbody.symmetry import mirror_nodes, parity
-from vehicle.runs.car import Car
+from vehicle.model.parameters.car_choice import CarChoice
+from vehicle.settings import Settings, part
 
 FIRST_HZ, LAST_HZ = 19.0, 43.0
 """Frequencies of the first and last mode [Hz], published: Bommer 2006, section 3.1.2; first = lowest symmetric mode
@@ -179,18 +181,23 @@ def parser() -> Parser:
     return result
 
 
-def _job(options: argparse.Namespace) -> None:
-    design = read_design(options.design)
-    vehicle = Car.load(options.vehicle, options.overrides).vehicle
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FitSettings(Settings):
+    """Car, and the body design whose sections are fitted."""
+
+    design: Path = BODY_DESIGN
+    car: CarChoice = part(CarChoice)
+
+
+def _job(settings: FitSettings, _: Console) -> None:
+    design, vehicle = read_design(settings.design), settings.car.load()
     frame = body_frame(design, vehicle.points, NodeProperties.of_body(vehicle.body, design.least_ixx))
     factors = fit_factors(frame, dict.fromkeys(design.factors, 1.0), STAGES)
     for group in design.fitted_groups:
         print(f"members.{group}.factor = {factors[group]:.5g}")
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Run the command; returns its exit code."""
-    return parse_and_run(parser(), _job, arguments)
+main = command(parser, FitSettings, _job)
 
 
 if __name__ == "__main__":

@@ -18,8 +18,8 @@ from scenarios.published.sources import BESIDE, BESIDE_NAME, BESIDE_STUDIES, SOU
 from scenarios.published.table import collect
 from scenarios.study import main_of
 from vehicle.commands.command_line import parse_and_run
-from vehicle.commands.destination import study_folder_of
-from vehicle.commands.options import message_options, output_options, setting_options
+from vehicle.commands.console import Console
+from vehicle.commands.options import destination_of, message_options, output_options, setting_options
 from vehicle.commands.parser import Parser
 from vehicle.errors import DataError, SimulationError
 from vehicle.runs.output.folder import study_folder, write_text
@@ -61,8 +61,8 @@ def main(arguments: list[str] | None = None) -> int:
     return parse_and_run(parser(), _job, arguments)
 
 
-def _job(options: argparse.Namespace) -> None:
-    output = study_folder_of(options, QUICK_HOME if options.quick else HOME)
+def _job(options: argparse.Namespace, console: Console) -> None:
+    output = destination_of(options).study_folder(QUICK_HOME if options.quick else HOME)
     started = clock.perf_counter()
     results, seconds = {}, {}
     for number, name in enumerate(STUDIES, start=1):

@@ -16,10 +16,9 @@ import numpy.typing as npt
 import scipy
 
 from tests.studies.tuning.two_masses import FREQUENCY, SIGMA, TRUE, MeasuredMasses
-from vehicle.commands.road import road_drive
 from vehicle.model.parameters.ranges import Range
 from vehicle.names import AXES
-from vehicle.runs.car import Car
+from vehicle.runs.car import Car, Road
 from vehicle.signals.analysis.comfort import comfort_values
 from vehicle.signals.analysis.comfort_error import WAVES, difference_error
 from vehicle.signals.analysis.ride_comfort import ERROR, UNWEIGHTED, WEIGHTED, comfort_columns, wave_names
@@ -52,8 +51,7 @@ class LinearRide:
 
     def __init__(self, name: str, road: str, speed: float, overrides: Sequence[str] = ()) -> None:
         car = Car.load(name, overrides)
-        numbers = argparse.Namespace(speed=speed, duration=None, rate=None, seed=1, coherence=None, patch=None)
-        drive = road_drive(road, numbers, car.vehicle)
+        drive = Road(road, speed, seed=1).under(car.vehicle)
         assert isinstance(drive, RoadDrive)
         self.drive = drive
         self.level, self.speed = CLASSES[road], speed / 3.6
@@ -125,10 +123,7 @@ def length(repetitions: int) -> Rows:
     for duration in (10.0, 30.0, 60.0):
         found, whole = [], []
         for seed in range(1, min(repetitions, 30) + 1):
-            numbers = argparse.Namespace(
-                speed=80.0, duration=duration, rate=None, seed=seed, coherence=None, patch=None
-            )
-            drive = road_drive("B", numbers, car.vehicle)
+            drive = Road("B", 80.0, duration=duration, seed=seed).under(car.vehicle)
             run = replace(car.run(drive.signal(), engine="reduced", channels=RAIL), skip=drive.skip)
             step = run.recording.timestep
             found.append(comfort_values(step, np.array([run.at("seat_rail")])))

@@ -4,12 +4,12 @@ python -m tests.benchmarks.rolling_comfort [--duration 30] [--speed 80] [--engin
 """
 
 import argparse
+from typing import Any
 
-from vehicle.commands.road import road_drive
-from vehicle.runs.car import Car
+from vehicle.runs.car import Car, Road
 from vehicle.runs.output.run_comfort import comfort_values
 
-CASES: dict[str, tuple[dict[str, object], list[str]]] = {
+CASES: dict[str, tuple[dict[str, Any], list[str]]] = {
     "standing, no contact patch": ({"tyre": "standing", "patch": 0.0}, []),
     "standing": ({"tyre": "standing"}, []),
     "rolling": ({}, []),
@@ -29,16 +29,8 @@ def main() -> None:
     for name in ("kinematic_reference", "focus_road"):
         for road in "AB":
             for words, (chosen, overrides) in CASES.items():
-                numbers: dict[str, object] = {
-                    "tyre": None,
-                    "rate": None,
-                    "seed": None,
-                    "coherence": None,
-                    "patch": None,
-                    **chosen,
-                }
-                asked = argparse.Namespace(**{**vars(options), **numbers, "overrides": []})
-                drive = road_drive(road, asked, Car.load(name).vehicle)
+                asked = Road(road, options.speed, duration=options.duration, **chosen)
+                drive = asked.under(Car.load(name).vehicle)
                 car = Car.load(name, [*overrides, *drive.overrides])
                 run = car.run(drive.signal(), engine=options.engine)
                 rail = comfort_values(run)["seat_rail"]

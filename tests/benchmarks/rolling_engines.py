@@ -14,9 +14,8 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.commands.road import road_drive
 from vehicle.engines.reduced.reduced_run import simulate_reduced
-from vehicle.runs.car import Car
+from vehicle.runs.car import Car, Road
 from vehicle.signals.analysis.road_level import CLASSES
 
 Histories = dict[str, npt.NDArray[np.float64]]
@@ -34,10 +33,8 @@ def main() -> None:
     options = found.parse_args()
     for name in ("kinematic_reference", "focus_road"):
         for road in options.roads.split(","):
-            numbers = dict.fromkeys(("tyre", "rate", "seed", "coherence", "patch", "contact"))
-            numbers |= {"duration": options.duration if road in CLASSES else None}
-            asked = argparse.Namespace(**{**vars(options), **numbers, "overrides": []})
-            drive = road_drive(road, asked, Car.load(name).vehicle)
+            duration = options.duration if road in CLASSES else None
+            drive = Road(road, options.speed, duration=duration).under(Car.load(name).vehicle)
             car, fine = (Car.load(name, [*drive.overrides, *more]) for more in ([], [FINE]))
             signal = drive.signal()
             skip = round(drive.skip * car.vehicle.solver.record_rate)

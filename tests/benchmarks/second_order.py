@@ -15,10 +15,9 @@ import numpy as np
 import numpy.typing as npt
 
 from tests.engines.reduced.second_order import Motion, linear_motion, second_order
-from vehicle.commands.road import road_drive
 from vehicle.engines.reduced.equivalent_damping import equivalent_damping
 from vehicle.engines.simulation.recording import Recording
-from vehicle.runs.car import Car
+from vehicle.runs.car import Car, Road
 from vehicle.runs.car.axle import axle_names, axle_statics, car_at_rest
 from vehicle.signals.analysis.road_level import CLASSES
 from vehicle.signals.excitation.signal import Signal
@@ -44,11 +43,8 @@ def main() -> None:
     options = parser.parse_args()
     for name in options.cars.split(","):
         for road in options.roads.split(","):
-            numbers = dict.fromkeys(("tyre", "rate", "seed", "coherence", "patch", "contact"))
-            numbers |= {"duration": options.duration if road in CLASSES else None}
-            drive = road_drive(
-                road, argparse.Namespace(**{**vars(options), **numbers, "overrides": []}), Car.load(name).vehicle
-            )
+            duration = options.duration if road in CLASSES else None
+            drive = Road(road, options.speed, duration=duration).under(Car.load(name).vehicle)
             compare(Car.load(name, [*drive.overrides, STEP]), drive.signal(), drive.skip, f"{name}, {road}")
 
 

@@ -21,7 +21,7 @@ import numpy as np
 
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.ride_comfort import UNWEIGHTED, WEIGHTED, wave_names
-from vehicle.studies.sweeps.case_result import Block, Result, row_text
+from vehicle.studies.sweeps.case_result import Block, Result
 from vehicle.studies.sweeps.measure import ComfortMeasure
 from vehicle.studies.sweeps.plan import plan_sweep
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
@@ -54,7 +54,7 @@ class Instant(Executor):
         sent = pickle.dumps((function, arguments), pickle.HIGHEST_PROTOCOL)
         began = time.process_time()
         _, (cases, keys, *_) = pickle.loads(sent)
-        self.row = self.row or row_text(cases[0], "KEY", self.result).encode()
+        self.row = self.row or self.result.row(cases[0], "KEY").encode()
         rows = b"".join(self.row.replace(b"KEY", key.encode()) for key in keys)
         returned = pickle.dumps(Block(rows=rows, seconds=TASK_S * len(keys)), pickle.HIGHEST_PROTOCOL)
         self.seconds += time.process_time() - began

@@ -1,7 +1,5 @@
 """--accept-advice: each option once, a limited number of rounds, a single file."""
 
-import argparse
-
 import numpy as np
 import pytest
 
@@ -9,6 +7,7 @@ from vehicle.commands.accepted_advice import ROUNDS, retried
 from vehicle.commands.comfort import main as comfort
 from vehicle.commands.command_line import command
 from vehicle.commands.compare import main as compare
+from vehicle.commands.console import Console
 from vehicle.commands.input_options import record_options
 from vehicle.commands.options import command_parser, message_options
 from vehicle.commands.spectra import main as spectra
@@ -19,7 +18,7 @@ TURN = Finding("a: inverted", "sign", ("--turn", "a"))
 
 def test_an_accepted_option_is_left_out():
     """A second --turn turned the channel back."""
-    options = argparse.Namespace(words=["F", "--turn", "a"], accept_advice=True, accepted={("--turn", "a")}, quiet=True)
+    options = Console(words=("F", "--turn", "a"), accept_advice=True, accepted={("--turn", "a")}, quiet=True)
     level = Finding("b: in g", "unit", ("--unit", "b=g"))
     assert retried(FindingError("", [TURN, level]), options) == ["F", "--turn", "a", "--unit", "b=g"]
     assert retried(FindingError("", [TURN]), options) is None
@@ -35,11 +34,11 @@ def test_the_rounds_are_limited(capsys):
         message_options(made, quiet=True)
         return made
 
-    def job(options):
+    def job(options, console):
         rounds.append(options)
         raise FindingError("F", [Finding(f"finding {len(rounds)}", "constant", ("--from", f"{len(rounds)}"))])
 
-    assert command(parser, job)(["--accept-advice"]) == 3
+    assert command(parser, lambda options: options, job)(["--accept-advice"]) == 3
     assert len(rounds) == ROUNDS + 1 and f"error: F: finding {ROUNDS + 1}" in capsys.readouterr().err
 
 

@@ -52,5 +52,5 @@ def test_only_the_arguments_of_the_process_make_it_one(monkeypatch, arguments, t
     begun = []
     monkeypatch.setattr(command_line, "begin_process", lambda: begun.append(True))
     monkeypatch.setattr(sys, "argv", ["shaker"])
-    assert parse_and_run(Parser(), lambda options: None, arguments) == 0
+    assert parse_and_run(Parser(), lambda options, console: None, arguments) == 0
     assert len(begun) == times

@@ -5,8 +5,9 @@ import csv
 import numpy as np
 import pytest
 
-from vehicle.commands.loads import main, recorded_channels
+from vehicle.commands.loads import main
 from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.recorded_channels import recorded_channels
 from vehicle.signals.analysis.load_spectrum import load_spectrum
 
 

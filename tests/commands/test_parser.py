@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 
 from vehicle.commands import COMMANDS, module_of
-from vehicle.commands.parser import Parser, refuse_idle
+from vehicle.commands.console import Console
+from vehicle.commands.parser import Parser, idle_options
 from vehicle.errors import ConfigurationError
 
 TRIAL = "--trial"
@@ -72,9 +73,11 @@ def test_all_groups_with_a_condition_are_tested_or_left_to_the_command():
 def test_a_group_that_only_the_command_can_judge():
     parser = Parser()
     parser.scoped_group("shapes", needs="mode shapes", active=None).add_argument("--damper", default="stuck")
-    refuse_idle(parser.parse_args([]), "shapes")
+    assert not idle_options(parser.parse_args([]))
+    console = Console(idle=idle_options(parser.parse_args(["--damper", "stuck"])))
+    console.refuse_idle("further shapes")
     with pytest.raises(ConfigurationError, match=r"^--damper: belongs to mode shapes$"):
-        refuse_idle(parser.parse_args(["--damper", "stuck"]), "shapes")
+        console.refuse_idle("shapes")
 
 
 @pytest.mark.parametrize(

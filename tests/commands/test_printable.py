@@ -5,7 +5,8 @@ import sys
 import pytest
 
 from vehicle.commands import inspect
-from vehicle.commands.command_line import ProgressLine, run_command
+from vehicle.commands.command_line import run_command
+from vehicle.commands.console import ProgressLine
 from vehicle.commands.printable import PrintableStream, printable
 from vehicle.errors import DataError
 

@@ -1,7 +1,7 @@
 """Which commands let the tyres roll, and what they say of it."""
 
-import argparse
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +9,6 @@ import pytest
 
 from vehicle import Car, optimise, road
 from vehicle.commands import fmu, modes, orders, shaker
-from vehicle.commands.road import road_drive
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.driving import Driving, tyre_words
 from vehicle.model.parameters.shipped import vehicle_file
@@ -22,11 +21,9 @@ from vehicle.studies.sweeps.plan import plan_sweep
 ROAD = ["--road", "A", "--speed", "72", "--duration", "3", "--engine", "reduced", "--quiet"]
 
 
-def drive(vehicle: str, **given: object) -> tuple[str, ...]:
+def drive(vehicle: str, *, tyre: str | None = None, overrides: Sequence[str] = ()) -> tuple[str, ...]:
     """What a road at 72 km/h asks of a car."""
-    names = ("duration", "rate", "seed", "coherence", "patch", "tyre")
-    options = argparse.Namespace(**{**dict.fromkeys(names), "speed": 72.0, "overrides": [], **given})
-    return road_drive("A", options, load_vehicle(Path(vehicle))).overrides
+    return road("A", 72.0, tyre=tyre).under(load_vehicle(Path(vehicle)), overrides).overrides
 
 
 def test_tyres_roll_on_a_road_by_default() -> None:

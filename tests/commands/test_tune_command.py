@@ -1,18 +1,27 @@
 """`python -m vehicle tune`: hidden values from a logger file, the fitted file, and refused files."""
 
+import argparse
 import json
+from contextlib import ExitStack
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from tests.validation import validated
 from vehicle.commands.shaker import main as shake
-from vehicle.commands.tune import main
+from vehicle.commands.tune import main, parser, settings_of
+from vehicle.model.parameters.car_choice import CarChoice
 from vehicle.model.parameters.paths import value_of
+from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal_file import read_signal
+from vehicle.signals.records.measured_settings import MeasuredSettings
+from vehicle.studies.tuning.fit_settings import LevelSettings, MeasurementFile, ResponseSettings
+from vehicle.studies.tuning.measurement_settings import MeasurementSettings
+from vehicle.studies.tuning.tuning_study import TuningStudy
 
 HIDDEN = {
     "damper.viscous": 2150.0,
@@ -29,6 +38,26 @@ CHANNELS = {
 }
 MAP = [word for name, (label, *_) in CHANNELS.items() for word in ("--map", f"{name}={label}")]
 NOISE = 0.03
+
+
+def test_the_options_are_one_object():
+    """Of the parsed options nothing but a study goes on, and Python makes the same."""
+    words = ["focus", "--frf", "a.uff", "b.uff", "--stuck", "--record", "c.mf4", "--road", "C", "--speed", "80", *MAP]
+    words += ["--channels", "seat_rail_acc_z,x", "--band", "4:30", "--lowpass", "50", "--parameters", BOUNDS[0]]
+    study = settings_of(parser().parse_args(words, argparse.Namespace(held=ExitStack())))
+    frf = [MeasurementFile(file=Path(name), content="frf", stuck=True) for name in ("a.uff", "b.uff")]
+    record = MeasurementFile(file=Path("c.mf4"), content="record", road="C", speed=80.0)
+    assert study == TuningStudy(
+        car=CarChoice(vehicle=vehicle_file("focus")),
+        parameters={"damper.viscous": (800.0, 4000.0)},
+        measurements=MeasurementSettings(
+            files=(*frf, record),
+            measured=MeasuredSettings(mapping=tuple(MAP[1::2])),
+            responses=ResponseSettings(band=(4.0, 30.0)),
+            histories=LevelSettings(band=(4.0, 30.0), lowpass=50.0),
+            channels=("seat_rail_acc_z", "x"),
+        ),
+    )
 
 
 @pytest.fixture(scope="module")

@@ -9,8 +9,9 @@ import signal
 import time
 
 from tests.patience import HANG
-from vehicle.commands import command_line
-from vehicle.commands.command_line import INTERRUPTED, ProgressLine, run_command
+from vehicle.commands import console
+from vehicle.commands.command_line import INTERRUPTED, run_command
+from vehicle.commands.console import ProgressLine
 
 
 def test_a_swallowed_interruption_still_ends_the_job(capsys):
@@ -66,7 +67,7 @@ class Terminal(io.StringIO):
 
 def test_a_bar_moves_without_a_finished_part_until_the_command_ends(monkeypatch):
     """A single case of a sweep may take minutes; the bar of a terminal still moves every two seconds."""
-    monkeypatch.setattr(command_line, "BEAT", 0.02)
+    monkeypatch.setattr(console, "BEAT", 0.02)
     terminal = Terminal()
     monkeypatch.setattr("sys.stderr", terminal)
 

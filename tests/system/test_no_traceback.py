@@ -85,7 +85,7 @@ FILM = [
 def test_film_options_are_refused_before_the_run(option, shaker, short_signal, tmp_path, monkeypatch):
     monkeypatch.setattr(Car, "run", lambda *_, **__: pytest.fail("the car was run"))
     outcome = shaker("--input", "short.csv", "--video", *option)
-    assert outcome.code == 2 and f"{option[0]} {option[1]}: must be a finite number" in outcome.err
+    assert outcome.code == 2 and f"{option[0]} {option[1]}: must be at least" in outcome.err
     assert not (tmp_path / "runs").exists()
 
 

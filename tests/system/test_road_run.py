@@ -115,9 +115,13 @@ def test_a_road_is_evaluated_from_two_seconds_on(shaker, tmp_path):
     assert "from 2 s on" in (folder / "psd.csv").read_text(encoding="utf-8")[:200]
     # Slower than 19 km/h the last wheel rises late; a wheelbase of 2.615 m takes 1.88 s at 5 km/h.
     assert RoadDrive(road="B", speed=5.0, wheels=(("fr", 0.0, "right"), ("rr", 2.615, "right")), track=1.5).skip == 3.4
-    for skip in ("-1", "nan", "5"):
+    for skip, refusal in (
+        ("-1", ": must be at least 0"),
+        ("nan", ": must be at least 0"),
+        ("5", " s: must be at least 0 and below the 5 s"),
+    ):
         outcome = shaker(*given, "--output", "other", "--skip", skip)
-        assert outcome.code == 2 and f"--skip {skip} s: must be at least 0 and below the 5 s" in outcome.err
+        assert outcome.code == 2 and f"--skip {skip}{refusal}" in outcome.err
     assert "the 1.5 s of road_B_80; set a longer --duration" in shaker(*given, "--duration", "1.5").err
 
 

@@ -4,15 +4,27 @@ from __future__ import annotations
 
 import argparse
 import threading
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehicle.commands.command_line import command
-from vehicle.commands.input_options import drives_on_road, signal_options
-from vehicle.commands.options import VEHICLE_HELP, command_parser, message_options, set_option
+from vehicle.commands.console import Console
+from vehicle.commands.input_options import input_of, signal_options
+from vehicle.commands.options import (
+    VEHICLE_HELP,
+    car_of,
+    command_parser,
+    message_options,
+    read,
+    set_option,
+    setting_options,
+)
 from vehicle.commands.parser import Parser
+from vehicle.model.parameters.car_choice import CarChoice
 from vehicle.model.parameters.shipped import vehicle_file
-from vehicle.names import CORNERS
+from vehicle.settings import Settings, part, setting
+from vehicle.signals.excitation.input_settings import DriveInput, PlateSettings
 
 if TYPE_CHECKING:
     from vehicle.runs.car import Car
@@ -23,6 +35,34 @@ PORT = 8630
 """Default port."""
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class BenchSettings(Settings):
+    """Settings of the bench.
+
+    Attributes:
+        source: signals of the plates, or a drive on a road.
+        output: folder for the files that the page saves.
+    """
+
+    source: PlateSettings | DriveInput
+    car: CarChoice = part(CarChoice)
+    output: Path = Path("runs/bench")
+    first: float = setting("use the file from this time on [s]", 0.0, flag="--from", type=float, metavar="S")
+    seconds: float | None = setting(
+        "length of the evaluation [s], 5 to 60; default: 10, with an obstacle until 3 s after it",
+        within="[5, 60]",
+        type=float,
+        metavar="S",
+    )
+    port: int = setting(
+        "port of the page, or the next free port above it; default: %(default)s",
+        PORT,
+        within="[1, 65535]",
+        type=int,
+        metavar="N",
+    )
+
+
 def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser(
@@ -31,22 +71,8 @@ def parser() -> Parser:
     parser.add_argument("car", nargs="?", type=vehicle_file, metavar="CAR", help=VEHICLE_HELP)
     set_option(parser)
     file = signal_options(parser)
-    file.add_argument(
-        "--from", dest="first", type=float, default=0.0, metavar="S", help="use the file from this time on [s]"
-    )
-    parser.add_argument(
-        "--seconds",
-        type=float,
-        metavar="S",
-        help="length of the evaluation [s], 5 to 60; default: 10, with an obstacle until 3 s after it",
-    )
-    parser.add_argument(
-        "--port",
-        type=int,
-        default=PORT,
-        metavar="N",
-        help="port of the page, or the next free port above it; default: %(default)s",
-    )
+    setting_options(file, BenchSettings, "first")
+    setting_options(parser, BenchSettings, "seconds", "port")
     parser.add_argument(
         "--output",
         type=Path,
@@ -58,7 +84,16 @@ def parser() -> Parser:
     return parser
 
 
-def _job(options: argparse.Namespace) -> None:
+def settings_of(options: argparse.Namespace) -> BenchSettings:
+    """Return the settings of the parsed options.
+
+    Raises:
+        ConfigurationError: no input, two inputs, or a value out of range.
+    """
+    return read(options, BenchSettings, source=input_of(options), car=car_of(options))
+
+
+def _job(settings: BenchSettings, console: Console) -> None:
     from vehicle.handover.bench.drive import bench_drive
     from vehicle.handover.bench.guard import Guard
     from vehicle.handover.bench.page import Page
@@ -66,14 +101,14 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.handover.bench.state import BenchState
     from vehicle.runs.car import Car
 
-    car = Car.load(options.car, options.overrides)
-    source = _source(options, car)
+    car = Car.load(settings.car.vehicle, settings.car.overrides)
+    source = _source(settings.source, car)
     guard = Guard()
-    server = open_server(guard, options.port)
+    server = open_server(guard, settings.port)
     try:
         print("compiling ...", flush=True)
-        state = BenchState(car, bench_drive(car, source, begin=options.first, seconds=options.seconds))
-        page = Page(server, state, options.output)
+        state = BenchState(car, bench_drive(car, source, begin=settings.first, seconds=settings.seconds))
+        page = Page(server, state, settings.output)
         print(f"ready: {guard.address(server.get_port())} (Ctrl-C ends the bench)", flush=True)
         try:
             threading.Event().wait()
@@ -85,17 +120,13 @@ def _job(options: argparse.Namespace) -> None:
         close_server(server)
 
 
-def _source(options: argparse.Namespace, car: Car) -> Signal | Road:
-    """Return the signal of --input, or the road."""
-    if drives_on_road(options):
-        from vehicle.commands.road import class_or_profile, road_of
+def _source(source: PlateSettings | DriveInput, car: Car) -> Signal | Road:
+    """Return the signals of the plates, or the road."""
+    if isinstance(source, PlateSettings):
+        return source.signal(source.corner(car.vehicle.shaker_wheel))
+    from vehicle.runs.car.road import road_of
 
-        return road_of(class_or_profile(options.road), options)
-    from vehicle.signals.excitation.input_files import find_input
-    from vehicle.signals.excitation.signal_file import read_signal
-
-    wheel = CORNERS[options.wheel] if options.wheel else car.vehicle.shaker_wheel
-    return read_signal(find_input(options.input), wheel=wheel, accept_implausible=options.any_level)
+    return road_of(source)
 
 
-main = command(parser, _job)
+main = command(parser, settings_of, _job)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Callable, Iterable, Sequence
-from pathlib import Path
+from dataclasses import replace
 
+from vehicle.commands.options import car_of, read
 from vehicle.errors import VehicleError
-from vehicle.names import CORNERS
+from vehicle.signals.excitation.input_settings import PlateSettings
 from vehicle.signals.records.finding import Finding, FindingError, added, findings_of
 
 ROUNDS = 4
@@ -42,45 +42,45 @@ def _refusal(arguments: Sequence[str]) -> tuple[str, list[Finding]]:
 
 
 def _comfort(options_text: Sequence[str]) -> Iterable[str]:
-    from vehicle.commands.comfort import evaluated, parser
+    from vehicle.commands.comfort import ComfortSettings, evaluated, parser
 
-    options = parser().parse_args(options_text)
-    return evaluated(argparse.Namespace(**{**vars(options), "input": options.inputs[0]})).notices
+    settings = read(parser().parse_args(options_text), ComfortSettings)
+    return evaluated(settings.inputs[0], settings).notices
 
 
 def _shaker(options_text: Sequence[str]) -> Iterable[str]:
-    from vehicle.commands.input_options import record_choice
-    from vehicle.commands.road import class_or_profile, road_drive
-    from vehicle.commands.shaker import parser, plate_signal
-    from vehicle.model.parameters.vehicle import load_vehicle
+    from vehicle.commands.input_options import input_of
+    from vehicle.commands.shaker import parser
+    from vehicle.handover.page.shaken_run import plate_signal
+    from vehicle.runs.car.road import road_of
     from vehicle.signals.excitation.evaluation_start import evaluation_start
 
     options = parser().parse_args(options_text)
-    vehicle = load_vehicle(options.vehicle, options.overrides)
-    if options.road is not None:
-        drive = road_drive(class_or_profile(options.road), options, vehicle)
-        signal = drive.signal()
-        evaluation_start({options.road: signal.duration}, None, drive.skip)
-        return signal.notices
-    wheel = CORNERS[options.wheel] if options.wheel else vehicle.shaker_wheel
-    return plate_signal(options, wheel, record_choice(options, wheel)).notices
+    source, car = input_of(options), car_of(options)
+    vehicle = car.load()
+    if isinstance(source, PlateSettings):
+        wheel = source.corner(vehicle.shaker_wheel)
+        return plate_signal(source, wheel, source.record.choice(wheel)).notices
+    drive = road_of(source).under(vehicle, car.overrides)
+    signal = drive.signal()
+    evaluation_start({str(source.road): signal.duration}, None, drive.skip)
+    return signal.notices
 
 
 def _compare(options_text: Sequence[str]) -> Iterable[str]:
-    from vehicle.commands.compare import measured_choice, parser
-    from vehicle.model.parameters.vehicle import load_vehicle
+    from vehicle.commands.compare import parser, settings_of
     from vehicle.signals.formats.reader import read_record
-    from vehicle.signals.records.measured import read_measured
 
-    options = parser().parse_args(options_text)
-    (name,) = options.measured
-    choice = measured_choice(options)
-    measurement = read_record(Path(name), choice.databases)
+    settings = settings_of(parser().parse_args(options_text))
+    (file,) = settings.files
+    choice = settings.measured.choice(settings.record)
+    measurement = read_record(file, choice.databases)
     if measurement.shapes and not measurement.channels:
         from vehicle.runs.car import Car
         from vehicle.runs.comparison.mode_comparison import compare_modes
 
-        compare_modes(Car.load(options.vehicle, options.overrides), measurement, dict(choice.channels), options.damper)
+        car = Car.load(settings.car.vehicle, settings.car.overrides)
+        compare_modes(car, measurement, dict(choice.channels), settings.damper)
         return ()
-    channels = load_vehicle(options.vehicle, options.overrides).channels
-    return read_measured(Path(name), channels, choice, inverted=options.turned, measurement=measurement).notices
+    channels = settings.car.load().channels
+    return replace(settings.measured, measured=file).read(channels, choice, measurement=measurement).notices

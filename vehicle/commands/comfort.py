@@ -2,24 +2,77 @@
 
 from __future__ import annotations
 
-import argparse
-import sys
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
-from vehicle.commands.accepted_advice import accept, require_one_file
-from vehicle.commands.command_line import command, print_result
-from vehicle.commands.input_options import record_choice, record_options
-from vehicle.commands.options import command_parser, message_options
+from vehicle.commands.command_line import command
+from vehicle.commands.console import Console
+from vehicle.commands.input_options import record_options
+from vehicle.commands.options import command_parser, message_options, setting_options
 from vehicle.commands.parser import Parser
 from vehicle.commands.several_files import each_file, expanded, raise_worst, table_of
 from vehicle.errors import ConfigurationError
 from vehicle.names import AXES
+from vehicle.settings import Settings, part, setting
+from vehicle.signals.records.record_settings import RecordSettings
 
 if TYPE_CHECKING:
     from vehicle.signals.records.choice import Choice
     from vehicle.signals.records.record_comfort import RecordComfort
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ComfortSettings(Settings):
+    """Settings of the comfort values of acceleration records.
+
+    Attributes:
+        record: channels of the axes or the point of a run, units and times.
+    """
+
+    inputs: tuple[str, ...] = setting(
+        "table with the columns time [s],x [m/s2],y [m/s2],z [m/s2] (or [g]; z alone is sufficient), or any "
+        "measurement file. Several files, or a folder, give one table",
+        flag="--input",
+        required=True,
+        nargs="+",
+        action="extend",
+        metavar="FILE",
+    )
+    record: RecordSettings = part(RecordSettings)
+    rail: str | None = setting(
+        "acceleration below the seat: the point of a run, for example seat_rail, or z=NAME in a measurement "
+        "file. Adds the SEAT value [-]: weighted z acceleration on the seat divided by that below the seat",
+        metavar="PLACE|z=NAME",
+    )
+    place: str = setting(
+        "point of contact, which chooses weightings and factors: seat (default; z Wk, x and y Wd), "
+        "backrest, feet, seat_rotation, standing, seat_bs6841, backrest_bs6841, feet_bs6841, hand (ISO "
+        "5349-1: Wh), steering_wheel (Giacomin 2004: Ws), train_floor (EN 12299: mean comfort of 5 minutes)",
+        "seat",
+        metavar="NAME",
+    )
+    offset: str = setting(
+        "mean and drift of the signal. refuse (default): stop if they change a weighted value by more than "
+        "1 %% or if the mean is gravity. remove: subtract them, a sensor's offset or gravity. keep: leave "
+        "them in; the record starts at rest, so its first seconds count for MTVV, crest factor and MSDV too",
+        "refuse",
+        choices=("refuse", "remove", "keep"),
+    )
+    mtvv: Literal["linear", "exponential"] = setting(
+        "running average for the MTVV (maximum transient vibration value)", "linear", choices=("linear", "exponential")
+    )
+    skip: float = setting(
+        "leave out the first S seconds after weighting [s]; default: 0", 0.0, within="[0, inf)", type=float, metavar="S"
+    )
+    exposure: float | None = setting(
+        "hours a day with this vibration [h]; adds the daily exposure A(8) of a hand, a seat or a standing "
+        "person, with action value and limit value (Directive 2002/44/EC)",
+        within="(0, 24]",
+        type=float,
+        metavar="HOURS",
+    )
 
 
 def parser() -> Parser:
@@ -28,16 +81,7 @@ def parser() -> Parser:
         "comfort",
         "Compute comfort values of an acceleration record: weighted RMS, MTVV, crest factor, VDV, MSDV, sums.",
     )
-    parser.add_argument(
-        "--input",
-        dest="inputs",
-        required=True,
-        nargs="+",
-        action="extend",
-        metavar="FILE",
-        help="table with the columns time [s],x [m/s2],y [m/s2],z [m/s2] (or [g]; z alone is sufficient), or any "
-        "measurement file. Several files, or a folder, give one table",
-    )
+    setting_options(parser, ComfortSettings, "inputs")
     channels = parser.add_argument_group("channels of the file")
     channels.add_argument(
         "--channel",
@@ -49,99 +93,59 @@ def parser() -> Parser:
         'the channel of each axis x, y and z, for example x="Seat X" (number, exact name, or pattern with '
         "*). Default: columns x, y, z",
     )
-    channels.add_argument(
-        "--rail",
-        metavar="PLACE|z=NAME",
-        help="acceleration below the seat: the point of a run, for example seat_rail, or z=NAME in a measurement "
-        "file. Adds the SEAT value [-]: weighted z acceleration on the seat divided by that below the seat",
-    )
+    setting_options(channels, ComfortSettings, "rail")
     record_options(channels, "", channel=False)
     parser.add_argument("--json", action="store_true", help="print the result as JSON")
     weighting = parser.add_argument_group("evaluation")
-    weighting.add_argument(
-        "--place",
-        default="seat",
-        metavar="NAME",
-        help="point of contact, which chooses weightings and factors: seat (default; z Wk, x and y Wd), "
-        "backrest, feet, seat_rotation, standing, seat_bs6841, backrest_bs6841, feet_bs6841, hand (ISO "
-        "5349-1: Wh), steering_wheel (Giacomin 2004: Ws), train_floor (EN 12299: mean comfort of 5 minutes)",
-    )
-    weighting.add_argument(
-        "--offset",
-        choices=("refuse", "remove", "keep"),
-        default="refuse",
-        help="mean and drift of the signal. refuse (default): stop if they change a weighted value by more than "
-        "1 %% or if the mean is gravity. remove: subtract them, a sensor's offset or gravity. keep: leave "
-        "them in; the record starts at rest, so its first seconds count for MTVV, crest factor and MSDV too",
-    )
-    weighting.add_argument(
-        "--skip",
-        type=float,
-        default=0.0,
-        metavar="S",
-        help="leave out the first S seconds after weighting [s]; default: 0",
-    )
-    weighting.add_argument(
-        "--exposure",
-        type=float,
-        metavar="HOURS",
-        help="hours a day with this vibration [h]; adds the daily exposure A(8) of a hand, a seat or a standing "
-        "person, with action value and limit value (Directive 2002/44/EC)",
-    )
-    weighting.add_argument(
-        "--mtvv",
-        choices=("linear", "exponential"),
-        default="linear",
-        help="running average for the MTVV (maximum transient vibration value)",
-    )
+    setting_options(weighting, ComfortSettings, "place", "offset", "skip", "exposure", "mtvv")
     message_options(parser)
     return parser
 
 
-def _picked(options: argparse.Namespace, picks: Sequence[str]) -> tuple[str | None, Choice | None]:
+def _picked(record: RecordSettings, picks: Sequence[str]) -> tuple[str | None, Choice | None]:
     """Return the point of a run, or the choice of channels, that the texts of an option name."""
     points = [text for text in picks if "=" not in text]
     if len(points) > 1 or (points and len(picks) > 1):
         raise ConfigurationError("--channel: give one point of a run, or channels as x=NAME, y=NAME and z=NAME")
-    channels = argparse.Namespace(**{**vars(options), "picks": [text for text in picks if "=" in text]})
-    return (points[0] if points else None), record_choice(channels, "", known=AXES)
+    channels = replace(record, picks=tuple(text for text in picks if "=" in text))
+    return (points[0] if points else None), channels.choice("", further=AXES)
 
 
-def evaluated(options: argparse.Namespace) -> RecordComfort:
-    """Evaluate the file `input` of the options.
+def evaluated(file: str, settings: ComfortSettings) -> RecordComfort:
+    """Evaluate a file.
 
     Raises:
-        ConfigurationError: `--rail` names another axis than z.
+        ConfigurationError: `rail` names another axis than z.
     """
     from vehicle.signals.analysis.evaluation import application
     from vehicle.signals.records.record_comfort import RecordComfort, evaluate_comfort
 
-    application(options.place)
-    point, choice = _picked(options, options.picks)
+    application(settings.place)
+    point, choice = _picked(settings.record, settings.record.picks)
     rail: tuple[str | None, Choice | None] = (None, None)
-    if options.rail is not None:
-        axis, equals, name = options.rail.partition("=")
+    if settings.rail is not None:
+        axis, equals, name = settings.rail.partition("=")
         if equals and axis != "z":
             raise ConfigurationError(
-                f"--rail {options.rail}: names no z acceleration, which the SEAT value needs; set z=NAME, or "
+                f"--rail {settings.rail}: names no z acceleration, which the SEAT value needs; set z=NAME, or "
                 "a point of a run"
             )
-        rail = _picked(options, [f"z={name}"] if equals else [options.rail])
+        rail = _picked(settings.record, [f"z={name}"] if equals else [settings.rail])
     result = evaluate_comfort(
-        options.input,
+        file,
         point,
         choice=choice,
         rail=rail[0],
         rail_choice=rail[1],
-        contact=options.place,
-        offset=options.offset,
-        average=options.mtvv,
-        skip=options.skip,
-        hours=options.exposure,
+        contact=settings.place,
+        offset=settings.offset,
+        average=settings.mtvv,
+        skip=settings.skip,
+        hours=settings.exposure,
     )
-    if options.rail is None and "seat" not in options.picks:
+    if settings.rail is None and "seat" not in settings.record.picks:
         return result
-    more = _about_the_seat(Path(options.input))
+    more = _about_the_seat(Path(file))
     return RecordComfort({**result.summary, "notices": [*result.summary["notices"], *more]})
 
 
@@ -173,24 +177,24 @@ def _overview(results: list[dict[str, Any]]) -> str:
     return f"{caption}\n{table_of(heads, results, row)}"
 
 
-def _job(options: argparse.Namespace) -> None:
+def _job(settings: ComfortSettings, console: Console) -> None:
     """Evaluate the records of --input and print the results."""
 
     def one(name: str) -> dict[str, Any]:
-        return dict(evaluated(argparse.Namespace(**{**vars(options), "input": name})).summary)
+        return dict(evaluated(name, settings).summary)
 
-    names, several = expanded(options.inputs)
+    names, several = expanded(settings.inputs)
     if several:
-        require_one_file(options)
+        console.require_one_file()
         results, errors = each_file(names, one)
-        print_result(options, results, _overview(results))
+        console.result(results, _overview(results))
         raise_worst(errors, len(results))
         return
-    result = evaluated(argparse.Namespace(**{**vars(options), "input": names[0]}))
-    accept(options, result.notices)
-    print_result(options, result.summary, result.text())
+    result = evaluated(names[0], settings)
+    console.accept(result.notices)
+    console.result(result.summary, result.text())
     for remark in result.notices:
-        print(f"notice: {remark}", file=sys.stderr)
+        console.notice(remark)
 
 
-main = command(parser, _job)
+main = command(parser, ComfortSettings, _job)

@@ -1,30 +1,29 @@
-"""Frame of every command: one message for each error, exit codes, interruption, a progress line."""
+"""Frame of every command: from its arguments to settings, one message for each error, exit codes, interruption."""
 
 import argparse
 import atexit
 import gc
 import io
-import json
-import math
 import os
 import signal
 import sys
-import threading
-import time
 import traceback
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from types import FrameType
-from typing import Any
+from typing import Any, TypeVar
 
 from vehicle.commands.accepted_advice import ROUNDS, retried
-from vehicle.commands.parser import Parser
+from vehicle.commands.console import Console, asked_to_end, moving_lines
+from vehicle.commands.options import read
+from vehicle.commands.parser import Parser, idle_options
 from vehicle.commands.printable import printable_streams
-from vehicle.digits import duration
 from vehicle.errors import ConfigurationError, OutputError, VehicleError
 from vehicle.signals.records.finding import FindingError
 from vehicle.threads import prefer_one_thread
+
+Settings = TypeVar("Settings")
 
 INTERRUPTED = 130
 
@@ -51,7 +50,7 @@ def run_command(job: Callable[[], None], *, debug: bool = False) -> int:
     """
     # SIGTERM cleans up like Ctrl-C.
     previous = {number: signal.signal(number, _interrupt) for number in (signal.SIGINT, signal.SIGTERM)}
-    _asked_to_end.clear()
+    asked_to_end.clear()
     lost = _stand_in_for_closed_streams()
     with printable_streams():
         return _exit_code(job, previous, lost, debug=debug)
@@ -107,7 +106,7 @@ def _exit_code(
         )
         return VehicleError.exit_code
     finally:
-        for line in tuple(_moving_lines):
+        for line in tuple(moving_lines):
             line.stop()
         for number, handler in previous.items():
             signal.signal(number, handler)
@@ -161,13 +160,15 @@ def _print_nowhere() -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def parse_and_run(parser: Parser, job: Callable[[argparse.Namespace], None], arguments: Sequence[str] | None) -> int:
+def parse_and_run(
+    parser: Parser, job: Callable[[argparse.Namespace, Console], None], arguments: Sequence[str] | None
+) -> int:
     """Parse the arguments of a command and run its job.
 
     Args:
         parser: with the option --debug.
-        job: work of the command with the parsed options; they also have `words`, the arguments, `held`, an exit
-            stack that is closed when the command ends, and `accepted`, the options that --accept-advice has added.
+        job: work of the command with the parsed options and its console; the options also have `held`, an exit stack
+            that is closed when the command ends.
         arguments: without the program name; those of the process by default.
 
     Returns:
@@ -182,19 +183,27 @@ def parse_and_run(parser: Parser, job: Callable[[argparse.Namespace], None], arg
             if "\0" in word:
                 raise ConfigurationError(f"argument {word!r}: contains a NUL character; remove it")
         line: list[str] | None = typed
-        accepted: set[tuple[str, str]] = set()
+        accepted: set[tuple[str, str]] = set()  # what --accept-advice has added
         rounds = 0
         while line is not None:
             with ExitStack() as held:
                 options = parser.parse_args(line, argparse.Namespace(words=line, held=held, accepted=accepted))
+                console = Console(
+                    words=tuple(line),
+                    quiet=getattr(options, "quiet", False),
+                    json=getattr(options, "json", False),
+                    accept_advice=getattr(options, "accept_advice", False),
+                    accepted=accepted,
+                    idle=idle_options(options),
+                )
                 if line is typed:
                     _mention_leftovers(typed, getattr(options, "output", None))
                 try:
-                    job(options)
+                    job(options, console)
                     line = None
                 except FindingError as error:
                     rounds += 1
-                    line = retried(error, options) if rounds <= ROUNDS else None
+                    line = retried(error, console) if rounds <= ROUNDS else None
                     if line is None:
                         raise
 
@@ -211,119 +220,33 @@ def _mention_leftovers(arguments: Sequence[str], output: Path | None) -> None:
             mention(Path(text))
 
 
-def command(parser: Callable[[], Parser], job: Callable[[argparse.Namespace], None]) -> Callable[..., int]:
-    """Return the `main` function of a command: from its arguments to its exit code, see `parse_and_run`."""
-    return lambda arguments=None: parse_and_run(parser(), job, arguments)
+def command(
+    parser: Callable[[], Parser],
+    settings: type[Settings] | Callable[[argparse.Namespace], Settings],
+    job: Callable[[Settings, Console], None],
+) -> Callable[..., int]:
+    """Return the `main` function of a command: from its arguments to its exit code, see `parse_and_run`.
 
+    Args:
+        parser: makes the parser of the options.
+        settings: class of the settings, or function that makes them of the parsed options.
+        job: work of the command.
+    """
 
-def print_result(options: argparse.Namespace, content: Any, text: object) -> None:
-    """Print the content as JSON with --json, else the text, which --quiet leaves out."""
-    if options.json:
-        print(json.dumps(content, indent=2, allow_nan=False), flush=True)
-    elif not getattr(options, "quiet", False):
-        print(text, flush=True)
+    def work(options: argparse.Namespace, console: Console) -> None:
+        job(read(options, settings) if isinstance(settings, type) else settings(options), console)
+
+    return lambda arguments=None: parse_and_run(parser(), work, arguments)
 
 
 FAULT = "a fault of the program"
 """Beginning of the message of an unexpected error."""
 
-_asked_to_end = threading.Event()
-"""Set by SIGINT and SIGTERM: a KeyboardInterrupt can be lost in a Python callback that C code calls."""
-
 
 def _interrupt(number: int, frame: FrameType | None) -> None:
-    _asked_to_end.set()
+    asked_to_end.set()
     raise KeyboardInterrupt
 
 
 def _say(message: str) -> None:
     print(f"error: {message}", file=sys.stderr)
-
-
-class ProgressLine:
-    """Progress of a long computation: a bar on a terminal, a new line every half minute in a file.
-
-    The bar moves every second even if no part of the computation ends: the time left counts down, or without an
-    estimate the time so far counts up.
-
-    Args:
-        runs: number of runs of the computation; the line then has the number of finished runs too.
-    """
-
-    def __init__(self, work: str, *, enabled: bool = True, runs: int = 0) -> None:
-        self.what = work
-        self.runs = runs
-        self.enabled = enabled
-        self.moving = sys.stderr.isatty()
-        self.started = time.monotonic()
-        self.last = self.started - (MOVING_EVERY if self.moving else 0.0)
-        self.first: tuple[float, float] | None = None
-        self.fraction, self.end = 0.0, math.nan  # expected time of the end
-        self._ended = threading.Event()
-        if enabled and self.moving:
-            _moving_lines.add(self)
-            threading.Thread(target=self._beat, daemon=True).start()
-
-    def __call__(self, fraction: float) -> None:
-        """Print a finished fraction [-]; raise KeyboardInterrupt after a lost interruption."""
-        if _asked_to_end.is_set():
-            raise KeyboardInterrupt
-        now = time.monotonic()
-        if self.first is None:
-            self.first = (now, fraction)  # the time left is estimated without compiling and reading
-        begun, done = self.first
-        if fraction > done:
-            self.end = now + (now - begun) * (1.0 - fraction) / (fraction - done)
-        self.fraction = fraction
-        due = now - self.last >= (MOVING_EVERY if self.moving else LINE_EVERY) or (self.moving and fraction >= 1.0)
-        # The first estimate of many runs comes at once: it tells whether to wait.
-        due = due or (bool(self.runs) and self.last == self.started and self.end - now > LINE_EVERY)
-        if not (self.enabled and due) or self._ended.is_set():
-            return
-        self.last = now
-        if self.moving:
-            self._draw(now)
-        else:
-            left = "" if math.isnan(self.end) else f", {duration(self.end - now)} left"
-            counted = f", {self._counted()}" if self.runs else ""
-            sys.stderr.write(f"{self.what.strip()}: {100 * fraction:.0f} %{counted}{left}\n")
-            sys.stderr.flush()
-        if fraction >= 1.0:
-            self.stop()
-
-    def stop(self) -> None:
-        """End the movement of the bar, because the computation has ended or failed."""
-        self._ended.set()
-        _moving_lines.discard(self)
-
-    def _beat(self) -> None:
-        """Draw the bar every second until the computation ends."""
-        while not self._ended.wait(BEAT):
-            now = time.monotonic()
-            if now - self.last >= BEAT:
-                self._draw(now)
-
-    def _draw(self, now: float) -> None:
-        """Draw the bar with the time left [s], or without an estimate with the time so far."""
-        bar = "#" * round(30 * self.fraction)
-        newline = "\n" if self.fraction >= 1.0 else ""
-        elapsed = f"after {now - self.started:.0f} s"
-        remark = elapsed if math.isnan(self.end) else f"{duration(max(self.end - now, 0.0))} left"
-        counted = f"  {self._counted()}" if self.runs else ""
-        stream = getattr(sys.stderr, "stream", sys.stderr)  # the carriage return is intended
-        stream.write(f"\r{self.what} [{bar:<30}] {100 * self.fraction:3.0f} %{counted}  {remark:>12} {newline}")
-        sys.stderr.flush()
-
-    def _counted(self) -> str:
-        """Return the number of finished runs of all."""
-        return f"{round(self.fraction * self.runs)} of {self.runs} runs"
-
-
-_moving_lines: set[ProgressLine] = set()
-"""Bars that move on a terminal; the end of a command stops them."""
-
-MOVING_EVERY, LINE_EVERY = 0.2, 30.0
-"""Minimum time between two outputs on a terminal and in a file [s]."""
-
-BEAT = 1.0
-"""Time after which the bar of a terminal moves without a finished part [s]."""

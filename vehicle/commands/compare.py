@@ -3,35 +3,41 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Container
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vehicle.commands.accepted_advice import accept, require_one_file
-from vehicle.commands.clock_options import clock_of, delay_option, drift_option
-from vehicle.commands.command_line import ProgressLine, command, print_result
-from vehicle.commands.destination import output_folder_of
+from vehicle.commands.clock_options import delay_option, drift_option
+from vehicle.commands.command_line import command
+from vehicle.commands.console import Console
 from vehicle.commands.input_options import record_options
+from vehicle.commands.measured_options import measured_options
 from vehicle.commands.options import (
+    car_of,
     command_parser,
     damper_option,
+    destination_of,
     figures_option,
     message_options,
     output_options,
+    read,
     setting_options,
     vehicle_options,
 )
-from vehicle.commands.parser import Parser, refuse_idle
+from vehicle.commands.parser import Parser
 from vehicle.commands.several_files import each_file, expanded, raise_worst, table_of
 from vehicle.errors import ConfigurationError
-from vehicle.studies.sweeps.sweep_settings import SweepSettings
+from vehicle.model.parameters.car_choice import CarChoice
+from vehicle.runs.output.destination import Destination
+from vehicle.settings import Settings, engine_setting, part, setting
+from vehicle.signals.records.measured_settings import MeasuredSettings
+from vehicle.signals.records.record_settings import RecordSettings
 
 if TYPE_CHECKING:
     from vehicle.runs.car import Car, Run
     from vehicle.runs.comparison.simulated import Simulated
     from vehicle.signals.formats.channel import Measurement
     from vehicle.signals.records.choice import Choice
-    from vehicle.signals.records.measured import Measured
 
 OUTPUT = Path("runs/compare")
 
@@ -40,34 +46,57 @@ CAR, RUN = "the car", "the run"
 """Titles of groups of options."""
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class CompareSettings(Settings):
+    """Settings of a comparison.
+
+    Attributes:
+        files: measurement files, or a folder.
+        measured: channels and clock of the measurement.
+        record: units, times and filters of the measurement.
+        car: car of an input, or of mode shapes.
+        damper: state of the dampers for mode shapes, "stuck" or "sliding".
+        destination: folder of the results; by default `OUTPUT`.
+        figures: write pictures (PNG).
+    """
+
+    run: str | None = setting(
+        "folder of a run, or a shaker signal that is simulated first, for example low.csv; leave it out for "
+        "mode shapes",
+        flag="run",
+        nargs="?",
+        metavar="RUN_OR_INPUT",
+    )
+    files: tuple[Path, ...]
+    measured: MeasuredSettings = part(MeasuredSettings)
+    record: RecordSettings = part(RecordSettings)
+    car: CarChoice = part(CarChoice)
+    damper: str = "stuck"
+    destination: Destination = part(Destination)
+    figures: bool = True
+    window: float | None = setting(
+        "length of the Hann windows that the analyser used for the measured FRFs [s]; the simulated FRFs "
+        "are estimated with the same windows. Default: the whole record",
+        within="(0, inf)",
+        type=float,
+        metavar="S",
+    )
+    bands: str = setting(
+        "edges of the frequency bands of the table [Hz]; default: %(default)s", "1,2,4,8,16,32,50", metavar="HZ,HZ,..."
+    )
+    engine: str = engine_setting("auto")
+
+
 def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser("compare", "Compare a measurement with a run: FRFs, time histories, or mode shapes.")
     parser.advise("to compare two runs, type python -m vehicle report RUN RUN")
-    parser.add_argument(
-        "run",
-        nargs="?",
-        metavar="RUN_OR_INPUT",
-        help="folder of a run, or a shaker signal that is simulated first, for example low.csv; leave it out for "
-        "mode shapes",
-    )
+    setting_options(parser, CompareSettings, "run")
     measured_options(parser, required=True, several=True)
     records = parser.scoped_group(RECORDS, needs="measured time histories, and the file contains none", active=None)
     drift_option(records)
     responses = parser.scoped_group(RESPONSES, needs="measured FRFs, and the file contains none", active=None)
-    responses.add_argument(
-        "--window",
-        type=float,
-        metavar="S",
-        help="length of the Hann windows that the analyser used for the measured FRFs [s]; the simulated FRFs "
-        "are estimated with the same windows. Default: the whole record",
-    )
-    responses.add_argument(
-        "--bands",
-        default="1,2,4,8,16,32,50",
-        metavar="HZ,HZ,...",
-        help="edges of the frequency bands of the table [Hz]; default: %(default)s",
-    )
+    setting_options(responses, CompareSettings, "window", "bands")
     shapes = parser.scoped_group(SHAPES, needs="measured mode shapes, and the file contains none", active=None)
     damper_option(shapes)
     channels = parser.scoped_group(CHANNELS, needs="measured channels, and the file contains mode shapes", active=None)
@@ -80,7 +109,7 @@ def parser() -> Parser:
     )
     setting_options(
         parser.scoped_group(RUN, needs="an input that is simulated first, for example low.csv", active=None),
-        SweepSettings,
+        CompareSettings,
         "engine",
     )
     output_options(parser, OUTPUT)
@@ -90,102 +119,44 @@ def parser() -> Parser:
     return parser
 
 
-def measured_options(parser: Parser, *, required: bool = False, several: bool = False) -> None:
-    """Add --measured, --map and --turn, which choose a measurement and its channels.
-
-    Args:
-        several: True if --measured accepts several files or a folder; its value is then a list.
-    """
-    several_files: dict[str, Any] = {"nargs": "+", "action": "extend"} if several else {}
-    parser.add_argument(
-        "--measured",
-        type=Path,
-        required=required,
-        **several_files,
-        metavar="FILE",
-        help="measurement file in any format that `inspect` reads, with FRFs, time histories, or mode shapes (UFF 55)"
-        + (
-            "; several files, or a folder, give one table, and a folder of results for each file"
-            if several
-            else ""
-            if required
-            else ". --unit CHANNEL=UNIT sets the unit of a channel. If the file needs --rate, --from or --delay, "
-            "run python -m vehicle compare afterwards instead"
-        ),
-    )
-    mapping_options(
-        parser.scoped_group(
-            "a measurement", needs="--measured FILE", active=lambda options: options.measured is not None
-        )
-    )
-
-
-def mapping_options(parser: argparse._ActionsContainer) -> None:
-    """Add --map and --turn, the channels of a measurement and their directions."""
-    parser.add_argument(
-        "--map",
-        dest="mapping",
-        action="append",
-        default=[],
-        metavar="CHANNEL=NAME",
-        help="channel of the model and its measured channel (number, exact name, pattern with *, or place and "
-        'direction), for example knuckle_fr_acc_z="Dof 12 +Z"; for an FRF also its plate, '
-        "knuckle_fr_acc_z/plate_fl=3; for mode shapes POINT=NODE. Default: equal names; for mode shapes the "
-        "nodes at the points of the car. May be repeated",
-    )
-    parser.add_argument(
-        "--turn",
-        dest="turned",
-        action="append",
-        default=[],
-        metavar="CHANNEL",
-        help="channel measured in the opposite direction. May be repeated",
-    )
-
-
-def measured_choice(options: argparse.Namespace, input_names: Container[str] = ()) -> Choice:
-    """Return the choice of channels and units of the measurement.
-
-    Args:
-        input_names: names of --unit that belong to the input.
+def settings_of(options: argparse.Namespace) -> CompareSettings:
+    """Return the settings of the parsed options.
 
     Raises:
-        ConfigurationError: a channel twice, an unknown unit, a number out of range.
+        ConfigurationError: a value out of range.
     """
-    from vehicle.signals.records.choice import Choice, pairs
-    from vehicle.signals.records.delays import parsed_delays, split_delay
-
-    channels = pairs("--map", options.mapping, "")
-    if "" in channels:
-        raise ConfigurationError(f"--map {channels['']}: must be CHANNEL=NAME, for example knuckle_fr_acc_z=3")
-    units = {name: unit for name, unit in pairs("--unit", options.units, "").items() if name not in input_names}
-    settings = {name: getattr(options, name) for name in ("rate", "first", "last", "detrend", "highpass", "resample")}
-    settings["databases"] = tuple(options.databases)
-    if not hasattr(options, "delay"):
-        return Choice(channels=channels, units=units)
-    return Choice(channels=channels, units=units, delays=split_delay(parsed_delays(options.delay))[1], **settings)
+    return read(
+        options,
+        CompareSettings,
+        files=tuple(options.measured),
+        measured=read(options, MeasuredSettings, measured=None),
+        car=car_of(options),
+        destination=destination_of(options),
+    )
 
 
-def _job(options: argparse.Namespace) -> None:
-    names, several = expanded([str(path) for path in options.measured])
+def _job(settings: CompareSettings, console: Console) -> None:
+    names, several = expanded([str(path) for path in settings.files])
     if several:
-        require_one_file(options)
-    whole = output_folder_of(options, OUTPUT, protect=tuple(Path(name) for name in names))
+        console.require_one_file()
+    whole = settings.destination.folder(OUTPUT, protect=tuple(Path(name) for name in names))
 
     def one(name: str) -> dict[str, Any]:
         file = Path(name)
         unique = sum(Path(other).stem == file.stem for other in names) == 1
         output = whole / (file.stem if unique else file.name) if several else whole
-        summary, said = _compared(argparse.Namespace(**{**vars(options), "measured": file}), output)
+        summary, said = _compared(
+            replace(settings, measured=replace(settings.measured, measured=file)), output, console
+        )
         return {"summary": summary, "text": f"{said}\nfiles: {output}"}
 
     if not several:
         result = one(names[0])
-        print_result(options, result["summary"], result["text"])
+        console.result(result["summary"], result["text"])
         return
     results, errors = each_file(names, one)
     plain = [{"input": each["input"], **each.get("summary", {"error": each.get("error")})} for each in results]
-    print_result(options, plain, _overview(results))
+    console.result(plain, _overview(results))
     raise_worst(errors, len(results))
 
 
@@ -207,107 +178,91 @@ def _overview(results: list[dict[str, Any]]) -> str:
     return table_of(("file", "channel", "of", "FRAC or RMS ratio", "correlation"), results, rows_of)
 
 
-def _compared(options: argparse.Namespace, output: Path) -> tuple[dict[str, Any], str]:
-    """Compare the measurement `measured` of the options, write the results, and return the summary and its text."""
+def _compared(settings: CompareSettings, output: Path, console: Console) -> tuple[dict[str, Any], str]:
+    """Compare a measurement, write the results, and return the summary and its text."""
     from vehicle.runs.comparison.compared_run import compare
     from vehicle.runs.comparison.frf_comparison import edges_of
     from vehicle.runs.output.comparison_files import save_comparison
     from vehicle.signals.formats.reader import read_record
 
-    edges = edges_of(options.bands)
-    choice = measured_choice(options)
-    delay, drift = clock_of(options)
-    measurement = read_record(options.measured, choice.databases)
+    file = settings.measured.measured
+    assert file is not None
+    edges = edges_of(settings.bands)
+    choice = settings.measured.choice(settings.record)
+    delay, drift = settings.measured.clock()
+    measurement = read_record(file, choice.databases)
     if measurement.shapes and not measurement.channels:
         for group in (RECORDS, RESPONSES, CHANNELS, RUN):
-            refuse_idle(options, group)
-        summary, said = _modes(options, output, measurement, choice)
+            console.refuse_idle(group)
+        summary, said = _modes(settings, output, measurement, choice)
     else:
-        if options.run is None:
+        if settings.run is None:
             raise ConfigurationError(
                 "RUN_OR_INPUT is missing: give the folder of a run, or an input, for example low.csv"
             )
-        refuse_idle(options, SHAPES)
-        run, channels = _run(options, measurement, choice)
-        measured = _measured(options, channels, choice, measurement)
+        console.refuse_idle(SHAPES)
+        run, channels = _run(settings, settings.run, measurement, choice, console)
+        measured = settings.measured.read(channels, choice, window=settings.window, measurement=measurement)
         if measured.frf is None:
-            refuse_idle(options, RESPONSES)
+            console.refuse_idle(RESPONSES)
         if measured.record is None:
-            refuse_idle(options, RECORDS)
-        comparison = compare(run, measured, delay=delay, drift=drift, window=options.window, bands=edges)
-        accept(options, comparison.notices)
-        save_comparison(comparison, output, force=options.force, figures=options.figures, protect=(options.measured,))
+            console.refuse_idle(RECORDS)
+        comparison = compare(run, measured, delay=delay, drift=drift, window=settings.window, bands=edges)
+        console.accept(comparison.notices)
+        force, figures = settings.destination.force, settings.figures
+        save_comparison(comparison, output, force=force, figures=figures, protect=(file,))
         summary, said = comparison.summary(), comparison.text()
     return summary, said
 
 
-def _measured(
-    options: argparse.Namespace, channels: tuple[str, ...], choice: Choice, measurement: Measurement | None = None
-) -> Measured:
-    from vehicle.signals.records.measured import read_measured
-
-    window = getattr(options, "window", None)
-    return read_measured(
-        options.measured, channels, choice, inverted=options.turned, window=window, measurement=measurement
-    )
-
-
-def measured_beside(
-    options: argparse.Namespace, channels: tuple[str, ...], input_names: Container[str] = ()
-) -> Measured | None:
-    """Read the measurement of --measured before the run, see `measured_choice`; return None without --measured."""
-    if options.measured is None:
-        return None
-    return _measured(options, channels, measured_choice(options, input_names))
-
-
 def _run(
-    options: argparse.Namespace, measurement: Measurement, choice: Choice
+    settings: CompareSettings, source: str, measurement: Measurement, choice: Choice, console: Console
 ) -> tuple[Run | Simulated, tuple[str, ...]]:
     """Return the run and the names of its channels; an input is simulated first."""
     from vehicle.runs.comparison.simulated import of_folder
 
-    folder = Path(options.run)
+    folder = Path(source)
     if folder.is_dir():
         for group in (CAR, RUN):
-            refuse_idle(options, group)
+            console.refuse_idle(group)
         simulated = of_folder(folder)
         return simulated, tuple(simulated.record.channels)
     from vehicle.runs.car import Car
     from vehicle.signals.excitation.input_files import find_input
     from vehicle.signals.excitation.signal_file import read_signal
 
-    car = Car.load(options.vehicle, options.overrides)
+    car = Car.load(settings.car.vehicle, settings.car.overrides)
     channels = (*car.vehicle.channels, *car.vehicle.load_channels)
-    signal = read_signal(find_input(options.run), wheel=car.vehicle.shaker_wheel)
-    asked = _measured(options, channels, choice, measurement)  # refused before anything is simulated
+    signal = read_signal(find_input(source), wheel=car.vehicle.shaker_wheel)
+    # Refused before anything is simulated.
+    asked = settings.measured.read(channels, choice, window=settings.window, measurement=measurement)
     loads = {*(asked.record.channels if asked.record else ())} - set(car.vehicle.channels)
     run = car.run(
         signal,
-        ProgressLine("simulation", enabled=not options.quiet),
-        engine=options.engine,
+        console.progress("simulation"),
+        engine=settings.engine,
         channels=(*car.vehicle.channels, *sorted(loads)) if loads else None,
     )
     return run, channels
 
 
 def _modes(
-    options: argparse.Namespace, output: Path, measurement: Measurement, choice: Choice
+    settings: CompareSettings, output: Path, measurement: Measurement, choice: Choice
 ) -> tuple[dict[str, Any], str]:
     """Compare measured mode shapes with those of the car, write the results, and return summary and text."""
     from vehicle.runs.comparison.mode_comparison import compare_modes
     from vehicle.runs.comparison.pictures import plot_mac
     from vehicle.runs.output.folder import output_folder, write_json, write_whole
 
-    car = _car(options)
+    car = _car(settings)
     comparison, tyres = (
-        compare_modes(car, measurement, dict(choice.channels), options.damper),
+        compare_modes(car, measurement, dict(choice.channels), settings.damper),
         car.vehicle.driving.words,
     )
     name = measurement.path.name
     summary = comparison.summary(name)
     caption = (
-        f"{name} at {len(comparison.points)} points of the car, dampers {options.damper}, tyres {tyres}; rows and "
+        f"{name} at {len(comparison.points)} points of the car, dampers {settings.damper}, tyres {tyres}; rows and "
         "columns by frequency"
     )
     rows, columns = ([mode.frequency for mode in those] for those in (comparison.measured, comparison.simulated))
@@ -316,25 +271,25 @@ def _modes(
         ("AutoMAC: similarity among the measured modes", comparison.measured_auto, rows, rows),
         ("AutoMAC: similarity among the simulated modes", comparison.simulated_auto, columns, columns),
     )
-    with output_folder(output, force=options.force, protect=(options.measured,)) as folder:
+    with output_folder(output, force=settings.destination.force, protect=(measurement.path,)) as folder:
         write_json(folder / "compare.json", summary)
-        if options.figures:
+        if settings.figures:
             write_whole(folder / "mac.png", lambda path: plot_mac(path, tables, caption))
     return summary, comparison.text(name)
 
 
-def _car(options: argparse.Namespace) -> Car:
+def _car(settings: CompareSettings) -> Car:
     """Return the car of a run, or that of the options."""
     from vehicle.runs.car import Car
 
-    file = options.vehicle
-    if file is None and options.run is not None and Path(options.run).is_dir():
-        file = Path(options.run) / "vehicle.toml"
+    file = settings.car.vehicle
+    if file is None and settings.run is not None and Path(settings.run).is_dir():
+        file = Path(settings.run) / "vehicle.toml"
         if not file.is_file():
             raise ConfigurationError(
-                f"{options.run}: contains no vehicle.toml; give the folder of a run, or the car with --vehicle"
+                f"{settings.run}: contains no vehicle.toml; give the folder of a run, or the car with --vehicle"
             )
-    return Car.load(file, options.overrides)
+    return Car.load(file, settings.car.overrides)
 
 
-main = command(parser, _job)
+main = command(parser, settings_of, _job)

@@ -4,26 +4,32 @@ from __future__ import annotations
 
 import argparse
 import sys
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vehicle.commands.accepted_advice import accept
 from vehicle.commands.clock_options import delay_option
 from vehicle.commands.command_line import command
-from vehicle.commands.destination import output_folder_of
-from vehicle.commands.input_options import record_choice, record_options
+from vehicle.commands.console import Console
+from vehicle.commands.input_options import record_options
 from vehicle.commands.options import (
+    car_of,
     command_parser,
+    destination_of,
     figures_option,
     message_options,
     output_options,
+    read,
     setting_options,
     vehicle_options,
 )
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.car_choice import CarChoice
 from vehicle.names import CORNERS
+from vehicle.runs.output.destination import Destination
+from vehicle.settings import Settings, part, setting
+from vehicle.signals.records.record_settings import RecordSettings
 from vehicle.studies.replication.drive_settings import DriveSettings
 
 if TYPE_CHECKING:
@@ -34,13 +40,7 @@ if TYPE_CHECKING:
 def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser("drive", "Compute drive signals of the plates that reproduce measured accelerations.")
-    parser.add_argument(
-        "--target",
-        type=Path,
-        required=True,
-        metavar="FILE",
-        help="measured accelerations, in any format that `inspect` reads",
-    )
+    setting_options(parser, DriveCommand, "target")
     channels = parser.add_argument_group("channels of the target measurement")
     record_options(
         channels,
@@ -63,27 +63,61 @@ def parser() -> Parser:
     return parser
 
 
-def _job(options: argparse.Namespace) -> None:
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DriveCommand(Settings):
+    """Settings of the command.
+
+    Attributes:
+        record: channels, units and times of the measurement.
+        delay: delays of groups of channels, as "GROUP=TIME".
+        search: settings of the replication.
+        destination: folder of the results.
+        figures: write pictures (PNG).
+    """
+
+    target: Path = setting(
+        "measured accelerations, in any format that `inspect` reads", type=Path, required=True, metavar="FILE"
+    )
+    record: RecordSettings = part(RecordSettings)
+    delay: tuple[str, ...] = ()
+    search: DriveSettings = part(DriveSettings)
+    car: CarChoice = part(CarChoice)
+    destination: Destination = part(Destination)
+    figures: bool = True
+
+
+def settings_of(options: argparse.Namespace) -> DriveCommand:
+    """Return the settings of the parsed options.
+
+    Raises:
+        ConfigurationError: a value out of range.
+    """
+    wheels = [CORNERS[word] for word in options.wheels or ()] or None
+    search = read(options, DriveSettings, wheels=wheels, delay=None)
+    return read(options, DriveCommand, search=search, car=car_of(options), destination=destination_of(options))
+
+
+def _job(settings: DriveCommand, console: Console) -> None:
     from vehicle.runs.car import Car
     from vehicle.signals.records.delays import parsed_delays
     from vehicle.studies.replication.drive_files import save_drive
     from vehicle.studies.replication.drive_search import replicate_drive
 
-    inputs = tuple(path for path in (options.target, options.vehicle) if path is not None)
-    settings = DriveSettings.of_options(
-        options,
-        wheels=[CORNERS[word] for word in options.wheels or ()] or None,
-        delay=parsed_delays(options.delay),
-        progress=lambda step: None if options.quiet else _say(step, options.iterations),
+    inputs = tuple(path for path in (settings.target, settings.car.vehicle) if path is not None)
+    output = settings.destination.folder(Path("runs") / f"drive_{settings.target.stem}", protect=inputs)
+    names, choice = _channels(settings)
+    search = replace(
+        settings.search,
+        choice=choice,
+        delay=parsed_delays(settings.delay),
+        progress=lambda step: None if console.quiet else _say(step, settings.search.iterations),
     )
-    output = output_folder_of(options, Path("runs") / f"drive_{options.target.stem}", protect=inputs)
-    names, choice = _channels(options)
-    car = Car.load(options.vehicle, options.overrides)
-    drive = replicate_drive(car, options.target, names, **replace(settings, choice=choice).given())
-    accept(options, drive.notices)
-    summary = save_drive(drive, output, force=options.force, figures=options.figures, protect=inputs)
-    if not options.quiet:
-        print(report(summary, output))
+    car = Car.load(settings.car.vehicle, settings.car.overrides)
+    drive = replicate_drive(car, settings.target, names, **search.given())
+    console.accept(drive.notices)
+    force, figures = settings.destination.force, settings.figures
+    summary = save_drive(drive, output, force=force, figures=figures, protect=inputs)
+    console.say(report(summary, output))
 
 
 def _say(step: Step, iterations: int) -> None:
@@ -96,20 +130,21 @@ def _say(step: Step, iterations: int) -> None:
     )
 
 
-def _channels(options: argparse.Namespace) -> tuple[dict[str, str], Choice]:
+def _channels(settings: DriveCommand) -> tuple[dict[str, str], Choice]:
     """Return the channels, name in the car to name in the file, and the further choice of the file."""
     from vehicle.signals.records.choice import Choice
     from vehicle.studies.replication.drive_search import named_channels
 
-    unnamed = [text.strip() for text in options.picks if "=" not in text]
-    options.picks = [f"{text}={text}" if "=" not in text else text for text in options.picks]
-    choice = record_choice(options, "") or Choice()
+    picks = settings.record.picks
+    unnamed = [text.strip() for text in picks if "=" not in text]
+    named = tuple(f"{text}={text}" if "=" not in text else text for text in picks)
+    choice = replace(settings.record, picks=named).choice("") or Choice()
     names = {role: name for role, name in choice.channels.items() if role != "time"}
     if not names:
         raise ConfigurationError(
             "--channel is missing; name a measured acceleration, for example --channel knuckle_fr_acc_z=NAME"
         )
-    return (named_channels(options.target, unnamed, choice) if unnamed == list(names) else names), choice
+    return (named_channels(settings.target, unnamed, choice) if unnamed == list(names) else names), choice
 
 
 def report(summary: dict[str, Any], output: Path) -> str:
@@ -132,4 +167,4 @@ def report(summary: dict[str, Any], output: Path) -> str:
     return "\n".join(lines)
 
 
-main = command(parser, _job)
+main = command(parser, settings_of, _job)

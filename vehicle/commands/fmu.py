@@ -2,23 +2,59 @@
 
 from __future__ import annotations
 
-import argparse
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehicle.commands.command_line import command
-from vehicle.commands.destination import output_file_of
-from vehicle.commands.options import VEHICLE_HELP, command_parser, message_options, output_options, set_once, set_option
+from vehicle.commands.console import Console
+from vehicle.commands.options import (
+    VEHICLE_HELP,
+    command_parser,
+    message_options,
+    output_options,
+    set_option,
+    setting_options,
+)
 from vehicle.commands.parser import Parser
-from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.car_choice import CarChoice
 from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.names import FMI_VERSIONS
+from vehicle.runs.output.destination import Destination
+from vehicle.settings import Settings, part, setting
 
 if TYPE_CHECKING:
     from vehicle.handover.fmu.fmu_file import WrittenFmu
 
-HIGHEST_SPEED = 300.0
-"""Maximum speed [km/h]."""
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FmuSettings(Settings):
+    """Settings of the FMU of a car.
+
+    Attributes:
+        destination: the FMU; by default the name of the car.
+    """
+
+    car: CarChoice = part(CarChoice)
+    destination: Destination = part(Destination)
+    fmi: str = setting("version of the FMI standard; default: %(default)s", FMI_VERSIONS[0], choices=FMI_VERSIONS)
+    channels: str | None = setting(
+        "add outputs to the default channels: loads, all, or names separated by commas", metavar="NAME,..."
+    )
+    speed: float | None = setting(
+        "speed at which the tyres roll over the plates, which then are the road [km/h]; default: speed of "
+        "the vehicle file",
+        within="[0, 300]",
+        type=float,
+        metavar="KM/H",
+    )
+    step: float = setting(
+        "internal time step [ms]; a communication step must be a multiple of it; default: %(default)s",
+        0.1,
+        within="[0.001, 0.5]",
+        type=float,
+        metavar="MS",
+    )
 
 
 def parser() -> Parser:
@@ -26,64 +62,36 @@ def parser() -> Parser:
     parser = command_parser("fmu", "Write a car as an FMU (FMI 2.0 or 3.0) for Simulink, OpenModelica and others.")
     parser.add_argument("car", nargs="?", type=vehicle_file, metavar="CAR", help=VEHICLE_HELP)
     set_option(parser)
-    parser.add_argument(
-        "--speed",
-        type=float,
-        metavar="KM/H",
-        help="speed at which the tyres roll over the plates, which then are the road [km/h]; default: speed of "
-        "the vehicle file",
-    )
-    parser.add_argument(
-        "--fmi", choices=FMI_VERSIONS, default=FMI_VERSIONS[0], help="version of the FMI standard; default: %(default)s"
-    )
-    parser.add_argument(
-        "--channels",
-        metavar="NAME,...",
-        help="add outputs to the default channels: loads, all, or names separated by commas",
-    )
-    parser.add_argument(
-        "--step",
-        type=float,
-        default=0.1,
-        metavar="MS",
-        help="internal time step [ms]; a communication step must be a multiple of it; default: %(default)s",
-    )
+    setting_options(parser, FmuSettings, "speed", "fmi", "channels", "step")
     output_options(parser, None, default="NAME.fmu", metavar="FILE.fmu")
     message_options(parser, quiet=True)
     return parser
 
 
-def _job(options: argparse.Namespace) -> None:
-    from vehicle.commands.loads import recorded_channels
-    from vehicle.handover.fmu.fmu_file import LONGEST_STEP, SHORTEST_STEP, write_fmu
+def _job(settings: FmuSettings, console: Console) -> None:
+    from vehicle.handover.fmu.fmu_file import write_fmu
+    from vehicle.model.parameters.recorded_channels import recorded_channels
     from vehicle.runs.car import Car
     from vehicle.runs.output.folder import write_whole
 
-    shortest, longest = 1e3 * SHORTEST_STEP, 1e3 * LONGEST_STEP
-    if not shortest <= options.step <= longest:
-        raise ConfigurationError(f"--step {options.step:g}: must be {shortest:g} to {longest:g} ms")
-    if options.speed is not None and not 0.0 <= options.speed <= HIGHEST_SPEED:
-        raise ConfigurationError(f"--speed {options.speed:g}: must be 0 to {HIGHEST_SPEED:g} km/h")
-    rolling = (
-        []
-        if options.speed is None
-        else set_once(options.overrides, "--speed", [f"driving.speed={options.speed / 3.6!r}"])
-    )
-    car = Car.load(options.car, [*options.overrides, *rolling])
-    inputs = () if options.car is None else (options.car,)
-    path = output_file_of(options, Path(f"{car.vehicle.name}.fmu"), ending=".fmu", protect=inputs)
-    channels = None if options.channels is None else recorded_channels(options.channels, car.vehicle)
+    choice = settings.car.rolling(settings.speed)
+    car = Car.load(choice.vehicle, choice.overrides)
+    inputs = () if choice.vehicle is None else (choice.vehicle,)
+    path = settings.destination.file(Path(f"{car.vehicle.name}.fmu"), ending=".fmu", protect=inputs)
+    channels = None if settings.channels is None else recorded_channels(settings.channels, car.vehicle)
     reports: list[WrittenFmu] = []
     write_whole(
         path,
-        lambda file: reports.append(write_fmu(car, file, fmi=options.fmi, channels=channels, step=1e-3 * options.step)),
+        lambda file: reports.append(
+            write_fmu(car, file, fmi=settings.fmi, channels=channels, step=1e-3 * settings.step)
+        ),
     )
-    if options.quiet:
+    if console.quiet:
         return
     (fmu,) = reports
     size = path.stat().st_size / 1000.0
     counts = ", ".join(f"{fmu.count(causality)} {causality}s" for causality in ("input", "parameter", "output"))
-    print(f"{path}: FMI {options.fmi}.0 co-simulation, {counts}; {size:.0f} kB; {', '.join(fmu.platforms)}")
+    print(f"{path}: FMI {settings.fmi}.0 co-simulation, {counts}; {size:.0f} kB; {', '.join(fmu.platforms)}")
     print(
         f"internal step {1e3 * fmu.step:g} ms; set displacement and velocity of each plate, with their values at "
         "the end of the communication step"
@@ -98,4 +106,4 @@ def _job(options: argparse.Namespace) -> None:
         )
 
 
-main = command(parser, _job)
+main = command(parser, FmuSettings, _job)

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.accepted_advice import advice_option
-from vehicle.commands.options import setting_options
+from vehicle.commands.options import read, setting_options
 from vehicle.commands.parser import Condition, Parser
-from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS
-from vehicle.signals.excitation.road_settings import RoadSettings
+from vehicle.signals.excitation.input_settings import DriveInput, PlateSettings, on_road
+from vehicle.signals.excitation.road_settings import LEVEL, RoadSettings
+from vehicle.signals.records.record_settings import RecordSettings
 
 if TYPE_CHECKING:
-    from vehicle.signals.records.choice import Choice
-
+    from vehicle.studies.sweeps.sweep_inputs import InputChoice
 
 FILE_NEEDS = "--input (a road moves the plates of all wheels)"
 RECORD_NEEDS = "--input, or to a road recorded over time (--speed channel:NAME)"
@@ -75,11 +75,11 @@ def signal_options(parser: Parser, *, several: bool = False) -> argparse._Argume
 
     note = "" if several else "; with --input it replaces the time column of the file"
 
-    def on_road(options: argparse.Namespace) -> bool:
+    def drives(options: argparse.Namespace) -> bool:
         # A file of targets names its roads; --rpm runs on a level one.
         return bool(options.road or getattr(options, "rpm", None) or getattr(options, "targets", None))
 
-    road = road_options(parser, on_road, is_class, several=several, rate_note=note)
+    road = road_options(parser, drives, is_class, several=several, rate_note=note)
     setting_options(
         road, RoadSettings, "tyre", note="; with --input the tyres stand, except with --set driving.speed=M/S"
     )
@@ -120,7 +120,7 @@ def road_options(
     return group
 
 
-def _listed(value: str | list[str] | None) -> list[str]:
+def _listed(value: Any) -> list[Any]:
     return value if isinstance(value, list) else [value] if value else []
 
 
@@ -140,33 +140,28 @@ def speed_value(text: str) -> float | str:
 
 def recorded_over_time(options: argparse.Namespace) -> bool:
     """Return True if a road was recorded over time, with its speed."""
-    return any(isinstance(speed, str) for speed in speeds_of(options))
+    return any(isinstance(speed, str) for speed in _listed(options.speed))
 
 
-def speeds_of(options: argparse.Namespace) -> list[float | str]:
-    """Return the values of --speed: none, one, or several."""
-    speed = options.speed
-    return speed if isinstance(speed, list) else [] if speed is None else [speed]
+def inputs_of(options: argparse.Namespace) -> InputChoice:
+    """Return the inputs of parsed options, of which --input, --road, --speed and --seed may be repeated."""
+    from vehicle.studies.sweeps.sweep_inputs import InputChoice
+
+    return read(options, InputChoice, settings=read(options, RoadSettings, seed=None))
 
 
-def drives_on_road(options: argparse.Namespace) -> bool:
-    """Return True if a road moves the plates, and False for a file of signals.
+def input_of(options: argparse.Namespace) -> PlateSettings | DriveInput:
+    """Return the input of parsed options; with --rpm alone it is a level road.
 
     Raises:
-        ConfigurationError: neither or both are set.
+        ConfigurationError: no input, two inputs, or a value out of range.
     """
-    roads = " ".join(f"--road {road}" for road in _listed(options.road))
-    if roads and options.input:
-        raise ConfigurationError(f"{roads} and --input exclude each other; leave one of them out")
-    if not roads and not options.input and getattr(options, "rpm", None):
+    if not options.road and not options.input and vars(options).get("rpm"):
         # The engine alone shakes the car, which stands or drives on a level road.
-        from vehicle.signals.excitation.road_drive import LEVEL
-
-        options.road, options.speed = LEVEL, options.speed or 0.0
-        return True
-    if not roads and not options.input:
-        raise ConfigurationError("the input is missing; set --input FILE, or a road, for example --road C --speed 80")
-    return bool(roads)
+        return read(options, DriveInput, road=LEVEL, speed=options.speed or 0.0)
+    if on_road(_listed(options.road), _listed(options.input)):
+        return read(options, DriveInput)
+    return read(options, PlateSettings)
 
 
 def record_options(
@@ -192,28 +187,11 @@ def record_options(
     if unit:
         unit_option(parser)
     if rate:
-        parser.add_argument(
-            "--rate", type=float, metavar="HZ", help="sampling rate [Hz], replaces the times of the file"
-        )
+        setting_options(parser, RecordSettings, "rate")
     database_option(parser)
-    parser.add_argument("--from", dest="first", type=float, metavar="S", help="use the file from this time on [s]")
-    parser.add_argument("--to", dest="last", type=float, metavar="S", help="use the file up to this time [s]")
-    parser.add_argument(
-        "--resample",
-        type=float,
-        metavar="HZ",
-        help="resample the record at this rate first [Hz], with an anti-alias filter; for irregular times",
-    )
+    setting_options(parser, RecordSettings, "first", "last", "resample")
     advice_option(parser)
-    parser.add_argument("--detrend", action="store_true", help="subtract the best straight line (offset and drift)")
-    if highpass:
-        parser.add_argument(
-            "--highpass",
-            type=float,
-            metavar="HZ",
-            help="corner frequency of a high-pass without phase shift [Hz]; needed to integrate velocities and "
-            "accelerations",
-        )
+    setting_options(parser, RecordSettings, "detrend", *(["highpass"] if highpass else []))
 
 
 def unit_option(parser: argparse._ActionsContainer) -> None:
@@ -240,39 +218,3 @@ def database_option(parser: argparse._ActionsContainer) -> None:
         metavar="FILE",
         help="CAN database that decodes a bus log (MDF, .asc, .trc, candump). May be repeated",
     )
-
-
-def record_choice(options: argparse.Namespace, role: str, known: tuple[str, ...] = ()) -> Choice | None:
-    """Return the choice of the options of `record_options`; None if none of them is set.
-
-    Args:
-        role: role of a channel without ROLE=.
-        known: further roles that --unit may name.
-
-    Raises:
-        ConfigurationError: a role twice, a unit that is not known, a number out of range.
-    """
-    from vehicle.signals.records.choice import Choice, pairs
-
-    channels = pairs("--channel", options.picks, role)
-    asked = pairs("--unit", options.units, "")
-    units = {name: unit for name, unit in asked.items() if not name or name in channels or name in known}
-    unknown = next((name for name in asked if name not in units), None)
-    if unknown is not None and getattr(options, "measured", None) is None:  # else of what was measured
-        raise ConfigurationError(
-            f"--unit {unknown}=...: there is no --channel {unknown}=NAME, only "
-            f"{', '.join(filter(None, channels)) or 'none'}; use one of these names, or --unit UNIT for all "
-            "channels"
-        )
-    choice = Choice(
-        channels=channels,
-        units=units,
-        rate=options.rate,
-        first=options.first,
-        last=options.last,
-        detrend=options.detrend,
-        highpass=getattr(options, "highpass", None),
-        databases=tuple(options.databases),
-        resample=options.resample,
-    )
-    return None if choice.empty else choice

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-import argparse
+from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.advice import command_for, comparison_for
-from vehicle.commands.command_line import command, print_result
+from vehicle.commands.command_line import command
+from vehicle.commands.console import Console
 from vehicle.commands.input_options import database_option
-from vehicle.commands.options import command_parser, message_options
+from vehicle.commands.options import command_parser, message_options, setting_options
 from vehicle.commands.parser import Parser
 from vehicle.commands.several_files import each_file, expanded, raise_worst, table_of
+from vehicle.settings import Settings, setting
 
 if TYPE_CHECKING:
     from vehicle.signals.formats.channel import Channel, Measurement
@@ -24,45 +27,53 @@ SHOWN = 60
 def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser("inspect", "List the channels of a measurement file: names, units, rates, levels.")
-    parser.add_argument(
-        "files",
-        nargs="+",
-        metavar="FILE",
-        help="measurement file (format recognised by its content), shipped input, or folder. Several give one table",
-    )
+    setting_options(parser, InspectSettings, "files")
     database_option(parser)
     parser.add_argument("--json", action="store_true", help="print JSON")
     message_options(parser)
     return parser
 
 
-def _job(options: argparse.Namespace) -> None:
+@dataclass(frozen=True, kw_only=True, slots=True)
+class InspectSettings(Settings):
+    """Files to inspect, with their CAN databases."""
+
+    files: tuple[str, ...] = setting(
+        "measurement file (format recognised by its content), shipped input, or folder. Several give one table",
+        flag="files",
+        nargs="+",
+        metavar="FILE",
+    )
+    databases: tuple[Path, ...] = ()
+
+
+def _job(settings: InspectSettings, console: Console) -> None:
     from vehicle.signals.excitation.input_files import find_input
     from vehicle.signals.formats.reader import read_record
 
     def one(name: str) -> dict[str, Any]:
-        measurement = read_record(find_input(name), tuple(options.databases))
+        measurement = read_record(find_input(name), settings.databases)
         findings: list[Finding] = []
-        command, reason = command_for(measurement, name, options.databases, findings)
-        comparison, left_out = comparison_for(measurement, name, command, findings)
+        advised, reason = command_for(measurement, name, settings.databases, findings)
+        comparison, left_out = comparison_for(measurement, name, advised, findings)
         return {
             **contents(measurement),
             "findings": findings,
-            "command": command or None,
+            "command": advised or None,
             "command_reason": reason,
             "comparison": comparison or None,
             "comparison_left_out": left_out,
         }
 
-    names, several = expanded(options.files)
+    names, several = expanded(settings.files)
     if not several:
         result = one(names[0])
-        print_result(options, result, report(result))
+        console.result(result, report(result))
         return
     results, errors = each_file(names, one)
-    print_result(options, results, overview(results))
+    console.result(results, overview(results))
     # Files that a folder happens to hold may be of any kind; a file that was named must be read.
-    raise_worst(errors if len(errors) == len(results) or len(names) == len(options.files) else (), len(results))
+    raise_worst(errors if len(errors) == len(results) or len(names) == len(settings.files) else (), len(results))
 
 
 def overview(results: list[dict[str, Any]]) -> str:
@@ -205,4 +216,4 @@ def report(content: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
-main = command(parser, _job)
+main = command(parser, InspectSettings, _job)

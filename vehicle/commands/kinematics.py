@@ -2,26 +2,30 @@
 
 from __future__ import annotations
 
-import argparse
 import dataclasses
 import math
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vehicle.commands.command_line import command, print_result
-from vehicle.commands.destination import output_folder_of
+from vehicle.commands.command_line import command
+from vehicle.commands.console import Console
 from vehicle.commands.options import (
     command_parser,
     extra_output_options,
-    finite_numbers,
     message_options,
+    setting_options,
     vehicle_options,
 )
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.car_choice import CarChoice
+from vehicle.runs.output.destination import Destination
+from vehicle.settings import Settings, finite_numbers, part, setting
 
 if TYPE_CHECKING:
     from vehicle.engines.kinematics.axle_statics import WheelPose
@@ -37,20 +41,7 @@ def parser() -> Parser:
         "kinematics", "Compute camber, toe, loads, roll centre and steering axis of an axle over wheel travel and load."
     )
     vehicle_options(parser)
-    parser.add_argument(
-        "--axle", default="front", metavar="NAME", help="axle, a section of the vehicle file; default: %(default)s"
-    )
-    parser.add_argument(
-        "--travel",
-        default="-50:50:5",
-        metavar="A:B[:STEP]",
-        help="travel of the wheel centres [mm], upwards positive; default: %(default)s",
-    )
-    parser.add_argument(
-        "--opposite",
-        action="store_true",
-        help="move the wheels in opposite directions, as in roll: left wheel down, right wheel up",
-    )
+    setting_options(parser, KinematicsSettings, "axle", "travel", "opposite")
     loads = parser.scoped_group(
         "loads on the wheels",
         needs="elastic bushings, and --ideal makes them rigid joints; leave one of the two out",
@@ -65,16 +56,7 @@ def parser() -> Parser:
             help=f"{quantity} on both wheels at their contact points (x to the rear, y to the right, z up), for "
             "example x=1000; with --opposite in opposite directions. May be repeated",
         )
-    parser.add_argument(
-        "--ideal", action="store_true", help="replace every bushing by an ideal joint: kinematics without elasticity"
-    )
-    parser.add_argument(
-        "--tyre",
-        choices=("rolling", "standing"),
-        default="rolling",
-        help="rolling: the tyres roll freely, without horizontal force; standing: each tyre keeps the horizontal "
-        "force and torque of the car at rest on plates; default: %(default)s",
-    )
+    setting_options(parser, KinematicsSettings, "ideal", "tyre")
     extra_output_options(parser, "kinematics.csv and kinematics.png")
     parser.former("--replace", "--replace is not an option here; use --force to replace files")
     parser.former(
@@ -86,28 +68,61 @@ def parser() -> Parser:
     return parser
 
 
-def _job(options: argparse.Namespace) -> None:
+@dataclass(frozen=True, kw_only=True, slots=True)
+class KinematicsSettings(Settings):
+    """Settings of kinematics and compliance of an axle.
+
+    Attributes:
+        contact_force, moment: components "AXIS=VALUE" on both wheels at their contact points [N, N m].
+    """
+
+    car: CarChoice = part(CarChoice)
+    axle: str = setting("axle, a section of the vehicle file; default: %(default)s", "front", metavar="NAME")
+    travel: str = setting(
+        "travel of the wheel centres [mm], upwards positive; default: %(default)s", "-50:50:5", metavar="A:B[:STEP]"
+    )
+    opposite: bool = setting(
+        "move the wheels in opposite directions, as in roll: left wheel down, right wheel up",
+        False,
+        action="store_true",
+    )
+    contact_force: tuple[str, ...] = ()
+    moment: tuple[str, ...] = ()
+    ideal: bool = setting(
+        "replace every bushing by an ideal joint: kinematics without elasticity", False, action="store_true"
+    )
+    tyre: str = setting(
+        "rolling: the tyres roll freely, without horizontal force; standing: each tyre keeps the horizontal "
+        "force and torque of the car at rest on plates; default: %(default)s",
+        "rolling",
+        choices=("rolling", "standing"),
+    )
+    destination: Destination = part(Destination)
+
+
+def _job(settings: KinematicsSettings, console: Console) -> None:
     from vehicle.engines.kinematics.axle_curves import design_slopes, geometry_curve, travel_curve
     from vehicle.runs.car import Car
     from vehicle.runs.car.axle import axle_statics, car_at_rest, direction_to_middle
 
-    travels = _travels(options.travel)
-    load = np.array([*_vector("--contact-force", options.contact_force), *_vector("--moment", options.moment)])
-    folder = None if options.output is None else output_folder_of(options, options.output)
-    car = car_at_rest(Car.load(options.vehicle, options.overrides))
-    statics = axle_statics(car, options.axle, ideal=options.ideal, standing=options.tyre == "standing")
-    rates = design_slopes(statics, opposite=options.opposite, load=load)
-    poses = travel_curve(statics, travels, opposite=options.opposite, load=load)
-    towards = direction_to_middle(car, options.axle)
-    geometry = geometry_curve(statics, travels, towards=towards, opposite=options.opposite, load=load)
+    travels = _travels(settings.travel)
+    load = np.array([*_vector("--contact-force", settings.contact_force), *_vector("--moment", settings.moment)])
+    output = settings.destination.output
+    folder = None if output is None else settings.destination.folder(output)
+    car = car_at_rest(Car.load(settings.car.vehicle, settings.car.overrides))
+    statics = axle_statics(car, settings.axle, ideal=settings.ideal, standing=settings.tyre == "standing")
+    rates = design_slopes(statics, opposite=settings.opposite, load=load)
+    poses = travel_curve(statics, travels, opposite=settings.opposite, load=load)
+    towards = direction_to_middle(car, settings.axle)
+    geometry = geometry_curve(statics, travels, towards=towards, opposite=settings.opposite, load=load)
     if folder is not None:
-        _write(options, folder, car.vehicle.name, poses, geometry)
+        _write(settings, folder, car.vehicle.name, poses, geometry)
     rows = [
         {k: None if math.isnan(v) else v for entry in pair for k, v in dataclasses.asdict(entry).items()}
         for pair in zip(poses, geometry, strict=True)
     ]
-    content = {"axle": options.axle, "rates": rates, "rows": rows}
-    print_result(options, content, _report(options, poses, geometry, rates))
+    content = {"axle": settings.axle, "rates": rates, "rows": rows}
+    console.result(content, _report(settings, poses, geometry, rates))
 
 
 def _travels(text: str) -> list[float]:
@@ -126,7 +141,7 @@ def _travels(text: str) -> list[float]:
     return [round(first + index * step, 9) * 1e-3 for index in range(count)]
 
 
-def _vector(option: str, entries: list[str]) -> list[float]:
+def _vector(option: str, entries: Sequence[str]) -> list[float]:
     """Return the vector of repeated AXIS=VALUE options."""
     vector = dict.fromkeys("xyz", 0.0)
     for entry in entries:
@@ -171,16 +186,16 @@ COLUMNS = (*HEADS, *GEOMETRY_HEADS, "roll_centre_lateral_m", "side_swing_height_
 
 
 def _report(
-    options: argparse.Namespace,
+    settings: KinematicsSettings,
     poses: list[WheelPose],
     geometry: list[WheelGeometry],
     rates: dict[str, float | None],
 ) -> str:
     """Return both tables as text."""
-    joints = "ideal joints" if options.ideal else "compliant bushings"
+    joints = "ideal joints" if settings.ideal else "compliant bushings"
     lines = [
-        f"{options.axle} axle, right wheel: changes from the design position; {joints}"
-        + ("; left wheel opposite" if options.opposite else ""),
+        f"{settings.axle} axle, right wheel: changes from the design position; {joints}"
+        + ("; left wheel opposite" if settings.opposite else ""),
         "camber: top outwards +, toe: front inwards +, lateral: outwards +, longitudinal: to the rear +",
         *_rows(HEADS, [dataclasses.asdict(pose) for pose in poses]),
         "roll centre: height above the ground; swing arms: inwards and towards the middle of the car +; "
@@ -194,7 +209,7 @@ def _report(
         ),
     ]
     if rates["wheel_rate_n_per_m"] is not None:
-        travel = ", opposite travel: anti-roll bar or beam included" if options.opposite else ""
+        travel = ", opposite travel: anti-roll bar or beam included" if settings.opposite else ""
         lines.append(f"wheel rate {1e-3 * rates['wheel_rate_n_per_m']:.2f} N/mm{travel}")
     camber, toe = (0.1 * (rates[f"{name}_deg_per_m"] or 0.0) for name in ("camber", "toe"))
     lines.append(f"in the design position: camber {camber:z.3f} and toe-in {toe:z.3f} deg per 100 mm")
@@ -216,7 +231,7 @@ def _rows(heads: dict[str, str], values: list[dict[str, float]]) -> list[str]:
 
 
 def _write(
-    options: argparse.Namespace, output: Path, name: str, poses: list[WheelPose], geometry: list[WheelGeometry]
+    settings: KinematicsSettings, output: Path, name: str, poses: list[WheelPose], geometry: list[WheelGeometry]
 ) -> None:
     from vehicle.drawing.rendering.kinematics_plot import plot_kinematics
     from vehicle.runs.output.folder import output_folder, write_files
@@ -229,18 +244,18 @@ def _write(
     ]
     columns = [np.array([row[name] for row in values]) for name in COLUMNS]
     comments = [
-        f"{name}, {options.axle} axle, right wheel: changes from the design position",
+        f"{name}, {settings.axle} axle, right wheel: changes from the design position",
         "camber: top outwards +, toe: front inwards +, lateral: outwards +, longitudinal: to the rear +",
     ]
-    parts = ["opposite travel" if options.opposite else "equal travel"]
-    parts.append("ideal joints" if options.ideal else "compliant bushings")
-    parts += [f"force {entry} N" for entry in options.contact_force]
-    parts += [f"moment {entry} N m" for entry in options.moment]
-    title = f"{name}: {options.axle} axle, wheel on the right"
+    parts = ["opposite travel" if settings.opposite else "equal travel"]
+    parts.append("ideal joints" if settings.ideal else "compliant bushings")
+    parts += [f"force {entry} N" for entry in settings.contact_force]
+    parts += [f"moment {entry} N m" for entry in settings.moment]
+    title = f"{name}: {settings.axle} axle, wheel on the right"
     picture = partial(plot_kinematics, poses=poses, geometry=geometry, title=title, caption="; ".join(parts))
     table = partial(write_table, cells=heads, columns=columns, comments=comments)
-    with output_folder(output, force=options.force) as folder:
+    with output_folder(output, force=settings.destination.force) as folder:
         write_files(folder, {"kinematics.csv": table, "kinematics.png": picture})
 
 
-main = command(parser, _job)
+main = command(parser, KinematicsSettings, _job)

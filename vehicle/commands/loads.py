@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Mapping
-from difflib import get_close_matches
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.command_line import command
-from vehicle.commands.destination import output_files_of
-from vehicle.commands.options import command_parser, message_options, output_options
+from vehicle.commands.console import Console
+from vehicle.commands.options import (
+    command_parser,
+    message_options,
+    output_options,
+    setting_options,
+)
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
-from vehicle.settings import require_within
+from vehicle.runs.output.destination import Destination
+from vehicle.settings import Settings, part, setting
 
 if TYPE_CHECKING:
-    from vehicle.model.parameters.vehicle import Vehicle
     from vehicle.signals.analysis.load_schedule import CountedRun
     from vehicle.signals.analysis.load_spectrum import LoadSpectrum
 
@@ -26,73 +30,70 @@ SHOWN = 15
 """Maximum number of printed channels."""
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LoadSettings(Settings):
+    """Settings of counted loads."""
+
+    runs: tuple[Path, ...] = setting(
+        "folders of runs, or files of time histories; several form a test schedule, whose damage is written "
+        "to schedule.csv",
+        flag="runs",
+        type=Path,
+        nargs="+",
+        metavar="RUN",
+    )
+    repeats: str | None = setting("number of repeats of each run of the schedule; default: 1", metavar="N,...")
+    reference_run: Path | None = setting(
+        "compare with the damage of this run in schedule.csv, for example on a reference road", type=Path, metavar="RUN"
+    )
+    channels: str | None = setting("channels to count; default: all forces, torques and travels", metavar="NAME,...")
+    destination: Destination = part(Destination)
+    slope: float = setting(
+        "slope of the S-N (Woehler) curve [-]: damage of n cycles of amplitude A is n A^K; default: "
+        "%(default)s, usual for steel parts of a chassis",
+        5.0,
+        within="[1, 1000)",
+        type=float,
+        metavar="K",
+    )
+    classes: int = setting(
+        "number of load classes in the spectra; default: %(default)s", 64, within="[1, 10000]", type=int, metavar="N"
+    )
+
+
 def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser(
         "loads", "Compute rainflow counts, load spectra and equivalent amplitudes of the loads of a run."
     )
-    parser.add_argument(
-        "runs",
-        type=Path,
-        nargs="+",
-        metavar="RUN",
-        help="folders of runs, or files of time histories; several form a test schedule, whose damage is written "
-        "to schedule.csv",
-    )
-    parser.add_argument("--repeats", metavar="N,...", help="number of repeats of each run of the schedule; default: 1")
-    parser.add_argument(
-        "--reference-run",
-        type=Path,
-        metavar="RUN",
-        help="compare with the damage of this run in schedule.csv, for example on a reference road",
-    )
-    parser.add_argument(
-        "--channels", metavar="NAME,...", help="channels to count; default: all forces, torques and travels"
-    )
-    parser.add_argument(
-        "--slope",
-        type=float,
-        default=5.0,
-        metavar="K",
-        help="slope of the S-N (Woehler) curve [-]: damage of n cycles of amplitude A is n A^K; default: "
-        "%(default)s, usual for steel parts of a chassis",
-    )
-    parser.add_argument(
-        "--classes",
-        type=int,
-        default=64,
-        metavar="N",
-        help="number of load classes in the spectra; default: %(default)s",
-    )
+    setting_options(parser, LoadSettings, "runs", "repeats", "reference_run", "channels", "slope", "classes")
     output_options(parser, None, default=f"{', '.join(FILES)} in the folder of the run")
     message_options(parser, quiet=True)
     return parser
 
 
-def _job(options: argparse.Namespace) -> None:
+def _job(settings: LoadSettings, console: Console) -> None:
     from vehicle.drawing.rendering.load_plot import plot_loads
     from vehicle.runs.output.folder import write_together
     from vehicle.signals.formats.reader import time_file
     from vehicle.signals.records.run_summary import available_summary
 
-    source = time_file(options.runs[0])
-    require_within("--classes", options.classes, "[1, 10000]")
-    require_within("--slope", options.slope, "[1, 1000)")
-    if len(options.runs) > 1 or options.reference_run or options.repeats:
-        _schedule(options)
+    source = time_file(settings.runs[0])
+    if len(settings.runs) > 1 or settings.reference_run or settings.repeats:
+        _schedule(settings, console)
         return
-    paths = output_files_of(options, source.parent, FILES)
-    counted = _counted(options.runs[0], options)
+    paths = settings.destination.files(source.parent, FILES)
+    counted = _counted(settings.runs[0], settings)
     loads = list(counted.loads.values())
     summary = available_summary(source.parent)
     tyres = summary.get("tyre") if summary else None
     caption = (
         f"{source.name}, {counted.duration:g} s{f'; tyres {tyres}' if tyres else ''}; rainflow counts of ASTM E1049; "
-        f"equivalent amplitude: one cycle a second with it does the same damage, S-N slope {options.slope:g}"
+        f"equivalent amplitude: one cycle a second with it does the same damage, S-N slope {settings.slope:g}"
     )
-    texts = _table(loads, caption), _spectra(loads, caption, options.classes)
+    texts = _table(loads, caption), _spectra(loads, caption, settings.classes)
     write_together(paths, (*texts, partial(plot_loads, loads=loads, caption=caption)))
-    if not options.quiet:
+    if not console.quiet:
         print(_report(loads, caption))
         print(f"files: {paths[0].parent}: {', '.join(path.name for path in paths)}")
 
@@ -100,27 +101,27 @@ def _job(options: argparse.Namespace) -> None:
 SCHEDULE = "schedule.csv"
 
 
-def _schedule(options: argparse.Namespace) -> None:
+def _schedule(settings: LoadSettings, console: Console) -> None:
     """Write the damage of several runs, each repeated, and its ratio to that of a reference run."""
     from vehicle.digits import number
     from vehicle.runs.output.folder import write_text
     from vehicle.signals.analysis.load_schedule import scheduled_loads
     from vehicle.signals.formats.csv_table import table_text
 
-    texts = options.repeats.split(",") if options.repeats else ["1"] * len(options.runs)
+    texts = settings.repeats.split(",") if settings.repeats else ["1"] * len(settings.runs)
     try:
         repeats = [float(text) for text in texts]
     except ValueError:
         raise ConfigurationError(
-            f"--repeats {options.repeats}: must be numbers, for example --repeats 100,20"
+            f"--repeats {settings.repeats}: must be numbers, for example --repeats 100,20"
         ) from None
-    runs = [_counted(run, options) for run in options.runs]
-    reference = None if options.reference_run is None else _counted(options.reference_run, options)
-    rows = scheduled_loads(runs, repeats, options.slope, reference)
-    (path,) = output_files_of(options, Path(), (SCHEDULE,))
+    runs = [_counted(run, settings) for run in settings.runs]
+    reference = None if settings.reference_run is None else _counted(settings.reference_run, settings)
+    rows = scheduled_loads(runs, repeats, settings.slope, reference)
+    (path,) = settings.destination.files(Path(), (SCHEDULE,))
     parts = ", ".join(f"{count:g} x {run.name}" for count, run in zip(repeats, runs, strict=True))
     against = "" if reference is None else f"; damage ratio: divided by the damage of {reference.name}"
-    caption = f"schedule {parts}; rainflow counts of ASTM E1049, S-N slope {options.slope:g}{against}"
+    caption = f"schedule {parts}; rainflow counts of ASTM E1049, S-N slope {settings.slope:g}{against}"
     heads = ["channel", "unit", "equivalent_amplitude", *(f"share of {run.name} [-]" for run in runs)]
     heads += [] if reference is None else ["damage_ratio [-]"]
     table = [
@@ -128,7 +129,7 @@ def _schedule(options: argparse.Namespace) -> None:
         for row in rows
     ]
     write_text(path, table_text([heads, *table], [caption]))
-    if options.quiet:
+    if console.quiet:
         return
     print(caption)
     print(f"{'channel':<34}{'unit':>5}{'equivalent':>12}  {'damage ratio':>12}  shares")
@@ -141,7 +142,7 @@ def _schedule(options: argparse.Namespace) -> None:
     )
 
 
-def _counted(run: Path, options: argparse.Namespace) -> CountedRun:
+def _counted(run: Path, settings: LoadSettings) -> CountedRun:
     """Return the counted loads of a run."""
     from vehicle.signals.analysis.load_schedule import CountedRun
     from vehicle.signals.analysis.load_spectrum import load_spectrum
@@ -151,8 +152,8 @@ def _counted(run: Path, options: argparse.Namespace) -> CountedRun:
     record = read_columns(source)
     duration = float(record.time[-1] - record.time[0])
     loads = {
-        name: load_spectrum(name, record.units[name], record.channels[name], slope=options.slope, duration=duration)
-        for name in _chosen(options.channels, record.units, source)
+        name: load_spectrum(name, record.units[name], record.channels[name], slope=settings.slope, duration=duration)
+        for name in _chosen(settings.channels, record.units, source)
     }
     return CountedRun(name=run.stem, duration=duration, loads=loads)
 
@@ -210,28 +211,4 @@ def _report(loads: list[LoadSpectrum], caption: str) -> str:
     return "\n".join([caption, heads, *rows, *([f"and {left} more in {FILES[0]}"] if left else [])])
 
 
-def recorded_channels(text: str, vehicle: Vehicle) -> tuple[str, ...]:
-    """Return the channels that a run records: the default channels, then those of --channels.
-
-    Args:
-        text: "loads", "all", or names separated by commas.
-
-    Raises:
-        ConfigurationError: the car has no channel of this name.
-    """
-    more = vehicle.requested_channels
-    if text in ("loads", "all"):
-        return (*vehicle.channels, *(vehicle.load_channels if text == "loads" else more))
-    names = [name.strip() for name in text.split(",")]
-    for name in names:
-        if name not in vehicle.channels and name not in more:
-            close = get_close_matches(name, (*more, *vehicle.channels), n=1)
-            nearest = f"; did you mean {close[0]}?" if close else ""
-            raise ConfigurationError(
-                f"--channels: the car has no channel {name!r}; give loads, all, or names, for example "
-                f"{vehicle.load_channels[0]},{vehicle.load_channels[-1]}{nearest}"
-            )
-    return (*vehicle.channels, *(name for name in more if name in names))
-
-
-main = command(parser, _job)
+main = command(parser, LoadSettings, _job)

@@ -2,30 +2,78 @@
 
 from __future__ import annotations
 
-import argparse
-import math
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vehicle.commands.command_line import ProgressLine, command, print_result
-from vehicle.commands.destination import output_file_of
+from vehicle.commands.command_line import command
+from vehicle.commands.console import Console
 from vehicle.commands.options import (
     FORCE_HELP,
     command_parser,
     damper_option,
-    film_name,
-    finite_numbers,
     message_options,
-    set_once,
+    setting_options,
     vehicle_options,
 )
 from vehicle.commands.parser import Parser
+from vehicle.drawing.rendering.film_settings import FilmSettings
 from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.model.parameters.car_choice import CarChoice
+from vehicle.runs.output.destination import Destination
+from vehicle.settings import Settings, finite_numbers, part, setting
 
 if TYPE_CHECKING:
     from vehicle.runs.car.motion_figures import MotionFigure
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ModesSettings(Settings):
+    """Settings of the modes of a car.
+
+    Attributes:
+        damper: state of the dampers, "stuck" or "sliding".
+        film: film of the mode nearest to `animate`.
+        destination: of the films and files.
+    """
+
+    car: CarChoice = part(CarChoice)
+    damper: str = "stuck"
+    uff: Path | None = setting(
+        "write points, lines and complex mode shapes as a universal file (datasets 15, 82 and 55), for "
+        "Testlab, ME'scope or `python -m vehicle compare`",
+        type=Path,
+        metavar="FILE.uff",
+    )
+    film: FilmSettings = part(FilmSettings)
+    decoupling: str | None = setting(
+        "show the modes of a part on its mounts, for example engine: shares of kinetic energy in its three "
+        "translations and three rotations, and its torque roll axis",
+        metavar="PART",
+    )
+    grounded: bool = setting(
+        "compute the modes of the part with the body fixed; default: in the car", False, action="store_true"
+    )
+    crankshaft: str = setting(
+        "direction of the crankshaft, for example 0,1,0; default: across the car", "0,1,0", metavar="X,Y,Z"
+    )
+    destination: Destination = part(Destination)
+    speed: float | None = setting(
+        "speed of the car [km/h]: the tyres roll; default: the car stands",
+        within="[0, inf)",
+        type=float,
+        metavar="KM/H",
+    )
+    animate: float | None = setting(
+        "with --video: show the mode nearest to this frequency [Hz]", within="(0, inf)", type=float, metavar="HZ"
+    )
+    aim: float | None = setting(
+        "mark the modes whose largest share is below P percent; default: mark none",
+        within="(0, 100]",
+        type=float,
+        metavar="PERCENT",
+    )
 
 
 def parser() -> Parser:
@@ -33,20 +81,9 @@ def parser() -> Parser:
     parser = command_parser("modes", "Compute the modes of the complete car up to 60 Hz.")
     vehicle_options(parser)
     damper_option(parser)
-    parser.add_argument(
-        "--speed", type=float, metavar="KM/H", help="speed of the car [km/h]: the tyres roll; default: the car stands"
-    )
+    setting_options(parser, ModesSettings, "speed")
     parser.add_argument("--json", action="store_true", help="print JSON")
-    parser.add_argument(
-        "--uff",
-        type=Path,
-        metavar="FILE.uff",
-        help="write points, lines and complex mode shapes as a universal file (datasets 15, 82 and 55), for "
-        "Testlab, ME'scope or `python -m vehicle compare`",
-    )
-    parser.add_argument(
-        "--animate", type=float, metavar="HZ", help="with --video: show the mode nearest to this frequency [Hz]"
-    )
+    setting_options(parser, ModesSettings, "uff", "animate")
     parser.add_argument(
         "--video",
         nargs="?",
@@ -55,30 +92,11 @@ def parser() -> Parser:
         help="write the mode of --animate as a film of three cycles (4 s) that can run in a loop; default: "
         "runs/mode_<frequency>_hz.mp4",
     )
-    parser.add_argument(
-        "--decoupling",
-        metavar="PART",
-        help="show the modes of a part on its mounts, for example engine: shares of kinetic energy in its three "
-        "translations and three rotations, and its torque roll axis",
-    )
+    setting_options(parser, ModesSettings, "decoupling")
     decoupled = parser.scoped_group(
         "a decoupling", needs="--decoupling", active=lambda options: bool(options.decoupling)
     )
-    decoupled.add_argument(
-        "--grounded", action="store_true", help="compute the modes of the part with the body fixed; default: in the car"
-    )
-    decoupled.add_argument(
-        "--aim",
-        type=float,
-        metavar="PERCENT",
-        help="mark the modes whose largest share is below P percent; default: mark none",
-    )
-    decoupled.add_argument(
-        "--crankshaft",
-        default="0,1,0",
-        metavar="X,Y,Z",
-        help="direction of the crankshaft, for example 0,1,0; default: across the car",
-    )
+    setting_options(decoupled, ModesSettings, "grounded", "aim", "crankshaft")
     files = parser.scoped_group(
         "files", needs="--uff or --video", active=lambda options: options.uff is not None or options.video is not None
     )
@@ -87,101 +105,93 @@ def parser() -> Parser:
     return parser
 
 
-def _job(options: argparse.Namespace) -> None:
-    _check_film_options(options)
+def _job(settings: ModesSettings, console: Console) -> None:
+    _check_film(settings)
     from vehicle.runs.car import Car
     from vehicle.runs.car.motion_figures import damper_notes, motion_figures
 
-    if options.uff is not None and options.uff.exists():
-        written_here = options.uff.is_file() and b"vehicle-on-shaker" in options.uff.read_bytes()[:500]
-        if not (options.force and written_here):
+    if settings.uff is not None and settings.uff.exists():
+        written_here = settings.uff.is_file() and b"vehicle-on-shaker" in settings.uff.read_bytes()[:500]
+        if not (settings.destination.force and written_here):
             mend = (
                 "was not written by this program, so --force does not replace it; set another name"
-                if options.force
+                if settings.destination.force
                 else "exists; give --force"
             )
-            raise ConfigurationError(f"--uff {options.uff}: {mend}")
-    speed = (
-        []
-        if options.speed is None
-        else set_once(options.overrides, "--speed", [f"driving.speed={options.speed / 3.6!r}"])
-    )
-    car = Car.load(options.vehicle, [*options.overrides, *speed])
-    if options.decoupling is not None:
-        print(_decoupling(options, car))
+            raise ConfigurationError(f"--uff {settings.uff}: {mend}")
+    choice = settings.car.rolling(settings.speed)
+    car = Car.load(choice.vehicle, choice.overrides)
+    if settings.decoupling is not None:
+        console.say(_decoupling(settings, settings.decoupling, car, as_json=console.json))
         return
     figures: Sequence[MotionFigure] = ()
     reason = ""
     try:
-        figures = motion_figures(car, (options.damper,))
+        figures = motion_figures(car, (settings.damper,))
     except SimulationError as error:
         reason = f"key figures of the suspension cannot be computed: {error}"
-    table = modes_table(car, options.damper, figures)
+    table = modes_table(car, settings.damper, figures)
     table["notices"] += [reason] if reason else []
-    table["notices"] += damper_notes(car) if options.damper == "sliding" else []
-    if options.uff is not None:
+    table["notices"] += damper_notes(car) if settings.damper == "sliding" else []
+    if settings.uff is not None:
         from vehicle.runs.output.folder import write_whole
         from vehicle.runs.output.mode_file import write_modes
 
-        write_whole(options.uff, lambda path: write_modes(path, car, options.damper))
-    if options.animate is not None:
-        table["film"] = _film(options, car)
-    print_result(options, table, report(table, figures))
+        write_whole(settings.uff, lambda path: write_modes(path, car, settings.damper))
+    if settings.animate is not None:
+        table["film"] = _film(settings, settings.animate, car, console)
+    console.result(table, report(table, figures))
 
 
-def _decoupling(options: argparse.Namespace, car: Any) -> str:
+def _decoupling(settings: ModesSettings, name: str, car: Any, *, as_json: bool) -> str:
     """Return the decoupling of a part as a table or as JSON."""
     from vehicle.engines.linear.decoupling import decoupling
     from vehicle.runs.car.decoupling_text import decoupling_json, decoupling_table
 
-    if options.aim is not None and not 0.0 < options.aim <= 100.0:
-        raise ConfigurationError(f"--aim {options.aim:g}: must be above 0 and at most 100 percent")
-    crankshaft = finite_numbers(options.crankshaft, ",")
+    crankshaft = finite_numbers(settings.crankshaft, ",")
     if len(crankshaft) != 3:
-        raise ConfigurationError(f"--crankshaft {options.crankshaft}: must be three numbers, for example 0,1,0")
+        raise ConfigurationError(f"--crankshaft {settings.crankshaft}: must be three numbers, for example 0,1,0")
     x, y, z = crankshaft
     engine_modes = decoupling(
         car.matrices,
-        options.decoupling,
-        grounded=options.grounded,
-        stuck=options.damper == "stuck",
+        name,
+        grounded=settings.grounded,
+        stuck=settings.damper == "stuck",
         crankshaft=(x, y, z),
     )
-    return decoupling_json(engine_modes) if options.json else decoupling_table(engine_modes, options.aim)
+    return decoupling_json(engine_modes) if as_json else decoupling_table(engine_modes, settings.aim)
 
 
-def _check_film_options(options: argparse.Namespace) -> None:
+def _check_film(settings: ModesSettings) -> None:
     """Check the film options before the computation, and choose the OpenGL library before MuJoCo is imported."""
-    if options.animate is None:
-        if options.video is not None:
+    video = settings.film.video
+    if settings.animate is None:
+        if video is not None:
             raise ConfigurationError("--video: the mode is missing; give its frequency, for example --animate 28")
         return
-    if not 0.0 < options.animate < math.inf:
-        raise ConfigurationError(f"--animate {options.animate:g}: must be above 0 Hz, for example --animate 28")
-    if options.video is None:
+    if video is None:
         raise ConfigurationError(
-            f"--animate {options.animate:g}: makes a film only with --video; add --video [FILE.mp4]"
+            f"--animate {settings.animate:g}: makes a film only with --video; add --video [FILE.mp4]"
         )
     from vehicle.drawing.rendering.backend import require_film
-    from vehicle.runs.output.free_names import named_file
 
-    if options.video:
-        named_file(options.held, film_name(options.video, ""), "--video", force=options.force)
+    if video:
+        settings.destination.further_file(settings.film.path(""), "--video")
     require_film()
 
 
-def _film(options: argparse.Namespace, car: Any) -> dict[str, Any]:
+def _film(settings: ModesSettings, frequency: float, car: Any, console: Console) -> dict[str, Any]:
     """Write the film of a mode, and return its description and path."""
     from vehicle.drawing.rendering.mode_film import mode_film
     from vehicle.runs.car.main_mode import nearest
     from vehicle.runs.output.folder import write_whole
 
-    mode = nearest(car.modes(options.damper), options.animate)
-    path = film_name(options.video, f"runs/mode_{mode.frequency:.2f}_hz.mp4")
-    if not options.video:
-        path = output_file_of(argparse.Namespace(**vars(options), output=None), path)
-    write_whole(path, lambda file: mode_film(car.model, mode, file, progress=ProgressLine("film      ", enabled=True)))
-    return {"file": str(path), "asked_hz": options.animate, "frequency_hz": mode.frequency}
+    mode = nearest(car.modes(settings.damper), frequency)
+    path = settings.film.path(f"runs/mode_{mode.frequency:.2f}_hz.mp4")
+    if not settings.film.video:
+        path = settings.destination.file(path)
+    write_whole(path, lambda file: mode_film(car.model, mode, file, progress=console.progress("film      ")))
+    return {"file": str(path), "asked_hz": frequency, "frequency_hz": mode.frequency}
 
 
 def modes_table(car: Any, damper: str, figures: Sequence[MotionFigure]) -> dict[str, Any]:
@@ -249,4 +259,4 @@ def report(table: dict[str, Any], figures: Sequence[MotionFigure]) -> str:
     return "\n".join(lines)
 
 
-main = command(parser, _job)
+main = command(parser, ModesSettings, _job)

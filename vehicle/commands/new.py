@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Sequence
-from dataclasses import asdict
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vehicle.commands.command_line import command, print_result
-from vehicle.commands.options import FORCE_HELP, command_parser, message_options
+from vehicle.commands.command_line import command
+from vehicle.commands.console import Console
+from vehicle.commands.options import FORCE_HELP, command_parser, destination_of, message_options, read, setting_options
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.quantity import field_quantity
 from vehicle.model.parameters.shipped import CARS
+from vehicle.runs.output.destination import Destination
+from vehicle.settings import Settings, part, setting
 
 if TYPE_CHECKING:
     from vehicle.runs.car.motion_figures import MotionFigure
@@ -37,19 +40,7 @@ def parser() -> Parser:
     from vehicle.studies.design.stated_numbers import AXLE_LOADS, StatedNumbers, option
 
     parser = command_parser("new", "Make a car from a template car and its masses, lengths and frequencies.")
-    parser.add_argument(
-        "folder",
-        type=Path,
-        metavar="NAME",
-        help="folder of the new car; the last part of the path is the name of the car",
-    )
-    parser.add_argument(
-        "--from",
-        dest="source",
-        metavar="CAR",
-        help="car to start from: a shipped car with four wheels (sedan, focus_road) or the file of a car. Default "
-        "with --car-class: sedan. Axles and powertrain are scaled with the mass",
-    )
+    setting_options(parser, NewSettings, "folder", "source")
     parser.add_argument(
         "--car-class",
         dest="car_class",
@@ -57,13 +48,7 @@ def parser() -> Parser:
         help="class of the car, which sets default masses, lengths and ride frequencies; electric-suv has an "
         "electric drive, no engine",
     )
-    parser.add_argument(
-        "--numbers",
-        type=Path,
-        metavar="FILE.toml",
-        help="file with the values of these options ('_' for '-', for example kerb_mass = 1450) and loads as "
-        "[load.driver]",
-    )
+    setting_options(parser, NewSettings, "numbers")
     for title, names in GROUPS.items():
         group = parser.add_argument_group(title)
         for name in names:
@@ -98,7 +83,44 @@ def _kg_or_percent(text: str) -> float | str:
         return text
 
 
-def _job(options: argparse.Namespace) -> None:
+@dataclass(frozen=True, kw_only=True, slots=True)
+class NewSettings(Settings):
+    """Settings of a new car.
+
+    Attributes:
+        stated: name to stated number, which may be None.
+    """
+
+    folder: Path = setting(
+        "folder of the new car; the last part of the path is the name of the car",
+        flag="folder",
+        type=Path,
+        metavar="NAME",
+    )
+    source: str | None = setting(
+        "car to start from: a shipped car with four wheels (sedan, focus_road) or the file of a car. Default "
+        "with --car-class: sedan. Axles and powertrain are scaled with the mass",
+        flag="--from",
+        metavar="CAR",
+    )
+    numbers: Path | None = setting(
+        "file with the values of these options ('_' for '-', for example kerb_mass = 1450) and loads as [load.driver]",
+        type=Path,
+        metavar="FILE.toml",
+    )
+    stated: Mapping[str, Any] = field(default_factory=dict)
+    destination: Destination = part(Destination)
+
+
+def settings_of(options: argparse.Namespace) -> NewSettings:
+    """Return the settings of the parsed options."""
+    from vehicle.studies.design.stated_numbers import NAMES
+
+    stated = {key: vars(options)[key] for key in (*NAMES, "tyre_size", "inertia", "car_class")}
+    return read(options, NewSettings, stated=stated, destination=destination_of(options))
+
+
+def _job(settings: NewSettings, console: Console) -> None:
     # Heavy packages are imported after the arguments are known to be good.
     from vehicle.model.parameters.quantity import NAME_PATTERN
     from vehicle.model.parameters.shipped import vehicle_file
@@ -106,36 +128,34 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.runs.output.folder import output_folder, write_files, write_text
     from vehicle.runs.output.free_names import named
     from vehicle.studies.design.new_car import new_car, template_files
-    from vehicle.studies.design.stated_numbers import NAMES, stated_numbers
+    from vehicle.studies.design.stated_numbers import stated_numbers
 
-    name = options.folder.name
+    name, from_car, force = settings.folder.name, settings.source, settings.destination.force
     if not NAME_PATTERN.fullmatch(name):
-        raise ConfigurationError(f"NAME {str(options.folder)!r}: its last part must be letters, digits, '_', '.', '-'")
-    if name in CARS and options.folder == Path(name):
+        raise ConfigurationError(f"NAME {str(settings.folder)!r}: its last part must be letters, digits, '_', '.', '-'")
+    if name in CARS and settings.folder == Path(name):
         raise ConfigurationError(
             f"NAME {name}: is the name of a shipped car, which --vehicle would find first; choose another name"
         )
-    stated = stated_numbers(
-        options.numbers, {key: getattr(options, key) for key in (*NAMES, "tyre_size", "inertia", "car_class")}
-    )
-    if options.source is None:
+    stated = stated_numbers(settings.numbers, settings.stated)
+    if from_car is None:
         if stated.car_class is None:
             raise ConfigurationError(
                 "--from is missing; give the car to start from, for example --from sedan, or a --car-class"
             )
-        options.source = "sedan"
-    source = vehicle_file(options.source)
+        from_car = "sedan"
+    source = vehicle_file(from_car)
     try:
-        folder = named(options.held, options.folder, force=options.force, protect=(source,))
+        folder = named(settings.destination.held, settings.folder, force=force, protect=(source,))
     except ConfigurationError as error:
         raise ConfigurationError(str(error).replace("--output", "NAME", 1)) from None
-    result = new_car(name, options.source, stated)
-    with output_folder(folder, force=options.force) as temporary:
+    result = new_car(name, from_car, stated)
+    with output_folder(folder, force=force) as temporary:
         write_text(temporary / "vehicle.toml", result.text)
         write_files(temporary, {file.name: file.read_bytes() for file in template_files(source, result.car)})
     file = folder / "vehicle.toml"
     figures = motion_figures(result.car)
-    print_result(options, _checks(result, file, figures), _report(result, file, figures))
+    console.result(_checks(result, file, figures), _report(result, file, figures))
 
 
 def _report(result: NewCar, file: Path, figures: Sequence[MotionFigure]) -> str:
@@ -175,4 +195,4 @@ def _notes(result: NewCar) -> list[str]:
     return [*result.notes, *damper_notes(result.car)]
 
 
-main = command(parser, _job)
+main = command(parser, settings_of, _job)

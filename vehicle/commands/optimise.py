@@ -1,22 +1,31 @@
 """`python -m vehicle optimise`: search for Pareto-optimal parameters within bounds and limits."""
 
-import argparse
-import shlex
-from pathlib import Path
+from __future__ import annotations
 
-from vehicle.commands.chosen_inputs import chosen_inputs
-from vehicle.commands.command_line import ProgressLine, command
-from vehicle.commands.destination import study_folder_of
-from vehicle.commands.input_options import signal_options
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from vehicle.commands.command_line import command
+from vehicle.commands.console import Console
+from vehicle.commands.input_options import inputs_of, signal_options
 from vehicle.commands.options import (
+    car_of,
     command_parser,
+    destination_of,
     message_options,
     output_options,
+    read,
     setting_options,
     vehicle_options,
 )
 from vehicle.commands.parser import Parser
+from vehicle.errors import ConfigurationError
 from vehicle.studies.optimisation.search_settings import SearchSettings
+
+if TYPE_CHECKING:
+    from vehicle.model.parameters.ranges import Range
+    from vehicle.studies.optimisation.search_study import SearchStudy, TargetStudy
 
 
 def parser() -> Parser:
@@ -30,6 +39,7 @@ def parser() -> Parser:
     search.add_argument(
         "--vary",
         action="append",
+        type=_range,
         default=[],
         metavar="PATH=LOW:HIGH",
         help="a parameter and its bounds, in its unit, as front.damper.viscous=800:4000; *.damper.viscous sets all "
@@ -46,6 +56,7 @@ def parser() -> Parser:
     )
     search.add_argument(
         "--targets",
+        type=Path,
         metavar="FILE.toml",
         help="in place of objectives: the smallest change of at most 8 parameters with which all figures of the file "
         "meet their limits, on the inputs of the file, which is that of `report --targets`",
@@ -53,6 +64,7 @@ def parser() -> Parser:
     search.add_argument(
         "--cost",
         action="append",
+        type=_cost,
         default=[],
         metavar="PATH=C",
         help="with --targets: a change of this parameter counts C times. By default 1. May be repeated",
@@ -75,79 +87,11 @@ def parser() -> Parser:
     return parser
 
 
-def _job(options: argparse.Namespace) -> None:
-    # Heavy packages are imported after the arguments are known to be good.
+def _range(text: str) -> Range:
+    """Return the range of a text as "front.damper.viscous=800:4000"."""
     from vehicle.model.parameters.ranges import parsed_variation
-    from vehicle.runs.car import Car
-    from vehicle.runs.output.folder import study_folder
-    from vehicle.studies.optimisation.car_search import plan_search
-    from vehicle.studies.optimisation.car_table import CARS
-    from vehicle.studies.optimisation.problem import parsed_tolerance
-    from vehicle.studies.optimisation.search_files import read_other_front
-    from vehicle.studies.optimisation.stored_search import SEARCH
-    from vehicle.studies.sweeps.executors import executor_factory
 
-    if options.targets is not None:
-        _meet_targets(options)
-        return
-    settings = SearchSettings.of_options(
-        options,
-        executor=None if options.executor is None else executor_factory(options.executor),
-        tolerances=[parsed_tolerance(text) for text in options.tolerances or ()],
-    )
-    car = Car.load(options.vehicle, options.overrides)
-    vary = [parsed_variation("--vary", text).range() for text in options.vary]
-    plan = plan_search(car, vary, chosen_inputs(options, car.vehicle), options.minimise, settings)
-    beside = None if options.beside is None else read_other_front(options.beside, plan.trials.problem)
-    rows = (CARS, SEARCH)
-    output = study_folder_of(options, options.output, rows=rows)
-    with study_folder(output, force=options.force, resume=options.resume, rows=rows) as folder:
-        cars = plan.run(folder, progress=ProgressLine("optimise  ", enabled=not options.quiet))
-        cars.write(folder, beside=beside, command=f"python -m vehicle optimise {shlex.join(options.words)}")
-    if not options.quiet:
-        print(cars.text(output, beside))
-
-
-def _meet_targets(options: argparse.Namespace) -> None:
-    """Search for the smallest change that meets the targets in a file, and write its result."""
-    from vehicle.errors import ConfigurationError
-    from vehicle.model.parameters.ranges import parsed_variation
-    from vehicle.runs.car import Car
-    from vehicle.runs.output.folder import study_folder, write_json, write_text
-    from vehicle.runs.output.own_files import parameters_text, write_own_files
-    from vehicle.runs.targets.verdict import read_targets
-    from vehicle.signals.excitation.road_drive import USUAL_DURATION
-    from vehicle.studies.optimisation.target_search import meet_targets, outlook
-
-    for name in ("minimise", "maximise", "limits", "tolerances", "check", "beside", "resume"):
-        if getattr(options, name):
-            option = f"--{name.removesuffix('s')}"
-            raise ConfigurationError(f"--targets: searches by the limits of its file; leave out {option}")
-    if options.input or options.road:
-        raise ConfigurationError("--targets: its file names the inputs; leave out --input and --road")
-    car, figures = Car.load(options.vehicle, options.overrides), read_targets(options.targets)
-    costs = dict(_cost(text) for text in options.cost)
-    output = study_folder_of(options, options.output, rows=())
-    if not options.quiet:
-        length = USUAL_DURATION if options.duration is None else options.duration
-        print(f"note        {outlook(len(options.vary), figures, length)}", flush=True)
-    with study_folder(output, force=options.force, resume=False, rows=()) as folder:
-        result = meet_targets(
-            car,
-            figures,
-            [parsed_variation("--vary", text).range() for text in options.vary],
-            duration=options.duration,
-            costs=costs,
-            jobs=options.jobs,
-            progress=ProgressLine("optimise  ", enabled=not options.quiet),
-        )
-        write_text(folder / "vehicle.toml", parameters_text(result.car, result.sentence))
-        write_own_files(folder, result.car)
-        command = f"python -m vehicle optimise {shlex.join(options.words)}"
-        write_json(folder / "summary.json", {**result.summary(), "command": command})
-    if not options.quiet:
-        print(f"{output}: {result.change.runs} cars on {', '.join(result.inputs)}; vehicle.toml, summary.json")
-        print(result)
+    return parsed_variation("--vary", text).range()
 
 
 def _cost(text: str) -> tuple[str, float]:
@@ -156,8 +100,6 @@ def _cost(text: str) -> tuple[str, float]:
     Raises:
         ConfigurationError: another form, or a cost that is not positive.
     """
-    from vehicle.errors import ConfigurationError
-
     path, _, value = text.partition("=")
     try:
         cost = float(value)
@@ -168,4 +110,34 @@ def _cost(text: str) -> tuple[str, float]:
     return path, cost
 
 
-main = command(parser, _job)
+def settings_of(options: argparse.Namespace) -> SearchStudy | TargetStudy:
+    """Return the study of parsed options.
+
+    Raises:
+        ConfigurationError: options without effect with --targets.
+    """
+    # Heavy packages are imported after the arguments are known to be good.
+    from vehicle.studies.optimisation.search_study import SearchStudy, TargetStudy
+
+    chosen = {"car": car_of(options), "destination": destination_of(options)}
+    if options.targets is None:
+        return read(options, SearchStudy, inputs=inputs_of(options), **chosen)
+    for name in ("minimise", "maximise", "limits", "tolerances", "check", "beside", "resume"):
+        if getattr(options, name):
+            option = f"--{name.removesuffix('s')}"
+            raise ConfigurationError(f"--targets: searches by the limits of its file; leave out {option}")
+    if options.input or options.road:
+        raise ConfigurationError("--targets: its file names the inputs; leave out --input and --road")
+    return read(options, TargetStudy, **chosen)
+
+
+def _job(study: SearchStudy | TargetStudy, console: Console) -> None:
+    text = study.run(
+        command=console.command("vehicle optimise"),
+        begin=console.progress,
+        note=lambda text: console.say(f"note        {text}"),
+    )
+    console.say(text)
+
+
+main = command(parser, settings_of, _job)

@@ -1,16 +1,21 @@
-"""Options of several commands, each defined once."""
+"""Options of several commands, each defined once, and the settings read from the parsed options."""
 
 import argparse
-import math
-from collections.abc import Sequence
+import sys
+from collections.abc import Callable
+from contextlib import ExitStack
+from dataclasses import fields
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from vehicle.commands.parser import Parser
-from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.car_choice import CarChoice
 from vehicle.model.parameters.shipped import CARS, vehicle_file
+from vehicle.runs.output.destination import Destination
 from vehicle.settings import Settings
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
+
+S = TypeVar("S")
 
 EXIT_CODES = (
     "Exit codes: 0 done, 2 usage, 3 bad data, 4 simulation failed, 5 library missing, 6 cannot write, 130 interrupted."
@@ -43,7 +48,8 @@ def setting_options(
         declared = all_declared[name]
         default, factor = declared["default"], declared["factor"]
         if isinstance(default, tuple):  # numbers, or values to append to
-            default = ":".join(f"{each:g}" for each in default) if "type" in declared["option"] else list(default)
+            numbers = default and "type" in declared["option"]
+            default = ":".join(f"{each:g}" for each in default) if numbers else list(default)
         arguments: dict[str, Any] = {
             "dest": name,
             "default": default / factor if isinstance(default, float) else default,
@@ -52,7 +58,56 @@ def setting_options(
             **more,
         }
         arguments["help"] += note
+        if not declared["flag"].startswith("-"):  # an argument without an option
+            del arguments["dest"], arguments["default"]
         parser.add_argument(declared["flag"], **arguments)
+
+
+def read(options: argparse.Namespace, settings: type[S], /, **more: Any) -> S:
+    """Return the settings of parsed options, and those of their parts.
+
+    A field takes the option of its name, or of the `dest` of its declaration; without one it has its default.
+
+    Args:
+        settings: dataclass; its class need not be one of `Settings`.
+        more: values of further fields.
+    """
+    for each in fields(settings):  # type: ignore[arg-type]
+        if each.name in more:
+            continue
+        declared = each.metadata
+        if "part" in declared:
+            of_part = PARTS.get(declared["part"])
+            more[each.name] = of_part(options) if of_part else read(options, declared["part"])
+            continue
+        name, factor = declared.get("option", {}).get("dest", each.name), declared.get("factor", 1.0)
+        value = vars(options).get(name)
+        if value is not None and ("meaning" not in declared or declared["option"]):
+            value = tuple(value) if isinstance(value, list) else value
+            more[each.name] = value if factor == 1.0 else factor * value
+    return settings(**more)
+
+
+def car_of(options: argparse.Namespace) -> CarChoice:
+    """Return the choice of the car of --vehicle, or of the argument CAR, and --set."""
+    file = vars(options).get("car") or vars(options).get("vehicle")
+    return CarChoice(vehicle=file, overrides=tuple(options.overrides))
+
+
+def destination_of(options: argparse.Namespace) -> Destination:
+    """Return the destination of --output, --force and --resume; a notice is printed, except with --quiet."""
+    given = vars(options)
+    return Destination(
+        output=options.output if "output" in options.given else None,
+        force=given.get("force", False),
+        resume=given.get("resume", False),
+        tell=lambda text: None if given.get("quiet", False) else print(text, file=sys.stderr),
+        held=given.get("held") or ExitStack(),
+    )
+
+
+PARTS: dict[Any, Callable[[argparse.Namespace], Any]] = {CarChoice: car_of, Destination: destination_of}
+"""Reader of a part of settings that has no options of the names of its fields."""
 
 
 def vehicle_options(parser: argparse._ActionsContainer) -> argparse._ActionsContainer:
@@ -81,28 +136,8 @@ def set_option(parser: argparse._ActionsContainer) -> None:
     )
 
 
-def set_once(overrides: Sequence[str], flag: str, texts: Sequence[str]) -> list[str]:
-    """Return the texts "path=value" that an option sets in the car.
-
-    Args:
-        overrides: texts of --set.
-        flag: option, for the message.
-        texts: texts of the option.
-
-    Raises:
-        ConfigurationError: --set gives one of these parameters another value.
-    """
-    for text in texts:
-        path = text.partition("=")[0]
-        for other in overrides:
-            key = other.partition("=")[0].strip().removeprefix("*.")
-            if other.strip() != text and (path == key or path.endswith(f".{key}")):
-                raise ConfigurationError(f"{flag} and --set {other.strip()}: both set {path}; leave one of them out")
-    return list(texts)
-
-
 def output_options(parser: Parser, path: Path | None, *, default: str = "", metavar: str = "DIR") -> None:
-    """Add --output and --force, see `vehicle.commands.destination`.
+    """Add --output and --force, see `destination_of`.
 
     Args:
         path: folder or file without --output; None if the job chooses it.
@@ -148,27 +183,6 @@ def report_option(parser: Parser, content: str, folder: str) -> None:
         help=f"also write a report: {content}; default: report.html in the folder of {folder}",
     )
     head_options(parser.scoped_group("a report", needs="--report", active=lambda options: options.report is not None))
-
-
-def finite_numbers(text: str, separator: str) -> list[float]:
-    """Return the numbers of the parts of a text; none if a part is no finite number."""
-    try:
-        numbers = [float(part) for part in text.split(separator)]
-    except ValueError:
-        return []
-    return numbers if all(map(math.isfinite, numbers)) else []
-
-
-def film_name(value: str, default: str) -> Path:
-    """Return the path of a film, the value of --video or, if that is empty, a default.
-
-    Raises:
-        ConfigurationError: it does not end in .mp4.
-    """
-    name = Path(value or default)
-    if name.suffix != ".mp4":
-        raise ConfigurationError(f"--video {name}: must end in .mp4; set FILE.mp4")
-    return name
 
 
 def damper_option(parser: argparse._ActionsContainer) -> None:

@@ -21,7 +21,7 @@ class Scope:
 
     Attributes:
         active: True if the parsed options contain the object of the group; None if only the command can decide it
-            and calls `refuse_idle`.
+            and calls `Console.refuse_idle`.
         needs: completes "belongs to ...", for the message.
         options: options of the group.
     """
@@ -113,8 +113,8 @@ class Parser(argparse.ArgumentParser):
         options, unknown = super().parse_known_args(args, namespace)
         typed = self._given(arguments)
         for scope in self.scopes.values():
-            if scope.active is not None and not scope.active(options):
-                _refuse(scope, typed)
+            if scope.active is not None and not scope.active(options) and (message := _refusal(scope, typed)):
+                raise ConfigurationError(message)
         # Options and scopes of a subparser are in the namespace already.
         options.given = typed | getattr(options, "given", {})
         options.scopes = self.scopes | getattr(options, "scopes", {})
@@ -177,16 +177,19 @@ class Parser(argparse.ArgumentParser):
         raise ConfigurationError(f"{message}; {f'{self.advice}; ' if self.advice else ''}see {self.prog} --help")
 
 
-def refuse_idle(options: argparse.Namespace, title: str) -> None:
-    """Reject the options of a group that the command found to be without effect.
+def idle_options(options: argparse.Namespace) -> dict[str, str]:
+    """Return the refusals of groups that only the command can find without effect: title to message.
 
-    Raises:
-        ConfigurationError: an option of the group is on the command line.
+    Only groups of which an option is on the command line.
     """
-    _refuse(options.scopes[title], options.given)
+    return {
+        title: message
+        for title, scope in options.scopes.items()
+        if scope.active is None and (message := _refusal(scope, options.given))
+    }
 
 
-def _refuse(scope: Scope, typed: dict[str, str]) -> None:
-    for action in scope.options:
-        if word := typed.get(action.dest):
-            raise ConfigurationError(f"{word}: belongs to {scope.needs}")
+def _refusal(scope: Scope, typed: dict[str, str]) -> str:
+    """Return the message on the first option of a group on the command line, or an empty text."""
+    word = next((typed[action.dest] for action in scope.options if action.dest in typed), "")
+    return word and f"{word}: belongs to {scope.needs}"

@@ -1,32 +1,29 @@
 """`python -m vehicle report`: write the report of one run, or of several runs compared, as an HTML file."""
 
-import argparse
+from dataclasses import dataclass
 from pathlib import Path
 
-from vehicle.commands.command_line import ProgressLine, command
-from vehicle.commands.destination import REPORT, output_file_of
-from vehicle.commands.film_options import check_film_options, film_options, take_settings
-from vehicle.commands.options import command_parser, film_name, head_options, message_options, output_options
+from vehicle.commands.command_line import command
+from vehicle.commands.console import Console
+from vehicle.commands.film_options import film_options
+from vehicle.commands.options import (
+    command_parser,
+    head_options,
+    message_options,
+    output_options,
+    setting_options,
+)
 from vehicle.commands.parser import Parser
+from vehicle.drawing.rendering.film_settings import FilmSettings
 from vehicle.errors import ConfigurationError
+from vehicle.runs.output.destination import REPORT, Destination
+from vehicle.settings import Settings, part, setting
 
 
 def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser("report", "Write findings, figures, moving modes and tables of runs into one HTML file.")
-    parser.add_argument(
-        "runs",
-        nargs="+",
-        type=Path,
-        metavar="RUN",
-        help="folder of a run, for example runs/low; further runs are compared with the first",
-    )
-    parser.add_argument(
-        "--targets",
-        metavar="FILE.toml",
-        help="start the report with the check of these targets (figures with limits); 'ride' is a shipped file "
-        "to copy and change",
-    )
+    setting_options(parser, ReportSettings, "runs", "targets")
     film_options(
         parser,
         "render a film of two runs of one input side by side, and put it into the report; both are simulated again "
@@ -43,59 +40,84 @@ def parser() -> Parser:
     return parser
 
 
-def _job(options: argparse.Namespace) -> None:
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ReportSettings(Settings):
+    """Settings of a report.
+
+    Attributes:
+        film: film of two runs side by side.
+        destination: the report; by default `REPORT` in the folder of a single run.
+        author, project: names at the top.
+    """
+
+    runs: tuple[Path, ...] = setting(
+        "folder of a run, for example runs/low; further runs are compared with the first",
+        flag="runs",
+        nargs="+",
+        type=Path,
+        metavar="RUN",
+    )
+    targets: str | None = setting(
+        "start the report with the check of these targets (figures with limits); 'ride' is a shipped file "
+        "to copy and change",
+        metavar="FILE.toml",
+    )
+    film: FilmSettings = part(FilmSettings)
+    destination: Destination = part(Destination)
+    author: str = ""
+    project: str = ""
+
+
+def _job(settings: ReportSettings, console: Console) -> None:
     from vehicle.handover.page.report_file import write_report
 
-    missing = next((run for run in options.runs if not run.is_dir()), None)
+    missing = next((run for run in settings.runs if not run.is_dir()), None)
     if missing is not None:
         raise ConfigurationError(f"{missing}: is not a folder; give the folder of a run, for example runs/low")
-    default = options.runs[0] / REPORT if len(options.runs) == 1 else Path(REPORT)
-    check_film_options(options)
-    path, film = output_file_of(options, default, ending=".html"), None
-    if options.video is not None:
-        if len(options.runs) != 2:
+    default = settings.runs[0] / REPORT if len(settings.runs) == 1 else Path(REPORT)
+    path, film = settings.destination.file(default, ending=".html"), None
+    if settings.film.video is not None:
+        if len(settings.runs) != 2:
             raise ConfigurationError(
-                f"--video: shows two runs side by side, found {len(options.runs)}; for a film of a single run, give "
+                f"--video: shows two runs side by side, found {len(settings.runs)}; for a film of a single run, give "
                 "--video to shaker"
             )
-        film = _film(options)
+        film = _film(settings, console)
     write_report(
-        options.runs,
+        settings.runs,
         path,
-        force=options.force,
-        progress=ProgressLine("report    ", enabled=not options.quiet),
-        targets=options.targets,
-        notice=None if options.quiet else lambda text: print(f"note        {text}"),
+        force=settings.destination.force,
+        progress=console.progress("report    "),
+        targets=settings.targets,
+        notice=lambda text: console.say(f"note        {text}"),
         film=film,
-        author=options.author,
-        project=options.project,
+        author=settings.author,
+        project=settings.project,
     )
-    if not options.quiet:
-        print(f"report      {path}, {path.stat().st_size / 1e6:.1f} MB")
+    console.say(f"report      {path}, {path.stat().st_size / 1e6:.1f} MB")
 
 
-def _film(options: argparse.Namespace) -> Path:
+def _film(settings: ReportSettings, console: Console) -> Path:
     """Write the film of two runs, print how exact the film is, and return the path."""
     from vehicle.drawing.rendering.backend import require_film
     from vehicle.drawing.rendering.crew import drawing_jobs
     from vehicle.runs.output.folder import write_whole
-    from vehicle.runs.output.free_names import free_file, named_file
+    from vehicle.runs.output.free_names import free_file
     from vehicle.runs.report.pair_film import film_of_two
 
-    named = film_name(options.video, "film.mp4")
-    chosen = options.video or options.force
-    path = named_file(options.held, named, "--video", force=options.force) if chosen else free_file(options.held, named)
+    named, destination = settings.film.path("film.mp4"), settings.destination
+    chosen = settings.film.video or destination.force
+    path = destination.further_file(named, "--video") if chosen else free_file(destination.held, named)
     require_film()
-    progress = ProgressLine("film      ", enabled=not options.quiet)
     said: list[str] = []
 
     def make(file: Path) -> None:
-        said.append(film_of_two(options.runs, file, take_settings(options), jobs=drawing_jobs(), progress=progress))
+        progress, take = console.progress("film      "), settings.film.values()
+        said.append(film_of_two(settings.runs, file, take, jobs=drawing_jobs(), progress=progress))
 
     write_whole(path, make)
-    if not options.quiet:
-        print(f"film        {path}: {said[0]}")
+    console.say(f"film        {path}: {said[0]}")
     return path
 
 
-main = command(parser, _job)
+main = command(parser, ReportSettings, _job)

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-import argparse
-import sys
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehicle.commands.accepted_advice import accept, require_one_file
 from vehicle.commands.command_line import command
-from vehicle.commands.destination import output_files_of
-from vehicle.commands.input_options import record_choice, record_options
-from vehicle.commands.options import command_parser, message_options, output_options
+from vehicle.commands.console import Console
+from vehicle.commands.input_options import record_options
+from vehicle.commands.options import (
+    command_parser,
+    message_options,
+    output_options,
+    setting_options,
+)
 from vehicle.commands.parser import Parser
-from vehicle.errors import ConfigurationError
+from vehicle.runs.output.destination import Destination
+from vehicle.settings import Settings, pair, part, setting
+from vehicle.signals.records.record_settings import RecordSettings
 
 if TYPE_CHECKING:
     from vehicle.signals.records.record_spectra import RecordSpectra
@@ -27,25 +32,7 @@ def parser() -> Parser:
         "spectra",
         "Compute spectral densities, third octaves and cumulative RMS of accelerations, weighted and unweighted.",
     )
-    parser.add_argument(
-        "runs",
-        nargs="+",
-        type=Path,
-        metavar="RUN",
-        help="folders of runs, or measurement files; all are drawn in the same pictures",
-    )
-    parser.add_argument(
-        "--channels",
-        metavar="NAME,...",
-        help="acceleration channels; default: seat rail, seat and vertical acceleration of the knuckles, or all "
-        "accelerations of a measurement file without these",
-    )
-    parser.add_argument(
-        "--range",
-        default="0.5:80",
-        metavar="HZ:HZ",
-        help="lowest and highest frequency [Hz]; default: %(default)s, the range of ISO 2631-1 for comfort",
-    )
+    setting_options(parser, SpectraSettings, "runs", "channels", "range")
     record_options(
         parser.add_argument_group("measurement files"),
         "the name of this channel in runs, for example seat_rail_acc_z, which decides its weighting",
@@ -56,24 +43,49 @@ def parser() -> Parser:
     return parser
 
 
-def _job(options: argparse.Namespace) -> None:
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SpectraSettings(Settings):
+    """Settings of spectra.
+
+    Attributes:
+        record: channels, units and times of measurement files.
+    """
+
+    runs: tuple[Path, ...] = setting(
+        "folders of runs, or measurement files; all are drawn in the same pictures",
+        flag="runs",
+        nargs="+",
+        type=Path,
+        metavar="RUN",
+    )
+    channels: str | None = setting(
+        "acceleration channels; default: seat rail, seat and vertical acceleration of the knuckles, or all "
+        "accelerations of a measurement file without these",
+        metavar="NAME,...",
+    )
+    range: tuple[float, float] = setting(
+        "lowest and highest frequency [Hz]; default: %(default)s, the range of ISO 2631-1 for comfort",
+        (0.5, 80.0),
+        type=pair("--range", "LOW:HIGH [Hz], for example 0.5:80", above=0.0),
+        metavar="HZ:HZ",
+    )
+    record: RecordSettings = part(RecordSettings)
+    destination: Destination = part(Destination)
+
+
+def _job(settings: SpectraSettings, console: Console) -> None:
     from vehicle.drawing.rendering.spectra_plot import plot_road_levels, plot_spectra
     from vehicle.runs.output.folder import Content, write_together
     from vehicle.runs.output.spectra_files import picture_columns, spectra_text, third_octaves_text
     from vehicle.signals.formats.reader import time_file
     from vehicle.signals.records.record_spectra import record_spectra
 
-    asked = [name.strip() for name in options.channels.split(",")] if options.channels else None
-    low, _, high = options.range.partition(":")
-    try:
-        frequency_range = float(low), float(high)
-    except ValueError:
-        raise ConfigurationError(f"--range {options.range}: must be LOW:HIGH [Hz], for example 0.5:80") from None
-    choice = record_choice(options, "")
-    if len(options.runs) > 1:
-        require_one_file(options)
-    runs = [record_spectra(path, asked, frequency_range, choice) for path in options.runs]
-    accept(options, (text for run in runs for text in run.notices))
+    asked = [name.strip() for name in settings.channels.split(",")] if settings.channels else None
+    choice = settings.record.choice("")
+    if len(settings.runs) > 1:
+        console.require_one_file()
+    runs = [record_spectra(path, asked, settings.range, choice) for path in settings.runs]
+    console.accept(text for run in runs for text in run.notices)
     names = _unique([run.name for run in runs])
     by_name = dict(zip(names, runs, strict=True))
     pictures = picture_columns(runs)
@@ -82,7 +94,7 @@ def _job(options: argparse.Namespace) -> None:
         for name, run in by_name.items()
         for wheel, level in run.road_levels.items()
     }
-    folder = time_file(options.runs[0]).parent if len(runs) == 1 else Path("runs/spectra")
+    folder = time_file(settings.runs[0]).parent if len(runs) == 1 else Path("runs/spectra")
     caption = "; ".join(f"{name}: {run.caption}" if len(runs) > 1 else run.caption for name, run in by_name.items())
     spectra = {name: run.channels for name, run in by_name.items()}
     contents: dict[str, Content] = {
@@ -94,14 +106,13 @@ def _job(options: argparse.Namespace) -> None:
     if levels:
         title = "Roads compared with the classes of ISO 8608"
         contents["spectra_road.png"] = partial(plot_road_levels, levels=levels, title=title, caption=caption)
-    paths = output_files_of(options, folder, list(contents))
+    paths = settings.destination.files(folder, list(contents))
     write_together(paths, contents.values())
     for name, run in by_name.items():
         for text in run.notices:
-            print(f"notice: {name}: {text}", file=sys.stderr, flush=True)
-    if not options.quiet:
-        print("\n".join(_report(by_name)))
-        print(f"files: {paths[0].parent}: {', '.join(path.name for path in paths)}")
+            console.notice(f"{name}: {text}")
+    console.say("\n".join(_report(by_name)))
+    console.say(f"files: {paths[0].parent}: {', '.join(path.name for path in paths)}")
 
 
 def _unique(names: Sequence[str]) -> list[str]:
@@ -130,4 +141,4 @@ def _report(runs: Mapping[str, RecordSpectra]) -> list[str]:
     return lines
 
 
-main = command(parser, _job)
+main = command(parser, SpectraSettings, _job)

@@ -1,53 +1,40 @@
-"""Measurement files of the command `tune`: their options, their roads, and the targets of the fit."""
+"""Measurement files of the command `tune`: their options, and their settings."""
 
 from __future__ import annotations
 
 import argparse
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from vehicle.commands.clock_options import clock_of, delay_option
-from vehicle.commands.compare import mapping_options, measured_choice
+from vehicle.commands.clock_options import delay_option
 from vehicle.commands.input_options import record_options, speed_value
+from vehicle.commands.measured_options import mapping_options
 from vehicle.commands.options import setting_options
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 from vehicle.signals.excitation.road_settings import RoadSettings
-from vehicle.studies.tuning.fit_settings import HistorySettings, LevelSettings, ResponseSettings
-
-if TYPE_CHECKING:
-    from vehicle.runs.car import Car
-    from vehicle.runs.car.road import Road
-    from vehicle.signals.records.choice import Choice
-    from vehicle.studies.tuning.measured_targets import MeasuredTarget
-
-OF_FILE = ("signal", "stuck", "road", "speed", "contact", "levels", "reference")
-"""Names of the options that belong to the files of the preceding --frf or --record."""
+from vehicle.studies.tuning.fit_settings import LevelSettings, MeasurementFile, ResponseSettings
 
 OF_RECORD = ("road", "speed", "contact", "levels", "reference")
-"""Names of those that belong to time histories."""
-
-ROAD_ROLES = ("left", "right", "height")
-"""Roles of --map and --unit that name the heights of a road over time; --unit speed=UNIT belongs to its speed."""
+"""Names of the options that belong to the time histories of the preceding --record."""
 
 
 class _Measurement(argparse.Action):
     """Action that adds measurement files to the list of all, in the order of the command line."""
 
     def __call__(self, parser: Any, namespace: argparse.Namespace, values: Any, option: str | None = None) -> None:
-        listed = getattr(namespace, "measurements", None) or []
         content = str(option).removeprefix("--")
-        added = [argparse.Namespace(content=content, file=file, **dict.fromkeys(OF_FILE)) for file in values]
-        namespace.measurements = [*listed, *added]
-        namespace.latest = added
+        added = [MeasurementFile(file=file, content=content) for file in values]
+        namespace.measurements = [*namespace.measurements, *added]
+        namespace.latest = len(added)
 
 
 class _OfMeasurement(argparse.Action):
     """Action that sets an option of the measurement files of the preceding --frf or --record."""
 
     def __call__(self, parser: Any, namespace: argparse.Namespace, values: Any, option: str | None = None) -> None:
-        latest = getattr(namespace, "latest", None)
+        latest = namespace.measurements[len(namespace.measurements) - namespace.latest :]
         if not latest:
             raise ConfigurationError(
                 f"{option}: must follow the --frf or --record that it belongs to; move it behind this option"
@@ -61,12 +48,13 @@ class _OfMeasurement(argparse.Action):
                 raise ConfigurationError(
                     f"{option}: belongs to --record, but {each.file} follows --frf; give the file with --record"
                 )
-            setattr(each, self.dest, values if self.nargs is None else True)
+        value = {self.dest: values if self.nargs is None else True}
+        namespace.measurements[-len(latest) :] = [replace(each, **value) for each in latest]
 
 
 def measurement_options(parser: Parser) -> None:
     """Add the options that name measurement files, and the options that act on the preceding files."""
-    parser.set_defaults(measurements=[], latest=[])
+    parser.set_defaults(measurements=[], latest=0)
     files = parser.add_argument_group("measurements")
     files.add_argument(
         "--frf",
@@ -129,65 +117,3 @@ def measurement_options(parser: Parser) -> None:
 def has_files(options: argparse.Namespace, content: str) -> bool:
     """Return True if a file was named by --frf ("frf") or --record ("record")."""
     return any(each.content == content for each in options.measurements)
-
-
-def _road_of(each: argparse.Namespace, choice: Choice) -> Road | None:
-    """Return the road of a measurement file, and None without --road."""
-    from vehicle.commands.road import class_or_profile
-    from vehicle.runs.car.road import Road
-
-    if each.road is None:
-        for name in ("speed", "contact"):
-            if getattr(each, name) is not None:
-                raise ConfigurationError(f"--{name}: belongs to --road; add --road FILE after --record {each.file}")
-        return None
-    if each.signal is not None:
-        raise ConfigurationError(
-            f"--road {each.road} and --signal {each.signal} exclude each other; leave one of them out"
-        )
-    if each.speed is None:
-        raise ConfigurationError(
-            f"--road {each.road}: the speed is missing; add --speed KM/H, for example --speed 80, or --speed "
-            "channel:NAME"
-        )
-    return Road(class_or_profile(each.road), speed=each.speed, contact=each.contact, choice=choice)
-
-
-def measured_targets(options: argparse.Namespace, car: Car) -> list[MeasuredTarget]:
-    """Return the targets of all measurement files."""
-    from vehicle.studies.tuning.measured_targets import measured_histories, measured_levels, measured_responses
-
-    choice = replace(measured_choice(options), any_level=options.any_level)
-    road_choice = replace(
-        choice,
-        channels={role: name for role, name in choice.channels.items() if role in (*ROAD_ROLES, "time")},
-        units={role: unit for role, unit in choice.units.items() if role in (*ROAD_ROLES, "speed", "time")},
-        resample=None,
-    )
-    choice = replace(
-        choice,
-        channels={role: name for role, name in choice.channels.items() if role not in ROAD_ROLES},
-        units={role: unit for role, unit in choice.units.items() if role not in (*ROAD_ROLES, "speed")},
-    )
-    shared: dict[str, Any] = {
-        "choice": choice,
-        "inverted": options.turned,
-        "fitted": options.channels.split(",") if options.channels else (),
-    }
-    delay, drift = clock_of(options)
-    targets = []
-    for each in options.measurements:
-        if each.content == "frf":
-            frf = ResponseSettings.of_options(options, signal=each.signal, stuck=bool(each.stuck), **shared)
-            targets.append(measured_responses(car, each.file, **frf.given()))
-            continue
-        source = _road_of(each, road_choice) or each.signal
-        if each.levels is None and each.reference is not None:
-            raise ConfigurationError(f"--reference {each.reference}: belongs to --levels N")
-        times = {"signal": source, "delay": delay, "drift": drift, **shared}
-        if each.levels is None:
-            targets.append(measured_histories(car, each.file, **HistorySettings.of_options(options, **times).given()))
-        else:
-            times |= {"levels": each.levels, "reference": each.reference}
-            targets.append(measured_levels(car, each.file, **LevelSettings.of_options(options, **times).given()))
-    return targets

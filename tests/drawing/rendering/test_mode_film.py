@@ -98,9 +98,9 @@ def test_the_nearest_mode_is_taken(modes):
     [
         (["--video"], "--video: the mode is missing; give its frequency, for example --animate 28"),
         (["--animate", "28"], "--animate 28: makes a film only with --video; add --video [FILE.mp4]"),
-        (["--animate", "0", "--video"], "--animate 0: must be above 0 Hz"),
-        (["--animate=-3", "--video"], "--animate -3: must be above 0 Hz"),
-        (["--animate", "nan", "--video"], "--animate nan: must be above 0 Hz"),
+        (["--animate", "0", "--video"], "--animate 0: must be above 0"),
+        (["--animate=-3", "--video"], "--animate -3: must be above 0"),
+        (["--animate", "nan", "--video"], "--animate nan: must be above 0"),
         (["--animate", "28", "--video", "mode.avi"], "--video mode.avi: must end in .mp4; set FILE.mp4"),
     ],
 )

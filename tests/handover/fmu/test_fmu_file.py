@@ -64,9 +64,9 @@ def test_command(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["--step", "0.6"], "--step 0.6: must be 0.001 to 0.5 ms"),
-        (["--step", "nan"], "--step nan: must be 0.001 to 0.5 ms"),
-        (["--step", "-0.1"], "--step -0.1: must be 0.001 to 0.5 ms"),
+        (["--step", "0.6"], "--step 0.6: must be 0.001 to 0.5"),
+        (["--step", "nan"], "--step nan: must be 0.001 to 0.5"),
+        (["--step", "-0.1"], "--step -0.1: must be 0.001 to 0.5"),
         (["--speed", "-5"], "--speed -5: must be 0 to 300 km/h"),
         (["--speed", "80"], "focus also stands on the ground without wheels"),
         (["--fmi", "1"], "--fmi '1': must be one of "),

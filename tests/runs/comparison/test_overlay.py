@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from vehicle.commands.compare import main as compare
-from vehicle.commands.compare import measured_beside
-from vehicle.commands.input_options import drives_on_road, record_choice
+from vehicle.commands.input_options import input_of
+from vehicle.commands.options import read
 from vehicle.commands.shaker import main as shaker
 from vehicle.commands.shaker import parser as shaker_options
 from vehicle.commands.tune import main as tune
@@ -20,12 +20,15 @@ from vehicle.runs.car import Car
 from vehicle.runs.comparison.compared_run import comparison_of
 from vehicle.runs.comparison.simulated import of_folder
 from vehicle.signals.excitation.input_files import find_input
+from vehicle.signals.excitation.input_settings import DriveInput
 from vehicle.signals.excitation.signal_file import read_signal
 from vehicle.signals.formats import uff_writer
 from vehicle.signals.formats.channel import Channel
 from vehicle.signals.formats.csv_table import write_table
 from vehicle.signals.records.choice import Choice
 from vehicle.signals.records.measured import read_measured
+from vehicle.signals.records.measured_settings import MeasuredSettings
+from vehicle.signals.records.record_settings import RecordSettings
 
 MOUNT, ENGINE = "bushings.suspension_mount.stiffness.z", "bushings.linear_mount.stiffness.z"
 HIDDEN = {MOUNT: 5.5e5, ENGINE: 4.5e5}
@@ -222,20 +225,21 @@ def test_a_unit_is_of_the_input_or_of_what_was_measured(tmp_path):
     known = ("knuckle_fr_acc_z", "seat_rail_acc_z")
     for unit, factor in (("g", 9.80665), ("m/s2", 1.0)):
         options = shaker_options().parse_args([*words, "--unit", f"knuckle_fr_acc_z={unit}"])
-        choice = record_choice(options, "fr")
+        record, asked = read(options, RecordSettings), read(options, MeasuredSettings)
+        choice = record.choice("fr", others=True)
         assert choice is not None and dict(choice.units) == {"fr": "mm"}
-        found = measured_beside(options, known, choice.units)
-        assert found is not None and found.record is not None
+        found = asked.read(known, asked.choice(RecordSettings(units=record.units), choice.units))
+        assert found.record is not None
         assert found.record.channels["knuckle_fr_acc_z"] == pytest.approx(factor * wave)
     road = ["--road", "C", "--unit", "knuckle_fr_acc_z=g", "--measured", str(tmp_path / "hub.csv")]
-    assert drives_on_road(shaker_options().parse_args(road))
+    assert isinstance(input_of(shaker_options().parse_args(road)), DriveInput)
     with pytest.raises(ConfigurationError, match="--unit: belongs to --input"):
-        drives_on_road(shaker_options().parse_args(road[:4]))
+        shaker_options().parse_args(road[:4])
     options = shaker_options().parse_args([*words, "--unit", "knuckle_fr=g"])
     with pytest.raises(
         ConfigurationError, match=r"--unit knuckle_fr=\.\.\.: must be one of the compared channels: knuckle_fr"
     ):
-        measured_beside(options, known, {"fr"})
+        asked.read(known, asked.choice(read(options, RecordSettings), {"fr"}))
 
 
 def test_a_fit_finds_the_mounts_from_the_same_file(measured, tmp_path):

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import argparse
 import struct
 
 import numpy as np
 import pytest
 
-from vehicle.commands.input_options import record_choice
-from vehicle.commands.road import road_drive
+from vehicle.commands.input_options import input_of
 from vehicle.commands.shaker import parser
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.model.parameters.vehicle import load_vehicle
+from vehicle.runs.car.road import road_of
+from vehicle.signals.excitation.input_settings import DriveInput
 from vehicle.signals.excitation.iso_road import Side
 from vehicle.signals.excitation.measured_road import read_road
 from vehicle.signals.excitation.recorded_road import RecordedDrive, delayed
@@ -136,22 +136,24 @@ def test_what_is_no_speed_is_refused(tmp_path):
         drive(path, duration=30.0).signal()
     with pytest.raises(ConfigurationError, match="must be left, right or height for a recorded road"):
         drive(path, choice=Choice(channels={"fr": "left"})).signal()
-    options = parser().parse_args(["--road", "C", "--speed", "channel:v"])
+    source = input_of(parser().parse_args(["--road", "C", "--speed", "channel:v"]))
+    assert isinstance(source, DriveInput)
     with pytest.raises(ConfigurationError, match="belongs to a recorded road"):
-        road_drive("C", options, load_vehicle(vehicle_file("focus_road")))
+        road_of(source).under(load_vehicle(vehicle_file("focus_road")))
 
 
 def test_the_command_makes_the_drive(tmp_path):
     path = recorded(tmp_path / "road.csv")
     words = ["--road", str(path), "--speed", "channel:v", "--channel", "height=left", "--unit", "speed=m/s"]
-    options = parser().parse_args(words)
-    found = road_drive(path, options, load_vehicle(vehicle_file("focus_road")))
+    source = input_of(parser().parse_args(words))
+    assert isinstance(source, DriveInput)
+    found = road_of(source).under(load_vehicle(vehicle_file("focus_road")))
     assert isinstance(found, RecordedDrive) and found.choice.channels == {"height": "left"}
     assert [name for name, *_ in found.wheels] == ["fr", "fl", "rr", "rl"] and hash(found) is not None
     signal = found.signal()
     np.testing.assert_array_equal(signal.displacement["fr"], signal.displacement["fl"])
     with pytest.raises(ConfigurationError, match="no --channel"):
-        record_choice(argparse.Namespace(**{**vars(options), "rate": None}), "height")
+        source.record.choice("height")
 
 
 def profile(path, length=50.0):

@@ -7,13 +7,14 @@ import pytest
 from scipy.io import savemat, wavfile
 
 from tests.validation import foreign, validated
-from vehicle.commands.input_options import record_choice
+from vehicle.commands.options import read
 from vehicle.commands.shaker import parser
 from vehicle.errors import DataError
 from vehicle.signals.excitation.signal_file import read_signal
 from vehicle.signals.formats import matlab_format, rpc_format
 from vehicle.signals.formats.channel import Channel, uniform_axis
 from vehicle.signals.formats.reader import read_record
+from vehicle.signals.records.record_settings import RecordSettings
 
 RATE = 2048.0
 TIME = uniform_axis(5000, 1.0 / RATE)
@@ -25,7 +26,8 @@ CHANNELS = (
 
 
 def signal(path, *options):
-    return read_signal(path, wheel="fr", choice=record_choice(parser().parse_args(["--input", "x", *options]), "fr"))
+    record = read(parser().parse_args(["--input", "x", *options]), RecordSettings)
+    return read_signal(path, wheel="fr", choice=record.choice("fr"))
 
 
 def exported(**quantity):

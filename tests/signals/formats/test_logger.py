@@ -7,12 +7,13 @@ import pytest
 
 from tests.validation import validated
 from vehicle.commands.comfort import main as comfort
-from vehicle.commands.input_options import record_choice
 from vehicle.commands.inspect import main as inspect
+from vehicle.commands.options import read
 from vehicle.commands.shaker import parser
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.excitation.signal_file import read_signal
 from vehicle.signals.formats.reader import read_record
+from vehicle.signals.records.record_settings import RecordSettings
 
 NAMES = ["Time", "Shaker FR", *(f"Acc {n}" for n in range(1, 9))]
 UNITS = ["s", "mm", *["g"] * 8]
@@ -39,7 +40,7 @@ def logger(path, *, pause=0.0, delimiter=";", decimal=",", seconds=8.0, rate=204
 
 
 def choice(*options):
-    return record_choice(parser().parse_args(["--input", "x.csv", *options]), "fr")
+    return read(parser().parse_args(["--input", "x.csv", *options]), RecordSettings).choice("fr")
 
 
 def test_a_logger_file_is_inspected(tmp_path, capsys):

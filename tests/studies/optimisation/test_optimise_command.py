@@ -1,25 +1,60 @@
 """`python -m vehicle optimise` as a user runs it."""
 
+import argparse
 import csv
 import json
 import shlex
 import shutil
+from contextlib import ExitStack
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from scenarios.signals.random_road import random_road
-from vehicle.commands.optimise import main
+from vehicle.commands.optimise import main, parser, settings_of
+from vehicle.model.parameters.ranges import Range
 from vehicle.model.parameters.vehicle import load_vehicle
+from vehicle.runs.output.destination import Destination
 from vehicle.signals.excitation.signal_file import write_signal
+from vehicle.studies.optimisation.problem import parsed_tolerance
 from vehicle.studies.optimisation.ride import ride_measure
+from vehicle.studies.optimisation.search_settings import SearchSettings
+from vehicle.studies.optimisation.search_study import SearchStudy, TargetStudy
 from vehicle.studies.sweeps.case import SignalFile
 from vehicle.studies.sweeps.case_evaluation import evaluate
 from vehicle.studies.sweeps.case_table import table_cases
+from vehicle.studies.sweeps.sweep_inputs import InputChoice
 
 LOOSE = "damper.coulomb_friction=10"
 SKIP = 1.0
 TRADE = ["--minimise", "unweighted", "--minimise", "tyre_load"]
+
+
+def test_the_options_are_one_object():
+    """Of the parsed options nothing but a study goes on, and Python makes the same."""
+    typed = ["--vary", "damper.viscous=400:6000", "--output", "out", "--jobs", "2"]
+
+    def of(*words):
+        return settings_of(parser().parse_args([*typed, *words], argparse.Namespace(held=ExitStack())))
+
+    where = Destination(output=Path("out"))
+    ranges = (Range(path="damper.viscous", low=400.0, high=6000.0),)
+    changed = of("--targets", "t.toml", "--cost", "damper.viscous=2", "--duration", "4")
+    assert (changed.vary[0].path, changed.vary[0].low, changed.vary[0].high) == ("damper.viscous", 400.0, 6000.0)
+    assert replace(changed, vary=ranges) == TargetStudy(
+        vary=ranges, targets=Path("t.toml"), cost=(("damper.viscous", 2.0),), duration=4.0, jobs=2, destination=where
+    )
+    tolerances = (parsed_tolerance("damper.viscous=20%"),)
+    found = of("--input", "low.csv", *TRADE, "--tolerance", "damper.viscous=20%", "--cars", "8")
+    assert replace(found, vary=ranges) == SearchStudy(
+        vary=ranges,
+        inputs=InputChoice(input=("low.csv",)),
+        minimise=("unweighted", "tyre_load"),
+        settings=SearchSettings(cars=8, jobs=2, tolerances=tolerances),
+        destination=where,
+    )
 
 
 @pytest.fixture(scope="module")

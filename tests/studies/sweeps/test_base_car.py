@@ -6,8 +6,8 @@ import pytest
 from tests.studies.sweeps.sweep_samples import ShortRoad
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Car
+from vehicle.studies.sweeps.comfort_ranking import best_sentences
 from vehicle.studies.sweeps.plan import changes_of, plan_sweep, sweep
-from vehicle.studies.sweeps.sweep_page import best_sentences
 from vehicle.studies.sweeps.sweep_picture import can_be_drawn
 from vehicle.studies.sweeps.sweep_ranking import ranked_cars, ranking_lines
 from vehicle.studies.sweeps.sweep_settings import SweepSettings

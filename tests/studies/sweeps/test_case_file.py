@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from vehicle import Car, road
 from vehicle.commands.sweep import main
 from vehicle.errors import ConfigurationError
 from vehicle.studies.sweeps.case_file import UNCHANGED, CaseFile, read_cases
+from vehicle.studies.sweeps.sweep_settings import SweepSettings
 
 FILE = """
 vehicle = "sedan"
@@ -24,6 +26,8 @@ body.mass = 1500
 [variants.soft]
 "rear.damper.viscous" = 1200
 """
+
+SOFT, HARD = {"rear.damper.viscous": 1200}, {"rear.damper.viscous": 2200}
 
 
 def test_cars_and_inputs(tmp_path):
@@ -147,6 +151,14 @@ def test_wrong_files(tmp_path, text, message):
     with pytest.raises(ConfigurationError) as refusal:
         read_cases(file)
     assert str(refusal.value).startswith(str(file)) and message in str(refusal.value)
+
+
+def test_the_best_of_one_state_is_a_sentence(tmp_path):
+    """In Python as in the command; without laden states it begins with the inputs."""
+    cases = CaseFile(vehicle="sedan", roads=("A",), speeds=(60.0,), duration=3.0, variants={"soft": SOFT, "hard": HARD})
+    for speeds, beginning in (((60.0,), "On road_A_60 the smoothest variant is"), ((60.0, 80.0), "Over all inputs ")):
+        plan = replace(cases, speeds=speeds).plan(Car.load(), (), SweepSettings(engine="reduced"))
+        assert plan.name == "sedan" and plan.evaluation_of(plan.run(), "").lines[-1].startswith(beginning)
 
 
 def test_states_alone_have_no_best(tmp_path, capsys, monkeypatch):

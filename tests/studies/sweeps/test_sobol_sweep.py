@@ -13,8 +13,7 @@ from vehicle.commands.sweep import main
 from vehicle.model.parameters.ranges import Range
 from vehicle.signals.excitation.signal_file import write_signal
 from vehicle.studies.sweeps.indices import sobol_indices
-from vehicle.studies.sweeps.plan import plan_sweep
-from vehicle.studies.sweeps.sobol_sweep import comfort_indices, index_lines, sobol_changes
+from vehicle.studies.sweeps.sobol_sweep import SobolSample, comfort_indices, index_lines
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
 
 BOUNDS = {"damper.viscous": (1500.0, 3000.0), "damper.coulomb_friction": (50.0, 250.0)}
@@ -61,7 +60,7 @@ def test_command_and_python_give_the_indices_of_the_table(inputs, tmp_path, caps
 def test_failed_runs_are_left_out_and_counted(inputs):
     """A table of the same form, whose comfort is known."""
 
-    cases = plan_sweep(Car.load(), sobol_changes(RANGES, 64), inputs, SweepSettings(engine="reduced")).cases
+    cases = SobolSample(BOUNDS, 64).plan(Car.load(), inputs, SweepSettings(engine="reduced")).cases
     values = np.array([sum(float(text.partition("=")[2]) for text in case.overrides) for case in cases])
     values[[3, 256 + 20]] = np.nan
     table: Any = SimpleNamespace(cases=cases, units={"weighted": "m/s2"}, column=lambda name: values)

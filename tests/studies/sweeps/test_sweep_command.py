@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
+import argparse
 import csv
 import re
+from contextlib import ExitStack
+from pathlib import Path
 
 import pytest
 
 from vehicle import Car, Road
-from vehicle.commands.sweep import every_combination, main
+from vehicle.commands.sweep import main, parser, settings_of
+from vehicle.runs.output.destination import Destination, ReportChoice
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.studies.sweeps.case import SignalFile
+from vehicle.studies.sweeps.chosen_cars import EveryCombination, OtherMeasure, VariationTable, every_combination
+from vehicle.studies.sweeps.parameter_effects import SingleChanges
 from vehicle.studies.sweeps.plan import plan_sweep
+from vehicle.studies.sweeps.sobol_sweep import SobolSample
+from vehicle.studies.sweeps.sweep_inputs import InputChoice
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
+from vehicle.studies.sweeps.sweep_study import SweepStudy
 from vehicle.studies.sweeps.sweep_table import read_variations
 
 HEAD = ("--author", "A. Engineer", "--project", "Ride")
@@ -33,6 +42,46 @@ def signal(tmp_path):
 def table_of(folder):
     with (folder / "table.csv").open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
+
+
+@pytest.mark.parametrize(
+    ("words", "design"),
+    [
+        (["--vary", "damper.viscous=1,2"], EveryCombination(("damper.viscous=1,2",))),
+        (["--table", "cars.csv"], VariationTable(Path("cars.csv"))),
+        (["--sobol", "64", "--vary", "damper.viscous=1:2"], SobolSample(("damper.viscous=1:2",), 64)),
+        (["--each", "+-15%,5mm", "--vary", "damper"], SingleChanges(("damper",), 0.15, 0.005)),
+        (["--each", "15"], SingleChanges((), 0.15)),
+        (
+            ["--table", "cars.csv", "--measure", "order:1:x"],
+            OtherMeasure(VariationTable(Path("cars.csv")), "order:1:x"),
+        ),
+    ],
+)
+def test_the_options_are_one_object(words, design):
+    """Of the parsed options nothing but a study goes on, and Python makes the same."""
+    typed = ["--road", "B", "--speed", "80", "--seed", "3", "--skip", "1", "--resume", "--retry-failed", *words]
+    settings = settings_of(parser().parse_args(typed, argparse.Namespace(held=ExitStack())))
+    drive = InputChoice(road=("B",), speed=(80.0,), seed=(3,))
+    runs = SweepSettings(skip=1.0, retry_failed=True)
+    assert settings == SweepStudy(design=design, inputs=drive, runs=runs, destination=Destination(resume=True))
+
+
+def test_a_study_in_python_writes_the_table_of_the_command(signal, tmp_path, capsys):
+    options = ["--input", str(signal), "--skip", "0.5", "--engine", "reduced"]
+    assert main([*options, "--vary", "damper.viscous=1500,2000", "--output", str(tmp_path / "a"), "--report"]) == 0
+    study = SweepStudy(
+        design=EveryCombination({"damper.viscous": [1500, 2000]}),
+        inputs=signal,
+        runs=SweepSettings(skip=0.5, engine="reduced"),
+        destination=Destination(output=tmp_path / "b"),
+        report=ReportChoice(report=""),
+    )
+    said = str(study.run())
+    assert said.replace(str(tmp_path / "b"), str(tmp_path / "a")) == capsys.readouterr().out.rstrip()
+    for name in ("table.csv", "differences.csv", "sweep.png"):
+        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a", "b", "road.csv"]
 
 
 def test_variations_make_a_table(signal, tmp_path, capsys):
@@ -83,8 +132,8 @@ def test_a_table_of_variations(tmp_path):
         (["--vary", "a=1", "--vary", "a=2"], "given twice", 2),
         (["--vary", "damper.viscous=1:2"], "contains bounds, must be values", 2),
         (["--vary", "damper.viscous=1000", "--skip", "3"], "--skip 3 s: must be at least 0 and below the 3 s ", 2),
-        (["--vary", "damper.viscous=1000", "--skip", "-5"], "--skip -5 s: must be at least 0", 2),
-        (["--vary", "damper.viscous=1000", "--skip", "nan"], "--skip nan s: must be at least 0", 2),
+        (["--vary", "damper.viscous=1000", "--skip", "-5"], "--skip -5: must be at least 0", 2),
+        (["--vary", "damper.viscous=1000", "--skip", "nan"], "--skip nan: must be at least 0", 2),
         (["--vary", "damper.viscous=1000", "--jobs", "0"], "--jobs 0: must be at least 1", 2),
         (
             ["--vary", "damper.viscous=1000", "--set", "damper.vicsous=1"],

@@ -12,6 +12,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.signals.analysis.ride_comfort import wave_names
 from vehicle.studies.sweeps.case import Case, SignalFile
 from vehicle.studies.sweeps.case_result import Result
+from vehicle.studies.sweeps.comfort_ranking import ranking_evaluation
 from vehicle.studies.sweeps.sweep_page import sweep_page
 from vehicle.studies.sweeps.sweep_picture import can_be_drawn, draw_ranked
 from vehicle.studies.sweeps.sweep_ranking import measure_lines, ranked_cars, ranking_lines
@@ -165,9 +166,8 @@ def test_the_report_names_best_and_base_with_the_numbers_of_the_table(tmp_path):
 
 
 def test_a_note_on_the_valid_range_stands_at_the_verdict():
-    page = sweep_page(
-        table_of([("30",), ("10",)], ["damper.viscous"]), "focus", caption="", notes=("outside the valid range: a",)
-    )
+    table = table_of([("30",), ("10",)], ["damper.viscous"])
+    page = sweep_page(table, ranking_evaluation(table, ""), "focus", caption="", notes=("outside the valid range: a",))
     before = page.index("Base car, the first of the sweep")
     assert before < page.index("<p>outside the valid range: a</p>") < page.rindex("All runs")
 

@@ -1,10 +1,12 @@
 """`python -m vehicle body import | build | show | compare | participation`: body models for a car, a file for each."""
 
 import argparse
+from typing import Any
 
 from vehicle.commands.body import build_body, compare_bodies, import_body, participation, show_body
 from vehicle.commands.command_line import command
-from vehicle.commands.options import EXIT_CODES, command_parser
+from vehicle.commands.console import Console
+from vehicle.commands.options import EXIT_CODES, command_parser, read
 from vehicle.commands.parser import Parser
 
 TASKS = {
@@ -30,10 +32,14 @@ def parser() -> Parser:
     return parser
 
 
-def _job(options: argparse.Namespace) -> None:
-    from vehicle.model.parameters.vehicle import load_vehicle
+def settings_of(options: argparse.Namespace) -> tuple[str, Any]:
+    """Return the name of the task, and its settings of the parsed options."""
+    return options.task, read(options, TASKS[options.task].SETTINGS)
 
-    TASKS[options.task].run(options, load_vehicle(options.vehicle, options.overrides))
+
+def _job(task: tuple[str, Any], console: Console) -> None:
+    name, settings = task
+    TASKS[name].run(settings, console)
 
 
-main = command(parser, _job)
+main = command(parser, settings_of, _job)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vehicle.commands.destination import output_file_of
 from vehicle.commands.options import FORCE_HELP
 from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.car_choice import CarChoice
+from vehicle.runs.output.destination import Destination
 
 if TYPE_CHECKING:
     from vehicle.model.flexbody.superelement import Superelement
@@ -23,32 +23,34 @@ def output_options(task: Any) -> None:
     task.add_argument("--force", action="store_true", help=FORCE_HELP)
 
 
-def require_output(options: argparse.Namespace) -> None:
-    """Check the output file before the computation.
+def require_output(destination: Destination, *inputs: Path | None) -> Path:
+    """Check the output file before the computation, and return it.
+
+    Args:
+        inputs: input files, which are not replaced.
 
     Raises:
         ConfigurationError: another ending, an input file, an existing file without --force or of the user.
         OutputError: its folder cannot be written.
     """
-    if options.output.suffix not in (".toml", ".npz"):
-        raise ConfigurationError(f"--output {options.output}: must end in .toml or .npz")
-    inputs = (getattr(options, name, None) for name in ("file", "design", "vehicle"))
-    output_file_of(options, options.output, protect=tuple(path for path in inputs if path is not None))
+    output = destination.output
+    assert output is not None  # --output is required
+    if output.suffix not in (".toml", ".npz"):
+        raise ConfigurationError(f"--output {output}: must end in .toml or .npz")
+    return destination.file(output, protect=tuple(path for path in inputs if path is not None))
 
 
-def write(options: argparse.Namespace, model: Superelement) -> None:
-    """Write a body model to the file of --output."""
+def write(path: Path, model: Superelement) -> None:
+    """Write a body model."""
     from vehicle.model.flexbody.superelement_file import write_superelement
     from vehicle.runs.output.folder import write_whole
 
-    write_whole(options.output, lambda file: write_superelement(file, model))
+    write_whole(path, lambda file: write_superelement(file, model))
 
 
-def model_of(file: Path | None, options: argparse.Namespace, vehicle: Vehicle) -> Superelement:
+def model_of(file: Path | None, car: CarChoice, vehicle: Vehicle) -> Superelement:
     """Read a body model from a file; by default return that of the vehicle."""
     from vehicle.model.flexbody.body_model import body_model
     from vehicle.model.flexbody.superelement_file import read_superelement
 
-    if file is None:
-        return body_model(vehicle, options.vehicle.parent if options.vehicle else None)
-    return read_superelement(file)
+    return body_model(vehicle, car.folder) if file is None else read_superelement(file)

@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
-import argparse
-import math
+from dataclasses import dataclass
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vehicle.commands.command_line import print_result
-from vehicle.commands.destination import output_folder_of
-from vehicle.commands.options import damper_option, extra_output_options, message_options, vehicle_options
+from vehicle.commands.console import Console
+from vehicle.commands.options import (
+    damper_option,
+    extra_output_options,
+    message_options,
+    setting_options,
+    vehicle_options,
+)
 from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.car_choice import CarChoice
 from vehicle.names import CORNERS
+from vehicle.runs.output.destination import Destination
+from vehicle.settings import Settings, part, setting
 
 if TYPE_CHECKING:
     from vehicle.engines.linear.mode_participation import Participation
-    from vehicle.model.parameters.vehicle import Vehicle
 
 FILES = ("participation.csv", "attachments.csv", "participation.png")
 LOWEST, HIGHEST, LINES = 1.0, 50.0, 600
@@ -27,79 +34,89 @@ CANCEL = 5.0
 UNIT = "m/s2/m"
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ParticipationSettings(Settings):
+    """Settings of the contributions of the body modes to a response.
+
+    Attributes:
+        damper: state of the dampers, "stuck" or "sliding".
+    """
+
+    car: CarChoice = part(CarChoice)
+    response: str = setting(
+        "acceleration channel of a point on the body; default: %(default)s", "seat_rail_acc_z", metavar="CHANNEL"
+    )
+    wheel: str | None = setting(
+        "wheel whose plate moves, for example fr or front_right; default: the wheel on the shaker", metavar="NAME"
+    )
+    damper: str = "stuck"
+    destination: Destination = part(Destination)
+    at: float | None = setting(
+        "frequency of the tables [Hz]; default: where the response between 1 and 50 Hz is largest",
+        within="(0, inf)",
+        type=float,
+        metavar="HZ",
+    )
+    mode: int | None = setting(
+        "number of the mode whose driving attachments are shown; default: the mode with the largest share",
+        within="[1, inf)",
+        type=int,
+        metavar="N",
+    )
+
+
 def add(tasks: Any) -> None:
     """Add the parser of the task with its options."""
     asked = tasks.add_parser(
         "participation",
         help="rank the body modes by what they add to the vibration of a point, and the attachments that drive a mode",
     )
-    asked.add_argument(
-        "--response",
-        default="seat_rail_acc_z",
-        metavar="CHANNEL",
-        help="acceleration channel of a point on the body; default: %(default)s",
-    )
-    asked.add_argument(
-        "--at",
-        type=float,
-        metavar="HZ",
-        help="frequency of the tables [Hz]; default: where the response between 1 and 50 Hz is largest",
-    )
+    setting_options(asked, ParticipationSettings, "response", "at")
     asked.former(
         "--place",
         "--place is not an option here; name the acceleration with --response CHANNEL, for example --response "
         "seat_rail_acc_z",
     )
-    asked.add_argument(
-        "--wheel",
-        metavar="NAME",
-        help="wheel whose plate moves, for example fr or front_right; default: the wheel on the shaker",
-    )
+    setting_options(asked, ParticipationSettings, "wheel")
     damper_option(asked)
-    asked.add_argument(
-        "--mode",
-        type=int,
-        metavar="N",
-        help="number of the mode whose driving attachments are shown; default: the mode with the largest share",
-    )
+    setting_options(asked, ParticipationSettings, "mode")
     extra_output_options(asked, ", ".join(FILES))
     asked.add_argument("--json", action="store_true", help="print JSON")
     vehicle_options(asked)
     message_options(asked)
 
 
-def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
+def run(settings: ParticipationSettings, console: Console) -> None:
     """Compute, write and print the contributions."""
     import numpy as np
 
     from vehicle.engines.linear.mode_participation import participation
     from vehicle.runs.car import Car
 
-    if options.at is not None and not 0.0 < options.at < math.inf:
-        raise ConfigurationError(f"--at {options.at:g}: must be above 0 Hz, for example --at 26")
-    wheel = CORNERS.get(options.wheel, options.wheel) or vehicle.shaker_wheel
+    vehicle, output = settings.car.load(), settings.destination.output
+    wheel = CORNERS.get(settings.wheel or "", settings.wheel) or vehicle.shaker_wheel
     vehicle.require_wheels((wheel,))
-    if options.output is not None:
-        output_folder_of(options, options.output)
-    car = Car(vehicle, folder=options.vehicle.parent if options.vehicle else None)
+    if output is not None:
+        settings.destination.folder(output)
+    car = Car(vehicle, folder=settings.car.folder)
     band = np.geomspace(LOWEST, HIGHEST, LINES)
 
     def of(lines: Any) -> Participation:
-        stuck = options.damper == "stuck"
-        return participation(car.model, car.matrices, car.load_rows, options.response, lines, stuck=stuck, wheel=wheel)
+        stuck = settings.damper == "stuck"
+        return participation(car.model, car.matrices, car.load_rows, settings.response, lines, stuck=stuck, wheel=wheel)
 
     over = of(band)
-    at = round(float(band[np.abs(over.total).argmax()]), 2) if options.at is None else options.at
+    at = round(float(band[np.abs(over.total).argmax()]), 2) if settings.at is None else settings.at
     result = of([at])
     modes = len(result.mode_frequency)
-    if options.mode is not None and not 1 <= options.mode <= modes:
-        raise ConfigurationError(f"--mode {options.mode}: must be 1 to {modes}, the modes of this body")
-    mode = int(result.shares[6:, 0].argmax()) if options.mode is None else options.mode - 1
-    caption = f"{vehicle.name}: {options.response} per displacement of plate {wheel}, dampers {options.damper}"
+    if settings.mode is not None and not 1 <= settings.mode <= modes:
+        raise ConfigurationError(f"--mode {settings.mode}: must be 1 to {modes}, the modes of this body")
+    mode = int(result.shares[6:, 0].argmax()) if settings.mode is None else settings.mode - 1
+    caption = f"{vehicle.name}: {settings.response} per displacement of plate {wheel}, dampers {settings.damper}"
     caption += f", tyres {vehicle.driving.words}"
-    if options.output is not None:
-        _write(options, over, result, mode, caption)
-    print_result(options, _numbers(options, result, wheel), "\n".join(_report(result, mode, caption)))
+    if output is not None:
+        _write(output, settings, over, result, mode, caption)
+    console.result(_numbers(settings, result, wheel), "\n".join(_report(result, mode, caption)))
 
 
 def _named(result: Participation) -> list[str]:
@@ -142,7 +159,7 @@ def _percent(share: float) -> str:
     return f"{100 * share:>+z7.1f} %"
 
 
-def _numbers(options: argparse.Namespace, result: Participation, wheel: str) -> dict[str, Any]:
+def _numbers(settings: ParticipationSettings, result: Participation, wheel: str) -> dict[str, Any]:
     """Return both tables as plain numbers."""
     import numpy as np
 
@@ -152,7 +169,7 @@ def _numbers(options: argparse.Namespace, result: Participation, wheel: str) -> 
         "place": result.channel,
         "frequency_hz": float(result.frequency[0]),
         "wheel": wheel,
-        "damper": options.damper,
+        "damper": settings.damper,
         "magnitude": abs(total),
         "phase_deg": float(np.degrees(np.angle(total))),
         "unit": UNIT,
@@ -173,7 +190,9 @@ def _numbers(options: argparse.Namespace, result: Participation, wheel: str) -> 
     }
 
 
-def _write(options: argparse.Namespace, over: Participation, result: Participation, mode: int, caption: str) -> None:
+def _write(
+    output: Path, settings: ParticipationSettings, over: Participation, result: Participation, mode: int, caption: str
+) -> None:
     """Write both tables and the picture."""
     import numpy as np
 
@@ -203,7 +222,7 @@ def _write(options: argparse.Namespace, over: Participation, result: Participati
     drivers = result.attachment_shares[mode, :, 0]
     picture = partial(
         plot_participation,
-        channel=options.response,
+        channel=settings.response,
         frequency=over.frequency,
         parts={names[i]: in_phase(over.contributions)[i] for i in order},
         at=at,
@@ -212,5 +231,8 @@ def _write(options: argparse.Namespace, over: Participation, result: Participati
         description=caption,
     )
     table = partial(write_table, cells=heads, columns=columns, comments=comments)
-    with output_folder(options.output, force=options.force) as folder:
+    with output_folder(output, force=settings.destination.force) as folder:
         write_files(folder, dict(zip(FILES, (table, attachments, picture), strict=True)))
+
+
+SETTINGS = ParticipationSettings

@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.body.model_file import model_of
-from vehicle.commands.command_line import print_result
-from vehicle.commands.destination import output_folder_of
-from vehicle.commands.options import extra_output_options, message_options, vehicle_options
+from vehicle.commands.console import Console
+from vehicle.commands.options import (
+    extra_output_options,
+    message_options,
+    setting_options,
+    vehicle_options,
+)
 from vehicle.digits import number
 from vehicle.errors import DataError
+from vehicle.model.parameters.car_choice import CarChoice
+from vehicle.runs.output.destination import Destination
+from vehicle.settings import Settings, part, setting
 
 if TYPE_CHECKING:
     from vehicle.model.flexbody.superelement import Superelement
@@ -31,27 +38,37 @@ def add(tasks: Any) -> None:
         help="print frequencies, mode shapes at the attachments, mass, inertia and residual flexibility of a body "
         "model",
     )
-    shown.add_argument(
-        "file", type=Path, nargs="?", metavar="FILE", help="file of the body model; default: the body of the vehicle"
-    )
+    setting_options(shown, BodySettings, "file")
     extra_output_options(shown, ", ".join(FILES))
     shown.add_argument("--json", action="store_true", help="print JSON")
     vehicle_options(shown)
     message_options(shown)
 
 
-def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
+@dataclass(frozen=True, kw_only=True, slots=True)
+class BodySettings(Settings):
+    """Body model to show, by default the body of the car; files are written only to an `output`."""
+
+    car: CarChoice = part(CarChoice)
+    destination: Destination = part(Destination)
+    file: Path | None = setting(
+        "file of the body model; default: the body of the vehicle", flag="file", type=Path, nargs="?", metavar="FILE"
+    )
+
+
+def run(settings: BodySettings, console: Console) -> None:
     """Print the properties of the body model; with --output write them as files."""
-    if options.output is not None:
-        output_folder_of(options, options.output)
-    model = model_of(options.file, options, vehicle)
-    if options.output is not None:
-        _write(options, model, levels(model, vehicle))
+    vehicle, destination = settings.car.load(), settings.destination
+    if destination.output is not None:
+        destination.folder(destination.output)
+    model = model_of(settings.file, settings.car, vehicle)
+    if destination.output is not None:
+        _write(destination.output, model, levels(model, vehicle), force=destination.force)
     try:
         content = _numbers(model, vehicle, levels(model, vehicle), _bare(model, vehicle))
     except DataError:
         content = _numbers(model, vehicle, {}, None)
-    print_result(options, content, "\n".join(report(model, vehicle)))
+    console.result(content, "\n".join(report(model, vehicle)))
 
 
 def report(model: Superelement, vehicle: Vehicle) -> list[str]:
@@ -243,7 +260,7 @@ def _numbers(
     }
 
 
-def _write(options: argparse.Namespace, model: Superelement, levels: Mapping[str, Any]) -> None:
+def _write(output: Path, model: Superelement, levels: Mapping[str, Any], *, force: bool) -> None:
     """Write tables of modes, attachments and residuals, and a picture of the shapes."""
     import numpy as np
 
@@ -286,5 +303,8 @@ def _write(options: argparse.Namespace, model: Superelement, levels: Mapping[str
             title=f"Modes of the free body {model.name}",
             caption=caption,
         )
-    with output_folder(options.output, force=options.force) as folder:
+    with output_folder(output, force=force) as folder:
         write_files(folder, contents)
+
+
+SETTINGS = BodySettings

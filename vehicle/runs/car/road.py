@@ -14,12 +14,13 @@ from vehicle.model.parameters.force_elements import Tyre
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.model.parameters.wheel_forces import WHEEL_FORCES
 from vehicle.settings import documented
+from vehicle.signals.excitation.input_settings import DriveInput
 from vehicle.signals.excitation.iso_road import Side
 from vehicle.signals.excitation.measured_road import read_road
-from vehicle.signals.excitation.obstacle import is_obstacle
+from vehicle.signals.excitation.obstacle import SHAPES, is_obstacle
 from vehicle.signals.excitation.recorded_road import PREFIX, RecordedDrive
-from vehicle.signals.excitation.road_drive import LEVEL, RoadDrive
-from vehicle.signals.excitation.road_settings import RoadSettings
+from vehicle.signals.excitation.road_drive import RoadDrive
+from vehicle.signals.excitation.road_settings import LEVEL, RoadSettings
 from vehicle.signals.records.choice import Choice
 
 Drive = RoadDrive | RecordedDrive
@@ -138,6 +139,32 @@ class Road(RoadSettings):
         if self.tyre == "standing" or (self.tyre is None and on_blocks):
             return 0.0 if vehicle.driving.rolling else None
         return speed
+
+
+def named_road(text: str) -> str | Path:
+    """Return the class of ISO 8608, the text of an obstacle, or the file of a profile, that a text names.
+
+    Raises:
+        ConfigurationError: the text has another form.
+    """
+    if len(text) > 1 and not Path(text).is_file():
+        if is_obstacle(text) or text == LEVEL:
+            return text
+        raise ConfigurationError(
+            f"--road {text}: unknown; give a class of ISO 8608 (A to H), the file of a measured profile, an "
+            f"obstacle ({', '.join(SHAPES)}) or {LEVEL}"
+        )
+    return text.upper() if len(text) == 1 else Path(text)
+
+
+def road_of(drive: DriveInput) -> Road:
+    """Return the road of the settings of a drive.
+
+    Raises:
+        ConfigurationError: no speed, or a road of another form.
+    """
+    road = named_road(drive.road) if isinstance(drive.road, str) else drive.road
+    return Road(road, drive.require_speed(), choice=drive.choice() or Choice(), **drive.settings.given())
 
 
 road = Road

@@ -17,7 +17,7 @@ from vehicle.signals.excitation.iso_road import RISE_S, IsoRoad, Side, drive
 from vehicle.signals.excitation.measured_road import MeasuredRoad, read_road
 from vehicle.signals.excitation.obstacle import Obstacle, is_obstacle
 from vehicle.signals.excitation.plausibility import acceleration_events
-from vehicle.signals.excitation.road_settings import SETTINGS
+from vehicle.signals.excitation.road_settings import LEVEL, SETTINGS
 from vehicle.signals.excitation.signal import Signal, uniform_time
 from vehicle.signals.excitation.tyre_envelope import CAMS, TyreEnvelope
 from vehicle.signals.formats.file_digest import digest
@@ -30,9 +30,6 @@ CONTACT_PATCH = 0.10
 
 USUAL_DURATION = 60.0
 """Default length of a drive over a road class or a level road [s]."""
-
-LEVEL = "level"
-"""Name of the road without any height, for a car that its own forces shake."""
 
 SKIP_S = 2.0
 """Minimum default of --skip on a road [s]: the rise from rest and 1 s, in which a motion of 1 Hz with a damping ratio

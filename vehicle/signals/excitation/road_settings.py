@@ -4,25 +4,35 @@ from dataclasses import dataclass
 
 from vehicle.settings import Settings, setting
 
+LEVEL = "level"
+"""Name of the road without any height, for a car that its own forces shake."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RoadSettings(Settings):
     """Settings of a road; None is the default of each."""
 
     duration: float | None = setting(
-        "length of the drive [s]; default: 60, or the whole profile", type=float, metavar="S"
+        "length of the drive [s]; default: 60, or the whole profile", within="(0, inf)", type=float, metavar="S"
     )
-    rate: float | None = setting("sampling rate of the plate signals [Hz]; default: 1000", type=float, metavar="HZ")
+    rate: float | None = setting(
+        "sampling rate of the plate signals [Hz]; default: 1000", within="(0, inf)", type=float, metavar="HZ"
+    )
     seed: int | None = setting(
-        "number that selects the random road; the same seed gives the same road; default: 1", type=int, metavar="N"
+        "number that selects the random road; the same seed gives the same road; default: 1",
+        within="[0, inf)",
+        type=int,
+        metavar="N",
     )
     coherence: float | None = setting(
         "coherence of left and right track: 1 equal, 0 unrelated; default: that of an isotropic road surface",
+        within="[0, 1]",
         type=float,
         metavar="G",
     )
     patch: float | None = setting(
         "length of the contact patch over which the tyre averages the road [m]; 0: contact at a point; default: 0.1",
+        within="[0, 1)",
         type=float,
         metavar="M",
     )

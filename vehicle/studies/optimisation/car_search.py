@@ -35,7 +35,7 @@ from vehicle.studies.optimisation.trials import NO_TOLERANCES, Spread, Trials, b
 from vehicle.studies.optimisation.variables import problem_of, require_bounds, toleranced
 from vehicle.studies.sweeps.case_evaluation import evaluate
 from vehicle.studies.sweeps.executors import StandingExecutor, process_pool
-from vehicle.studies.sweeps.sweep_inputs import Source, common_start, file_of, inputs_of, require_speed_of_roads
+from vehicle.studies.sweeps.sweep_inputs import Inputs, common_start, file_of, inputs_of, require_speed_of_roads
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -95,7 +95,7 @@ class SearchPlan:
 def plan_search(
     car: Car,
     vary: Mapping[str, Sequence[float]] | Sequence[Range],
-    inputs: Source | Sequence[Source],
+    inputs: Inputs,
     minimise: Sequence[str],
     settings: SearchSettings,
 ) -> SearchPlan:
@@ -143,7 +143,7 @@ def plan_search(
 def optimise(
     car: Car,
     vary: Mapping[str, Sequence[float]] | Sequence[Range],
-    inputs: Source | Sequence[Source],
+    inputs: Inputs,
     minimise: Sequence[str],
     settings: SearchSettings,
 ) -> FoundCars:
@@ -153,7 +153,7 @@ def optimise(
         car: loaded by `Car.load`.
         vary: path to (lower, upper) bound in the unit of the parameter, as {"front.damper.viscous": (800, 4000)};
             "*.damper.viscous" sets all dampers alike.
-        inputs: files or names of shipped ones, roads, signals; one or several.
+        inputs: files, names of shipped files, roads, signals; one or several.
         minimise: objectives, as "unweighted", "weighted", "tyre_load", "travel"; with several inputs
             "weighted@NAME", "weighted@mean" or "weighted@worst".
 

@@ -6,11 +6,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from vehicle.settings import engine_setting, setting
-from vehicle.studies.sweeps.sweep_settings import PoolSettings, skip_setting
+from vehicle.settings import engine_setting, setting, skip_setting
+from vehicle.studies.sweeps.sweep_settings import PoolSettings
 
 if TYPE_CHECKING:
-    from vehicle.studies.optimisation.problem import Tolerances
+    from vehicle.studies.optimisation.problem import Tolerance, Tolerances
+
+
+def _tolerance(text: str) -> Tolerance:
+    """Return the tolerance of the option."""
+    from vehicle.studies.optimisation.problem import parsed_tolerance
+
+    return parsed_tolerance(text)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -44,6 +51,7 @@ class SearchSettings(PoolSettings):
         (),
         flag="--tolerance",
         action="append",
+        type=_tolerance,
         metavar="PATH=SIZE",
         help="half of the band of a parameter, varied or not: in its unit, or in percent: 15%%; of a "
         "coordinate in m: 0.002; may be repeated",

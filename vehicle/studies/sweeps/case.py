@@ -39,12 +39,12 @@ class SignalFile:
 
     Attributes:
         path: absolute path of the file.
-        wheel: driven wheel for a file without wheel names; `Vehicle.shaker_wheel` of the car.
+        wheel: driven wheel for a file without wheel names; empty for `Vehicle.shaker_wheel` of the car.
         accept_implausible: accept levels above those of any shaker.
     """
 
     path: Path
-    wheel: str
+    wheel: str = ""
     accept_implausible: bool = False
 
     @property

@@ -2,8 +2,9 @@
 
 import itertools
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,11 +16,16 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.parameter_list import flattened
 from vehicle.model.parameters.paths import assignments
 from vehicle.model.parameters.toml_file import build, read_table
+from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
 from vehicle.signals.analysis.ride_comfort import UNWEIGHTED, WEIGHTED
 from vehicle.signals.formats.csv_table import RowWriter
 from vehicle.studies.sweeps.change_error import MEANING_OF_ERROR, NO_ERROR, change_errors, half_width
+from vehicle.studies.sweeps.evaluation import REPEAT, Evaluation, Part, runs_part
+from vehicle.studies.sweeps.plan import SweepPlan, plan_sweep
+from vehicle.studies.sweeps.sweep_inputs import Inputs
 from vehicle.studies.sweeps.sweep_ranking import RANKED_BY, SweptCases
+from vehicle.studies.sweeps.sweep_settings import SweepSettings
 
 CASES = "cases.csv"
 """Name of the file in the folder of a sweep."""
@@ -35,7 +41,7 @@ class CaseFile:
     Attributes:
         roads: classes of ISO 8608 and obstacles, as "C" and "cleat:20x50".
         speeds: speeds on each of them [km/h]; or a table of each road to its speeds, as {C = [80], D = [50]}.
-        signals: signal files, or names of shipped ones.
+        signals: signal files, or names of shipped files.
         duration: length of a class [s]; by default that of a run.
         vehicle: name or file of the car; by default that of the command.
         states: name of a laden state to its changed parameters.
@@ -64,6 +70,20 @@ class CaseFile:
                 raise ConfigurationError(f"CaseFile.speeds: {name!r} is not among roads; add it there, or remove it")
             if not by_road.get(name):
                 raise ConfigurationError(f"CaseFile.speeds: no speed on {name!r}; add {name!r} = [80], in km/h")
+
+    def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
+        """Return the checked sweep of every car of the file, on its inputs; see `Design`."""
+        chosen = Car.load(self.vehicle, car.overrides) if self.vehicle else car
+        return plan_sweep(chosen, list(self.cars.values()), self.inputs, settings, self._evaluation)
+
+    def _evaluation(self, table: SweptCases, caption: str) -> Evaluation:
+        results = case_results(table, self)
+
+        def parts(notes: Sequence[str]) -> list[Part]:
+            values = {"results": results, "notes": notes}
+            return [Part("Result", "result", "cases", values), runs_part(table), REPEAT]
+
+        return Evaluation(results.lines(), {CASES: partial(write_cases, results=results)}, parts)
 
     @property
     def inputs(self) -> list[Road | str]:
@@ -209,6 +229,7 @@ class CaseResults:
             return f"{state or 'Result: '}no car ran on all inputs."
         best = min(variants, key=lambda number: float(means[number]))
         over = "over all inputs" if len(self.inputs) > 1 else f"on {self.inputs[0]}"
+        over = over if several else f"{over[0].upper()}{over[1:]}"
         if best == base:
             return f"{state}{over} no variant is smoother than the car as it is."
         doubt = ", not more than its error" if abs(means[best]) <= self.half_widths[-1, best] else ""

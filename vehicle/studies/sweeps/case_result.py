@@ -27,13 +27,44 @@ class Result:
     reason: str = ""
     seconds: float = 0.0
 
+    def row(self, case: Case, key: str) -> str:
+        """Return the row of a case, a line of JSON; `key` is its digest, see `CaseKeys`."""
+        # JSON writes floats with all digits, so values read again are identical; an undefined value (NaN) is null.
+        row = {
+            "key": key,
+            "case": case.label,
+            "values": {name: None if value != value else value for name, value in self.values.items()},
+            "engine": self.engine,
+            "reason": self.reason,
+            "seconds": self.seconds,
+        }
+        return json.dumps(row, allow_nan=False) + "\n"
+
+    @classmethod
+    def read(cls, line: bytes) -> Result:
+        """Return the result in a row.
+
+        Raises:
+            ValueError: the line is no row: not JSON, a key is missing or of another type, or a number is not finite.
+        """
+        try:
+            row: dict[str, Any] = json.loads(line)
+            values = {str(name): math.nan if value is None else number(value) for name, value in row["values"].items()}
+            texts = {name: text(row[name]) for name in ("engine", "reason")}
+            result = cls(values=values, **texts, seconds=number(row["seconds"]))
+        except (KeyError, TypeError, AttributeError, RecursionError, OverflowError) as error:
+            raise ValueError(f"{type(error).__name__}: {error}") from None
+        if bool(result.values) == bool(result.reason):
+            raise ValueError("must have values, or the message of an error")
+        return result
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Block:
     """Rows of the cases of a task as text, so that the process of the sweep stores them without reading them.
 
     Attributes:
-        rows: a line for each case, see `row_text`.
+        rows: a line for each case, see `Result.row`.
         seconds: computing time of all cases [s].
         failed: positions of the failed cases.
         reduced: True if the reduced engine ran all cases.
@@ -53,7 +84,7 @@ class Block:
             keys: digest of each case, see `CaseKeys`.
             results: result of each case.
         """
-        rows = (row_text(*row) for row in zip(cases, keys, results, strict=True))
+        rows = (result.row(case, key) for case, key, result in zip(cases, keys, results, strict=True))
         return cls(
             rows="".join(rows).encode(),
             seconds=sum(result.seconds for result in results),
@@ -63,42 +94,7 @@ class Block:
 
     def results(self) -> list[Result]:
         """Return the results of the cases."""
-        return [result_of(line) for line in self.rows.splitlines()]
-
-
-def row_text(case: Case, key: str, result: Result) -> str:
-    """Return the row of a case, a line of JSON."""
-    # JSON writes floats with all digits, so values read again are identical; an undefined value (NaN) is null.
-    row = {
-        "key": key,
-        "case": case.label,
-        "values": {name: None if value != value else value for name, value in result.values.items()},
-        "engine": result.engine,
-        "reason": result.reason,
-        "seconds": result.seconds,
-    }
-    return json.dumps(row, allow_nan=False) + "\n"
-
-
-def result_of(line: bytes) -> Result:
-    """Return the result in a row.
-
-    Raises:
-        ValueError: the line is no row: not JSON, a key is missing or of another type, or a number is not finite.
-    """
-    try:
-        row: dict[str, Any] = json.loads(line)
-        result = Result(
-            values={str(name): math.nan if value is None else number(value) for name, value in row["values"].items()},
-            engine=text(row["engine"]),
-            reason=text(row["reason"]),
-            seconds=number(row["seconds"]),
-        )
-    except (KeyError, TypeError, AttributeError, RecursionError, OverflowError) as error:
-        raise ValueError(f"{type(error).__name__}: {error}") from None
-    if bool(result.values) == bool(result.reason):
-        raise ValueError("must have values, or the message of an error")
-    return result
+        return [Result.read(line) for line in self.rows.splitlines()]
 
 
 def number(value: Any) -> float:

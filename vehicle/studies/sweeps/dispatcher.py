@@ -12,7 +12,7 @@ from queue import Empty, SimpleQueue
 import numpy as np
 
 from vehicle.arrays import Indices
-from vehicle.errors import ConfigurationError, SimulationError, VehicleError
+from vehicle.errors import SimulationError, VehicleError
 from vehicle.studies.sweeps.case import Case
 from vehicle.studies.sweeps.case_result import Block, Result
 from vehicle.studies.sweeps.executors import StandingExecutor, ThisProcess, close, worker_remedy, workers_of
@@ -124,8 +124,6 @@ class Dispatcher:
         time_limit: float | None = None,
         notice: Notice | None = None,
     ) -> None:
-        if time_limit is not None and not 0.0 < time_limit < np.inf:
-            raise ConfigurationError(f"time limit: found {time_limit:g} s, must be a finite number of seconds above 0")
         self.make = None if isinstance(executor, Executor) else executor
         self.executor = executor if isinstance(executor, Executor) else executor()
         self.measure, self.program = measure, program_digest()

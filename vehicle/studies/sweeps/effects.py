@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +16,7 @@ from vehicle.digits import aligned, number
 from vehicle.drawing.rendering.tornado_plot import draw_tornado, plot_tornado
 from vehicle.signals.formats.csv_table import RowWriter
 from vehicle.studies.sweeps.change_error import MEANING_OF_ERROR, NO_ERROR
+from vehicle.studies.sweeps.evaluation import REPEAT, Evaluation, Part
 
 EFFECTS, TORNADO = "effects.csv", "effects.png"
 """Names of the files in the folder of a sweep."""
@@ -218,3 +221,27 @@ def write_effects(path: Path, effects: Effects) -> None:
             )
         for each_path in effects.without:
             rows.writerow([each_path, *[""] * 4, "0", "0", ""])
+
+
+def effects_evaluation(effects: Effects, caption: str) -> Evaluation:
+    """Return the evaluation of a sweep over single changes; `caption` names tyres and evaluated span."""
+    draw = partial(effects.write_picture, caption=caption)
+    files = {EFFECTS: partial(write_effects, effects=effects), TORNADO: draw}
+    return Evaluation(effect_lines(effects), files, partial(_parts, effects, draw))
+
+
+def _parts(effects: Effects, draw: Callable[[Path], object], notes: Sequence[str]) -> list[Part]:
+    """Return the part of the report with the chart and all effects."""
+    heads = ["parameter", "unit", "value", "low", "high", "change at low [%]", "change at high [%]", "± 95 % [%]"]
+    rows = []
+    for each in effects.effects:
+        changes = (
+            f"{change:+.2f}" if math.isfinite(change) else "failed" for change in (each.change_low, each.change_high)
+        )
+        width = number(each.half_width if math.isfinite(each.half_width) else None, 2)
+        width = ", ".join(filter(None, (width, each.mark.replace("+-", "±"))))
+        rows.append(
+            (each.path, each.unit, *(number(value, 4) for value in (each.value, each.low, each.high)), *changes, width)
+        )
+    values = {"sentence": effect_sentence(effects), "notes": notes, "heads": heads, "rows": rows, "effects": effects}
+    return [Part("Result", "result", "effects", values, draw, "Changes of comfort by single parameters"), REPEAT]

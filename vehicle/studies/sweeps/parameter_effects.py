@@ -6,7 +6,8 @@ All cars drive on the same road, so a change has a far smaller error than the co
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -22,11 +23,11 @@ from vehicle.names import AXES
 from vehicle.runs.car import Car
 from vehicle.settings import with_settings
 from vehicle.studies.sweeps.change_error import change_errors, half_width
-from vehicle.studies.sweeps.effects import Effect, Effects
-from vehicle.studies.sweeps.plan import plan_sweep
-from vehicle.studies.sweeps.sweep_inputs import Source
+from vehicle.studies.sweeps.effects import Effect, Effects, effects_evaluation
+from vehicle.studies.sweeps.plan import SweepPlan, plan_sweep
+from vehicle.studies.sweeps.sweep_inputs import Inputs
 from vehicle.studies.sweeps.sweep_ranking import RANKED_BY, ROUNDING
-from vehicle.studies.sweeps.sweep_settings import SHIFT, EffectSettings
+from vehicle.studies.sweeps.sweep_settings import SHARE, SHIFT, EffectSettings, SweepSettings
 from vehicle.studies.sweeps.sweep_table import SweepTable
 
 UNITS = ("N/m", "N s/m", "N", "N m/rad", "N/rad", "kg")
@@ -125,14 +126,14 @@ def _scaled(vehicle: Vehicle, path: str, parameters: Mapping[str, tuple[float, s
 
 
 @with_settings(EffectSettings)
-def parameter_effects(car: Car, inputs: Source | Sequence[Source], settings: EffectSettings) -> Effects:
+def parameter_effects(car: Car, inputs: Inputs, settings: EffectSettings) -> Effects:
     """Change each parameter of a car alone, down and up, and rank the parameters by their effect on comfort.
 
     As `sweep`, a script must call this function below `if __name__ == "__main__":`.
 
     Args:
         car: car loaded by `Car.load`.
-        inputs: files or names of shipped ones, roads, signals; one or several.
+        inputs: files, names of shipped files, roads, signals; one or several.
 
     Returns:
         Effects, largest first; printed as a table and as text.
@@ -140,10 +141,34 @@ def parameter_effects(car: Car, inputs: Source | Sequence[Source], settings: Eff
     Raises:
         ConfigurationError: a group without parameters, a share out of range, and as in `sweep`.
     """
-    parameters = varied_parameters(car.vehicle, settings.groups)
-    changes, without = single_changes(car.vehicle, parameters, settings.share, settings.shift)
-    table = plan_sweep(car, changes, inputs, settings).run()
-    return effects_of(table, parameters, settings.share, without, settings.shift)
+    changes, effects = SingleChanges(settings.groups, settings.share, settings.shift).of(car.vehicle)
+    return effects(plan_sweep(car, changes, inputs, settings).run())
+
+
+@dataclass(frozen=True, slots=True)
+class SingleChanges:
+    """Design of a sweep: each parameter of a car changed alone, down and up, ranked by the effects on comfort.
+
+    Attributes:
+        groups, share, shift: see `EffectSettings`.
+    """
+
+    groups: Sequence[str] = ()
+    share: float = SHARE
+    shift: float = SHIFT
+
+    def of(self, vehicle: Vehicle) -> tuple[list[tuple[str, ...]], Callable[[SweepTable], Effects]]:
+        """Return the changes of a car, and the function that returns the effects in their table."""
+        parameters = varied_parameters(vehicle, self.groups)
+        changes, without = single_changes(vehicle, parameters, self.share, self.shift)
+        return changes, lambda table: effects_of(table, parameters, self.share, without, self.shift)
+
+    def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
+        """Return the checked sweep; see `Design`; errors: see `varied_parameters` and `single_changes`."""
+        changes, effects = self.of(car.vehicle)
+        return plan_sweep(
+            car, changes, inputs, settings, lambda table, caption: effects_evaluation(effects(table), caption)
+        )
 
 
 def effects_of(

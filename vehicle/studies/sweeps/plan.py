@@ -5,10 +5,10 @@ from __future__ import annotations
 import contextlib
 import math
 import time as clock
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from vehicle.digits import duration
 from vehicle.engines.reduced.validity import ERROR_IN_RANGE, ERROR_ON_CLASS_C
@@ -20,16 +20,19 @@ from vehicle.model.parameters.paths import assignments, meant
 from vehicle.model.parameters.shipped import FOCUS_FILE, vehicle_file
 from vehicle.model.parameters.vehicle import load_vehicle, overridden
 from vehicle.runs.car import Car
-from vehicle.runs.car.outside_tests import outside_tests
+from vehicle.runs.car.fast_run import fast_run
+from vehicle.runs.car.outside_tests import RAIL, outside_tests
 from vehicle.settings import with_settings
 from vehicle.signals.excitation.road_drive import RoadDrive
-from vehicle.studies.sweeps.case import all_tyre_words, overrides_of
-from vehicle.studies.sweeps.case_evaluation import OF_A_RUN, loaded_car, reason_for_mujoco, run_of
+from vehicle.studies.sweeps.case import all_tyre_words, overrides_of, signal_of
+from vehicle.studies.sweeps.case_evaluation import OF_A_RUN, loaded_car, reason_for_mujoco
 from vehicle.studies.sweeps.case_table import Cases, Combinations, RowChanges
+from vehicle.studies.sweeps.comfort_ranking import ranking_evaluation
 from vehicle.studies.sweeps.dispatcher import FILL
+from vehicle.studies.sweeps.evaluation import Evaluation
 from vehicle.studies.sweeps.measure import BatchMeasure, Measure, comfort_measure
 from vehicle.studies.sweeps.sweep import sweep_cases
-from vehicle.studies.sweeps.sweep_inputs import Source, common_start, file_of, inputs_of, require_speed_of_roads
+from vehicle.studies.sweeps.sweep_inputs import Inputs, common_start, file_of, inputs_of, require_speed_of_roads
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
 from vehicle.studies.sweeps.sweep_table import SweepTable
 
@@ -46,18 +49,22 @@ class SweepPlan:
     """Checked sweep, ready to run.
 
     Attributes:
+        name: name of the car.
         cases: the runs.
         measure: measure of each run.
         skip: start of the evaluation [s].
         settings: settings of the runs.
         notes: messages on side effects of the varied parameters.
+        evaluation_of: returns the evaluation of the table, for a caption with tyres and evaluated span.
     """
 
+    name: str
     cases: Cases
     measure: Measure
     skip: float
     settings: SweepSettings
     notes: tuple[str, ...]
+    evaluation_of: Callable[[SweepTable, str], Evaluation]
 
     @property
     def tyres(self) -> str:
@@ -117,10 +124,13 @@ class SweepPlan:
         """Return messages on the first car and the first input on which its dampers leave the range of their tests."""
         count = len(self.cases.changes)
         with contextlib.suppress(*OF_A_RUN):  # the row of the case has the error message
-            if not any(damper.law.tested for damper in loaded_car(self.cases[0]).vehicle.composition.dampers):
-                return ()
             for number, (source, _) in enumerate(self.cases.inputs):
-                run = run_of(replace(self.cases[number * count], engine="reduced"))
+                car = loaded_car(self.cases[number * count])
+                tested = [each.name for each in car.vehicle.composition.dampers if each.law.tested]
+                if not tested:
+                    return ()
+                # `outside_tests` reads only these velocities; it runs the comfort of its laws again.
+                run = fast_run(car, signal_of(source), [*(f"{name}_velocity" for name in tested), *RAIL])
                 if texts := outside_tests(replace(run, skip=self.skip)):
                     return tuple(f"first car on {source.name}: {text}" for text in texts)
         return ()
@@ -135,10 +145,25 @@ def _difference(reason: str) -> str:
     return "" if LIFTS in reason else f" (on class C {ERROR_ON_CLASS_C})"
 
 
+class Design(Protocol):
+    """Design of a sweep: the varied parameters, and the evaluation of their table."""
+
+    def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
+        """Check cars and inputs before the first run and return the sweep; arguments and errors as in `sweep`."""
+
+
 def plan_sweep(
-    car: Car, vary: Variations, inputs: Source | Sequence[Source], settings: SweepSettings | None = None
+    car: Car,
+    vary: Variations,
+    inputs: Inputs,
+    settings: SweepSettings | None = None,
+    evaluation_of: Callable[[SweepTable, str], Evaluation] = ranking_evaluation,
 ) -> SweepPlan:
-    """Check the arguments of a sweep and return the sweep; arguments and errors as in `sweep`."""
+    """Check the arguments of a sweep and return the sweep; arguments and errors as in `sweep`.
+
+    Args:
+        evaluation_of: returns the evaluation of a table; by default its cars in the order of comfort.
+    """
     settings, changes = settings or SweepSettings(), changes_of(vary)
     vehicle = file_of(car)
     each = _one_of_each_path(changes)
@@ -153,16 +178,18 @@ def plan_sweep(
     if idle and all(_all_idle(vehicle, state, each, settings.engine) for state in states):
         raise ConfigurationError(f"vary: every run would be the same car: {'; '.join(idle)}")
     return SweepPlan(
+        name=car.vehicle.name,
         cases=cases,
         measure=settings.measure or comfort_measure(car.vehicle, start),
         skip=start,
         settings=settings,
         notes=(*body_rules(car.vehicle, [text.partition("=")[0] for text in each]), *idle),
+        evaluation_of=evaluation_of,
     )
 
 
 @with_settings(SweepSettings)
-def sweep(car: Car, vary: Variations, inputs: Source | Sequence[Source], settings: SweepSettings) -> SweepTable:
+def sweep(car: Car, vary: Variations, inputs: Inputs, settings: SweepSettings) -> SweepTable:
     """Run a car with varied parameters on one or several inputs, and tabulate comfort and slip.
 
     The runs are distributed to processes, so a script must call this function below `if __name__ == "__main__":`.
@@ -172,7 +199,7 @@ def sweep(car: Car, vary: Variations, inputs: Source | Sequence[Source], setting
         vary: path to values, as {"damper.coulomb_friction": [62.5, 125]}, for every combination; or a list of
             variations, each path to value, in which {} is the car itself. If the variations of a list change different
             parameters, the car itself is the first row without being named, so that each is compared with it.
-        inputs: files or names of shipped ones, roads, signals; one or several.
+        inputs: files, names of shipped files, roads, signals; one or several.
 
     Returns:
         A row for each run with its engine, the inputs varying slowest; a failed run is a row with an error message.

@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from vehicle.errors import DataError
-from vehicle.model.parameters.ranges import Range
+from vehicle.errors import ConfigurationError, DataError
+from vehicle.model.parameters.ranges import Range, parsed_variation
 from vehicle.runs.car import Car
 from vehicle.settings import with_settings
 from vehicle.signals.analysis.ride_comfort import SEAT_PREFIX, UNWEIGHTED, WEIGHTED
 from vehicle.signals.formats.csv_table import RowWriter
 from vehicle.studies.sweeps.case_table import RowChanges
+from vehicle.studies.sweeps.evaluation import Evaluation
 from vehicle.studies.sweeps.indices import SobolIndices, sobol_indices, sobol_sample
-from vehicle.studies.sweeps.plan import plan_sweep
-from vehicle.studies.sweeps.sweep_inputs import Source
+from vehicle.studies.sweeps.plan import SweepPlan, plan_sweep
+from vehicle.studies.sweeps.sweep_inputs import Inputs
 from vehicle.studies.sweeps.sweep_ranking import SweptCases
-from vehicle.studies.sweeps.sweep_settings import SobolSettings
+from vehicle.studies.sweeps.sweep_settings import SobolSettings, SweepSettings
 
 SOBOL = "sobol.csv"
 """Name of the file in the folder of a sweep."""
@@ -29,7 +31,7 @@ QUANTITIES = (f"{SEAT_PREFIX}{WEIGHTED}", f"{SEAT_PREFIX}{UNWEIGHTED}", WEIGHTED
 
 @with_settings(SobolSettings)
 def sobol(
-    car: Car, vary: Mapping[str, tuple[float, float]], inputs: Source | Sequence[Source], settings: SobolSettings
+    car: Car, vary: Mapping[str, tuple[float, float]], inputs: Inputs, settings: SobolSettings
 ) -> dict[str, SobolIndices]:
     """Return the Sobol indices of comfort for parameters uniform between bounds, the mean over all inputs.
 
@@ -42,7 +44,7 @@ def sobol(
     Args:
         car: car loaded by `Car.load`; its overrides apply to every run.
         vary: path to lower and upper bound, in the unit of the parameter.
-        inputs: files or names of shipped ones, roads, signals; one or several.
+        inputs: files, names of shipped files, roads, signals; one or several.
 
     Returns:
         Name of the comfort value, as "weighted", to its indices (`first`, `total`) and the half widths of their 95 %
@@ -54,25 +56,50 @@ def sobol(
 
     Source: Saltelli et al., Comput. Phys. Commun. 181 (2010).
     """
-    ranges = [Range(path=path, low=low, high=high) for path, (low, high) in vary.items()]
-    return comfort_indices(plan_sweep(car, sobol_changes(ranges, settings.base), inputs, settings).run(), ranges)
+    sample = SobolSample(vary, settings.base)
+    return comfort_indices(sample.plan(car, inputs, settings).run(), sample.ranges())
 
 
-def sobol_changes(ranges: Sequence[Range], base: int) -> RowChanges:
-    """Return the variations at the points of the sample, equal in every call, so that a sweep can be resumed.
+@dataclass(frozen=True, slots=True)
+class SobolSample:
+    """Design of a sweep: the points of a sample of parameters uniform between bounds, for Sobol indices of comfort.
 
-    Args:
-        ranges: parameters with bounds.
+    Attributes:
+        bounds: path to lower and upper bound; or texts "PATH=LOW:HIGH".
         base: number of base points, a power of two, at least `indices.LEAST_BASE`.
-
-    Raises:
-        ConfigurationError: `base` is no power of two, or too small.
     """
-    return RowChanges([each.path for each in ranges], sobol_sample(ranges, base).tolist())
+
+    bounds: Mapping[str, tuple[float, float]] | Sequence[str]
+    base: int
+
+    def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
+        """Return the checked sweep; its sample is equal in every call, so that it can be resumed; see `Design`.
+
+        Raises:
+            ConfigurationError: a text of another form, a path that occurs twice, or a wrong `base`.
+        """
+        ranges = self.ranges()
+        sample = RowChanges([each.path for each in ranges], sobol_sample(ranges, self.base).tolist())
+
+        def evaluation(table: SweptCases, caption: str) -> Evaluation:
+            indices = comfort_indices(table, ranges)
+            return Evaluation(index_lines(indices), {SOBOL: lambda path: write_indices(path, indices)})
+
+        return plan_sweep(car, sample, inputs, settings, evaluation)
+
+    def ranges(self) -> list[Range]:
+        """Return the parameters with their bounds."""
+        if isinstance(self.bounds, Mapping):
+            return [Range(path=path, low=low, high=high) for path, (low, high) in self.bounds.items()]
+        ranges = [parsed_variation("--vary", text).range() for text in self.bounds]
+        paths = [each.path for each in ranges]
+        if twice := next((path for path in paths if paths.count(path) > 1), ""):
+            raise ConfigurationError(f"--vary {twice}: given twice; give its bounds once")
+        return ranges
 
 
 def comfort_indices(table: SweptCases, ranges: Sequence[Range]) -> dict[str, SobolIndices]:
-    """Return the indices of each comfort value of a sweep over `sobol_changes`: mean of the inputs, each over its mean.
+    """Return the indices of each comfort value of a sweep over a `SobolSample`: mean of the inputs, each over its mean.
 
     Args:
         table: the table.

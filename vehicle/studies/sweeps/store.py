@@ -22,7 +22,7 @@ from vehicle.leftovers import say
 from vehicle.runs.output.written_files import note
 from vehicle.studies.sweeps.case import Case
 from vehicle.studies.sweeps.case_keys import KEY_DIGITS
-from vehicle.studies.sweeps.case_result import Block, Result, result_of
+from vehicle.studies.sweeps.case_result import Block, Result
 from vehicle.studies.sweeps.lazy_sequence import LazySequence
 
 ROWS = "rows.jsonl"
@@ -150,11 +150,11 @@ class StoredRows(LazySequence[Result]):
 
     def item(self, number: int) -> Result:
         """Return the result of a case."""
-        return result_of(self.row(number))
+        return Result.read(self.row(number))
 
     def __iter__(self) -> Iterator[Result]:
         """Return the results in the order of the cases."""
-        return map(result_of, self.rows())
+        return map(Result.read, self.rows())
 
     def row(self, number: int) -> bytes:
         """Return the row of a case, a line of JSON."""
@@ -183,7 +183,7 @@ class StoredRows(LazySequence[Result]):
                     file.truncate(position)
                     break
                 try:
-                    reason = result_of(line).reason
+                    reason = Result.read(line).reason
                     key = line[len(BEGINNING) :][:KEY_DIGITS]
                     if not line.startswith(BEGINNING) or len(key.split(b'"')[0]) != KEY_DIGITS:
                         raise ValueError("no key")

@@ -2,26 +2,93 @@
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.parameters.driving import require_speed_once
 from vehicle.model.parameters.vehicle import load_vehicle
+from vehicle.names import CORNERS
 from vehicle.runs.car import Car
-from vehicle.runs.car.road import Road
+from vehicle.runs.car.road import Road, road_of
+from vehicle.settings import Settings, part
 from vehicle.signals.excitation.evaluation_start import evaluation_start
 from vehicle.signals.excitation.input_files import find_input
+from vehicle.signals.excitation.input_settings import DriveInput, on_road
 from vehicle.signals.excitation.recorded_road import RecordedDrive
 from vehicle.signals.excitation.road_drive import RoadDrive
+from vehicle.signals.excitation.road_settings import RoadSettings
 from vehicle.signals.excitation.signal import Signal
 from vehicle.studies.sweeps.case import Input, SignalFile, signal_of
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class InputChoice(Settings):
+    """Inputs of a sweep or a search: files of signals, or roads.
+
+    Attributes:
+        input: files, or the names of shipped files.
+        wheel: wheel that a column without a wheel in its name moves; by default that of the vehicle file.
+        any_level: accept levels beyond a shaker.
+        road: roads in the forms of `shaker`.
+        speed: speed on all roads, or on each [km/h].
+        seed: seeds of each random road.
+        settings: further settings of all roads.
+    """
+
+    input: tuple[str, ...] = ()
+    wheel: str | None = None
+    any_level: bool = False
+    road: tuple[str, ...] = ()
+    speed: tuple[float | str, ...] = ()
+    seed: tuple[int, ...] = ()
+    settings: RoadSettings = part(RoadSettings)
+
+    def inputs(self) -> list[Road] | list[SignalFile]:
+        """Return the inputs, those of files for the shaker wheel of any car.
+
+        Raises:
+            ConfigurationError: no input, a file that does not exist, or a speed without a road.
+        """
+        return self._roads() if on_road(self.road, self.input) else self._files()
+
+    def _roads(self) -> list[Road]:
+        speeds: Sequence[float | str | None] = self.speed or (None,)
+        if len(speeds) not in (1, len(self.road)):
+            raise ConfigurationError(
+                f"--speed: given {len(speeds)} times for {len(self.road)} roads; give one speed, or "
+                "a speed for each road"
+            )
+        each = [*speeds] * len(self.road) if len(speeds) == 1 else speeds
+        seeds: Sequence[int | None] = self.seed or (None,)
+        if len(set(seeds)) < len(seeds):
+            raise ConfigurationError(f"--seed {' '.join(map(str, seeds))}: a seed is given twice; give each once")
+        roads = [
+            road_of(DriveInput(road=road, speed=speed, settings=replace(self.settings, seed=seed)))
+            for road, speed in zip(self.road, each, strict=True)
+            for seed in seeds
+        ]
+        profile = next((road.file for road in roads if road.file is not None), None)
+        if len(seeds) > 1 and profile is not None:
+            raise ConfigurationError(
+                f"--seed: given {len(seeds)} times, and {profile} is a measured profile, without a seed; leave it out"
+            )
+        return roads
+
+    def _files(self) -> list[SignalFile]:
+        wheel = CORNERS[self.wheel] if self.wheel else ""
+        paths = [find_input(name).resolve() for name in self.input]
+        return [SignalFile(path=path, wheel=wheel, accept_implausible=self.any_level) for path in paths]
+
 
 Source = Input | Road | Path | str
 """Input of a run: a file, the name of a shipped file, a road, a signal, or a user-defined input."""
 
+Inputs = InputChoice | Source | Sequence[Source]
+"""One or several inputs."""
 
-def inputs_of(car: Car, sources: Source | Sequence[Source]) -> list[Input]:
+
+def inputs_of(car: Car, sources: Inputs) -> list[Input]:
     """Return the inputs of the runs of a car.
 
     Args:
@@ -35,7 +102,8 @@ def inputs_of(car: Car, sources: Source | Sequence[Source]) -> list[Input]:
         ConfigurationError: no input, a missing file, or a road that the car cannot drive on.
         DataError: an input cannot be read, or was sampled below 125 Hz.
     """
-    listed = list(sources) if isinstance(sources, Sequence) and not isinstance(sources, str) else [sources]
+    chosen = sources.inputs() if isinstance(sources, InputChoice) else sources
+    listed = list(chosen) if isinstance(chosen, Sequence) and not isinstance(chosen, str) else [chosen]
     if not listed:
         raise ConfigurationError("inputs: no input; pass a file, or a road, as road('C', 80)")
     inputs: list[Input] = []
@@ -44,6 +112,8 @@ def inputs_of(car: Car, sources: Source | Sequence[Source]) -> list[Input]:
             inputs.append(source.under(car.vehicle, car.overrides))
         elif isinstance(source, str | Path):
             inputs.append(SignalFile(path=find_input(source).resolve(), wheel=car.vehicle.shaker_wheel))
+        elif isinstance(source, SignalFile) and not source.wheel:
+            inputs.append(replace(source, wheel=car.vehicle.shaker_wheel))
         else:
             inputs.append(source)
     for entry in inputs:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from vehicle.errors import ConfigurationError
-from vehicle.settings import Settings, engine_setting, require_within, setting
+from vehicle.settings import Settings, engine_setting, require_within, setting, skip_setting
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -18,6 +18,10 @@ if TYPE_CHECKING:
 SHIFT = 0.01
 """Default change of a coordinate [m], by which it is varied in place of a share: a share of it would depend on the
 origin. Assumed: a usual step of a study of hardpoints; the sliders of the bench reach five of them."""
+
+
+SHARE = 0.2
+"""Default relative change of a parameter [-]."""
 
 
 def _jobs(text: str) -> int:
@@ -34,14 +38,11 @@ def _jobs(text: str) -> int:
     return number
 
 
-def skip_setting() -> Any:
-    """Declare the start of the evaluation, see `vehicle.signals.excitation.evaluation_start`."""
-    return setting(
-        "begin the evaluation (comfort, SEAT, slip shares, densities) S seconds after the start; on a road 2 by "
-        "default, more below 19 km/h, since a road rises from rest during the first second; 0 with --input",
-        type=float,
-        metavar="S",
-    )
+def _executor(text: str) -> Callable[[], Executor]:
+    """Return the function of the option that creates an executor."""
+    from vehicle.studies.sweeps.executors import executor_factory
+
+    return executor_factory(text)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -58,6 +59,7 @@ class PoolSettings(Settings):
     executor: Callable[[], Executor] | Executor | None = setting(
         "function that returns an executor, in place of `jobs`; or an executor, which stays open and is not replaced "
         "if it breaks",
+        type=_executor,
         metavar="WHERE",
         help="dask://host:port, or module:factory for an executor of your own",
     )
@@ -74,7 +76,10 @@ class RunSettings(PoolSettings):
     """Settings of the runs of a sweep."""
 
     time_limit: float | None = setting(
-        "maximum computing time of a run [s]; a run that takes longer is a failed row", type=float, metavar="S"
+        "maximum computing time of a run [s]; a run that takes longer is a failed row",
+        within="(0, inf)",
+        type=float,
+        metavar="S",
     )
     retry_failed: bool = setting("run failed rows again", False, action="store_true")
     notice: Callable[[str], None] | None = setting("called with messages, as that a cluster has no workers")
@@ -100,7 +105,7 @@ class SobolSettings(SweepSettings):
 class EffectSettings(SweepSettings):
     """Settings of the effects of single parameters."""
 
-    share: float = setting("relative change of each parameter [-]; %(default)s by default", 0.2)
+    share: float = setting("relative change of each parameter [-]; %(default)s by default", SHARE)
     shift: float = setting("change of each coordinate [m], in place of a share; %(default)s by default", SHIFT)
     groups: tuple[str, ...] | list[str] = setting(
         "parameters, as front.damper or viscous; by default all stiffnesses, dampings, friction forces and masses", ()

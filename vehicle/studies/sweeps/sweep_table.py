@@ -129,13 +129,15 @@ class SweepTable:
             ConfigurationError: another ending, or a file that exists without `force`.
             OutputError: the file cannot be written.
         """
+        from vehicle.studies.sweeps.comfort_ranking import ranking_evaluation
         from vehicle.studies.sweeps.sweep_page import sweep_page
 
         path = Path(file)
         check_file(path, ending=".html", force=force)
         evaluated = f"evaluated from {self.made.get('evaluated_from_s') or 0:g} s on"
         name = ", ".join(self.made.get("vehicles", ("car",)))
-        page = sweep_page(self, name, caption=evaluated, author=author, project=project)
+        evaluation = ranking_evaluation(self, evaluated)
+        page = sweep_page(self, evaluation, name, caption=evaluated, author=author, project=project)
         write_text(path, page)
         return path
 

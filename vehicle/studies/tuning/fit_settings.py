@@ -30,6 +30,30 @@ DISCREPANCY = 0.1
 """Default standard deviation of ln|H| between model and car [-]: 10 %."""
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class MeasurementFile:
+    """Measurement file of a fit, and what belongs to it alone.
+
+    Attributes:
+        file: the file.
+        content: "frf" for FRFs, "record" for time histories.
+        signal: file of the plate displacement; by default the plate in the file.
+        stuck: of FRFs: the dampers stick at this level.
+        road, speed, contact: of time histories: road in the forms of `shaker`, speed [km/h], tyre contact.
+        levels, reference: of time histories: see `LevelSettings`.
+    """
+
+    file: Path
+    content: str
+    signal: str | None = None
+    stuck: bool = False
+    road: str | None = None
+    speed: float | str | None = None
+    contact: str | None = None
+    levels: int | None = None
+    reference: str | None = None
+
+
 @dataclass(frozen=True)
 class ReadingSettings(Settings):
     """Settings of a measurement file."""

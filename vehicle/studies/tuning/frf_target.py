@@ -10,6 +10,7 @@ import numpy.typing as npt
 from vehicle.arrays import Complex, Vector
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.runs.car import FRF_BAND, Car, Run
+from vehicle.runs.car.fast_run import fast_run
 from vehicle.signals.analysis.dependence import common_motions
 from vehicle.signals.analysis.frf_agreement import log_ratio
 from vehicle.signals.analysis.motion_response import motion_responses
@@ -18,7 +19,6 @@ from vehicle.signals.analysis.response_name import PLATE, ResponseName, plates_o
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.formats.frf_file import FrfData, frf_data
 from vehicle.signals.records.counterpart import SAME_MOTION
-from vehicle.studies.tuning.fast_run import fast_run
 from vehicle.studies.tuning.response_delays import ResponseDelays
 
 LEAST_COHERENCE = 0.1

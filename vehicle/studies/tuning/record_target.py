@@ -12,12 +12,12 @@ from vehicle.arrays import Mask, Vector
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import channel_units
 from vehicle.runs.car import Car, Run
+from vehicle.runs.car.fast_run import fast_run
 from vehicle.signals.analysis.phase_delay import PhaseDelay
 from vehicle.signals.analysis.time_shift import time_shift
 from vehicle.signals.excitation.signal import MINIMUM_SAMPLES, Signal
 from vehicle.signals.formats.table import Record
 from vehicle.signals.records.counterpart import SAME_MOTION
-from vehicle.studies.tuning.fast_run import fast_run
 from vehicle.studies.tuning.response_delays import ResponseDelays
 
 KEPT = 2.0

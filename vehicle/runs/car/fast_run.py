@@ -1,8 +1,9 @@
-"""Runs of the variants of a fit: the reduced engine without its errors, which no step of a fit reads."""
+"""Run of the reduced engine without its stated errors and notices, which a fit and the notes of a sweep do not read."""
 
 from collections.abc import Sequence
 
-from vehicle.runs.car import Car, Run
+from vehicle.runs.car.car import Car
+from vehicle.runs.car.run import Run
 from vehicle.runs.car.simulated_run import simulated_run
 from vehicle.signals.excitation.signal import Signal
 from vehicle.threads import one_blas_thread
