@@ -8,6 +8,7 @@ import math
 import shlex
 from collections.abc import Sequence
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.command_line import parse_and_run
@@ -99,6 +100,7 @@ def job(options: argparse.Namespace) -> None:
     orders = _orders(options.orders)
     from vehicle.runs.car import Car
     from vehicle.runs.car.order_points import order_points_at
+    from vehicle.runs.output.run_size import batch_memory, say_size
     from vehicle.runs.report.order_page import HEADS, order_points_sentences, order_rows
 
     folder = None if options.output is None else output_folder_of(options, options.output)
@@ -107,6 +109,10 @@ def job(options: argparse.Namespace) -> None:
     set_once(options.overrides, "--rpm", ["crank.rpm="] if rpm else [])
     car = Car.load(options.vehicle, [*options.overrides, *driving])
     asked_channels = ",".join(options.channel or ["seat rail z"]).split(",")
+    count = len(asked_channels) + len(car.vehicle.damped_wheels)
+    samples = options.duration * car.vehicle.solver.record_rate
+    memory = batch_memory(samples, count, reduced=options.engine == "reduced")
+    say_size(folder or Path(), f"runs of {options.duration:g} s", memory, 0.0, "for less, set a shorter --duration")
     channels = order_points_at(
         car,
         asked_channels,
