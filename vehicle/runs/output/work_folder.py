@@ -56,7 +56,7 @@ def new_folder(
             yield work
         check()
         if goal.exists():
-            mark(goal)  # a folder of an earlier version has no list
+            mark(goal)  # a folder of a clone has no list
         synchronise_folder(work)
         replaced = _put_in_place(goal)
     if replaced is not None:
