@@ -11,6 +11,7 @@ from pathlib import Path
 from unittest import mock
 
 from tests.faults.cases import hidden_in
+from vehicle.leftovers import FINISHED_ROWS, REPLACED
 from vehicle.runs.output import work_folder
 from vehicle.runs.output.written_files import MARKER
 
@@ -97,7 +98,7 @@ def faults(name: str, path: Path, case: Path, runs: Sequence[tuple[int, str]]) -
         return wrong
     found = [each for each in case.rglob("*") if each.is_file() and MINE in each.read_bytes()]
     moved = [each for each in found if each.relative_to(case).parts[0] in said]
-    grows = path.name == "rows.jsonl" and "finished rows" in said  # is the program's, and the message counts the rows
+    grows = path.name in FINISHED_ROWS and "finished rows" in said  # is the program's, and the message counts the rows
     if not grows and path not in found and not (moved and any(part[0] == "." for part in path.relative_to(case).parts)):
         wrong.append(f"{name} of {path.relative_to(case)} is lost, or was moved without a sentence")
     return wrong
@@ -142,7 +143,7 @@ def judged(
 def _named(state: Path, case: Path) -> Iterator[tuple[str, Path]]:
     """Yield what a user may do after a kill: edit, add or remove a file."""
     everything = sorted(state.rglob("*"))
-    own = re.compile(rf"\.lock$|\.\d+\.partial|^{re.escape(MARKER)}$")
+    own = re.compile(rf"\.lock$|\.\d+\.partial|^({re.escape(MARKER)}|{re.escape(REPLACED)})$")
     files = [path for path in everything if path.is_file() and not own.search(path.name)]
     folders = [state, *(path for path in everything if path.is_dir())]
     for path in files:

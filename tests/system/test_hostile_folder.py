@@ -11,7 +11,7 @@ from tests.faults.commands import run_words
 from vehicle import Car, Run
 from vehicle.__main__ import main
 from vehicle.errors import ConfigurationError, OutputError
-from vehicle.leftovers import FINISHED_ROWS
+from vehicle.leftovers import FINISHED_ROWS, REPLACED
 from vehicle.runs.output.folder import output_folder, study_folder, write_text, write_together
 from vehicle.runs.output.locks import folder_lock
 from vehicle.runs.output.model_files import write_mjcf
@@ -21,7 +21,7 @@ from vehicle.studies.sweeps.store import ROWS
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="links need a right under Windows")
 
-JOURNALS = (".vehicle-complete", ".vehicle-unfinished", MARKER)
+JOURNALS = (".vehicle-complete", ".vehicle-unfinished", REPLACED, MARKER)
 TEXTS = {
     "empty": b"",
     "torn": b"fol",

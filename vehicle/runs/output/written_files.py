@@ -29,7 +29,7 @@ GENERATED = "mjcf; never edited by hand"
 GENERATED_PAGE = "<!-- Written by `python -m"
 """In the head of generated pages of the documentation."""
 _LEFT_OVER = re.compile(
-    r"(^|/)(\.[^/]+\.lock|\.[^/]+\.\d+\.partial[^/]*|\.vehicle-(unfinished|complete)(-new)?|\.[^/]+\.partial/\.vehicle-files)$"
+    r"(^|/)(\.[^/]+\.lock|\.[^/]+\.\d+\.partial[^/]*|\.vehicle-(replaced|(unfinished|complete)(-new)?)|\.[^/]+\.partial/\.vehicle-files)$"
 )
 """Files that a killed process leaves: locks, unfinished files, the list of a hidden folder, a journal of an earlier
 version."""
