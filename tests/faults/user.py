@@ -71,9 +71,9 @@ def dies_at(number: int, job: Job) -> Job:
     return dying
 
 
-def kills(before: Path, case: Path, job: Job) -> Iterator[int]:
-    """Yield the numbers of all kills of a job; the state after each is in the folder of the case."""
-    for number in range(1, 1000):
+def kills(before: Path, case: Path, job: Job, step: int = 1) -> Iterator[int]:
+    """Yield the numbers of each `step`-th kill of a job; the state after each is in the folder of the case."""
+    for number in range(1, 1000, step):
         for sign in (1, -1):
             shutil.rmtree(case, ignore_errors=True)
             shutil.copytree(before, case, symlinks=True)
@@ -105,7 +105,7 @@ def faults(name: str, path: Path, case: Path, runs: Sequence[tuple[int, str]]) -
 
 
 def judged(
-    before: Path, case: Path, job: Job, ways: Sequence[Sequence[Job]], last: Job, *, every: int = 1
+    before: Path, case: Path, job: Job, ways: Sequence[Sequence[Job]], last: Job, *, every: int = 1, step: int = 1
 ) -> tuple[int, list[str]]:
     """Kill a job at every call, change a file, run other jobs after it; return the number of cases, and what is wrong.
 
@@ -116,10 +116,11 @@ def judged(
         ways: commands that follow, each way from the same state.
         last: command that must work when the user has moved what is theirs.
         every: only each n-th case is tried.
+        step: only each n-th call is killed.
     """
     state, said = case.with_name("state"), case.with_name("said.txt")
     wrong, cases = [], 0
-    for number in kills(before, case, job):
+    for number in kills(before, case, job, step):
         shutil.rmtree(state, ignore_errors=True)
         shutil.copytree(case, state, symlinks=True)
         for name, path in list(_named(state, case)):

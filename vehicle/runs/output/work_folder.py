@@ -148,15 +148,15 @@ def _put_in_place(goal: Path) -> Path | None:
 
 def _exchanged(work: Path, goal: Path) -> bool:
     """Exchange new results with marked earlier ones in one step; False if the system cannot, see `exchange`."""
-    replaced, done = goal / REPLACED, False
+    done = False
     try:
-        os.close(os.open(replaced, os.O_WRONLY | os.O_CREAT | PLAIN, 0o644))
+        os.close(os.open(goal / REPLACED, os.O_WRONLY | os.O_CREAT | PLAIN, 0o644))
         synchronise(goal)
         done = exchange(work, goal)
     finally:
         if not done:
             with suppress(OSError):
-                replaced.unlink(missing_ok=True)
+                (goal / REPLACED).unlink(missing_ok=True)
     return done
 
 

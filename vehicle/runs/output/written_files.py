@@ -29,10 +29,9 @@ GENERATED = "mjcf; never edited by hand"
 GENERATED_PAGE = "<!-- Written by `python -m"
 """In the head of generated pages of the documentation."""
 _LEFT_OVER = re.compile(
-    r"(^|/)(\.[^/]+\.lock|\.[^/]+\.\d+\.partial[^/]*|\.vehicle-(replaced|(unfinished|complete)(-new)?)|\.[^/]+\.partial/\.vehicle-files)$"
+    r"(^|/)(\.[^/]+\.lock|\.[^/]+\.\d+\.partial[^/]*|\.vehicle-replaced|\.[^/]+\.partial/\.vehicle-files)$"
 )
-"""Files that a killed process leaves: locks, unfinished files, the list of a hidden folder, a journal of an earlier
-version."""
+"""Files that a killed process leaves: locks, unfinished files, mark of replaced results, list of a hidden folder."""
 DIGITS = 32
 _LINE = re.compile(rf"(?:([0-9a-f]{{{DIGITS}}})  )?(.+)")
 SHOWN = 5
