@@ -3,6 +3,7 @@
 import shutil
 from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -53,13 +54,13 @@ def state(each, count=64, **settings):
 def test_memory_follows_length_engine_inputs_and_processes(machine, capsys):
     # 3.6e6 samples; a car of 5 channels at once, as two have more than 64 MiB
     assert batch_memory(3.6e6, 5) == BASE + 3.6e6 * (220.0 + 110.0)
-    for more, expected in [
-        ({}, batch_memory(3.6e6, 5)),
-        ({"engine": "mujoco"}, batch_memory(3.6e6, 5, reduced=False)),
-        ({"engine": "auto"}, batch_memory(3.6e6, 5, reduced=False)),
+    for engine, expected in [
+        ("reduced", batch_memory(3.6e6, 5)),
+        ("mujoco", batch_memory(3.6e6, 5, reduced=False)),
+        ("auto", batch_memory(3.6e6, 5, reduced=False)),
     ]:
         run_size._said.clear()
-        state(cases(1.0, **more)[:1])
+        state(cases(1.0, engine=engine)[:1])
         said = capsys.readouterr().err
         assert f"64 runs of up to 3.6e+06 samples in one process need about {expected / 1e9:.2g} GB of memory" in said
         assert said.count("\n") == 1 and "shorten the inputs, or set a lower solver.record_rate" in said
@@ -133,8 +134,9 @@ def test_orders_and_fits_are_refused_before_their_first_run(machine, capsys):
     assert orders.main([*words, "--speed", "100:120:10", "--duration", "600"]) == 2
     assert "error: runs of 600 s need 0.368 GB of memory, must be" in capsys.readouterr().err
     signal = SimpleNamespace(duration=3600.0)
-    measured = SimpleNamespace(signal=signal, target=SimpleNamespace(recorded=("seat_rail_acc_z",)))
+    measured: Any = SimpleNamespace(signal=signal, target=SimpleNamespace(recorded=("seat_rail_acc_z",)))
     vehicle = Car.load().vehicle
     with pytest.raises(ConfigurationError, match=r"1 measurements of up to 3\.6e\+06 samples need 1\.87 GB of memory"):
         state_fit_size(vehicle, [measured], 3, "mujoco")
-    state_fit_size(vehicle, [SimpleNamespace(signal=None, target=None)], 3, "mujoco")
+    measured.signal = None
+    state_fit_size(vehicle, [measured], 3, "mujoco")
