@@ -68,8 +68,8 @@ ROOMS: dict[str, set[str]] = {
     "car": {"handed_down", "analysis", "excitation", "flexbody", "kinematics", "laws", "linear", "notebook"}
     | {"parameters", "records", "reduced", "rendering", "simulation", "threads"},
     "comparison": {"analysis", "car", "excitation", "formats", "linear", "records", "rendering", "threads"},
-    "output": {"analysis", "car", "comparison", "excitation", "flexbody", "formats", "linear", "parameters"}
-    | {"records", "rendering", "replacement", "simulation"},
+    "output": {"analysis", "car", "comparison", "excitation", "flexbody", "formats", "linear", "machine"}
+    | {"parameters", "records", "rendering", "replacement", "simulation"},
     "targets": {"analysis", "car", "output", "parameters", "records", "simulation"},
     "report": {"analysis", "car", "flexbody", "linear", "output", "parameters", "records"}
     | {"rendering", "simulation", "targets", "version"},
@@ -82,8 +82,8 @@ ROOMS: dict[str, set[str]] = {
     "mounts": {"formats", "parameters"},
     "dampers": {"formats", "parameters", "records", "rendering", "report"},
     "replication": {"car", "excitation", "formats", "output", "records", "reduced", "rendering", "threads"},
-    "sweeps": {"analysis", "car", "excitation", "flexbody", "formats", "notebook", "output"}
-    | {"parameters", "reduced", "rendering", "report", "simulation", "threads"},
+    "sweeps": {"analysis", "car", "excitation", "flexbody", "formats", "machine", "notebook"}
+    | {"output", "parameters", "reduced", "rendering", "report", "simulation", "threads"},
     "tuning": {"analysis", "car", "comparison", "excitation", "flexbody", "formats", "output", "parameters"}
     | {"records", "reduced", "rendering", "report", "threads"},
     "optimisation": {"analysis", "car", "excitation", "formats", "output", "parameters", "rendering"}

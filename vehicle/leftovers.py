@@ -18,6 +18,9 @@ _NOTICES.propagate = False
 FINISHED_ROWS = ("rows.jsonl", "cars.csv")
 """Files of finished rows: of a sweep, a line a run; of a search, a head and a line a car."""
 
+REPLACED = ".vehicle-replaced"
+"""Empty file in earlier results that new ones replace: their rows are not continued under the hidden name."""
+
 PLAIN = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
 """Flags of `os.open` that follow no link and wait for no pipe; 0 under Windows."""
 
@@ -80,7 +83,12 @@ def finished_rows(folder: Path, *, count_all: bool = True) -> tuple[str, int]:
 
 def unfinished(goal: Path) -> str:
     """Return the file of finished rows of a killed command that --resume continues, or an empty text."""
-    return finished_rows(work_of(goal), count_all=False)[0]
+    return "" if is_replaced(work_of(goal)) else finished_rows(work_of(goal), count_all=False)[0]
+
+
+def is_replaced(hidden: Path) -> bool:
+    """True if a hidden folder contains earlier results that new ones have replaced."""
+    return is_plain(hidden, folder=True) and is_plain(hidden / REPLACED)
 
 
 def mention(path: Path) -> Path:

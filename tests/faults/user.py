@@ -11,6 +11,7 @@ from pathlib import Path
 from unittest import mock
 
 from tests.faults.cases import hidden_in
+from vehicle.leftovers import FINISHED_ROWS, REPLACED
 from vehicle.runs.output import work_folder
 from vehicle.runs.output.written_files import MARKER
 
@@ -70,9 +71,9 @@ def dies_at(number: int, job: Job) -> Job:
     return dying
 
 
-def kills(before: Path, case: Path, job: Job) -> Iterator[int]:
-    """Yield the numbers of all kills of a job; the state after each is in the folder of the case."""
-    for number in range(1, 1000):
+def kills(before: Path, case: Path, job: Job, step: int = 1) -> Iterator[int]:
+    """Yield the numbers of each `step`-th kill of a job; the state after each is in the folder of the case."""
+    for number in range(1, 1000, step):
         for sign in (1, -1):
             shutil.rmtree(case, ignore_errors=True)
             shutil.copytree(before, case, symlinks=True)
@@ -97,14 +98,14 @@ def faults(name: str, path: Path, case: Path, runs: Sequence[tuple[int, str]]) -
         return wrong
     found = [each for each in case.rglob("*") if each.is_file() and MINE in each.read_bytes()]
     moved = [each for each in found if each.relative_to(case).parts[0] in said]
-    grows = path.name == "rows.jsonl" and "finished rows" in said  # is the program's, and the message counts the rows
+    grows = path.name in FINISHED_ROWS and "finished rows" in said  # is the program's, and the message counts the rows
     if not grows and path not in found and not (moved and any(part[0] == "." for part in path.relative_to(case).parts)):
         wrong.append(f"{name} of {path.relative_to(case)} is lost, or was moved without a sentence")
     return wrong
 
 
 def judged(
-    before: Path, case: Path, job: Job, ways: Sequence[Sequence[Job]], last: Job, *, every: int = 1
+    before: Path, case: Path, job: Job, ways: Sequence[Sequence[Job]], last: Job, *, every: int = 1, step: int = 1
 ) -> tuple[int, list[str]]:
     """Kill a job at every call, change a file, run other jobs after it; return the number of cases, and what is wrong.
 
@@ -115,10 +116,11 @@ def judged(
         ways: commands that follow, each way from the same state.
         last: command that must work when the user has moved what is theirs.
         every: only each n-th case is tried.
+        step: only each n-th call is killed.
     """
     state, said = case.with_name("state"), case.with_name("said.txt")
     wrong, cases = [], 0
-    for number in kills(before, case, job):
+    for number in kills(before, case, job, step):
         shutil.rmtree(state, ignore_errors=True)
         shutil.copytree(case, state, symlinks=True)
         for name, path in list(_named(state, case)):
@@ -142,7 +144,7 @@ def judged(
 def _named(state: Path, case: Path) -> Iterator[tuple[str, Path]]:
     """Yield what a user may do after a kill: edit, add or remove a file."""
     everything = sorted(state.rglob("*"))
-    own = re.compile(rf"\.lock$|\.\d+\.partial|^{re.escape(MARKER)}$")
+    own = re.compile(rf"\.lock$|\.\d+\.partial|^({re.escape(MARKER)}|{re.escape(REPLACED)})$")
     files = [path for path in everything if path.is_file() and not own.search(path.name)]
     folders = [state, *(path for path in everything if path.is_dir())]
     for path in files:

@@ -11,8 +11,8 @@ from tests.faults.commands import run_words
 from vehicle import Car, Run
 from vehicle.__main__ import main
 from vehicle.errors import ConfigurationError, OutputError
-from vehicle.leftovers import FINISHED_ROWS
-from vehicle.runs.output.folder import check_study, output_folder, study_folder, write_text, write_together
+from vehicle.leftovers import FINISHED_ROWS, REPLACED
+from vehicle.runs.output.folder import output_folder, study_folder, write_text, write_together
 from vehicle.runs.output.locks import folder_lock
 from vehicle.runs.output.model_files import write_mjcf
 from vehicle.runs.output.written_files import MARKER
@@ -21,7 +21,7 @@ from vehicle.studies.sweeps.store import ROWS
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="links need a right under Windows")
 
-JOURNALS = (".vehicle-complete", ".vehicle-unfinished", MARKER)
+JOURNALS = (".vehicle-complete", ".vehicle-unfinished", REPLACED, MARKER)
 TEXTS = {
     "empty": b"",
     "torn": b"fol",
@@ -110,8 +110,8 @@ def test_rows_that_are_links_are_not_continued(tmp_path, capsys):
     for link in (tmp_path / ".study.partial" / ROWS, tmp_path / "study" / ROWS):
         link.parent.mkdir()
         link.symlink_to(victim / "rows.jsonl")
-    with pytest.raises(ConfigurationError, match=r"edited afterwards|not results of a run"):
-        check_study(tmp_path / "study", force=False, resume=True, rows=(ROWS,))
+    with pytest.raises(ConfigurationError, match=r"rows\.jsonl: is a link, or no file, so --resume cannot continue it"):
+        study_folder(tmp_path / "study", force=False, resume=True, rows=(ROWS,)).__enter__()
     (tmp_path / "study" / ROWS).unlink()
     with study_folder(tmp_path / "study", force=False, resume=True, rows=(ROWS,)) as work:
         assert not (work / ROWS).exists()

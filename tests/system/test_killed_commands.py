@@ -65,7 +65,7 @@ def test_what_a_user_does_after_a_kill_is_kept(kind, tmp_path):
     assert cases > 10 and not wrong
 
 
-@pytest.mark.parametrize(("exchange", "number"), [(True, 1), (True, -1), (False, 1), (False, -2), (False, -3)])
+@pytest.mark.parametrize(("exchange", "number"), [(True, 1), (True, -1), (False, 1), (False, -3), (False, -4)])
 def test_a_killed_exchange_leaves_results_that_a_reader_finds(exchange, number, tmp_path, capsys, monkeypatch):
     results(tmp_path / "run", "old")
     if not exchange:
@@ -78,7 +78,7 @@ def test_a_killed_exchange_leaves_results_that_a_reader_finds(exchange, number, 
     mention(tmp_path / "run")
     assert capsys.readouterr().err == ""
     put_in_order(tmp_path / "run")
-    assert read(tmp_path / "run") == 2 * ["new" if number in (-1, -3) else "old"]
+    assert read(tmp_path / "run") == 2 * ["new" if number in (-1, -4) else "old"]
     assert visible(tmp_path) == ["run"] and "notice" in capsys.readouterr().err
     put_in_order(tmp_path / "run")
     assert capsys.readouterr().err == ""
@@ -88,14 +88,14 @@ def test_earlier_results_between_two_renames_come_back_to_a_command_that_writes(
     """Without an exchange in one step, the name is free for a moment."""
     results(tmp_path / "run", "old")
     monkeypatch.setattr(work_folder, "exchange", lambda *_: False)
-    killed(3, lambda: results(tmp_path / "run", "new"), tmp_path)
+    killed(4, lambda: results(tmp_path / "run", "new"), tmp_path)
     assert visible(tmp_path) == [".run.lock", ".run.old", ".run.partial"]
     with pytest.raises(ConfigurationError, match="exists; give --force"):
         output_folder(tmp_path / "run", force=False).__enter__()
     assert read(tmp_path / "run") == ["old", "old"]
     assert "had moved the earlier results away; they were put back" in capsys.readouterr().err
     # Not over a folder that somebody has made meanwhile, and not half of them.
-    killed(3, lambda: results(tmp_path / "run", "new"), tmp_path)
+    killed(4, lambda: results(tmp_path / "run", "new"), tmp_path)
     (tmp_path / "run").mkdir()
     put_in_order(tmp_path / "run")
     assert visible(tmp_path / "run") == [] and read(tmp_path / "run.left") == ["old", "old"]
@@ -200,6 +200,23 @@ def test_a_killed_study_goes_on_where_it_was(tmp_path, capsys):
     study(folder, "7", force=True)
     said = capsys.readouterr().err
     assert ".study.partial with 1 finished rows; it was removed" in said and "2 finished rows of the earlier" in said
+
+
+def test_rows_that_a_killed_force_has_replaced_are_not_continued(tmp_path, capsys):
+    """Between the exchange and the next rename, the earlier rows have the name of unfinished ones."""
+    folder = tmp_path / "study"
+    study(folder, "1\n2")
+    # Calls: replaced files of the new folder, its exchange.
+    for number in range(1, 9):
+        killed(-number, partial(study, folder, "new", force=True), tmp_path)
+        if (folder / "rows.jsonl").read_text() == "new\n":
+            break
+    assert (tmp_path / ".study.partial" / "rows.jsonl").read_text() == "1\n2\n"
+    mention(folder)
+    assert "left .study.partial; the next command" in capsys.readouterr().err
+    study(folder, "3", resume=True)
+    assert (folder / "rows.jsonl").read_text() == "new\n3\n" and visible(tmp_path) == ["study"]
+    assert "left .study.old with 2 finished rows; it was removed" in capsys.readouterr().err
 
 
 def test_half_a_line_of_a_list_ends_before_the_next(tmp_path):

@@ -92,16 +92,19 @@ def test_the_vehicle_file_beside_the_run_is_kept(shaker, short_signal, tmp_path)
     assert outcome.code == 2 and "contains the input cars/car.toml" in outcome.err and car.exists()
 
 
-def test_folders_of_earlier_versions_are_recognised(tmp_path):
-    run = tmp_path / "run"
-    run.mkdir()
-    (run / "summary.json").write_text(json.dumps({"files": {"frf": "frf.csv", "video": "/elsewhere/film.mp4"}}))
-    (run / "frf.csv").write_text("")
-    assert set(written(run)) == {"summary.json", "frf.csv"} and foreign(run) == []
-    put(run, "frf.csv", force=True)
-    (tmp_path / "other").mkdir()
-    (tmp_path / "other" / "summary.json").write_text("{}")
-    assert foreign(tmp_path / "other") == ["summary.json"]
+@pytest.mark.parametrize("name", ["results.json", "summary.json", "rows.jsonl"])
+def test_without_a_list_no_file_is_of_the_program(tmp_path, name):
+    """Names alone prove nothing: all tables and pictures beside a results.json were replaced."""
+    files = {name: json.dumps({"files": {"mine": "mine.csv"}}), "mine.csv": "mine", "table.csv": "mine", "a.md": "mine"}
+    for file, text in files.items():
+        (tmp_path / file).write_text(text)
+    assert written(tmp_path) == {} and foreign(tmp_path) == sorted(files)
+    with pytest.raises(ConfigurationError, match="files that are not results of a run"):
+        output_folder(tmp_path, force=True).__enter__()
+
+
+def test_the_published_pictures_of_a_clone_are_listed():
+    assert foreign(ROOT / "renders" / "published") == []
 
 
 @pytest.mark.parametrize("mark", [b" ", b"."], ids=["this version", "earlier"])

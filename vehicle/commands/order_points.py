@@ -85,6 +85,7 @@ def write_orders(settings: OrderSettings, console: Console) -> None:
     orders = _orders(settings.orders)
     from vehicle.runs.car import Car
     from vehicle.runs.car.order_points import order_points_at
+    from vehicle.runs.output.run_size import batch_memory, say_size
     from vehicle.runs.report.order_page import HEADS, order_points_sentences, order_rows
 
     output = settings.destination.output
@@ -95,6 +96,12 @@ def write_orders(settings: OrderSettings, console: Console) -> None:
     choice = choice.rolling(speeds[0]) if rpm and speeds else choice
     car = Car.load(choice.vehicle, choice.overrides)
     asked_channels = ",".join(settings.channel or ["seat rail z"]).split(",")
+    memory = batch_memory(
+        settings.duration * car.vehicle.solver.record_rate,
+        len(asked_channels) + len(car.vehicle.damped_wheels),
+        reduced=settings.engine == "reduced",
+    )
+    say_size(folder or Path(), f"runs of {settings.duration:g} s", memory, 0.0, "for less, set a shorter --duration")
     channels = order_points_at(
         car,
         asked_channels,

@@ -1,4 +1,4 @@
-"""Memory and disk that a run needs, stated before it starts."""
+"""Memory and disk that a run, or a study of many, needs: stated before it starts."""
 
 import shutil
 from collections.abc import Sequence
@@ -7,21 +7,43 @@ from pathlib import Path
 from vehicle.digits import number
 from vehicle.engines.simulation.judgement import require_samples
 from vehicle.errors import ConfigurationError
+from vehicle.leftovers import say
+from vehicle.machine import free_memory
 
 BYTES = {"npz": 8.0, "h5": 8.0, "mf4": 8.0, "mat": 8.0, "uff": 8.0, "rpc": 4.0, "csv": 13.0}
 """Size of a sample of a channel in a file [byte]; csv: nine digits, sign, point and comma."""
 
-BESIDE = 0.3e9
-"""Memory of a run in addition to its recording [byte]: program, model, plates and one channel in its evaluation."""
+BESIDE, OF_SAMPLE = 0.3e9, 280.0
+"""Memory of a run in addition to its recording [byte]: program and model; for each sample plates and an evaluation.
+
+Measured peaks of an hour at 1 kHz with the reduced engine [GB], and `run_size`: 44 channels 2.5 and 2.6; 61 channels
+3.1 and 3.1.
+"""
 
 STATED_FROM = 1e9
 """Minimum size that is stated before the run [byte]."""
+
+BASE = 0.17e9
+"""Memory of a process with its program and its car [byte]; 0.14e9 to 0.19e9 measured."""
+
+PLATES, PLATES_OF_MUJOCO = 220.0, 450.0
+"""Memory of a run for each sample, in addition to its channels [byte]: plates, spectra; in MuJoCo also energies."""
+
+CHANNEL = 22.0
+"""Memory of a sample of a channel of a car, with its evaluation [byte].
+
+Measured peaks, 5 channels at 1 kHz [GB], and `batch_memory`: 60 s of 8 cars 0.19 and 0.24; 60 s of 24 cars 0.30 and
+0.34; 600 s of 2 cars 0.40 and 0.43; 3600 s of one car 1.15 and 1.36; MuJoCo, 300 s 0.33 and 0.34.
+"""
+
+_said: set[str] = set()
+"""Sizes that `say_size` stated: a search is many sweeps of one size."""
 
 
 def run_size(folder: Path, duration: float, rate: float, channels: int, formats: Sequence[str]) -> str:
     """Return a message on the memory and the disk of a run; empty below `STATED_FROM`.
 
-    memory = 8 n c + `BESIDE`, disk = n c (sum of `BYTES` of the formats), with n samples of c channels
+    memory = 8 n c + `OF_SAMPLE` n + `BESIDE`, disk = n c (sum of `BYTES` of the formats), with n samples of c channels
 
     Args:
         folder: folder of the run, which need not exist.
@@ -31,23 +53,64 @@ def run_size(folder: Path, duration: float, rate: float, channels: int, formats:
         formats: formats of the time histories, for example "npz".
 
     Raises:
-        ConfigurationError: the recording exceeds half the memory, or the files exceed the free disk.
+        ConfigurationError: the recording exceeds half the memory, or see `stated_size`.
     """
     samples = duration * rate
     require_samples(samples, channels)
-    memory = 8.0 * samples * channels + BESIDE
-    disk = samples * channels * sum(BYTES[form] for form in formats)
+    return stated_size(
+        folder,
+        f"{channels} channels of {duration:g} s",
+        samples * (8.0 * channels + OF_SAMPLE) + BESIDE,
+        samples * channels * sum(BYTES[form] for form in formats),
+        "for less, name the channels (--channels), or set a lower solver.record_rate",
+    )
+
+
+def stated_size(folder: Path, subject: str, memory: float, disk: float, remedy: str) -> str:
+    """Return a message on memory and disk of a computation; empty below `STATED_FROM`.
+
+    Args:
+        folder: folder of the files, which need not exist.
+        subject: runs that need them, in the plural, as "64 runs".
+        memory: largest memory of all processes together [byte].
+        disk: size of the files [byte].
+        remedy: settings with which it needs less.
+
+    Raises:
+        ConfigurationError: more than the free memory, or than the free disk.
+    """
     there = next(parent for parent in (folder.absolute(), *folder.absolute().parents) if parent.is_dir())
-    free = float(shutil.disk_usage(there).free)
-    remedy = "for less, name the channels (--channels), or set a lower solver.record_rate"
-    if disk > free:
-        raise ConfigurationError(
-            f"{folder}: {channels} channels of {samples:.3g} samples need {disk / 1e9:.3g} GB on the disk, must be at "
-            f"most the free {free / 1e9:.3g} GB; {remedy}"
-        )
+    limits = {"of memory": (memory, free_memory()), "on the disk": (disk, float(shutil.disk_usage(there).free))}
+    for where, (needed, free) in limits.items():
+        if needed > free:
+            name = f"{folder}: " if where == "on the disk" else ""
+            raise ConfigurationError(
+                f"{name}{subject} need {needed / 1e9:.3g} GB {where}, must be at most the free {free / 1e9:.3g} GB; "
+                f"{remedy}"
+            )
     if max(memory, disk) < STATED_FROM:
         return ""
-    return (
-        f"{channels} channels of {duration:g} s need about {number(memory / 1e9, 2)} GB of memory and "
-        f"{number(disk / 1e9, 2)} GB on the disk; {remedy}"
-    )
+    sizes = " and ".join(f"{number(needed / 1e9, 2)} GB {where}" for where, (needed, _) in limits.items())
+    return f"{subject} need about {sizes}; {remedy}"
+
+
+def say_size(folder: Path, subject: str, memory: float, disk: float, remedy: str) -> None:
+    """Print the message of `stated_size` as a notice, once in a process; arguments and errors as there."""
+    text = stated_size(folder, subject, memory, disk, remedy)
+    if text and text not in _said:
+        _said.add(text)
+        say(text)
+
+
+def batch_memory(samples: float, channels: int, *, cars: int = 1, reduced: bool = True) -> float:
+    """Return the memory of a process that simulates and evaluates cars together [byte].
+
+    memory = `BASE` + n (`PLATES` + `CHANNEL` channels cars), with n samples of each channel
+
+    Args:
+        samples: number n of samples.
+        channels: channels of each car.
+        cars: cars of a batch; MuJoCo runs each by itself.
+        reduced: False if a car may run with MuJoCo.
+    """
+    return BASE + samples * ((PLATES if reduced else PLATES_OF_MUJOCO) + CHANNEL * channels * cars)

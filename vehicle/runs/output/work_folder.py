@@ -3,7 +3,7 @@
 There is no journal. The state after a killed command follows from these names:
 
 - `.NAME.partial` contains incomplete results. The next command that writes NAME removes the files of the program in it,
-  or continues its finished rows (--resume);
+  or continues its finished rows (--resume), unless `.vehicle-replaced` marks them as earlier results;
 - `.NAME.old` contains earlier results until they are removed. Some systems cannot exchange two names in one step, and
   NAME is missing for a moment: the next command that writes NAME then restores it.
 
@@ -19,7 +19,19 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from vehicle.errors import ConfigurationError, OutputError
-from vehicle.leftovers import PLAIN, finished_rows, is_plain, left_at, lock_file, old_of, say, unfinished, work_of
+from vehicle.leftovers import (
+    PLAIN,
+    REPLACED,
+    finished_rows,
+    is_plain,
+    is_replaced,
+    left_at,
+    lock_file,
+    old_of,
+    say,
+    unfinished,
+    work_of,
+)
 from vehicle.replacement import being_made, exchange, is_being_made, replaced_file, synchronise, synchronise_folder
 from vehicle.runs.output.locks import OccupiedError, claimed, folder_lock, is_claimed
 from vehicle.runs.output.written_files import (
@@ -56,7 +68,7 @@ def new_folder(
             yield work
         check()
         if goal.exists():
-            mark(goal)  # a folder of an earlier version has no list
+            mark(goal)  # a folder of a clone has no list
         synchronise_folder(work)
         replaced = _put_in_place(goal)
     if replaced is not None:
@@ -115,10 +127,10 @@ def _put_in_place(goal: Path) -> Path | None:
     work, old, replaced = work_of(goal), old_of(goal), None
     if not goal.exists():
         work.rename(goal)
-    elif exchange(work, goal):
+    elif _exchanged(work, goal):
         with suppress(OSError):
             replaced = work
-            work.rename(old)  # so that earlier rows are not continued
+            work.rename(old)
             replaced = old
     else:
         goal.rename(old)
@@ -132,6 +144,20 @@ def _put_in_place(goal: Path) -> Path | None:
     with suppress(OSError):  # the results are in place
         synchronise(goal.parent)
     return replaced
+
+
+def _exchanged(work: Path, goal: Path) -> bool:
+    """Exchange new results with marked earlier ones in one step; False if the system cannot, see `exchange`."""
+    done = False
+    try:
+        os.close(os.open(goal / REPLACED, os.O_WRONLY | os.O_CREAT | PLAIN, 0o644))
+        synchronise(goal)
+        done = exchange(work, goal)
+    finally:
+        if not done:
+            with suppress(OSError):
+                (goal / REPLACED).unlink(missing_ok=True)
+    return done
 
 
 def _retire(replaced: Path, goal: Path, *, say_rows: bool = False) -> None:
@@ -206,35 +232,24 @@ def put_in_order(goal: Path) -> None:
 def _put_in_order(goal: Path, left: Sequence[str]) -> list[str]:
     """Return sentences about the changes; see `put_in_order`."""
     work, old, said = work_of(goal), old_of(goal), []
+    if is_replaced(work) and not os.path.lexists(old):
+        work.rename(old)  # as the killed command would have done
     if is_plain(old, folder=True) and is_whole(old) and not os.path.lexists(goal):
         old.rename(goal)
         said.append(f"{goal}: a killed command had moved the earlier results away; they were put back")
     if os.path.lexists(old):
         # Replaced results if NAME has a list; otherwise the user has made a folder NAME meanwhile.
         said.append(_cleared(old, goal, keep=not (goal / MARKER).exists() or os.path.lexists(work)))
-    if os.path.lexists(work):
-        # Finished rows wait for --resume or --force; rows that are in NAME too are replaced results.
-        if not (name := unfinished(goal)):
-            said.append(_cleared(work, goal))
-        elif is_plain(goal / name) and _begins_with(goal / name, work / name):
-            said.append(_cleared(work, goal, counted=False))
+    if os.path.lexists(work) and not unfinished(goal):  # finished rows wait for --resume or --force
+        said.append(_cleared(work, goal))
     if not said and lock_file(goal).name in left:
         said.append(f"{goal}: an earlier command left only its lock file; it was removed")
     return said
 
 
-def _begins_with(path: Path, beginning: Path) -> bool:
-    """Return True if a file begins with the content of another one."""
-    with path.open("rb") as whole, beginning.open("rb") as part:
-        while block := part.read(1 << 20):
-            if whole.read(len(block)) != block:
-                return False
-    return True
-
-
-def _cleared(hidden: Path, goal: Path, *, keep: bool = False, counted: bool = True) -> str:
+def _cleared(hidden: Path, goal: Path, *, keep: bool = False) -> str:
     """Remove the files of the program from a hidden folder, or keep all; return a sentence, with the count of rows."""
-    count = finished_rows(hidden)[1] if counted else 0
+    count = finished_rows(hidden)[1]
     if is_plain(hidden, folder=True) and not keep:
         discard(hidden)
     if os.path.lexists(hidden):

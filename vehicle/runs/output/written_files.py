@@ -11,7 +11,6 @@ the folder of all, as /tmp, concerns nothing in the folders there.
 """
 
 import errno
-import json
 import os
 import re
 from collections.abc import Sequence
@@ -25,18 +24,14 @@ from vehicle.signals.formats.file_digest import digest
 MARKER = ".vehicle-files"
 HEAD = "# Files that the program wrote here. --force replaces these, and stops at any other.\n"
 
-SWEEP = {"rows.jsonl", "table.csv", "sweep.json", "timing.csv"}
-STUDY = {".md", ".json", ".jsonl", ".csv", ".png", ".mp4"}
-"""Endings of files of studies in earlier versions."""
 GENERATED = "mjcf; never edited by hand"
 """In the head of generated MJCF files; in those of earlier versions too, which name the command `vehicle.mjcf`."""
 GENERATED_PAGE = "<!-- Written by `python -m"
 """In the head of generated pages of the documentation."""
 _LEFT_OVER = re.compile(
-    r"(^|/)(\.[^/]+\.lock|\.[^/]+\.\d+\.partial[^/]*|\.vehicle-(unfinished|complete)(-new)?|\.[^/]+\.partial/\.vehicle-files)$"
+    r"(^|/)(\.[^/]+\.lock|\.[^/]+\.\d+\.partial[^/]*|\.vehicle-replaced|\.[^/]+\.partial/\.vehicle-files)$"
 )
-"""Files that a killed process leaves: locks, unfinished files, the list of a hidden folder, a journal of an earlier
-version."""
+"""Files that a killed process leaves: locks, unfinished files, mark of replaced results, list of a hidden folder."""
 DIGITS = 32
 _LINE = re.compile(rf"(?:([0-9a-f]{{{DIGITS}}})  )?(.+)")
 SHOWN = 5
@@ -44,7 +39,7 @@ SHOWN = 5
 
 
 def mark(folder: Path) -> None:
-    """Start the list of a folder, with the known files of an earlier version."""
+    """Start the list of a folder, with the generated files of a clone."""
     if not (folder / MARKER).exists() or not (folder / MARKER).stat().st_size:
         _append(folder / MARKER, HEAD + "".join(f"{name}\n" for name in sorted(written(folder))))
 
@@ -97,9 +92,9 @@ def digest_of(path: Path) -> str:
 def written(folder: Path) -> dict[str, frozenset[str]]:
     """Return the names, relative to the folder, of what the program wrote there, and the digests of each.
 
-    An empty set means any content. A folder without a list may be of an earlier version.
+    An empty set means any content.
     """
-    return listing(folder) or dict.fromkeys(_of_earlier_versions(folder), frozenset())
+    return listing(folder) or dict.fromkeys(_of_a_clone(folder), frozenset())
 
 
 def listing(folder: Path) -> dict[str, frozenset[str]]:
@@ -117,32 +112,15 @@ def listing(folder: Path) -> dict[str, frozenset[str]]:
     return names
 
 
-def _of_earlier_versions(folder: Path) -> set[str]:
-    """Return the files of a folder without a list: of earlier versions and of a clone, by what marks each kind."""
-    names: set[str] = set()
-    if (folder / "summary.json").is_file():
-        files = _files_of_summary(folder / "summary.json")
-        names |= {"summary.json", *files} if files else set()
-    if (folder / "rows.jsonl").is_file():
-        names |= SWEEP
-    if (folder / "results.json").is_file():
-        names |= {path.name for path in folder.iterdir() if path.suffix in STUDY and path.is_file()}
-        names |= {f"figures/{path.name}" for path in (folder / "figures").glob("*.png")}
+def _of_a_clone(folder: Path) -> set[str]:
+    """Return the generated files of a folder without a list, in a clone of the repository, by what marks them."""
     pages = (path for path in folder.glob("*.md") if path.is_file())
-    names |= {path.name for path in pages if GENERATED_PAGE.encode() in path.read_bytes()[:1000]}
+    names = {path.name for path in pages if GENERATED_PAGE.encode() in path.read_bytes()[:1000]}
     car = folder / "car.xml"
     if car.is_file() and GENERATED.encode() in car.read_bytes()[:1000]:
         meshes = (f"meshes/{mesh.name}" for mesh in (folder / "meshes").glob("*.stl"))
         names |= {"car.xml", "scene.xml", *meshes}
     return names
-
-
-def _files_of_summary(path: Path) -> set[str]:
-    try:
-        files = json.loads(path.read_text(encoding="utf-8"))["files"]
-        return {name for name in files.values() if Path(name).name == name}
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        return set()
 
 
 def is_own(path: Path) -> bool:

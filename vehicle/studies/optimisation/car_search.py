@@ -12,6 +12,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+import numpy as np
+
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.ranges import Range
 from vehicle.model.parameters.vehicle import Vehicle
@@ -35,6 +37,7 @@ from vehicle.studies.optimisation.trials import NO_TOLERANCES, Spread, Trials, b
 from vehicle.studies.optimisation.variables import problem_of, require_bounds, toleranced
 from vehicle.studies.sweeps.case_evaluation import evaluate
 from vehicle.studies.sweeps.executors import StandingExecutor, process_pool
+from vehicle.studies.sweeps.study_size import state_size
 from vehicle.studies.sweeps.sweep_inputs import Inputs, common_start, file_of, inputs_of, require_speed_of_roads
 
 
@@ -66,6 +69,15 @@ class SearchPlan:
             SimulationError: no car satisfies the limits, or no car could be run.
         """
         trials, settings = self.trials, replace(self.settings, **changed)
+        unmodified = trials.cases(np.full((1, len(trials.problem.ranges)), math.nan))
+        state_size(
+            unmodified[: len(trials.inputs)],
+            settings.population * len(unmodified),
+            trials.measure,
+            replace(settings, folder=folder),
+            cars=settings.cars,
+            numbers=len(trials.problem.ranges) + len(trials.problem.criteria),
+        )
         with ExitStack() as held:
             if settings.executor is not None or settings.jobs > 1:
                 make = settings.executor or partial(process_pool, settings.jobs)

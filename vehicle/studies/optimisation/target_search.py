@@ -197,7 +197,7 @@ def meet_targets(
         changes = [_texts(started, position) for position in positions]
         columns: dict[str, Vector] = {}
         for index, (source, measure) in enumerate(measures.items()):
-            settings = SweepSettings(engine="reduced", measure=measure, skip=measure.skip, executor=executor)
+            settings = SweepSettings(engine="reduced", measure=measure, skip=measure.skip, executor=executor, jobs=jobs)
             plan = plan_sweep(car, changes, source, settings)
 
             def report(part: float, done: float = index / len(measures)) -> None:

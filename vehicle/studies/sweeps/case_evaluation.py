@@ -163,8 +163,7 @@ def _batch_results(cases: Sequence[Case], measure: BatchMeasure) -> list[Result]
     for group in groups.values():
         case, rate = cases[group[0]], cars[group[0]].vehicle.solver.record_rate
         signal = signal_of(case.source)
-        size = int(max(ROOM / (8.0 * len(measure.channels) * (signal.duration * rate + 1.0)), 1.0))
-        size -= size % LANES if size > LANES else 0  # full vectors
+        size = cars_at_once(signal.duration * rate, len(measure.channels))
         for first in range(0, len(group), size):
             batch = group[first : first + size]
             accept = case.engine == "reduced"
@@ -173,6 +172,12 @@ def _batch_results(cases: Sequence[Case], measure: BatchMeasure) -> list[Result]
     seconds = (clock.perf_counter() - started) / len(cases)
     results = [finished[number] or _single(case, measure, "mujoco") for number, case in enumerate(cases)]
     return [replace(result, seconds=result.seconds + seconds) for result in results]
+
+
+def cars_at_once(samples: float, channels: int) -> int:
+    """Return the number of cars whose channels fit into `ROOM`, at least one; from `LANES` on in full vectors."""
+    size = int(max(ROOM / (8.0 * channels * (samples + 1.0)), 1.0))
+    return size - (size % LANES if size > LANES else 0)
 
 
 def _require(vehicle: Vehicle, signal: Signal, measure: BatchMeasure) -> None:

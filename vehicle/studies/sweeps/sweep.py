@@ -20,6 +20,7 @@ from vehicle.studies.sweeps.executors import ThisProcess, process_pool
 from vehicle.studies.sweeps.measure import Measure
 from vehicle.studies.sweeps.program import libraries, program_digest
 from vehicle.studies.sweeps.store import ROWS, StoredRows
+from vehicle.studies.sweeps.study_size import state_size
 from vehicle.studies.sweeps.sweep_settings import RunSettings
 from vehicle.studies.sweeps.sweep_table import SweepTable
 from vehicle.studies.sweeps.table_files import write_table
@@ -47,7 +48,8 @@ def sweep_cases(cases: Sequence[Case], measure: Measure, settings: RunSettings) 
         The table, in the order of the cases.
 
     Raises:
-        ConfigurationError, DataError: an input or vehicle file cannot be read, or another process uses the folder.
+        ConfigurationError, DataError: an input or vehicle file cannot be read, another process uses the folder, or the
+            runs do not fit into memory or disk, see `state_size`.
         OutputError: a row cannot be written.
         SimulationError: the executor broke and cannot be created again; finished rows are stored.
     """
@@ -71,6 +73,7 @@ def sweep_cases(cases: Sequence[Case], measure: Measure, settings: RunSettings) 
                 progress(done / len(cases))
 
         if len(todo):
+            state_size(each, len(todo), measure, settings)
             if progress is not None:
                 progress(done / len(cases))
             # A run in this process cannot be stopped.

@@ -18,6 +18,7 @@ from vehicle.signals.analysis.frf_agreement import log_ratio
 from vehicle.signals.analysis.response_name import ResponseName
 from vehicle.studies.tuning.car_fit import tune
 from vehicle.studies.tuning.fit_result import TuningResult, known
+from vehicle.studies.tuning.fit_size import state_fit_size
 from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.full_steps import FullSteps, full_steps
 from vehicle.studies.tuning.level_target import LevelTarget
@@ -231,6 +232,7 @@ def tuned_car(
     Raises:
         ConfigurationError, DataError, SimulationError: see `tune`.
     """
+    state_fit_size(car.vehicle, measurements, len(parameters), engine)
     result = tune(car, parameters, measurements, progress=progress)
     final = None
     if engine != "reduced" and any(each.signal is not None for each in measurements):

@@ -1,0 +1,89 @@
+"""Memory and disk that a sweep or a search needs, stated before its first run."""
+
+from collections.abc import Collection
+from contextlib import suppress
+from pathlib import Path
+
+from vehicle.errors import VehicleError
+from vehicle.machine import free_memory
+from vehicle.model.parameters.vehicle import load_vehicle
+from vehicle.runs.output.run_size import batch_memory, say_size
+from vehicle.studies.sweeps.case import Case, signal_of
+from vehicle.studies.sweeps.case_evaluation import BATCH_CARS, cars_at_once
+from vehicle.studies.sweeps.executors import StandingExecutor
+from vehicle.studies.sweeps.measure import BatchMeasure, Measure
+from vehicle.studies.sweeps.sweep_settings import PoolSettings
+
+ROW, VALUE = 300.0, 90.0
+"""Size of a run in the files of a sweep [byte]: ROW + VALUE for each value of its measure; 1726 measured with 16."""
+
+ROW_OF_CAR, VALUE_OF_CAR = 20.0, 20.0
+"""Size of a car in the table of a search [byte]: ROW_OF_CAR + VALUE_OF_CAR for each parameter and criterion."""
+
+CASE = 60.0
+"""Memory of a run in the process of the sweep [byte]: 58 measured with a million runs, which stay in the file."""
+
+KEPT_SIGNALS = 8
+"""Maximum number of inputs that a process keeps, see `vehicle.studies.sweeps.case.signal_of`."""
+
+SIGNAL = 40.0
+"""Memory of a kept input for each of its samples [byte]: time and four plates."""
+
+
+def state_size(
+    each: Collection[Case], runs: int, measure: Measure, settings: PoolSettings, *, cars: int = 0, numbers: int = 0
+) -> None:
+    """State memory and disk of many runs from 1 GB on, and refuse what does not fit; see
+    `vehicle.runs.output.run_size.stated_size`.
+
+    A process has one batch of cars at a time, so its memory depends on the longest input and not on the number of runs:
+
+    memory = jobs (`batch_memory` + `SIGNAL` n (inputs - 1)) + `CASE` runs,    disk = size of a row times runs
+
+    Workers of an executor of the user may be on other machines: only the disk is judged then.
+
+    Args:
+        each: a case of each input.
+        runs: number of runs: of a sweep that are not stored yet, of a search in a generation.
+        measure: measure of the runs.
+        settings: processes, and folder of the rows.
+        cars: number of cars of a search, whose table has a row for each car, instead of one for each run.
+        numbers: numbers in a row of this table.
+
+    Raises:
+        ConfigurationError: more than the free memory or the free disk, with the settings that fit.
+    """
+    worker = samples = 0.0
+    if settings.executor is None or isinstance(settings.executor, StandingExecutor):
+        with suppress(VehicleError):  # an invalid car is a failed row
+            samples, worker = _worker(each, runs, measure)
+    memory = settings.jobs * worker + CASE * runs if worker else 0.0
+    disk = cars * (ROW_OF_CAR + VALUE_OF_CAR * numbers) if cars else runs * (ROW + VALUE * len(measure.units))
+    remedy = "for less, shorten the inputs, or set a lower solver.record_rate"
+    if settings.jobs > 1 and worker:
+        fit = max(int((free_memory() - CASE * runs) / worker), 1)
+        fewer = f"--jobs {fit}" if fit < settings.jobs else "fewer processes (--jobs)"
+        remedy = f"for less, use {fewer}, shorten the inputs, or set a lower solver.record_rate"
+    if disk > memory:
+        remedy = "for less, vary fewer values, or use fewer inputs"
+    subject = f"{runs} runs of up to {samples:.3g} samples on {settings.jobs} processes" if samples else f"{runs} runs"
+    say_size(settings.folder or Path(), subject.replace("on 1 processes", "in one process"), memory, disk, remedy)
+
+
+def _worker(each: Collection[Case], runs: int, measure: Measure) -> tuple[float, float]:
+    """Return samples of the longest run and memory of a process [byte]."""
+    first = next(iter(each))
+    vehicle = load_vehicle(first.vehicle, first.overrides)
+    channels = len(vehicle.channels if measure.channels is None else measure.channels)
+    durations = [_duration(case) for case in each]
+    samples = vehicle.solver.record_rate * max(durations)
+    batch = first.engine != "mujoco" and isinstance(measure, BatchMeasure)
+    cars = min(cars_at_once(samples, channels), BATCH_CARS, -(-runs // len(each))) if batch else 1
+    others = sorted(durations)[-KEPT_SIGNALS:-1]
+    kept = SIGNAL * vehicle.solver.record_rate * sum(others)
+    return samples, batch_memory(samples, channels, cars=cars, reduced=first.engine == "reduced") + kept
+
+
+def _duration(case: Case) -> float:
+    """Return the length of an input [s]; of a road without making it."""
+    return getattr(case.source, "duration", None) or signal_of(case.source).duration
