@@ -26,10 +26,11 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
+from vehicle.runs.figures.chosen_figure import chosen_figure
 from vehicle.signals.analysis.road_level import CLASSES
-from vehicle.studies.optimisation.ride import ride_measure
 from vehicle.studies.sweeps.case import Case, all_tyre_words
 from vehicle.studies.sweeps.case_table import Cases
+from vehicle.studies.sweeps.measure import FigureMeasure, measure_of
 from vehicle.studies.sweeps.sweep_inputs import file_of, inputs_of
 
 CARS = {"without occupant": "focus_road", "with occupant": "focus_road_seated"}
@@ -124,7 +125,10 @@ class Rides:
             wheels, seated = car.vehicle.wheels, car.vehicle.seated
             names = (RAIL, RAIL_WEIGHTED, *((SEAT_WEIGHTED, "seat_value") if seated else ()))
             names += ("lowest_load", "slip_share", *(f"tyre_load_{wheel}" for wheel in wheels))
-            measure = replace(ride_measure(car.vehicle, names, LEAD_S), timestep=TIMESTEP)
+            figures = {name: chosen_figure(name, car.vehicle) for name in names}
+            ride = measure_of(car.vehicle, figures, LEAD_S, errors=False)
+            assert isinstance(ride, FigureMeasure)
+            measure = replace(ride, timestep=TIMESTEP)
             cases = [case for ride in missing for case in self.cases(ride)]
             rows = iter(swept(cases, measure, jobs=self.jobs, folder=self.folder))
             for ride in missing:

@@ -26,12 +26,13 @@ from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car import Run
 from vehicle.runs.car.road import Road
+from vehicle.runs.figures.chosen_figure import chosen_figure
+from vehicle.runs.figures.run_batch import Runs
 from vehicle.signals.analysis.spectra import band_rms
-from vehicle.studies.optimisation.ride import RideMeasure, ride_measure
 from vehicle.studies.sweeps.case import Case, all_tyre_words
 from vehicle.studies.sweeps.case_table import Cases
-from vehicle.studies.sweeps.measure import of_one
-from vehicle.studies.sweeps.run_batch import Runs
+from vehicle.studies.sweeps.measure import FigureMeasure, of_one
+from vehicle.studies.sweeps.measure import measure_of as figures_of
 from vehicle.studies.sweeps.sweep_inputs import inputs_of
 
 CAR = "focus_road"
@@ -93,7 +94,7 @@ class HopMeasure:
         ride: measure of the other values, see `vehicle.studies.optimisation.ride`.
     """
 
-    ride: RideMeasure
+    ride: FigureMeasure
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -119,14 +120,17 @@ class HopMeasure:
         kept = slice(round(LEAD_S / runs.timestep), None)
         bands = [
             band_rms(runs.timestep, runs[f"tyre_{wheel}_force_z"][:, kept] / runs.tyre_load[wheel][:, None], WHEEL_BAND)
-            for wheel in self.ride.wheels
+            for wheel in runs.tyre_load
         ]
         return {**self.ride.of(runs), "hop": np.sqrt(np.mean(np.square(bands), axis=0))}
 
 
 def measure_of(vehicle: Vehicle) -> HopMeasure:
     """Return the measure of a vehicle."""
-    return HopMeasure(ride=replace(ride_measure(vehicle, tuple(HEADS)[:-1], LEAD_S), timestep=5e-4))
+    figures = {name: chosen_figure(name, vehicle) for name in tuple(HEADS)[:-1]}
+    ride = figures_of(vehicle, figures, LEAD_S, errors=False)
+    assert isinstance(ride, FigureMeasure)
+    return HopMeasure(ride=replace(ride, timestep=5e-4))
 
 
 Numbers = Mapping[str, float]

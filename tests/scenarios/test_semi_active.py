@@ -10,8 +10,9 @@ from scenarios import semi_active
 from scenarios.semi_active import LEAD_S, HopMeasure, Setting, main, settings
 from vehicle.model.parameters.semi_active_damper import LAWS
 from vehicle.model.parameters.vehicle import load_vehicle
-from vehicle.studies.optimisation.ride import RideMeasure
-from vehicle.studies.sweeps.run_batch import Runs
+from vehicle.runs.figures.chosen_figure import ChosenFigure
+from vehicle.runs.figures.run_batch import Runs
+from vehicle.studies.sweeps.measure import FigureMeasure
 
 
 def test_settings_cover_laws_roads_delays_and_the_passive_range():
@@ -57,7 +58,8 @@ def test_the_hop_is_the_part_of_the_load_in_its_band():
     hop, body = np.sin(2 * np.pi * 11.0 * time), np.cos(2 * np.pi * 1.4 * time)
     channels = {"tyre_fr_force_z": (4000.0 * (1.0 + 0.25 * hop + 0.1 * body))[None]}
     runs = Runs(time=time, channels=channels, vehicles=(), tyre_load={"fr": np.array([4000.0])})
-    ride = RideMeasure(numbers=("tyre_load", "lowest_load"), wheels=("fr",), dampers=(), skip=LEAD_S)
+    figures = tuple((name, ChosenFigure(quantity=name)) for name in ("tyre_load", "lowest_load"))
+    ride = FigureMeasure(figures=figures, channels=("tyre_fr_force_z",), skip=LEAD_S, errors=False)
     numbers = {name: values[0] for name, values in HopMeasure(ride=ride).of(runs).items()}
     assert numbers["tyre_load"] == pytest.approx(np.sqrt(0.25**2 + 0.1**2) / np.sqrt(2.0), rel=1e-3)
     assert numbers["hop"] == pytest.approx(0.25 / np.sqrt(2.0), rel=1e-3)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from vehicle.commands.command_line import command
 from vehicle.commands.input_options import drives_on_road, signal_options
-from vehicle.commands.options import VEHICLE_HELP, command_parser, message_options, set_option
+from vehicle.commands.options import VEHICLE_HELP, command_parser, measure_option, message_options, set_option
 from vehicle.commands.parser import Parser
 from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.names import CORNERS
@@ -40,6 +40,7 @@ def parser() -> Parser:
         metavar="S",
         help="length of the evaluation [s], 5 to 60; default: 10, with an obstacle until 3 s after it",
     )
+    measure_option(parser, "table of the page")
     parser.add_argument(
         "--port",
         type=int,
@@ -72,7 +73,8 @@ def _job(options: argparse.Namespace) -> None:
     server = open_server(guard, options.port)
     try:
         print("compiling ...", flush=True)
-        state = BenchState(car, bench_drive(car, source, begin=options.first, seconds=options.seconds))
+        drive = bench_drive(car, source, begin=options.first, seconds=options.seconds)
+        state = BenchState(car, drive, options.measure)
         page = Page(server, state, options.output)
         print(f"ready: {guard.address(server.get_port())} (Ctrl-C ends the bench)", flush=True)
         try:

@@ -6,7 +6,14 @@ from pathlib import Path
 from vehicle.commands.command_line import ProgressLine, command
 from vehicle.commands.destination import REPORT, output_file_of
 from vehicle.commands.film_options import check_film_options, film_options, take_settings
-from vehicle.commands.options import command_parser, film_name, head_options, message_options, output_options
+from vehicle.commands.options import (
+    command_parser,
+    film_name,
+    head_options,
+    measure_option,
+    message_options,
+    output_options,
+)
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 
@@ -27,6 +34,7 @@ def parser() -> Parser:
         help="start the report with the check of these targets (figures with limits); 'ride' is a shipped file "
         "to copy and change",
     )
+    measure_option(parser, "report")
     film_options(
         parser,
         "render a film of two runs of one input side by side, and put it into the report; both are simulated again "
@@ -65,6 +73,7 @@ def _job(options: argparse.Namespace) -> None:
         force=options.force,
         progress=ProgressLine("report    ", enabled=not options.quiet),
         targets=options.targets,
+        measure=options.measure,
         notice=None if options.quiet else lambda text: print(f"note        {text}"),
         film=film,
         author=options.author,

@@ -6,7 +6,6 @@ import argparse
 import shlex
 import sys
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -71,14 +70,8 @@ def parser() -> Parser:
         "PATH, as front.damper or viscous, chooses them; by default all stiffnesses, dampings, friction forces, "
         "masses; a coordinate, which has no percentage, is moved by D mm, 10 by default: 20%%,5mm",
     )
-    parser.add_argument(
-        "--measure",
-        metavar="order:N:CHANNEL[:ANGLE]",
-        help="amplitude of a channel at an order of crank or wheel, in place of comfort, as order:1:seat_rail_acc_z, "
-        "of a car with forces",
-    )
     vehicle_options(parser)
-    setting_options(parser, SweepSettings, "engine", "skip", "jobs", "executor", "time_limit")
+    setting_options(parser, SweepSettings, "measure", "engine", "skip", "jobs", "executor", "time_limit")
     output_options(parser, Path("runs/sweep"))
     resume_options(parser)
     parser.add_argument("--allow-failed", action="store_true", help="exit with 0, not 4, although runs failed")
@@ -97,7 +90,6 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.studies.sweeps.differences import DIFFERENCES
     from vehicle.studies.sweeps.effects import EFFECTS, TORNADO, effect_lines, write_effects
     from vehicle.studies.sweeps.executors import executor_factory
-    from vehicle.studies.sweeps.order_measure import order_measure
     from vehicle.studies.sweeps.parameter_effects import effects_of, single_changes, varied_parameters
     from vehicle.studies.sweeps.plan import plan_sweep
     from vehicle.studies.sweeps.sobol_sweep import SOBOL, comfort_indices, index_lines, sobol_changes, write_indices
@@ -117,9 +109,8 @@ def _job(options: argparse.Namespace) -> None:
         raise ConfigurationError("--each: takes --vary PATH, or no parameters; leave out --table and --sobol")
     if options.cases is None and options.each is None and bool(options.vary) == bool(options.table):
         raise ConfigurationError("give either --vary PATH=A,B,C (once or more) or --table FILE.csv")
-    of_comfort = (options.sobol, options.report, options.each, options.cases)
-    if options.measure is not None and any(option is not None for option in of_comfort):
-        raise ConfigurationError("--measure: these are of comfort: leave out --report, --sobol, --each and --cases")
+    if options.measure is not None and (options.report is not None or options.cases is not None):
+        raise ConfigurationError("--measure: these are of comfort: leave out --report and --cases")
     if options.sobol is not None and (options.table or options.report is not None):
         raise ConfigurationError(
             "--sobol: needs --vary PATH=LOW:HIGH, and has no report; leave out --table and --report"
@@ -145,8 +136,6 @@ def _job(options: argparse.Namespace) -> None:
     settings = SweepSettings.of_options(options, executor=make)
     inputs = listed.inputs if listed is not None else chosen_inputs(options, car.vehicle)
     plan = plan_sweep(car, changes, inputs, settings)
-    if options.measure is not None:
-        plan = replace(plan, measure=order_measure(options.measure, plan.skip))
     output = study_folder_of(options, options.output, rows=(ROWS,))
     report = None if options.report is None else report_path(options, output)
     notes = (*plan.notes, *plan.engine_notes(), *plan.range_notes())
@@ -163,8 +152,9 @@ def _job(options: argparse.Namespace) -> None:
             write_whole(folder / SOBOL, lambda path: write_indices(path, indices))
         effects = effects_of(table, parameters, share, without, shift) if parameters else None
         # Read before the folder of the rows gets its name.
-        measured = [] if options.measure is None else measure_lines(table)
-        cars, failed = None if ranges or parameters or listed else ranked_cars(table), table.failed
+        other = ranges or parameters or listed
+        measured = [] if options.measure is None or other else measure_lines(table)
+        cars, failed = None if other or measured else ranked_cars(table), table.failed
         results = None if listed is None else case_results(table, listed)
         if results is not None:
             write_whole(folder / CASES, lambda path: write_cases(path, results))

@@ -2,7 +2,7 @@
 
 import math
 import time as clock
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +12,9 @@ from vehicle.handover.bench.drive import BenchDrive
 from vehicle.names import AXES
 from vehicle.runs.car import Car, Run
 from vehicle.runs.car.simulated_run import simulated_run
+from vehicle.runs.figures.chosen_figure import chosen_figure
+from vehicle.runs.figures.run_batch import evaluated
+from vehicle.runs.figures.value import ShownFigure, shown_figures
 from vehicle.runs.output.run_obstacle import obstacle_values
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.analysis.ride_comfort import RunComfort
@@ -45,6 +48,7 @@ class BenchNumbers:
     damper_force: Mapping[str, Vector]
     # values of the crossing of an obstacle, as in `summary.json`; None without an obstacle
     obstacle: ObstacleSummary | None
+    further: tuple[ShownFigure, ...]  # figures that were asked for
     warnings: tuple[str, ...]  # exceeded limits of the reduced engine
     seconds: float  # processor time of this thread for all of this [s]
 
@@ -59,7 +63,8 @@ class BenchNumbers:
             rows["on the seat, weighted"] = (self.comfort.cushion.weighted.overall, "m/s2")
         if self.comfort.seat_value is not None:
             rows["SEAT value"] = (self.comfort.seat_value, "-")
-        return rows | {f"slip {wheel}": (100.0 * share, "%") for wheel, share in self.slip.items()}
+        rows |= {f"slip {wheel}": (100.0 * share, "%") for wheel, share in self.slip.items()}
+        return rows | {each.title: (each.value, each.unit) for each in self.further}
 
 
 def _obstacle_rows(values: ObstacleSummary) -> dict[str, tuple[float, str]]:
@@ -74,11 +79,12 @@ def _obstacle_rows(values: ObstacleSummary) -> dict[str, tuple[float, str]]:
 
 
 @one_blas_thread()
-def numbers(car: Car, drive: BenchDrive) -> BenchNumbers:
+def numbers(car: Car, drive: BenchDrive, measure: Sequence[str] = ()) -> BenchNumbers:
     """Run a car on the input of a bench with the reduced engine, and evaluate the runs.
 
     Args:
         car: the car, with the overrides of the drive; fastest as `Car.with_` of a car whose matrices exist.
+        measure: further figures by their names in the catalogue (`vehicle.figure_of`).
 
     Raises:
         ConfigurationError: the car is unstable or cannot be built.
@@ -92,7 +98,8 @@ def numbers(car: Car, drive: BenchDrive) -> BenchNumbers:
     over = drive.road is not None and "obstacle" in drive.road
     knuckles = [name for wheel in vehicle.wheels if over and (name := f"knuckle_{wheel}_acc_z") in vehicle.channels]
     # Each position of a slider is another car, whose second order would take longer than all else.
-    channels = [*RAIL, *seat, *dampers, *knuckles]
+    asked = [name for each in measure for name in chosen_figure(each, vehicle, "--measure").channels_of(vehicle)]
+    channels = [*dict.fromkeys([*RAIL, *seat, *dampers, *knuckles, *asked])]
     _, recording, reason = simulated_run(car, drive.record, None, "reduced", channels, stated=False)
     run = Run(car=car, signal=drive.record, recording=recording, engine_reason=reason, skip=drive.skip, road=drive.road)
     shown = ("seat_rail_acc_z", f"knuckle_{next(iter(drive.inputs.samples))}_acc_z")
@@ -119,6 +126,7 @@ def numbers(car: Car, drive: BenchDrive) -> BenchNumbers:
         damper_velocity={wheel: run[f"damper_{wheel}_velocity"][part] for wheel in wheels},
         damper_force={wheel: run[f"damper_{wheel}_force"][part] for wheel in wheels},
         obstacle=obstacle_values(run),
+        further=tuple(shown_figures(measure, evaluated(run))),
         warnings=run.recording.statistics.warnings,
         seconds=clock.thread_time() - started,
     )

@@ -210,6 +210,11 @@ class Run:
             contact="steering_wheel" if point == RIM else "seat",
         )
 
+    def figure(self, name: str) -> float:
+        """Return a figure of the catalogue, as "travel_fr" or "peak:seat rail z"; see `vehicle.figure_of`."""
+        value: float = HANDED["figure_of"](self, name)
+        return value
+
     def orders(
         self,
         channels: str | Sequence[str] | None = None,

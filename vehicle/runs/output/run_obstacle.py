@@ -4,15 +4,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from vehicle.arrays import Vector
 from vehicle.names import AXES
 from vehicle.runs.car import Run
 from vehicle.signals.analysis.evaluation import evaluate
+from vehicle.signals.analysis.settled import settling_time
 from vehicle.signals.records.run_summary import ObstacleSummary
 
 POINTS = ("seat_rail", "seat")
-SETTLED = 0.1
-"""Share of the peak within which an acceleration counts as settled [-]."""
 
 
 def obstacle_values(run: Run) -> ObstacleSummary | None:
@@ -56,22 +54,3 @@ def obstacle_values(run: Run) -> ObstacleSummary | None:
             if f"knuckle_{wheel}_acc_z" in channels
         },
     }
-
-
-def settling_time(time: Vector, values: Vector, after: float) -> float | None:
-    """Return the time after which |values| stays within `SETTLED` of its peak [s]; None if the last quarter exceeds it.
-
-    Args:
-        time: times [s], (n,).
-        values: history, (n,).
-        after: time from which it is counted [s].
-
-    Returns:
-        The time, 0 if the values are within the share from `after` on.
-    """
-    size = np.abs(values)
-    outside = np.flatnonzero(size > SETTLED * size.max())
-    last = float(time[outside[-1]]) if outside.size else after
-    if last > time[-1] - 0.25 * (time[-1] - after):
-        return None
-    return max(0.0, last - after)

@@ -27,7 +27,7 @@ from vehicle.studies.sweeps.case import all_tyre_words, overrides_of
 from vehicle.studies.sweeps.case_evaluation import OF_A_RUN, loaded_car, reason_for_mujoco, run_of
 from vehicle.studies.sweeps.case_table import Cases, Combinations, RowChanges
 from vehicle.studies.sweeps.dispatcher import FILL
-from vehicle.studies.sweeps.measure import BatchMeasure, Measure, comfort_measure
+from vehicle.studies.sweeps.measure import BatchMeasure, Measure, chosen_measure
 from vehicle.studies.sweeps.sweep import sweep_cases
 from vehicle.studies.sweeps.sweep_inputs import Source, common_start, file_of, inputs_of, require_speed_of_roads
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
@@ -154,7 +154,7 @@ def plan_sweep(
         raise ConfigurationError(f"vary: every run would be the same car: {'; '.join(idle)}")
     return SweepPlan(
         cases=cases,
-        measure=settings.measure or comfort_measure(car.vehicle, start),
+        measure=chosen_measure(settings.measure, car.vehicle, start),
         skip=start,
         settings=settings,
         notes=(*body_rules(car.vehicle, [text.partition("=")[0] for text in each]), *idle),

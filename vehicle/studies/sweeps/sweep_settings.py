@@ -9,7 +9,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.settings import Settings, engine_setting, require_within, setting
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
     from concurrent.futures import Executor
     from pathlib import Path
 
@@ -86,7 +86,12 @@ class SweepSettings(RunSettings):
 
     engine: str = engine_setting("auto")
     skip: float | None = skip_setting()
-    measure: Measure | None = setting("measure of each run; by default comfort and slip shares")
+    measure: Measure | str | Sequence[str] | None = setting(
+        "figure in place of comfort and slip shares, as travel, tyre_load, peak:seat_rail_acc_z or "
+        "order:1:seat_rail_acc_z; may be repeated",
+        action="append",
+        metavar="NAME",
+    )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
