@@ -156,8 +156,8 @@ class BenchState:
 
     def rows(self) -> list[tuple[str, float, float, str]]:
         """Return name, A, B and unit of each number."""
-        before = self.reference[1].table()
-        return [(name, before[name][0], value, unit) for name, (value, unit) in self.present[1].table().items()]
+        before = self.reference[1].table
+        return [(name, before[name][0], value, unit) for name, (value, unit) in self.present[1].table.items()]
 
 
 class LatestOnly:
