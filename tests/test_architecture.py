@@ -69,60 +69,40 @@ ROOMS: dict[str, set[str]] = {
     | {"parameters", "records", "reduced", "rendering", "simulation", "threads"},
     "figures": {"analysis", "car", "parameters"},
     "comparison": {"analysis", "car", "excitation", "formats", "linear", "records", "rendering", "threads"},
-    "output": {"analysis", "car", "comparison", "excitation", "flexbody", "formats", "linear", "parameters"}
+    "output": {"analysis", "car", "comparison", "excitation", "figures", "flexbody", "formats", "linear", "parameters"}
     | {"records", "rendering", "replacement", "simulation"},
     "targets": {"car", "figures", "parameters", "records", "simulation"},
     "report": {"analysis", "car", "figures", "flexbody", "linear", "output", "parameters", "records"}
     | {"rendering", "simulation", "targets", "version"},
     "fmu": {"car", "core", "linear", "parameters", "reduced", "version"},
-    "page": {"analysis", "car", "excitation", "figures", "fmu", "linear", "output", "parameters", "reduced"}
-    | {"rendering", "report", "simulation", "targets"},
-    "bench": {"analysis", "assembly", "car", "excitation", "figures", "formats", "linear", "output", "page"}
-    | {"parameters", "records", "reduced", "rendering", "report", "shapes", "threads"},
+    "page": {"analysis", "car", "excitation", "figures", "fmu", "linear", "output", "parameters"}
+    | {"reduced", "rendering", "report", "simulation", "targets"},
+    "bench": {"analysis", "assembly", "car", "excitation", "figures", "formats", "linear", "output"}
+    | {"page", "parameters", "reduced", "rendering", "report", "shapes", "threads"},
     "design": {"car", "flexbody", "kinematics", "parameters", "simulation", "threads"},
     "mounts": {"formats", "parameters"},
     "dampers": {"formats", "parameters", "records", "rendering", "report"},
     "replication": {"car", "excitation", "formats", "output", "records", "reduced", "rendering", "threads"},
-    "sweeps": {"analysis", "car", "excitation", "figures", "flexbody", "formats", "notebook", "output"}
-    | {"parameters", "reduced", "rendering", "report", "simulation", "threads"},
+    "sweeps": {"analysis", "car", "excitation", "figures", "flexbody", "formats", "notebook"}
+    | {"output", "parameters", "reduced", "rendering", "report", "simulation", "threads"},
     "tuning": {"analysis", "car", "comparison", "excitation", "flexbody", "formats", "output", "parameters"}
     | {"records", "reduced", "rendering", "report", "threads"},
-    "optimisation": {"analysis", "car", "figures", "formats", "output", "parameters", "rendering"}
-    | {"replacement", "sweeps", "targets"},
+    "optimisation": {"analysis", "car", "figures", "formats", "output", "parameters"}
+    | {"rendering", "replacement", "sweeps", "targets"},
     "commands": {"analysis", "assembly", "bench", "car", "comparison", "core", "dampers", "design", "excitation"}
     | {"flexbody", "fmu", "formats", "kinematics", "linear", "mounts", "optimisation", "output"}
     | {"page", "parameters", "records", "rendering", "replication", "report", "sweeps", "targets"}
     | {"threads", "tuning", "version"},
-    "__init__": {
-        "car",
-        "comparison",
-        "dampers",
-        "excitation",
-        "figures",
-        "fmu",
-        "formats",
-        "handed_down",
-        "laws",
-        "mounts",
-    }
-    | {"optimisation", "output", "page", "parameters", "records", "replication", "sweeps", "tuning"},
+    "__init__": {"car", "comparison", "dampers", "excitation", "figures", "fmu", "formats", "handed_down"}
+    | {"laws", "mounts", "optimisation", "output", "page", "parameters", "records", "replication", "sweeps", "tuning"},
     "__main__": {"commands", "core", "version"},
     **{name: {"commands"} for name in OLDER},
 }
 """What each room, and each module above the rooms, imports of the package: this and no more, and all of it."""
 
-STUDIES = {
-    "analysis",
-    "assembly",
-    "car",
-    "commands",
-    "excitation",
-    "figures",
-    "formats",
-    "kinematics",
-    "laws",
-    "linear",
-} | {*("output", "parameters", "reduced", "rendering", "simulation", "sweeps", "threads", "tuning")}
+STUDIES = {"analysis", "assembly", "car", "commands", "excitation", "figures", "formats", "kinematics", "laws"} | {
+    *("linear", "output", "parameters", "reduced", "rendering", "simulation", "sweeps", "threads", "tuning")
+}
 """What `scenarios` imports of the package; the package imports nothing of `scenarios`."""
 
 HEAVY = {

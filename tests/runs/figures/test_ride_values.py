@@ -163,4 +163,4 @@ def test_every_figure_has_words_and_a_meaning():
     for name, figure in FIGURES.items():
         assert figure.words and figure.meaning.endswith("]"), name
         assert f"[{figure.unit or 'U'}]" in figure.meaning, name
-        assert not figure.beside or figure.beside in FIGURES
+        assert not figure.companion or figure.companion in FIGURES

@@ -143,7 +143,7 @@ def _page_numbers(car: Car, drive: PageInput, rotations: Sequence[int], further:
     channels = [f"{POINT}_acc_{axis}" for axis in AXES]
     of_dampers = [f"{name}_{end}" for name in names for end in ("velocity", "force")]
     outputs, rows = car_outputs(car, [*dict.fromkeys([*channels, *of_dampers, *further])])
-    # The page differentiates displacements, as the recorder does.
+    # The page computes accelerations from displacements.
     kept = [index for index, output in enumerate(outputs) if "_acc_" not in output.name]
     motions = motion_rows(car, picture_rows(car))
     read = [outputs[index] for index in kept]

@@ -1,1 +1,1 @@
-"""The catalogue of ride figures: what each is, what it needs, and its value on runs of one or many cars."""
+"""Catalogue of ride figures: definition, unit, histories and value on runs of one or many cars."""

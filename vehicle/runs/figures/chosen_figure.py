@@ -45,7 +45,7 @@ class ChosenFigure(Details):
         quantity: name in the catalogue.
 
     Raises:
-        ConfigurationError: unknown quantity, missing or unknown detail, or value out of range.
+        ConfigurationError: unknown quantity, missing or unknown detail, value out of range.
     """
 
     quantity: str
@@ -125,9 +125,9 @@ class ChosenFigure(Details):
         """Return the channels of a car that the figure reads."""
         return self.figure.reads.channels(self, vehicle)
 
-    def beside(self) -> tuple[ChosenFigure, ...]:
-        """Return this figure and the one that tables show with it."""
-        other = self.figure.beside
+    def columns(self) -> tuple[ChosenFigure, ...]:
+        """Return the figures of a table: this figure and its companion."""
+        other = self.figure.companion
         return (self, *([replace(self, quantity=other)] if other else []))
 
 
@@ -139,7 +139,7 @@ def form_of(name: str) -> str:
 
 
 def available(vehicle: Vehicle) -> dict[str, Figure]:
-    """Return the figures that a car has, by name."""
+    """Return the figures of a car by name."""
     has = {"": True, "seat": vehicle.seated, "damper": bool(vehicle.damped_wheels)}
     return {name: figure for name, figure in FIGURES.items() if has[figure.of_car]}
 
@@ -153,13 +153,13 @@ def chosen_figure(text: str, vehicle: Vehicle, option: str = "figure") -> Chosen
         option: option of the text, for messages.
 
     Raises:
-        ConfigurationError: no such figure, the car lacks what it needs, or another form.
+        ConfigurationError: an unknown figure, another form, or the car lacks a channel or part.
     """
     name, *parts = (part.strip() for part in text.split(":"))
     if name not in FIGURES:
-        known = [each for each in FIGURES if name.startswith(f"{each}_")]
-        whole, name = name, max(known, key=len, default=name)
-        parts = [whole[len(name) + 1 :], *parts] if known else parts
+        beginnings = [each for each in FIGURES if name.startswith(f"{each}_")]
+        whole, name = name, max(beginnings, key=len, default=name)
+        parts = [whole[len(name) + 1 :], *parts] if beginnings else parts
     if name not in available(vehicle):
         forms = ", ".join(map(form_of, available(vehicle)))
         raise ConfigurationError(f"{option} {text!r}: {vehicle.name} has no figure {name!r}; choose from {forms}")
@@ -177,25 +177,25 @@ def chosen_figure(text: str, vehicle: Vehicle, option: str = "figure") -> Chosen
 
 
 def _details(figure: Figure, parts: Sequence[str]) -> dict[str, Any]:
-    """Return the details of the parts of a text: what a part can only be, or the next free text.
+    """Return the details in the parts of a text; a part of no other form is the next name.
 
     Raises:
         ValueError: a part belongs to no detail.
     """
-    found: dict[str, Any] = {}
+    details: dict[str, Any] = {}
     for part in parts:
-        left = [key for key in figure.keys if key not in found]
+        left = [key for key in figure.keys if key not in details]
         values = {key: value for key in left if (value := _read(key, part)) is not None}
         free = {"channels", "over", "angle", "motion"}
         key = next((each for each in values if each not in free), next(iter(values), None))
         if key is None:
             raise ValueError(part)
-        found[key] = values[key]
-    return found
+        details[key] = values[key]
+    return details
 
 
 def _read(key: str, part: str) -> Any:
-    """Return the value of a detail in a text, or None if the text is none."""
+    """Return the value of a detail in a text; None for another text."""
     if not part:
         return None
     several = tuple(each.strip() for each in re.split(r"[+,]", part))

@@ -58,7 +58,7 @@ def _figure(prefix: str, name: str, meaning: str) -> Figure:
     point = POINTS[prefix]
 
     def channels(_: Details, __: Vehicle) -> tuple[str, ...]:
-        # The cushion with its rail, as in a table of comfort.
+        # With the rail, as in a table of comfort.
         return _channels("seat_rail", "seat") if prefix else _channels("seat_rail")
 
     return Figure(

@@ -27,7 +27,7 @@ class Values(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Details:
-    """What a figure refers to.
+    """Channels, wheels, band and other details of a figure.
 
     Attributes:
         channels, over: names or words of recorded channels, as "seat rail z".
@@ -93,9 +93,9 @@ class Figure:
         better: direction of a better ride.
         needs: required details.
         takes: further details.
-        of_car: what the car must have: "seat", "damper" or nothing.
-        beside: another figure that a table shows with it.
-        alone: True for a figure whose runs are computed one by one in double precision.
+        of_car: required part of the car, "seat" or "damper"; empty without one.
+        companion: figure in the next column of a table.
+        alone: True for a figure of single runs in double precision, not of batches.
         certain: True for a standard error that is also known on one event.
         exact: True for a number of the car itself, which has no standard error.
     """
@@ -109,7 +109,7 @@ class Figure:
     needs: tuple[str, ...] = ()
     takes: tuple[str, ...] = ()
     of_car: str = ""
-    beside: str = ""
+    companion: str = ""
     alone: bool = False
     certain: bool = False
     exact: bool = False

@@ -122,8 +122,8 @@ def _slip(rows: Vector, _: Details, runs: Runs) -> Values:
 def _stick(rows: Vector, _: Details, runs: Runs) -> Values:
     limits = runs.slip_velocity
     sticks = 1.0 - _shares(rows, limits)
-    most = np.argmax(sticks, axis=1)
-    chosen = rows[np.arange(len(rows)), most]
+    longest = np.argmax(sticks, axis=1)
+    chosen = rows[np.arange(len(rows)), longest]
     error = _of_blocks(lambda part: slip_shares(chosen[:, part], limits), rows.shape[2], runs)
     return Values(np.max(sticks, axis=1), error)
 

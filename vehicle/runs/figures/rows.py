@@ -46,16 +46,21 @@ def recorded(names: Sequence[str], weighting: str, runs: Runs) -> Vector:
     return np.stack(weighted, axis=1)[:, :, runs.evaluated]
 
 
-def wheels_of(details: Details, car_wheels: Sequence[str], what: str = "tyre") -> tuple[str, ...]:
+def wheels_of(details: Details, car_wheels: Sequence[str], part: str = "tyre") -> tuple[str, ...]:
     """Return the wheels of a figure; by default all.
 
+    Args:
+        details: details of the figure.
+        car_wheels: wheels of the car with the part.
+        part: "tyre" or "damper".
+
     Raises:
-        ConfigurationError: the car has no such wheel, or none at all.
+        ConfigurationError: the car lacks the wheel or the part.
     """
     if missing := [wheel for wheel in details.wheels if wheel not in car_wheels]:
         raise ConfigurationError(f"wheels: found {', '.join(missing)}, must be among {', '.join(car_wheels)}")
     if not car_wheels:
-        raise ConfigurationError(f"the car has no {what}")
+        raise ConfigurationError(f"the car has no {part}")
     return details.wheels or tuple(car_wheels)
 
 

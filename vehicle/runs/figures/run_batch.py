@@ -99,7 +99,7 @@ def single(run: Run) -> Runs:
 
 
 def evaluated(run: Run) -> Runs:
-    """Return a batch of a single run with its own start of the evaluation and band, as `Run.comfort` takes them."""
+    """Return a batch of a single run with the start of its evaluation and its band, as in `Run.comfort`."""
     return replace(single(run), skip=run.skip, band=run.signal.band(COMFORT_BAND))
 
 

@@ -53,8 +53,8 @@ def _of_motion(value: Callable[[MotionFigure], float | None]) -> Reduction:
             listed = {each.motion: each for each in motion_figures(car) if each.dampers == state}
             if name not in listed:
                 raise ConfigurationError(f"motion {name!r}: must be one of {', '.join(listed)}")
-            found = value(listed[name])
-            values.append(np.nan if found is None else found)
+            number = value(listed[name])
+            values.append(np.nan if number is None else number)
         return Values(np.array(values))
 
     return Reduction(of=of)
@@ -68,7 +68,7 @@ ORDER_FIGURES = {
     "order": Figure(
         words="amplitude at an order", meaning="amplitude of a channel at an order of crank or wheel [U]",
         reads=unread(_channels), reduces=Reduction(of=_order), needs=("order", "channels"), takes=("angle",),
-        beside="order_frequency", alone=True, certain=True,
+        companion="order_frequency", alone=True, certain=True,
     ),
     "order_frequency": Figure(
         words="frequency of the order", meaning="frequency of an order of crank or wheel [Hz]",

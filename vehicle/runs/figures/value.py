@@ -33,16 +33,16 @@ def require_unit(chosen: ChosenFigure, unit: str, units: Mapping[str, str]) -> N
 
     Args:
         chosen: the figure, its channels by name.
-        unit: the unit that it must have.
+        unit: required unit.
         units: recorded channel to its unit.
 
     Raises:
         ConfigurationError: another unit.
     """
-    found = chosen.unit_in(units)
-    if unit != found:
+    needed = chosen.unit_in(units)
+    if unit != needed:
         raise ConfigurationError(
-            f"unit: found {unit!r}, must be {found!r} for {chosen.quantity} of {chosen.channels or 'the car'}"
+            f"unit: found {unit!r}, must be {needed!r} for {chosen.quantity} of {chosen.channels or 'the car'}"
         )
 
 
@@ -72,7 +72,7 @@ def shown_figures(names: Sequence[str], runs: Runs, option: str = "--measure") -
         option: option of the names, for messages.
 
     Raises:
-        ConfigurationError: no such figure, or the run lacks what it needs.
+        ConfigurationError: an unknown figure, or the run lacks a channel.
         DataError: the record is too short for a band.
     """
     shown = []
@@ -98,7 +98,7 @@ def figure_of(run: Run, name: str) -> float:
             `docs/howto/figures.md` lists all.
 
     Raises:
-        ConfigurationError: no such figure, or the run lacks what it needs.
+        ConfigurationError: an unknown figure, or the run lacks a channel.
         DataError: the record is too short for the band.
     """
     return shown_figures([name], evaluated(run), "figure")[0].value

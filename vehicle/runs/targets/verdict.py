@@ -98,7 +98,7 @@ class RatedRun:
         )
 
     def value_of(self, target: Target) -> tuple[float, float | None]:
-        """Return the value of a target on this run, and its standard error or None.
+        """Return the value of a target on this run and its standard error; None without an error.
 
         Raises:
             ConfigurationError: a channel or wheel is missing in the run, or the unit of the target is wrong.

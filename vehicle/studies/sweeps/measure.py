@@ -128,7 +128,7 @@ class FigureMeasure:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SingleMeasure:
-    """Measure of runs that are computed one by one, in double precision.
+    """Measure of single runs in double precision.
 
     Attributes:
         each: measure of a run.
@@ -246,21 +246,21 @@ def comfort_measure(vehicle: Vehicle, skip: float) -> ComfortMeasure:
     return ComfortMeasure(skip=skip, wheels=wheels, seat=vehicle.seated)
 
 
-def chosen_measure(given: Measure | str | Sequence[str] | None, vehicle: Vehicle, skip: float) -> Measure:
+def chosen_measure(measure: Measure | str | Sequence[str] | None, vehicle: Vehicle, skip: float) -> Measure:
     """Return the measure of a setting: comfort by default, figures by their names, or a measure itself.
 
     Args:
-        given: names of figures, a measure, or nothing.
+        measure: names of figures, or a measure; comfort by default.
         vehicle: the vehicle.
         skip: excluded time at the beginning [s].
 
     Raises:
         ConfigurationError: the vehicle lacks a figure.
     """
-    if given is None:
+    if measure is None:
         return comfort_measure(vehicle, skip)
-    names = [given] if isinstance(given, str) else given
+    names = [measure] if isinstance(measure, str) else measure
     if not isinstance(names, Sequence):
         return names
-    figures = [each for name in names for each in chosen_figure(name, vehicle, "--measure").beside()]
+    figures = [each for name in names for each in chosen_figure(name, vehicle, "--measure").columns()]
     return measure_of(vehicle, {each.column: each for each in figures}, skip)
