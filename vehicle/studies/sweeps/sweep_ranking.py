@@ -285,12 +285,14 @@ def measure_lines(table: SweptCases) -> list[str]:
     base, units = table.cases[0], table.units
     shared = {text.partition("=")[0] for text in base.overrides[: base.shared]}
     paths = [path for path in table.paths() if path not in shared]
-    columns = [table.column(name) for name in units]
+    columns = {name: table.column(name) for name in units}
+    # An error that is known in no run has a column in the file alone.
+    columns = {name: each for name, each in columns.items() if np.isfinite(each).any() or not name.endswith(ERROR)}
     rows = [
-        [case.source.name, *parameter_cells(case, paths), *(_cell(float(each[row])) for each in columns)]
+        [case.source.name, *parameter_cells(case, paths), *(_cell(float(each[row])) for each in columns.values())]
         for row, case in enumerate(islice(table.cases, SHOWN))
     ]
-    lines = aligned([["input", *paths, *(f"{name} [{unit}]" for name, unit in units.items())], *rows], left=1)
+    lines = aligned([["input", *paths, *(f"{name} [{units[name]}]" for name in columns)], *rows], left=1)
     left = len(table.cases) - len(rows)
     return [*lines, f"and {left} more runs in table.csv"] if left else lines
 
