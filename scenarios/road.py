@@ -126,9 +126,9 @@ class Rides:
             names = (RAIL, RAIL_WEIGHTED, *((SEAT_WEIGHTED, "seat_value") if seated else ()))
             names += ("lowest_load", "slip_share", *(f"tyre_load_{wheel}" for wheel in wheels))
             figures = {name: chosen_figure(name, car.vehicle) for name in names}
-            ride = measure_of(car.vehicle, figures, LEAD_S, errors=False)
-            assert isinstance(ride, FigureMeasure)
-            measure = replace(ride, timestep=TIMESTEP)
+            of_ride = measure_of(car.vehicle, figures, LEAD_S, errors=False)
+            assert isinstance(of_ride, FigureMeasure)
+            measure = replace(of_ride, timestep=TIMESTEP)
             cases = [case for ride in missing for case in self.cases(ride)]
             rows = iter(swept(cases, measure, jobs=self.jobs, folder=self.folder))
             for ride in missing:

@@ -91,7 +91,9 @@ def test_targets_report_and_page(run, tmp_path, monkeypatch):
     value = f"{run.figure(NAME):.3g}"
     assert "<td>crest</td>" in page and page.count(f'<td class="number">{value}</td>') == 2
     assert f"<td>{WORDS}</td>" in page and "misses crest" in page
-    data = json.loads(re.search(r'id="trial-data"[^>]*>(.*?)</script>', page, re.DOTALL).group(1))
+    found = re.search(r'id="trial-data"[^>]*>(.*?)</script>', page, re.DOTALL)
+    assert found is not None
+    data = json.loads(found[1])
     assert [each["words"] for each in data["figures"]] == [WORDS, "peak to peak, seat rail acc z"]
     run.save("other")
     assert report(["run", "other", *asked, "--quiet", "--output", "b.html"]) == 0

@@ -3,7 +3,7 @@
 import math
 import time as clock
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -111,10 +111,10 @@ def numbers(car: Car, drive: BenchDrive, measure: Sequence[str] = ()) -> BenchNu
     )
     frf = drive.inputs.response(np.array([probe[name] for name in names]))
     part = run.evaluated
-    shown = shown_figures([*named.values(), *measure], evaluated(run))
-    names_of_rows = [*named, *(each.title for each in shown[len(named) :])]
+    values = shown_figures([*named.values(), *measure], replace(evaluated(run), errors=False))
+    rows = [*named, *(each.title for each in values[len(named) :])]
     return BenchNumbers(
-        table={name: _row(each, name) for name, each in zip(names_of_rows, shown, strict=True)},
+        table={name: _row(each, name) for name, each in zip(rows, values, strict=True)},
         spectra=run.psd(["seat_rail_acc_z"]).channels,
         names=names,
         frf=frf,
