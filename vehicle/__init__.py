@@ -68,7 +68,6 @@ if TYPE_CHECKING:
     from vehicle.runs.comparison.comparison import Comparison as Comparison
     from vehicle.runs.comparison.diagnosis import diagnose as diagnose
     from vehicle.runs.comparison.mode_comparison import compare_modes as compare_modes
-    from vehicle.runs.figures.value import figure_of as figure_of
     from vehicle.runs.output.comparison_files import save_comparison as save_comparison
     from vehicle.runs.output.own_files import save_car as save_car
     from vehicle.runs.output.saved_run import load_run as load_run
@@ -132,7 +131,6 @@ _MODULES = {
     "compare_modes": "vehicle.runs.comparison.mode_comparison",
     "diagnose": "vehicle.runs.comparison.diagnosis",
     "evaluate_comfort": "vehicle.signals.records.record_comfort",
-    "figure_of": "vehicle.runs.figures.value",
     "fit_damper": "vehicle.studies.dampers.fitted_damper",
     "fit_mount": "vehicle.studies.mounts.mount_fit",
     "load_run": "vehicle.runs.output.saved_run",
@@ -180,7 +178,8 @@ def _handed(name: str) -> Callable[..., Any]:
     return lambda *given, **options: __getattr__(name)(*given, **options)
 
 
-HANDED |= {name: _handed(name) for name in ("figure_of", "load_run", "save_car", "save_run", "write_report")}
+HANDED |= {name: _handed(name) for name in ("load_run", "save_car", "save_run", "write_report")}
+HANDED["figure_of"] = lambda run, name: import_module("vehicle.runs.figures.value").figure_of(run, name)
 
 
 def __dir__() -> list[str]:

@@ -80,7 +80,7 @@ def numbers(car: Car, drive: BenchDrive, measure: Sequence[str] = ()) -> BenchNu
 
     Args:
         car: the car, with the overrides of the drive; fastest as `Car.with_` of a car whose matrices exist.
-        measure: further figures by their names in the catalogue (`vehicle.figure_of`).
+        measure: further figures by their names in the catalogue (`Run.figure`).
 
     Raises:
         ConfigurationError: the car is unstable or cannot be built.

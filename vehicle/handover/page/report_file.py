@@ -36,7 +36,7 @@ def write_report(
         force: replace a report that was written there before.
         progress: called with the finished fraction.
         targets: TOML file of figures with limits, or "ride" for the shipped one; the report begins with the verdict.
-        measure: further figures by their names in the catalogue (`vehicle.figure_of`).
+        measure: further figures by their names in the catalogue (`Run.figure`).
         notice: called with a line on targets without a run, and the commands that make these runs.
         film: film of two runs side by side, as `film_of_two` writes it, for the page; none by default.
         author, project: names in the head of the page; may be empty.

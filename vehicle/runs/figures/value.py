@@ -67,7 +67,7 @@ def shown_figures(names: Sequence[str], runs: Runs, option: str = "--measure") -
     """Return figures of a run.
 
     Args:
-        names: names of figures, see `figure_of`.
+        names: names of figures, see `Run.figure`.
         runs: batch of this run.
         option: option of the names, for messages.
 
@@ -90,15 +90,5 @@ def shown_figures(names: Sequence[str], runs: Runs, option: str = "--measure") -
 
 
 def figure_of(run: Run, name: str) -> float:
-    """Return a figure of a run in its unit: NaN where it is undefined, infinite for a motion that does not settle.
-
-    Args:
-        run: finished run.
-        name: name of a figure, as "travel_fr", "rms:seat_rail_acc_z:5-25" or "order:2:seat_rail_acc_z"; the page
-            `docs/howto/figures.md` lists all.
-
-    Raises:
-        ConfigurationError: an unknown figure, or the run lacks a channel.
-        DataError: the record is too short for the band.
-    """
+    """Return a figure of a run; arguments and errors as in `Run.figure`."""
     return shown_figures([name], evaluated(run), "figure")[0].value

@@ -20,7 +20,7 @@ def figures_section(names: Sequence[str], runs: Sequence[FinishedRun]) -> Markup
     """Return the table of figures: a row for each, with a value for each run.
 
     Args:
-        names: names of figures, see `vehicle.figure_of`.
+        names: names of figures, see `Run.figure`.
         runs: finished runs.
 
     Raises:
