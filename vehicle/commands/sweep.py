@@ -54,8 +54,8 @@ def parser() -> Parser:
         "--sobol",
         type=int,
         metavar="N",
-        help="Sobol indices of comfort, or of --measure, with N base points, a power of two, at least 64; each parameter is uniform "
-        "between the bounds of --vary PATH=LOW:HIGH; N times (parameters + 2) runs on each input",
+        help="Sobol indices of comfort, or of --measure, with N base points, a power of two, at least 64; each "
+        "parameter is uniform between the bounds of --vary PATH=LOW:HIGH; N times (parameters + 2) runs on each input",
     )
     parser.add_argument(
         "--cases",
@@ -66,8 +66,8 @@ def parser() -> Parser:
     parser.add_argument(
         "--each",
         metavar="P%[,Dmm]",
-        help="change each parameter alone by P percent, down and up, and rank them by their effect on comfort or --measure; --vary "
-        "PATH, as front.damper or viscous, chooses them; by default all stiffnesses, dampings, friction forces, "
+        help="change each parameter alone by P percent, down and up, and rank them by their effect on comfort or "
+        "--measure; --vary PATH, as front.damper or viscous, chooses them; by default all stiffnesses, dampings, friction forces, "
         "masses; a coordinate, which has no percentage, is moved by D mm, 10 by default: 20%%,5mm",
     )
     vehicle_options(parser)
