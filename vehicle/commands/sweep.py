@@ -67,8 +67,8 @@ def parser() -> Parser:
         "--each",
         metavar="P%[,Dmm]",
         help="change each parameter alone by P percent, down and up, and rank them by their effect on comfort or "
-        "--measure; --vary PATH, as front.damper or viscous, chooses them; by default all stiffnesses, dampings, friction forces, "
-        "masses; a coordinate, which has no percentage, is moved by D mm, 10 by default: 20%%,5mm",
+        "--measure; --vary PATH, as front.damper or viscous, chooses them; by default all stiffnesses, dampings, "
+        "friction forces, masses; a coordinate, which has no percentage, is moved by D mm, 10 by default: 20%%,5mm",
     )
     vehicle_options(parser)
     setting_options(parser, SweepSettings, "measure", "engine", "skip", "jobs", "executor", "time_limit")

@@ -105,3 +105,21 @@ def test_the_list_of_the_documentation_lacks_it():
     assert set(rows()) - set(table_of(PAGE.read_text(encoding="utf-8"))) == {
         f"| `{NAME}[:WHEELS]` | {FIGURES[NAME].meaning} | less |"
     }
+
+
+def lift(run):
+    return {"highest": run["seat rail z"][run.evaluated].max(), "lowest": run["seat rail z"][run.evaluated].min()}
+
+
+def test_a_sweep_takes_a_function_of_a_run(car):
+    ride = road("C", 80, duration=4)
+    table = sweep(car, {"rear.damper.viscous": [1500.0, 2000.0]}, ride, measure=lift, engine="reduced")
+    assert table.units == {"highest": "?", "lowest": "?"}
+    run = car.with_({"rear.damper.viscous": 2000.0}).run(ride, engine="reduced")
+    assert table.column("highest")[1] == pytest.approx(lift(run)["highest"], rel=1e-6)
+    alone = sweep(car, {"rear.damper.viscous": [1500.0, 2000.0]}, ride, measure=max_force, engine="reduced")
+    assert alone.column("max_force")[1] == pytest.approx(max_force(run), rel=1e-6)
+
+
+def max_force(run):
+    return run["damper_fr_force"].max()

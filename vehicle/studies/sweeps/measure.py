@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import inspect
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -21,6 +22,7 @@ from vehicle.runs.figures.value import values_of
 from vehicle.signals.analysis.ride_comfort import ERROR, comfort_columns, comfort_units, wave_names
 
 
+@runtime_checkable
 class Measure(Protocol):
     """Function that returns the values of a run; picklable, with a `repr` that identifies the measure."""
 
@@ -246,11 +248,52 @@ def comfort_measure(vehicle: Vehicle, skip: float) -> ComfortMeasure:
     return ComfortMeasure(skip=skip, wheels=wheels, seat=vehicle.seated)
 
 
-def chosen_measure(measure: Measure | str | Sequence[str] | None, vehicle: Vehicle, skip: float) -> Measure:
-    """Return the measure of a setting: comfort by default, figures by their names, or a measure itself.
+RunFunction = Callable[[Run], float | Mapping[str, float]]
+"""Function of a run that returns a number or a dictionary of numbers."""
+
+MeasureChoice = Measure | RunFunction | str | Sequence[str] | None
+"""Measure of a sweep: names of figures, a function of a run, an object, or nothing for comfort."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FunctionMeasure:
+    """Measure by a function of a run.
+
+    Attributes:
+        function: the function; for worker processes one of a module.
+        skip: excluded time at the beginning [s], the `skip` of its runs.
+        channels: required channels; all.
+        units: empty: the table takes the names of its first finished run, with unit "?".
+    """
+
+    function: RunFunction
+    skip: float = 0.0
+    channels: None = None
+    units: Mapping[str, str] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        """Return the source of the function, which identifies stored rows; its name without a source."""
+        return f"FunctionMeasure({_source(self.function)}, skip={self.skip!r})"
+
+    def __call__(self, run: Run) -> dict[str, float]:
+        """Return the values of a run."""
+        values = self.function(replace(run, skip=self.skip))
+        return dict(values) if isinstance(values, Mapping) else {self.function.__name__: float(values)}
+
+
+def _source(function: RunFunction) -> str:
+    """Return the source text of a function; its name without a source."""
+    try:
+        return inspect.getsource(function)
+    except (OSError, TypeError):
+        return function.__qualname__
+
+
+def chosen_measure(measure: MeasureChoice, vehicle: Vehicle, skip: float) -> Measure:
+    """Return the measure of a setting: comfort by default, figures by their names, a function, or a measure itself.
 
     Args:
-        measure: names of figures, or a measure; comfort by default.
+        measure: names of figures, a function of a run, or a measure; comfort by default.
         vehicle: the vehicle.
         skip: excluded time at the beginning [s].
 
@@ -259,8 +302,10 @@ def chosen_measure(measure: Measure | str | Sequence[str] | None, vehicle: Vehic
     """
     if measure is None:
         return comfort_measure(vehicle, skip)
+    if isinstance(measure, Measure):
+        return measure
+    if callable(measure):
+        return FunctionMeasure(function=measure, skip=skip)
     names = [measure] if isinstance(measure, str) else measure
-    if not isinstance(names, Sequence):
-        return names
     figures = [each for name in names for each in chosen_figure(name, vehicle, "--measure").columns()]
     return measure_of(vehicle, {each.column: each for each in figures}, skip)

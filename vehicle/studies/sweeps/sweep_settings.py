@@ -9,11 +9,11 @@ from vehicle.errors import ConfigurationError
 from vehicle.settings import Settings, engine_setting, require_within, setting
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
     from concurrent.futures import Executor
     from pathlib import Path
 
-    from vehicle.studies.sweeps.measure import Measure
+    from vehicle.studies.sweeps.measure import MeasureChoice
 
 SHIFT = 0.01
 """Default change of a coordinate [m], by which it is varied in place of a share: a share of it would depend on the
@@ -86,7 +86,7 @@ class SweepSettings(RunSettings):
 
     engine: str = engine_setting("auto")
     skip: float | None = skip_setting()
-    measure: Measure | str | Sequence[str] | None = setting(
+    measure: MeasureChoice = setting(
         "figure in place of comfort and slip shares, as travel, tyre_load, peak:seat_rail_acc_z or "
         "order:1:seat_rail_acc_z; may be repeated",
         action="append",
