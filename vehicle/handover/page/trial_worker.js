@@ -177,18 +177,18 @@ class Trial {
   }
 
   // Values of the figures that were asked for, from the places of the histories of their outputs.
-  figures(places, samples, comfort, axes) {
-    const { data, module, skip } = this, { interval, ahead, derivative } = { ...data, derivative: this.places.derivative };
+  figures(histories, samples, comfort, axes) {
+    const { data, module, places: { derivative, derived: rate }, skip } = this, { interval, ahead } = data;
     let next = 0;
     return (data.figures ?? []).map((figure) => {
       if (figure.reduction === "comfort") return figure.axis < 0 ? comfort : axes[figure.axis];
-      const histories = figure.derived.map((derived) => {
-        const place = places[next++];
+      const read = figure.derived.map((derived) => {
+        const place = histories[next++];
         if (!derived) return this.numbers(place, samples);
-        module.differentiate(place, samples + ahead, interval, derivative, this.places.derived);
-        return this.numbers(this.places.derived, samples);
+        module.differentiate(place, samples + ahead, interval, derivative, rate);
+        return this.numbers(rate, samples);
       });
-      return REDUCTIONS[figure.reduction](ROWS[figure.rows](histories, figure, interval).map((row) => row.subarray(skip)));
+      return REDUCTIONS[figure.reduction](ROWS[figure.rows](read, figure, interval).map((row) => row.subarray(skip)));
     });
   }
 
