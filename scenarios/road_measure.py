@@ -11,13 +11,13 @@ from scenarios.signals.exact_road import RATE_HZ, road
 from vehicle.arrays import Vector
 from vehicle.names import across
 from vehicle.runs.car import SATURATED_VELOCITY, Run
+from vehicle.runs.figures.run_batch import Runs
 from vehicle.signals.analysis.comfort import comfort_values
 from vehicle.signals.analysis.ride_comfort import UNWEIGHTED, WEIGHTED
 from vehicle.signals.analysis.seat_value import weighted_rms_of
 from vehicle.signals.analysis.slip import slip_shares
 from vehicle.signals.excitation.signal import Signal
 from vehicle.studies.sweeps.measure import of_one
-from vehicle.studies.sweeps.run_batch import Runs
 
 SEAT_RAIL = ("seat_rail_acc_x", "seat_rail_acc_y", "seat_rail_acc_z")
 

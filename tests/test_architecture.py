@@ -24,7 +24,7 @@ WINGS = {
     "model": ("parameters", "laws", "flexbody", "shapes", "assembly", "templates", "vehicles"),
     "engines": ("simulation", "kinematics", "linear", "reduced"),
     "drawing": ("rendering", "notebook"),
-    "runs": ("car", "comparison", "output", "targets", "report"),
+    "runs": ("car", "figures", "comparison", "output", "targets", "report"),
     "handover": ("fmu", "page", "bench"),
     "studies": ("design", "mounts", "dampers", "replication", "sweeps", "tuning", "optimisation"),
     "commands": (),
@@ -67,40 +67,41 @@ ROOMS: dict[str, set[str]] = {
     "notebook": {"analysis", "records", "rendering", "simulation"},
     "car": {"handed_down", "analysis", "excitation", "flexbody", "kinematics", "laws", "linear", "notebook"}
     | {"parameters", "records", "reduced", "rendering", "simulation", "threads"},
+    "figures": {"analysis", "car", "parameters"},
     "comparison": {"analysis", "car", "excitation", "formats", "linear", "records", "rendering", "threads"},
-    "output": {"analysis", "car", "comparison", "excitation", "flexbody", "formats", "linear", "machine"}
+    "output": {"analysis", "car", "comparison", "excitation", "figures", "flexbody", "formats", "linear", "machine"}
     | {"parameters", "records", "rendering", "replacement", "simulation"},
-    "targets": {"analysis", "car", "output", "parameters", "records", "simulation"},
-    "report": {"analysis", "car", "flexbody", "linear", "output", "parameters", "records"}
+    "targets": {"car", "figures", "parameters", "records", "simulation"},
+    "report": {"analysis", "car", "figures", "flexbody", "linear", "output", "parameters", "records"}
     | {"rendering", "simulation", "targets", "version"},
     "fmu": {"car", "core", "linear", "parameters", "reduced", "version"},
-    "page": {"analysis", "car", "excitation", "fmu", "formats", "laws", "linear", "output", "parameters"}
+    "page": {"analysis", "car", "excitation", "figures", "fmu", "formats", "laws", "linear", "output", "parameters"}
     | {"records", "reduced", "rendering", "report", "simulation", "targets"},
-    "bench": {"analysis", "assembly", "car", "excitation", "formats", "linear", "output", "page"}
+    "bench": {"analysis", "assembly", "car", "excitation", "figures", "formats", "linear", "output", "page"}
     | {"parameters", "records", "reduced", "rendering", "report", "shapes", "threads"},
     "design": {"car", "flexbody", "kinematics", "parameters", "simulation", "threads"},
     "mounts": {"formats", "parameters"},
     "dampers": {"formats", "parameters", "records", "rendering", "report"},
     "replication": {"car", "excitation", "formats", "output", "records", "reduced", "rendering", "threads"},
-    "sweeps": {"analysis", "car", "excitation", "flexbody", "formats", "machine", "notebook"}
+    "sweeps": {"analysis", "car", "excitation", "figures", "flexbody", "formats", "machine", "notebook"}
     | {"output", "parameters", "reduced", "rendering", "report", "simulation", "threads"},
     "tuning": {"analysis", "car", "comparison", "excitation", "flexbody", "formats", "output", "parameters"}
     | {"records", "reduced", "rendering", "report", "threads"},
-    "optimisation": {"analysis", "car", "excitation", "formats", "output", "parameters", "rendering"}
+    "optimisation": {"analysis", "car", "excitation", "figures", "formats", "output", "parameters", "rendering"}
     | {"replacement", "sweeps", "targets"},
     "commands": {"analysis", "assembly", "bench", "car", "comparison", "core", "dampers", "design", "excitation"}
     | {"flexbody", "fmu", "formats", "kinematics", "linear", "mounts", "optimisation", "output"}
     | {"page", "parameters", "records", "rendering", "replication", "report", "sweeps"}
     | {"threads", "tuning", "version"},
-    "__init__": {"car", "comparison", "dampers", "excitation", "fmu", "formats", "handed_down", "laws", "mounts"}
-    | {"optimisation", "output", "page", "parameters", "records", "replication", "sweeps", "tuning"},
+    "__init__": {"car", "comparison", "dampers", "excitation", "figures", "fmu", "formats", "handed_down"}
+    | {"laws", "mounts", "optimisation", "output", "page", "parameters", "records", "replication", "sweeps", "tuning"},
     "__main__": {"commands", "core", "version"},
     **{name: {"commands"} for name in OLDER},
 }
 """What each room, and each module above the rooms, imports of the package: this and no more, and all of it."""
 
-STUDIES = {"analysis", "assembly", "car", "commands", "excitation", "flexbody", "formats", "laws", "linear"} | {
-    *("output", "parameters", "reduced", "rendering", "simulation", "sweeps", "threads")
+STUDIES = {"analysis", "assembly", "car", "commands", "excitation", "figures", "flexbody", "formats", "laws"} | {
+    *("linear", "output", "parameters", "reduced", "rendering", "simulation", "sweeps", "threads")
 }
 """What `scenarios` imports of the package; the package imports nothing of `scenarios`."""
 

@@ -7,4 +7,4 @@ from collections.abc import Callable
 from typing import Any
 
 HANDED: dict[str, Callable[..., Any]] = {}
-"""Public name to function: `load_run`, `save_car`, `save_run`, `write_report`."""
+"""Name to function: the public `load_run`, `save_car`, `save_run`, `write_report`, and `figure_of`."""

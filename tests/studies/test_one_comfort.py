@@ -8,12 +8,12 @@ import pytest
 from scenarios.signals.random_road import random_road
 from vehicle.digits import number
 from vehicle.runs.car import Car
+from vehicle.runs.figures.catalogue import FIGURES
 from vehicle.runs.output.saved_run import save_run
 from vehicle.runs.report.finished_run import read_run
 from vehicle.runs.report.sections import comfort as report_section
 from vehicle.signals.analysis.ride_comfort import comfort_columns, comfort_units
-from vehicle.studies.optimisation.ride import QUANTITIES, ride_measure
-from vehicle.studies.sweeps.measure import ComfortMeasure
+from vehicle.studies.sweeps.measure import ComfortMeasure, FigureMeasure, chosen_measure
 from vehicle.studies.sweeps.plan import plan_sweep
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
 
@@ -48,8 +48,8 @@ def swept(car, source, engine):
     from vehicle.studies.sweeps.case_evaluation import evaluate
 
     names = tuple(name for name in comfort_units(seated=car.vehicle.seated) if not name.endswith("_error"))
-    ride = ride_measure(car.vehicle, names, plan.skip)
-    assert ride.timestep == plan.measure.timestep
+    ride = chosen_measure(names, car.vehicle, plan.skip)
+    assert isinstance(ride, FigureMeasure) and ride.timestep == plan.measure.timestep
     results = [evaluate(plan.cases[:1], measure)[0] for measure in (plan.measure, ride)]
     assert [result.reason for result in results] == ["", ""]
     assert [result.engine for result in results] == [engine, engine]
@@ -97,7 +97,7 @@ def test_a_cushion_has_both_names_and_the_seat_value():
     assert columns["seat_value"][1] == pytest.approx(
         columns["seat_weighted_z"][1] / columns["weighted_z"][1], rel=1e-12
     )
-    assert {*NAMES[::4], "seat_unweighted", "seat_weighted", "seat_value"} <= set(QUANTITIES)
+    assert {*NAMES[::4], "seat_unweighted", "seat_weighted", "seat_value"} <= set(FIGURES)
 
 
 @pytest.mark.parametrize(("name", "other"), [("unweighted", "weighted"), ("weighted", "unweighted")])

@@ -15,6 +15,7 @@ from vehicle.commands.options import (
     VEHICLE_HELP,
     car_of,
     command_parser,
+    measure_option,
     message_options,
     read,
     set_option,
@@ -41,11 +42,13 @@ class BenchSettings(Settings):
 
     Attributes:
         source: signals of the plates, or a drive on a road.
+        measure: further figures of the table of the page.
         output: folder for the files that the page saves.
     """
 
     source: PlateSettings | DriveInput
     car: CarChoice = part(CarChoice)
+    measure: tuple[str, ...] = ()
     output: Path = Path("runs/bench")
     first: float = setting("use the file from this time on [s]", 0.0, flag="--from", type=float, metavar="S")
     seconds: float | None = setting(
@@ -72,7 +75,9 @@ def parser() -> Parser:
     set_option(parser)
     file = signal_options(parser)
     setting_options(file, BenchSettings, "first")
-    setting_options(parser, BenchSettings, "seconds", "port")
+    setting_options(parser, BenchSettings, "seconds")
+    measure_option(parser, "table of the page")
+    setting_options(parser, BenchSettings, "port")
     parser.add_argument(
         "--output",
         type=Path,
@@ -107,7 +112,8 @@ def _job(settings: BenchSettings, console: Console) -> None:
     server = open_server(guard, settings.port)
     try:
         print("compiling ...", flush=True)
-        state = BenchState(car, bench_drive(car, source, begin=settings.first, seconds=settings.seconds))
+        drive = bench_drive(car, source, begin=settings.first, seconds=settings.seconds)
+        state = BenchState(car, drive, settings.measure)
         page = Page(server, state, settings.output)
         print(f"ready: {guard.address(server.get_port())} (Ctrl-C ends the bench)", flush=True)
         try:

@@ -50,9 +50,9 @@ def parser() -> Parser:
         action="append",
         default=[],
         metavar="NUMBER[@INPUT]",
-        help="an objective: unweighted, weighted, seat_unweighted, seat_weighted [m/s2], seat_value, tyre_load, "
-        "lowest_load, slip_share [-], travel [m]; one axis or wheel is weighted_z, travel_fr; after the @ an input, "
-        "as road_A_120 or the stem of a file, or mean or worst of all. May be repeated",
+        help="an objective: a figure of a ride, as unweighted, weighted, seat_weighted, tyre_load, travel, "
+        "peak:seat_rail_acc_z; of an axis or wheel weighted_z, travel_fr; after the @ an input, as road_A_120 or the "
+        "stem of a file, or mean or worst of all. May be repeated",
     )
     search.add_argument(
         "--targets",

@@ -192,6 +192,17 @@ def damper_option(parser: argparse._ActionsContainer) -> None:
     parser.add_argument("--damper", choices=states, default="stuck", help=help_text)
 
 
+def measure_option(parser: argparse._ActionsContainer, where: str) -> None:
+    """Add --measure, further figures of a table or page."""
+    parser.add_argument(
+        "--measure",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help=f"further figure of the {where}, as tyre_load_crest, travel_fr or peak:seat_rail_acc_z; may be repeated",
+    )
+
+
 def resume_options(parser: Parser) -> None:
     """Add --resume and --retry-failed, which continue a table of runs."""
     parser.add_argument(

@@ -9,6 +9,7 @@ from vehicle.commands.film_options import film_options
 from vehicle.commands.options import (
     command_parser,
     head_options,
+    measure_option,
     message_options,
     output_options,
     setting_options,
@@ -24,6 +25,7 @@ def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser("report", "Write findings, figures, moving modes and tables of runs into one HTML file.")
     setting_options(parser, ReportSettings, "runs", "targets")
+    measure_option(parser, "report")
     film_options(
         parser,
         "render a film of two runs of one input side by side, and put it into the report; both are simulated again "
@@ -45,6 +47,7 @@ class ReportSettings(Settings):
     """Settings of a report.
 
     Attributes:
+        measure: further figures of the report.
         film: film of two runs side by side.
         destination: the report; by default `REPORT` in the folder of a single run.
         author, project: names at the top.
@@ -62,6 +65,7 @@ class ReportSettings(Settings):
         "to copy and change",
         metavar="FILE.toml",
     )
+    measure: tuple[str, ...] = ()
     film: FilmSettings = part(FilmSettings)
     destination: Destination = part(Destination)
     author: str = ""
@@ -89,6 +93,7 @@ def _job(settings: ReportSettings, console: Console) -> None:
         force=settings.destination.force,
         progress=console.progress("report    "),
         targets=settings.targets,
+        measure=settings.measure,
         notice=lambda text: console.say(f"note        {text}"),
         film=film,
         author=settings.author,

@@ -57,8 +57,8 @@ def parser() -> Parser:
         "--sobol",
         type=int,
         metavar="N",
-        help="Sobol indices of comfort with N base points, a power of two, at least 64; each parameter is uniform "
-        "between the bounds of --vary PATH=LOW:HIGH; N times (parameters + 2) runs on each input",
+        help="Sobol indices of comfort, or of --measure, with N base points, a power of two, at least 64; each "
+        "parameter is uniform between the bounds of --vary PATH=LOW:HIGH; N times (parameters + 2) runs on each input",
     )
     parser.add_argument(
         "--cases",
@@ -70,18 +70,12 @@ def parser() -> Parser:
         "--each",
         type=steps_of,
         metavar="P%[,Dmm]",
-        help="change each parameter alone by P percent, down and up, and rank them by their effect on comfort; --vary "
-        "PATH, as front.damper or viscous, chooses them; by default all stiffnesses, dampings, friction forces, "
-        "masses; a coordinate, which has no percentage, is moved by D mm, 10 by default: 20%%,5mm",
-    )
-    parser.add_argument(
-        "--measure",
-        metavar="order:N:CHANNEL[:ANGLE]",
-        help="amplitude of a channel at an order of crank or wheel, in place of comfort, as order:1:seat_rail_acc_z, "
-        "of a car with forces",
+        help="change each parameter alone by P percent, down and up, and rank them by their effect on comfort or "
+        "--measure; --vary PATH, as front.damper or viscous, chooses them; by default all stiffnesses, dampings, "
+        "friction forces, masses; a coordinate, which has no percentage, is moved by D mm, 10 by default: 20%%,5mm",
     )
     vehicle_options(parser)
-    setting_options(parser, SweepSettings, "engine", "skip", "jobs", "executor", "time_limit")
+    setting_options(parser, SweepSettings, "measure", "engine", "skip", "jobs", "executor", "time_limit")
     output_options(parser, Path("runs/sweep"))
     resume_options(parser)
     parser.add_argument("--allow-failed", action="store_true", help="exit with 0, not 4, although runs failed")
@@ -143,7 +137,7 @@ def _design(options: argparse.Namespace) -> Design:
     Raises:
         ConfigurationError: options that exclude each other.
     """
-    from vehicle.studies.sweeps.chosen_cars import EveryCombination, OtherMeasure, VariationTable
+    from vehicle.studies.sweeps.chosen_cars import EveryCombination, VariationTable
     from vehicle.studies.sweeps.parameter_effects import SingleChanges
     from vehicle.studies.sweeps.sobol_sweep import SobolSample
 
@@ -157,21 +151,21 @@ def _design(options: argparse.Namespace) -> Design:
         raise ConfigurationError("--each: takes --vary PATH, or no parameters; leave out --table and --sobol")
     if options.cases is None and options.each is None and bool(options.vary) == bool(options.table):
         raise ConfigurationError("give either --vary PATH=A,B,C (once or more) or --table FILE.csv")
-    of_comfort = (options.sobol, options.report, options.each, options.cases)
-    if options.measure is not None and any(option is not None for option in of_comfort):
-        raise ConfigurationError("--measure: these are of comfort: leave out --report, --sobol, --each and --cases")
+    if options.measure is not None and (options.report is not None or options.cases is not None):
+        raise ConfigurationError("--measure: these are of comfort: leave out --report and --cases")
     if options.sobol is not None and (options.table or options.report is not None):
         raise ConfigurationError(
             "--sobol: needs --vary PATH=LOW:HIGH, and has no report; leave out --table and --report"
         )
-    vary, design = tuple(options.vary), options.cases
+    vary = tuple(options.vary)
+    design: Design = options.cases
     if options.each is not None:
         design = SingleChanges(vary, *options.each)
     elif options.sobol is not None:
         design = SobolSample(vary, options.sobol)
     elif design is None:
         design = VariationTable(options.table) if options.table else EveryCombination(vary)
-    return design if options.measure is None else OtherMeasure(design, options.measure)
+    return design
 
 
 def _job(study: SweepStudy, console: Console) -> None:

@@ -1,7 +1,7 @@
 """Targets: every figure equals the value of its run elsewhere; verdict, error, inputs, and wrong files."""
 
-import runpy
 from dataclasses import replace
+from functools import partial
 from types import SimpleNamespace
 from typing import Any
 
@@ -11,10 +11,12 @@ import pytest
 from tests.validation import validated
 from vehicle import Car, road
 from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.vehicle import load_vehicle
+from vehicle.runs.figures.catalogue import FIGURES
+from vehicle.runs.figures.run_batch import Runs, evaluated
+from vehicle.runs.figures.value import require_unit, values_of
 from vehicle.runs.output.run_obstacle import obstacle_values
-from vehicle.runs.targets import values
-from vehicle.runs.targets.figure import QUANTITIES, Figure, Quantity
-from vehicle.runs.targets.values import Histories, value_of
+from vehicle.runs.targets.target import Target
 from vehicle.runs.targets.verdict import (
     MET,
     MISSED,
@@ -27,33 +29,26 @@ from vehicle.runs.targets.verdict import (
     verdict,
 )
 from vehicle.signals.analysis.ride_comfort import comfort_columns
-from vehicle.studies.optimisation.ride import ride_measure
 
 RAIL = ("seat rail x", "seat rail y", "seat rail z")
 
 
 def ride_of(run, **changes):
-    """Return the histories of a run that was not saved."""
-    vehicle = run.car.vehicle
-    obstacle = obstacle_values(run)
-    ride = Histories(
-        time=run.time,
-        of=run.recording.__getitem__,
-        unit=run.recording.units.__getitem__,
-        named=run._named,
-        skip=run.skip,
-        tyre_load=dict(run.car.static.tyre_load),
-        dampers=vehicle.damped_wheels,
-        slip_velocity=vehicle.damper.slip_velocity,
-        left_obstacle=None if obstacle is None else obstacle["to_s"],
-        random=obstacle is None,
-    )
-    return replace(ride, **changes)
+    """Return a run that was not saved as the verdict takes it: values have an error on a random road."""
+    return replace(evaluated(run), random=obstacle_values(run) is None, **changes)
+
+
+def value_of(target, ride):
+    """Return value and standard error of a target on a batch of one run."""
+    chosen = target.recorded_in(tuple(ride.channels))
+    require_unit(chosen, target.unit, dict.fromkeys(ride.channels, "m/s2"))
+    values = values_of(chosen, ride)
+    return values.value[0], None if values.error is None else values.error[0]
 
 
 def figure(quantity, **keys):
-    unit = QUANTITIES[quantity].unit or "m/s2"
-    return Figure(**{"quantity": quantity, "unit": unit, "at_most": 1.0, **keys})
+    unit = FIGURES[quantity].unit or "m/s2"
+    return Target(**{"quantity": quantity, "unit": unit, "at_most": 1.0, **keys})
 
 
 @pytest.fixture(scope="module")
@@ -80,7 +75,7 @@ def test_figures_of_a_road_are_those_of_run_and_search(sedan, on_road):
         "weighted z": (figure("rms", channels=("seat rail z",), weighting="Wk"), comfort.weighted.z),
         "stick": (figure("stick_share", wheels=("fr",)), 1.0 - on_road.slip_share("fr")),
     }
-    numbers = ride_measure(sedan.vehicle, ("tyre_load", "tyre_load_rl", "travel", "travel_fr"), on_road.skip)(on_road)
+    numbers = {name: on_road.figure(name) for name in ("tyre_load", "tyre_load_rl", "travel", "travel_fr")}
     pairs |= {
         "tyre_load": (figure("tyre_load"), numbers["tyre_load"]),
         "tyre_load_rl": (figure("tyre_load", wheels=("rl",)), numbers["tyre_load_rl"]),
@@ -90,7 +85,7 @@ def test_figures_of_a_road_are_those_of_run_and_search(sedan, on_road):
     for name, (each, expected) in pairs.items():
         assert value_of(each, ride)[0] == pytest.approx(expected, rel=1e-12), name
     rail = np.stack([on_road.recording[f"seat_rail_acc_{axis}"] for axis in "xyz"])[None]
-    error = comfort_columns(ride.step, rail, skip=on_road.skip)["unweighted_error"][0]
+    error = comfort_columns(ride.timestep, rail, skip=on_road.skip)["unweighted_error"][0]
     value, found = value_of(pairs["unweighted"][0], ride)
     assert found == pytest.approx(error * value, rel=1e-12)
     assert value_of(pairs["travel"][0], ride)[1] is None
@@ -108,10 +103,8 @@ def test_ratio_of_two_waves():
     """A tone of 2 m/s2 over one of 5: the ratio is 0.4, with no scatter over the blocks."""
     time = np.linspace(0.0, 15.999, 16_000)
     waves = {"above": 2.0 * np.sin(2.0 * np.pi * 4.0 * time), "below": 5.0 * np.sin(2.0 * np.pi * 4.0 * time + 1.0)}
-    ride = Histories(
-        time=time, of=waves.__getitem__, unit=lambda _: "m/s2", named=tuple, skip=0.0, tyre_load={}, dampers=(),
-        slip_velocity=0.0, random=True,
-    )  # fmt: skip
+    channels = {name: wave[None] for name, wave in waves.items()}
+    ride = Runs(time=time, channels=channels, vehicles=(load_vehicle(),), tyre_load={})
     value, error = value_of(figure("ratio", channels=("above",), over=("below",), band=(1.0, 10.0)), ride)
     assert value == pytest.approx(0.4, rel=1e-12) and error == pytest.approx(0.0, abs=1e-12)
 
@@ -119,10 +112,12 @@ def test_ratio_of_two_waves():
 def test_a_run_whose_channel_rests_does_not_hide_a_miss(on_road):
     """Two runs of one car, in both orders; over the channel of the first a ratio is no number."""
     ride = ride_of(on_road)
-    rest = replace(ride, of=lambda name: ride.of(name) * (name != "seat_rail_acc_y"))
+    rest = replace(ride, channels={**ride.channels, "seat_rail_acc_y": 0.0 * ride["seat_rail_acc_y"]})
     ratio = figure("ratio", channels=("seat_rail_acc_z",), over=("seat_rail_acc_y",), unit="-", at_most=1e-3)
     runs: list[Any] = [
-        SimpleNamespace(name=name, label="sedan", summary={"input": {"file": ""}}, histories=histories)
+        SimpleNamespace(
+            name=name, label="sedan", summary={"input": {"file": ""}}, value_of=partial(value_of, ride=histories)
+        )
         for name, histories in (("rest", rest), ("ride", ride))
     ]
     for order in (runs, runs[::-1]):
@@ -138,21 +133,21 @@ def test_figures_of_an_obstacle_are_those_of_its_summary(on_cleat):
     dose = value_of(figure("vdv", channels=RAIL, weighting="seat"), ride)[0]
     assert dose == pytest.approx(summary["vdv"]["seat_rail"]["overall"], rel=1e-12)
     assert value_of(figure("settling", channels=("seat rail z",)), ride)[0] == summary["settling_s"]["seat_rail"]
-    never = {name: np.ones(ride.time.size) for name in on_cleat.channels}
-    assert value_of(figure("settling", channels=("seat rail z",)), ride_of(on_cleat, of=never.__getitem__))[0] == np.inf
+    never = {name: np.ones((1, ride.time.size)) for name in on_cleat.channels}
+    assert value_of(figure("settling", channels=("seat rail z",)), ride_of(on_cleat, channels=never))[0] == np.inf
 
 
 def test_error_of_a_share_over_random_records():
     """Stick share of coloured noise: the scatter of 200 records against the mean of their stated errors."""
-    rng, limit = np.random.default_rng(7), 0.5
+    rng, slow = np.random.default_rng(7), load_vehicle(None, ["damper.slip_velocity=0.5"])
     shares, errors = [], []
     for _ in range(200):
         noise = np.convolve(rng.standard_normal(20_000 + 99), np.ones(100) / 10.0, mode="valid")
-        ride = Histories(
-            time=np.linspace(0.0, 19.999, 20_000), of={"damper_fr_velocity": noise}.__getitem__, unit=str, named=tuple,
-            skip=0.0, tyre_load={}, dampers=("fr",), slip_velocity=limit, random=True,
+        ride = Runs(
+            time=np.linspace(0.0, 19.999, 20_000), channels={"damper_fr_velocity": noise[None]}, vehicles=(slow,),
+            tyre_load={},
         )  # fmt: skip
-        share, error = value_of(figure("stick_share"), ride)
+        share, error = value_of(figure("stick_share", wheels=("fr",)), ride)
         shares.append(share)
         assert error is not None
         errors.append(error**2)
@@ -205,7 +200,7 @@ def test_sentence():
 
 
 FAULTS = {
-    "quantity = 'noise'\nunit = 'm/s2'\nat_most = 1": "a.quantity: found 'noise', must be one of rms",
+    "quantity = 'noise'\nunit = 'm/s2'\nat_most = 1": "a.quantity: found 'noise', must be one of unweighted",
     "quantity = 'rms'\nunit = 'm/s2'\nat_most = 1": "a.channels: missing; rms needs it",
     "quantity = 'peak'\nunit = 'm/s2'\nat_most = 1\nchannels = ['b']\nband = [1, 2]": "a.band: not used by peak",
     "quantity = 'tyre_load'\nunit = '-'": "a.at_most: set exactly one of at_most and at_least",
@@ -257,9 +252,3 @@ def test_what_a_run_does_not_have(on_road):
 def test_shipped_targets():
     figures = read_targets("ride")
     assert len(figures) >= 10 and all(each.source for each in figures.values())
-
-
-def test_a_kind_of_figure_in_one_of_two_tables_is_refused_at_import(monkeypatch):
-    monkeypatch.setitem(QUANTITIES, "kurtosis", Quantity(meaning="kurtosis of a channel [-]"))
-    with pytest.raises(ConfigurationError, match="figures: kurtosis is in one of two tables only; add it"):
-        runpy.run_path(values.__file__)

@@ -12,7 +12,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
 from vehicle.runs.output.run_files import summarise
-from vehicle.runs.output.run_obstacle import settling_time
+from vehicle.signals.analysis.settled import settling_time
 from vehicle.signals.excitation.iso_road import Side
 from vehicle.signals.excitation.obstacle import SHAPES, Obstacle
 from vehicle.signals.excitation.road_drive import RoadDrive

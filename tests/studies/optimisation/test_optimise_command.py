@@ -19,12 +19,12 @@ from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.output.destination import Destination
 from vehicle.signals.excitation.signal_file import write_signal
 from vehicle.studies.optimisation.problem import parsed_tolerance
-from vehicle.studies.optimisation.ride import ride_measure
 from vehicle.studies.optimisation.search_settings import SearchSettings
 from vehicle.studies.optimisation.search_study import SearchStudy, TargetStudy
 from vehicle.studies.sweeps.case import SignalFile
 from vehicle.studies.sweeps.case_evaluation import evaluate
 from vehicle.studies.sweeps.case_table import table_cases
+from vehicle.studies.sweeps.measure import chosen_measure
 from vehicle.studies.sweeps.sweep_inputs import InputChoice
 
 LOOSE = "damper.coulomb_friction=10"
@@ -87,11 +87,11 @@ DAMPING, COMFORT, LOAD = "damper.viscous [N s/m]", "unweighted [m/s2]", "tyre_lo
 def test_the_front_ends_where_a_sweep_has_its_minima(road, searched):
     """Vary one parameter: each damper between the best for comfort and the best for the tyre is a compromise."""
     damping = np.linspace(500.0, 2500.0, 11)
-    measure = ride_measure(load_vehicle(), ("unweighted", "tyre_load"), SKIP)
+    measure = chosen_measure(("unweighted", "tyre_load"), load_vehicle(), SKIP)
     cases = table_cases(["damper.viscous"], [(c,) for c in damping], [SignalFile(path=road, wheel="fl")], fixed=[LOOSE])
     results = evaluate(cases, measure)
     best = {}
-    for name in measure.numbers:
+    for name in ("unweighted", "tyre_load"):
         values = np.array([result.values[name] for result in results])
         fine = np.linspace(damping[0], damping[-1], 2001)
         best[name] = float(fine[np.argmin(np.polynomial.Polynomial.fit(damping, values, 4)(fine))])
@@ -119,7 +119,7 @@ def test_files_of_a_search(road, searched):
     knee = summary["points"]["knee"]
     (result,) = evaluate(
         table_cases([], [()], [SignalFile(path=road, wheel="fl")], vehicle=searched / knee["vehicle"]),
-        ride_measure(load_vehicle(), ("unweighted",), SKIP),
+        chosen_measure("unweighted", load_vehicle(), SKIP),
     )
     assert result.values["unweighted"] == pytest.approx(knee["numbers"]["unweighted"], rel=1e-9)
     damping = knee["parameters"]["damper.viscous"]
@@ -166,7 +166,11 @@ def test_tolerances_and_another_front_beside(road, searched, tmp_path, capsys):
     ("more", "code", "said"),
     [
         ([], 2, "no objective; add --minimise"),
-        (["--minimise", "comfrt"], 2, "focus has no quantity 'comfrt'; choose from unweighted, unweighted_x"),
+        (
+            ["--minimise", "comfrt"],
+            2,
+            "--minimise 'comfrt': focus has no figure 'comfrt'; choose from unweighted",
+        ),
         (
             ["--minimise", "unweighted", "--vary", "damper.viscos=1:2"],
             2,

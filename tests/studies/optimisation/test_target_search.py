@@ -11,7 +11,7 @@ from vehicle.commands.optimise import main
 from vehicle.digits import number
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.ranges import Range
-from vehicle.runs.targets.figure import Figure
+from vehicle.runs.targets.target import Target
 from vehicle.signals.analysis.comfort_error import overall_error, weighted_lines
 from vehicle.signals.analysis.weighting import weighted_record
 from vehicle.studies.optimisation.target_search import meet_targets
@@ -24,10 +24,10 @@ ON_ROAD: dict[str, Any] = {"road": "C", "speed": 80.0}
 
 def targets(weighted, travel):
     return {
-        "weighted": Figure(
+        "weighted": Target(
             quantity="rms", channels=RAIL, weighting="seat", unit="m/s2", at_most=weighted, words="the ride", **ON_ROAD
         ),
-        "travel": Figure(quantity="travel", unit="m", at_most=travel, words="the travel", **ON_ROAD),
+        "travel": Target(quantity="travel", unit="m", at_most=travel, words="the travel", **ON_ROAD),
     }
 
 
@@ -104,7 +104,7 @@ def test_a_car_that_meets_its_targets(sedan):
 def test_what_is_refused(sedan, figure, ranges, message):
     keys = {"quantity": "rms", "channels": RAIL, "weighting": "seat", "unit": "m/s2", "at_most": 0.5, **ON_ROAD}
     with pytest.raises(ConfigurationError, match=message):
-        meet_targets(sedan, {"weighted": Figure(**(keys | figure))}, ranges, duration=3.0)
+        meet_targets(sedan, {"weighted": Target(**(keys | figure))}, ranges, duration=3.0)
 
 
 def test_command(tmp_path, capsys, monkeypatch):

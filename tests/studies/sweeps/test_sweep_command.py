@@ -15,7 +15,7 @@ from vehicle.commands.sweep import main, parser, settings_of
 from vehicle.runs.output.destination import Destination, ReportChoice
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.studies.sweeps.case import SignalFile
-from vehicle.studies.sweeps.chosen_cars import EveryCombination, OtherMeasure, VariationTable, every_combination
+from vehicle.studies.sweeps.chosen_cars import EveryCombination, VariationTable, every_combination
 from vehicle.studies.sweeps.parameter_effects import SingleChanges
 from vehicle.studies.sweeps.plan import plan_sweep
 from vehicle.studies.sweeps.sobol_sweep import SobolSample
@@ -52,18 +52,28 @@ def table_of(folder):
         (["--sobol", "64", "--vary", "damper.viscous=1:2"], SobolSample(("damper.viscous=1:2",), 64)),
         (["--each", "+-15%,5mm", "--vary", "damper"], SingleChanges(("damper",), 0.15, 0.005)),
         (["--each", "15"], SingleChanges((), 0.15)),
-        (
-            ["--table", "cars.csv", "--measure", "order:1:x"],
-            OtherMeasure(VariationTable(Path("cars.csv")), "order:1:x"),
-        ),
     ],
 )
 def test_the_options_are_one_object(words, design):
     """Of the parsed options nothing but a study goes on, and Python makes the same."""
-    typed = ["--road", "B", "--speed", "80", "--seed", "3", "--skip", "1", "--resume", "--retry-failed", *words]
+    typed = [
+        "--road",
+        "B",
+        "--speed",
+        "80",
+        "--seed",
+        "3",
+        "--skip",
+        "1",
+        "--measure",
+        "travel",
+        "--resume",
+        "--retry-failed",
+        *words,
+    ]
     settings = settings_of(parser().parse_args(typed, argparse.Namespace(held=ExitStack())))
     drive = InputChoice(road=("B",), speed=(80.0,), seed=(3,))
-    runs = SweepSettings(skip=1.0, retry_failed=True)
+    runs = SweepSettings(skip=1.0, measure=("travel",), retry_failed=True)
     assert settings == SweepStudy(design=design, inputs=drive, runs=runs, destination=Destination(resume=True))
 
 

@@ -2,22 +2,23 @@
 
 import math
 import time as clock
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.handover.bench.drive import BenchDrive
+from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import AXES
 from vehicle.runs.car import Car, Run
 from vehicle.runs.car.simulated_run import simulated_run
-from vehicle.runs.output.run_obstacle import obstacle_values
+from vehicle.runs.figures.chosen_figure import chosen_figure
+from vehicle.runs.figures.run_batch import evaluated
+from vehicle.runs.figures.value import ShownFigure, shown_figures
 from vehicle.signals.analysis.frf import FrequencyResponse
-from vehicle.signals.analysis.ride_comfort import RunComfort
 from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.vibration_spectra import ChannelSpectrum
-from vehicle.signals.records.run_summary import ObstacleSummary
 from vehicle.threads import one_blas_thread
 
 RAIL = tuple(f"seat_rail_acc_{axis}" for axis in AXES)
@@ -33,8 +34,7 @@ where the dampers slip."""
 class BenchNumbers:
     """Values of a car on the input of a bench."""
 
-    comfort: RunComfort  # comfort of the excerpt, as `Run.comfort`
-    slip: Mapping[str, float]  # wheel to slip share of its damper, as `Run.slip_share` [-]
+    table: Mapping[str, tuple[float, str]]  # figures of the table: name to value and unit, NaN where undefined
     spectra: tuple[ChannelSpectrum, ...]  # spectra of the vertical seat rail, unweighted and weighted, as `Run.psd`
     names: tuple[str, ...]  # channels of `frf`
     frf: FrequencyResponse  # FRFs [m/s2 per m] to the first plate at the level of the excerpt, with standard error
@@ -43,42 +43,44 @@ class BenchNumbers:
     # damper_velocity, damper_force: damper to velocity [m/s] and force [N]; (n,) each
     damper_velocity: Mapping[str, Vector]
     damper_force: Mapping[str, Vector]
-    # values of the crossing of an obstacle, as in `summary.json`; None without an obstacle
-    obstacle: ObstacleSummary | None
     warnings: tuple[str, ...]  # exceeded limits of the reduced engine
     seconds: float  # processor time of this thread for all of this [s]
 
-    def table(self) -> dict[str, tuple[float, str]]:
-        """Return the numbers of the table: name to value and unit."""
-        rows = {} if self.obstacle is None else _obstacle_rows(self.obstacle)
-        rows |= {
-            "comfort unweighted": (self.comfort.unweighted.overall, "m/s2"),
-            "comfort weighted": (self.comfort.weighted.overall, "m/s2"),
-        }
-        if self.comfort.cushion is not None:
-            rows["on the seat, weighted"] = (self.comfort.cushion.weighted.overall, "m/s2")
-        if self.comfort.seat_value is not None:
-            rows["SEAT value"] = (self.comfort.seat_value, "-")
-        return rows | {f"slip {wheel}": (100.0 * share, "%") for wheel, share in self.slip.items()}
 
+def table_figures(vehicle: Vehicle, *, obstacle: bool) -> dict[str, str]:
+    """Return the rows of the table, names to figures of the catalogue.
 
-def _obstacle_rows(values: ObstacleSummary) -> dict[str, tuple[float, str]]:
-    """Return the rows of the table of an obstacle: name to value and unit; NaN for motion that has not settled."""
+    Args:
+        vehicle: the car.
+        obstacle: True for the crossing of an obstacle.
+    """
     rows = {}
-    for point, peaks in values["peak_to_peak"].items():
-        name, settling = point.replace("_", " "), values["settling_s"][point]
-        rows[f"peak to peak {name} z"] = peaks["z"], "m/s2"
-        rows[f"VDV {name}"] = values["vdv"][point]["overall"], "m/s1.75"
-        rows[f"settling time {name} z"] = math.nan if settling is None else settling, "s"
-    return rows | {f"peak knuckle {wheel} z": (peak, "m/s2") for wheel, peak in values["knuckle_peak"].items()}
+    for point in ("seat_rail", *(["seat"] if vehicle.seated else [])) if obstacle else ():
+        name, axes = point.replace("_", " "), "+".join(f"{point}_acc_{axis}" for axis in AXES)
+        rows[f"peak to peak {name} z"] = f"peak_to_peak:{point}_acc_z"
+        rows[f"VDV {name}"] = f"vdv:{axes}:seat"
+        rows[f"settling time {name} z"] = f"settling:{point}_acc_z"
+    for wheel in vehicle.wheels if obstacle else ():
+        if (knuckle := f"knuckle_{wheel}_acc_z") in vehicle.channels:
+            rows[f"peak knuckle {wheel} z"] = f"peak:{knuckle}"
+    rows |= {"comfort unweighted": "unweighted", "comfort weighted": "weighted"}
+    rows |= {"on the seat, weighted": "seat_weighted", "SEAT value": "seat_value"} if vehicle.seated else {}
+    return rows | {f"slip {wheel}": f"slip_share_{wheel}" for wheel in vehicle.damped_wheels}
+
+
+def _row(shown: ShownFigure, name: str) -> tuple[float, str]:
+    """Return value and unit of a row: the time in slip in percent, NaN for motion that has not settled."""
+    value = shown.value if math.isfinite(shown.value) else math.nan
+    return (100.0 * value, "%") if name.startswith("slip ") else (value, shown.unit)
 
 
 @one_blas_thread()
-def numbers(car: Car, drive: BenchDrive) -> BenchNumbers:
+def numbers(car: Car, drive: BenchDrive, measure: Sequence[str] = ()) -> BenchNumbers:
     """Run a car on the input of a bench with the reduced engine, and evaluate the runs.
 
     Args:
         car: the car, with the overrides of the drive; fastest as `Car.with_` of a car whose matrices exist.
+        measure: further figures by their names in the catalogue (`Run.figure`).
 
     Raises:
         ConfigurationError: the car is unstable or cannot be built.
@@ -87,12 +89,13 @@ def numbers(car: Car, drive: BenchDrive) -> BenchNumbers:
     started = clock.thread_time()
     vehicle, drive = car.vehicle, drive.under(car)
     wheels = vehicle.damped_wheels
-    seat = tuple(f"seat_acc_{axis}" for axis in AXES) if vehicle.seated else ()
     dampers = [f"damper_{wheel}_{quantity}" for wheel in wheels for quantity in ("velocity", "force")]
     over = drive.road is not None and "obstacle" in drive.road
-    knuckles = [name for wheel in vehicle.wheels if over and (name := f"knuckle_{wheel}_acc_z") in vehicle.channels]
+    named = table_figures(vehicle, obstacle=over)
+    figures = [chosen_figure(each, vehicle, "--measure") for each in (*named.values(), *measure)]
     # Each position of a slider is another car, whose second order would take longer than all else.
-    channels = [*RAIL, *seat, *dampers, *knuckles]
+    read = [name for figure in figures for name in figure.channels_of(vehicle)]
+    channels = [*dict.fromkeys([*RAIL, *dampers, *read])]
     _, recording, reason = simulated_run(car, drive.record, None, "reduced", channels, stated=False)
     run = Run(car=car, signal=drive.record, recording=recording, engine_reason=reason, skip=drive.skip, road=drive.road)
     shown = ("seat_rail_acc_z", f"knuckle_{next(iter(drive.inputs.samples))}_acc_z")
@@ -108,9 +111,10 @@ def numbers(car: Car, drive: BenchDrive) -> BenchNumbers:
     )
     frf = drive.inputs.response(np.array([probe[name] for name in names]))
     part = run.evaluated
+    values = shown_figures([*named.values(), *measure], replace(evaluated(run), errors=False))
+    rows = [*named, *(each.title for each in values[len(named) :])]
     return BenchNumbers(
-        comfort=run.comfort(),
-        slip={wheel: run.slip_share(wheel) for wheel in wheels},
+        table={name: _row(each, name) for name, each in zip(rows, values, strict=True)},
         spectra=run.psd(["seat_rail_acc_z"]).channels,
         names=names,
         frf=frf,
@@ -118,7 +122,6 @@ def numbers(car: Car, drive: BenchDrive) -> BenchNumbers:
         acceleration=run["seat_rail_acc_z"][part],
         damper_velocity={wheel: run[f"damper_{wheel}_velocity"][part] for wheel in wheels},
         damper_force={wheel: run[f"damper_{wheel}_force"][part] for wheel in wheels},
-        obstacle=obstacle_values(run),
         warnings=run.recording.statistics.warnings,
         seconds=clock.thread_time() - started,
     )

@@ -1,7 +1,7 @@
 """State of the bench: base car, changed parameters, and the numbers of the reference A and of the present car B."""
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from vehicle.errors import ConfigurationError, VehicleError
@@ -23,6 +23,7 @@ class BenchState:
     Args:
         car: the car; the numbers are relative to it.
         drive: input of the bench.
+        measure: further figures of the table by their names in the catalogue.
 
     Attributes:
         car: base car, with the overrides of the drive.
@@ -37,9 +38,9 @@ class BenchState:
         VehicleError: the unchanged car cannot be run.
     """
 
-    def __init__(self, car: Car, drive: BenchDrive) -> None:
+    def __init__(self, car: Car, drive: BenchDrive, measure: Sequence[str] = ()) -> None:
         self.car = car.with_(drive.overrides) if drive.overrides else car
-        self.drive = drive
+        self.drive, self.measure = drive, tuple(measure)
         fixed = {text.partition("=")[0] for text in drive.overrides}
         self.settings = {path: setting for path, setting in settings(self.car).items() if path not in fixed}
         self.changes: dict[str, float] = {}
@@ -50,7 +51,7 @@ class BenchState:
         numbers(
             self.car.with_([f"{path}={setting.value!r}" for path, setting in list(self.settings.items())[:1]]), drive
         )
-        first = numbers(self.car, drive)
+        first = numbers(self.car, drive, self.measure)
         self.present: tuple[Car, BenchNumbers] = (self.car, first)
         self.reference: tuple[Car, BenchNumbers] = (self.car, first)
 
@@ -135,7 +136,7 @@ class BenchState:
             changes = {path: repr(value) for path, value in self.changes.items()}
             car = self.car.with_([f"{path}={text}" for path, text in changes.items()]) if changes else self.car
             with self.computing:
-                self.present = (car, numbers(car, self.drive))
+                self.present = (car, numbers(car, self.drive, self.measure))
         except VehicleError as error:
             self.message = str(error)
             return False
@@ -155,8 +156,8 @@ class BenchState:
 
     def rows(self) -> list[tuple[str, float, float, str]]:
         """Return name, A, B and unit of each number."""
-        before = self.reference[1].table()
-        return [(name, before[name][0], value, unit) for name, (value, unit) in self.present[1].table().items()]
+        before = self.reference[1].table
+        return [(name, before[name][0], value, unit) for name, (value, unit) in self.present[1].table.items()]
 
 
 class LatestOnly:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 from vehicle.errors import ConfigurationError
@@ -21,6 +22,7 @@ def write_report(
     force: bool = False,
     progress: Callable[[float], None] | None = None,
     targets: Path | str | None = None,
+    measure: Sequence[str] = (),
     notice: Callable[[str], None] | None = None,
     film: Path | str | None = None,
     author: str = "",
@@ -34,6 +36,7 @@ def write_report(
         force: replace a report that was written there before.
         progress: called with the finished fraction.
         targets: TOML file of figures with limits, or "ride" for the shipped one; the report begins with the verdict.
+        measure: further figures by their names in the catalogue (`Run.figure`).
         notice: called with a line on targets without a run, and the commands that make these runs.
         film: film of two runs side by side, as `film_of_two` writes it, for the page; none by default.
         author, project: names in the head of the page; may be empty.
@@ -59,6 +62,15 @@ def write_report(
     if notice is not None and figures is not None and (text := missing_runs(figures, finished)):
         notice(text)
     pair = None if film is None else Path(film)
-    page = report_page(finished, progress, trial=trial, targets=figures, pair=pair, author=author, project=project)
+    page = report_page(
+        finished,
+        progress,
+        trial=partial(trial, measure=measure),
+        targets=figures,
+        measure=measure,
+        pair=pair,
+        author=author,
+        project=project,
+    )
     write_text(path, page)
     return path

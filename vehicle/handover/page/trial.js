@@ -129,6 +129,7 @@
     ["x", "y", "z"].forEach((axis, k) => rows.push([`a_w ${axis} [m/s²]`, (run) => run.record.axes[k], 4]));
     data.dampers.forEach(({ name }, k) => rows.push([`slip, ${name} [%]`, (run) => 100 * run.record.slips[k], 3, true]));
     data.dampers.forEach(({ name }, k) => rows.push([`highest force, ${name} [N]`, (run) => run.record.highest[k], 4]));
+    (data.figures ?? []).forEach(({ words, unit }, k) => rows.push([`${words} [${unit}]`, (run) => run.record.figures[k], 4]));
     const row = (name, cells) => {
       const line = document.createElement("tr");
       cells.forEach((text, k) => line.append(Object.assign(document.createElement(name), { textContent: text, className: k ? "number" : "" })));

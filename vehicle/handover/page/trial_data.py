@@ -23,6 +23,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.handover.fmu.car_numbers import FRICTION, PARAMETERS, CarNumbers, friction_numbers, numbers_with
 from vehicle.handover.fmu.output_rows import Output, Watched, car_outputs, joined_rows, motion_rows, watched_outputs
 from vehicle.handover.page.car_sets import stepped_sliders
+from vehicle.handover.page.live_figures import figure_data, page_figures
 from vehicle.handover.page.moving_car import moving_picture, picture_rows, turning_parts
 from vehicle.handover.page.packed_numbers import byte_runs, packed, text
 from vehicle.handover.page.page_input import LONGEST, SPEEDS, PageInput, RunRoad, page_input
@@ -56,7 +57,15 @@ PAGE = ("trial_picture.js", "trial.js")
 """Scripts of sliders, plots and moving picture, after wireframe.js of the report."""
 
 
-def trial_data(car: Car, signal: Signal, *, wheel: str, skip: float = 0.0, road: RunRoad | None = None) -> str:
+def trial_data(
+    car: Car,
+    signal: Signal,
+    *,
+    wheel: str,
+    skip: float = 0.0,
+    road: RunRoad | None = None,
+    measure: Sequence[str] = (),
+) -> str:
     """Return the numbers of a car and its plates for the script of a page, as JSON.
 
     Args:
@@ -64,6 +73,7 @@ def trial_data(car: Car, signal: Signal, *, wheel: str, skip: float = 0.0, road:
         wheel: wheel whose plate excites the FRF in the page, and whose damper the page shows.
         skip: excluded time at the beginning [s].
         road: road of the run; None for another input.
+        measure: further figures by their names in the catalogue; the page shows those that it can compute.
 
     Raises:
         ConfigurationError: the reduced engine or the C runtime cannot take the car, or the input (see `_require`).
@@ -73,7 +83,9 @@ def trial_data(car: Car, signal: Signal, *, wheel: str, skip: float = 0.0, road:
     stepped, cars = stepped_sliders(car, drive)
     names = [damper.name for damper in car.vehicle.composition.dampers]
     rotations = turning_parts(car, drive.signal)
-    numbers = [_page_numbers(each, drive, rotations) for each in cars]
+    figures = page_figures(car, measure)
+    channels = tuple(dict.fromkeys(channel for figure in figures for channel in figure["channels"]))
+    numbers = [_page_numbers(each, drive, rotations, channels) for each in cars]
     base, shown = numbers[0], len(picture_rows(car))
     outputs = {output.name: index for index, output in enumerate(base.outputs)}
     contact = application("seat")
@@ -103,6 +115,7 @@ def trial_data(car: Car, signal: Signal, *, wheel: str, skip: float = 0.0, road:
             }
             for name, damper in zip(names, car.vehicle.composition.dampers, strict=True)
         ],
+        **figure_data(figures, outputs),
         "shown": next((index for index, name in enumerate(names) if name == f"damper_{wheel}"), 0),
         "derivative": WEIGHTS.tolist(),
         "ahead": AHEAD,
@@ -116,12 +129,14 @@ def trial_data(car: Car, signal: Signal, *, wheel: str, skip: float = 0.0, road:
     return json.dumps(data, separators=(",", ":")).replace("<", "\\u003c")
 
 
-def _page_numbers(car: Car, drive: PageInput, rotations: Sequence[int]) -> CarNumbers:
-    """Return the numbers of a car with the outputs of the page."""
+def _page_numbers(car: Car, drive: PageInput, rotations: Sequence[int], further: Sequence[str]) -> CarNumbers:
+    """Return the numbers of a car with the outputs of the page, those of further channels among them."""
     names = [damper.name for damper in car.vehicle.composition.dampers]
     channels = [f"{POINT}_acc_{axis}" for axis in AXES]
-    outputs, rows = car_outputs(car, [*channels, *(f"{name}_{end}" for name in names for end in ("velocity", "force"))])
-    kept = [index for index, output in enumerate(outputs) if output.name not in channels]
+    of_dampers = [f"{name}_{end}" for name in names for end in ("velocity", "force")]
+    outputs, rows = car_outputs(car, [*dict.fromkeys([*channels, *of_dampers, *further])])
+    # The page computes accelerations from displacements.
+    kept = [index for index, output in enumerate(outputs) if "_acc_" not in output.name]
     motions = motion_rows(car, picture_rows(car))
     read = [outputs[index] for index in kept]
     read += [Output(name=f"motion_{k}", unit="m", meaning="") for k in range(len(motions.fixed))]

@@ -1,5 +1,7 @@
 """Section of the report in which the reader changes the car of the run, which then runs in the page."""
 
+from collections.abc import Sequence
+
 from vehicle.errors import ConfigurationError, VehicleError
 from vehicle.handover.page.page_input import LONGEST, RunRoad
 from vehicle.handover.page.trial_data import PAGE, WORKER, scripts, trial_data
@@ -11,13 +13,17 @@ from vehicle.runs.report.page import Trial
 fill = templates(__file__)
 
 
-def trial(run: FinishedRun) -> Trial:
+def trial(run: FinishedRun, measure: Sequence[str] = ()) -> Trial:
     """Return the section with its numbers and scripts.
 
     If the page cannot run this car on these plates, the numbers are empty and the content is the reason.
+
+    Args:
+        run: finished run.
+        measure: further figures of the table by their names in the catalogue.
     """
     try:
-        numbers = _numbers(run)
+        numbers = _numbers(run, measure)
     except KeyError as error:
         reason = f"the summary of the run lacks {error}"
     except VehicleError as error:
@@ -39,7 +45,7 @@ def trial_of(numbers: str, duration: float, engine: str = "reduced") -> Trial:
     return Trial(content=content, numbers=numbers, script=scripts(PAGE), worker=scripts(WORKER))
 
 
-def _numbers(run: FinishedRun) -> str:
+def _numbers(run: FinishedRun, measure: Sequence[str]) -> str:
     """Return the numbers of the script as JSON.
 
     Raises:
@@ -57,4 +63,4 @@ def _numbers(run: FinishedRun) -> str:
     signal = recorded_signal(run.summary, run.recording)
     speed = road.get("speed_kmh")
     driven = RunRoad(road_class=road.get("class"), speed=speed, behind=road["behind_m"]) if speed else None
-    return trial_data(run.car, signal, wheel=run.wheel, skip=run.skip, road=driven)
+    return trial_data(run.car, signal, wheel=run.wheel, skip=run.skip, road=driven, measure=measure)

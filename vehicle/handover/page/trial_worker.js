@@ -21,6 +21,31 @@ async function bytesOf(text) {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
+// Figures of the catalogue: histories of a figure from those of its channels, and their reductions to a number; the same
+// names and definitions as in vehicle/runs/figures/rows.py and reductions.py.
+const over = (change) => (histories, { statics }) => histories.map((history, k) => history.map((value) => change(value, statics[k])));
+const travel = (step) => (history) => { let sum = 0; return history.map((v, k) => k ? (sum += 0.5 * step * (v + history[k - 1])) : 0); };
+const ROWS = {
+  channels: (histories) => histories,
+  velocities: (histories) => histories,
+  loads: over((force, load) => force / load),
+  load_variations: over((force, load) => force / load - 1),
+  load_forces: over((force, load) => force - load),
+  travels: (histories, _, step) => histories.map(travel(step)),
+};
+const square = (row) => row.reduce((sum, value) => sum + value * value, 0) / row.length;
+const most = (row) => row.reduce((high, value) => Math.max(high, Math.abs(value)), 0);
+const ends = (row) => row.reduce(([low, high], value) => [Math.min(low, value), Math.max(high, value)], [Infinity, -Infinity]);
+const total = (rows) => rows.reduce((sum, row) => sum + square(row), 0);
+const REDUCTIONS = {
+  rms: (rows) => Math.sqrt(total(rows)),
+  wheel_rms: (rows) => Math.sqrt(total(rows) / rows.length),
+  peak: (rows) => Math.max(...rows.map(most)),
+  peak_to_peak: (rows) => Math.max(...rows.map(ends).map(([low, high]) => high - low)),
+  lowest: (rows) => Math.min(...rows.map((row) => ends(row)[0])),
+  largest_crest: (rows) => Math.max(...rows.map((row) => most(row) / Math.sqrt(square(row)))),
+};
+
 class Trial {
   static async open(data) {
     const { instance } = await WebAssembly.instantiate(await bytesOf(data.module), {});
@@ -34,13 +59,15 @@ class Trial {
     Object.assign(this, { data, module, cars: [], tables: new Map(), transforms: new Map(), cancelled: false });
     module._initialize();
     const { ahead, plateCount, samples, interval } = data, most = Math.max(samples, (SETTLING.plates + 1) * LINES) + ahead;
-    const outputs = Math.max(3 + 2 * data.dampers.length, data.motions.length), last = Math.round(HIGHEST * LINES * interval);
+    const further = (data.figures ?? []).flatMap((figure) => figure.outputs).length;
+    const outputs = Math.max(3 + 2 * data.dampers.length + further, data.motions.length), last = Math.round(HIGHEST * LINES * interval);
     this.places = {
       parameters: module.reserve(8 * (data.parameters.flat().length + 1)),
       plates: module.reserve(8 * 2 * plateCount * most),
       outputs: module.reserve(4 * outputs),
       values: module.reserve(8 * outputs * most),
       accelerations: module.reserve(8 * 3 * most),
+      derived: data.figures ? module.reserve(8 * most) : 0,
       results: module.reserve(8 * Math.max(LINES, 4 * last)),
       derivative: this.at(Float64Array.from(data.derivative)),
       weightings: data.weightings.map((sections) => this.at(Float64Array.from(sections.flat()))),
@@ -120,7 +147,7 @@ class Trial {
     const asked = performance.now();
     await this.choose(settings);
     const { data, module, places, skip } = this, { interval, ahead, weightings } = data, samples = this.count, evaluated = samples - skip;
-    const outputs = [...data.positions, ...data.dampers.flatMap(({ velocity, force }) => [velocity, force])], started = performance.now();
+    const outputs = [...data.positions, ...data.dampers.flatMap(({ velocity, force }) => [velocity, force]), ...(data.figures ?? []).flatMap((figure) => figure.outputs)], started = performance.now();
     const histories = this.run(settings, this.plates, samples + ahead, outputs), marched = performance.now();
     // Notices on quantities that left their valid range.
     const notices = data.notices.filter((_, k) => module.left(this.car, k));
@@ -132,6 +159,8 @@ class Trial {
       places.weightings[axis], weightings[axis].length, places.results + 8 * axis));
     const axes = Array.from(this.numbers(places.results, 3));
     module.density_of(this.transform(LINES), z + 8 * skip, evaluated, interval, places.results);
+    const comfort = Math.hypot(...axes.map((value, axis) => value * data.factors[axis]));
+    const density = this.numbers(places.results, LINES / 2 + 1);
     const pairs = data.dampers.map((_, i) => histories.slice(3 + 2 * i, 5 + 2 * i));
     return {
       axes, notices, skip,
@@ -139,12 +168,28 @@ class Trial {
       dampers: pairs.map(([velocity, force]) => ({ velocity: this.numbers(velocity, samples), force: this.numbers(force, samples) })),
       slips: pairs.map(([velocity], i) => module.share_above(velocity + 8 * skip, evaluated, data.dampers[i].slip)),
       highest: pairs.map(([, force]) => module.largest_magnitude(force + 8 * skip, evaluated)),
-      comfort: Math.hypot(...axes.map((value, axis) => value * data.factors[axis])),
-      density: this.numbers(places.results, LINES / 2 + 1),
+      comfort, density,
+      figures: this.figures(histories.slice(3 + 2 * data.dampers.length), samples, comfort, axes),
       resolution: 1 / (LINES * interval),
       seconds: interval * (samples - 1),
       milliseconds: { stepping: marched - started, all: performance.now() - asked },
     };
+  }
+
+  // Values of the figures that were asked for, from the places of the histories of their outputs.
+  figures(histories, samples, comfort, axes) {
+    const { data, module, places: { derivative, derived: rate }, skip } = this, { interval, ahead } = data;
+    let next = 0;
+    return (data.figures ?? []).map((figure) => {
+      if (figure.reduction === "comfort") return figure.axis < 0 ? comfort : axes[figure.axis];
+      const read = figure.derived.map((derived) => {
+        const place = histories[next++];
+        if (!derived) return this.numbers(place, samples);
+        module.differentiate(place, samples + ahead, interval, derivative, rate);
+        return this.numbers(rate, samples);
+      });
+      return REDUCTIONS[figure.reduction](ROWS[figure.rows](read, figure, interval).map((row) => row.subarray(skip)));
+    });
   }
 
   // Displacements of the moving picture and of the plates, from the begin of the evaluation on, every POSITION seconds.

@@ -210,6 +210,17 @@ class Run:
             contact="steering_wheel" if point == RIM else "seat",
         )
 
+    def figure(self, name: str) -> float:
+        """Return a figure in its unit: NaN where it is undefined, infinite for a motion that does not settle.
+
+        Args:
+            name: name in the catalogue, as "travel_fr" or "rms:seat rail z:5-25"; `docs/howto/figures.md` lists all.
+
+        Raises:
+            ConfigurationError, DataError: an unknown figure, a missing channel, or a record too short for the band.
+        """
+        return float(HANDED["figure_of"](self, name))
+
     def orders(
         self,
         channels: str | Sequence[str] | None = None,

@@ -1,18 +1,15 @@
 """Values of a run over an obstacle: peak-to-peak acceleration, dose, settling time, peaks of the knuckles."""
 
+import math
 from collections.abc import Sequence
 
-import numpy as np
-
-from vehicle.arrays import Vector
 from vehicle.names import AXES
 from vehicle.runs.car import Run
-from vehicle.signals.analysis.evaluation import evaluate
+from vehicle.runs.figures.run_batch import evaluated
+from vehicle.runs.figures.value import shown_figures
 from vehicle.signals.records.run_summary import ObstacleSummary
 
 POINTS = ("seat_rail", "seat")
-SETTLED = 0.1
-"""Share of the peak within which an acceleration counts as settled [-]."""
 
 
 def obstacle_values(run: Run) -> ObstacleSummary | None:
@@ -26,52 +23,31 @@ def obstacle_values(run: Run) -> ObstacleSummary | None:
     times = road.get("obstacle_s")
     if not isinstance(times, Sequence):
         return None
-    channels = run.recording.channels
+    channels, runs = run.recording.channels, evaluated(run)
     points = [point for point in POINTS if all(f"{point}_acc_{axis}" in channels for axis in AXES)]
-    doses = {
-        point: evaluate(
-            run.recording.timestep, [run[f"{point}_acc_{axis}"] for axis in AXES], skip=run.skip, from_rest=True,
-            highest=run.signal.highest,
-        )
-        for point in points
-    }  # fmt: skip
-    time, left = run.time[run.evaluated], float(times[1])
+
+    def value(figure: str) -> float:
+        return shown_figures([figure], runs, "obstacle")[0].value
+
+    def settling(point: str) -> float | None:
+        seconds = value(f"settling:{point}_acc_z")
+        return seconds if math.isfinite(seconds) else None
+
+    def doses(point: str) -> dict[str, float]:
+        names = [f"{point}_acc_{axis}" for axis in AXES]
+        each = {axis: value(f"vdv:{name}:seat") for axis, name in zip(AXES, names, strict=True)}
+        return each | {"overall": value(f"vdv:{'+'.join(names)}:seat")}
+
     return {
         "obstacle": str(road["obstacle"]),
         "from_s": float(times[0]),
-        "to_s": left,
-        "peak_to_peak": {
-            point: {axis: float(np.ptp(values)) for axis, values in zip(AXES, run.at(point), strict=True)}
-            for point in points
-        },
-        "vdv": {
-            point: {axis: float(doses[point][axis]["vdv"]) for axis in AXES}
-            | {"overall": float(doses[point]["vector_sum"]["vdv"])}
-            for point in points
-        },
-        "settling_s": {point: settling_time(time, run.at(point)[2], left) for point in points},
+        "to_s": float(times[1]),
+        "peak_to_peak": {point: {axis: value(f"peak_to_peak:{point}_acc_{axis}") for axis in AXES} for point in points},
+        "vdv": {point: doses(point) for point in points},
+        "settling_s": {point: settling(point) for point in points},
         "knuckle_peak": {
-            wheel: float(np.max(np.abs(run[f"knuckle_{wheel}_acc_z"][run.evaluated])))
+            wheel: value(f"peak:{knuckle}")
             for wheel in run.car.vehicle.wheels
-            if f"knuckle_{wheel}_acc_z" in channels
+            if (knuckle := f"knuckle_{wheel}_acc_z") in channels
         },
     }
-
-
-def settling_time(time: Vector, values: Vector, after: float) -> float | None:
-    """Return the time after which |values| stays within `SETTLED` of its peak [s]; None if the last quarter exceeds it.
-
-    Args:
-        time: times [s], (n,).
-        values: history, (n,).
-        after: time from which it is counted [s].
-
-    Returns:
-        The time, 0 if the values are within the share from `after` on.
-    """
-    size = np.abs(values)
-    outside = np.flatnonzero(size > SETTLED * size.max())
-    last = float(time[outside[-1]]) if outside.size else after
-    if last > time[-1] - 0.25 * (time[-1] - after):
-        return None
-    return max(0.0, last - after)

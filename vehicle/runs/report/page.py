@@ -18,6 +18,7 @@ from vehicle.runs.report.answer import answer, comfort_bands, explained
 from vehicle.runs.report.base_run import base_run
 from vehicle.runs.report.car_section import car_section
 from vehicle.runs.report.comparison_section import MANY, curves_over_each_other, numbers_beside
+from vehicle.runs.report.figures_section import figures_section
 from vehicle.runs.report.film_section import film, film_part
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import templates
@@ -25,7 +26,7 @@ from vehicle.runs.report.modes_section import Modes, as_json, car_modes_of, mode
 from vehicle.runs.report.run_input import references
 from vehicle.runs.report.spectra_section import spectra
 from vehicle.runs.report.verdict_section import verdict_section
-from vehicle.runs.targets.figure import Figure
+from vehicle.runs.targets.target import Target
 from vehicle.version import package_version
 
 fill = templates(__file__)
@@ -49,7 +50,8 @@ def report_page(
     progress: Callable[[float], None] | None = None,
     *,
     trial: Callable[[FinishedRun], Trial],
-    targets: Mapping[str, Figure] | None = None,
+    targets: Mapping[str, Target] | None = None,
+    measure: Sequence[str] = (),
     pair: Path | None = None,
     author: str = "",
     project: str = "",
@@ -60,6 +62,7 @@ def report_page(
         progress: called with the finished fraction.
         trial: makes the section for trials of a single run.
         targets: figures with their limits; the report then begins with the verdict on them.
+        measure: further figures by their names in the catalogue.
         pair: film of two runs side by side; none by default.
         author, project: names in the head of the page; may be empty.
 
@@ -81,6 +84,8 @@ def report_page(
         parts = _of_one(runs[0], modes[0], tried.content)
     else:
         parts = _of_several(runs, modes, lambda share: done(0.1 + 0.8 * share), pair)
+    if measure:
+        parts.insert(1, ("Figures", "figures", figures_section(measure, runs)))
     if targets is not None:
         parts.insert(0, ("Targets", "targets", verdict_section(targets, runs)))
     first, others = runs[0].name, [run.name for run in runs[1:]]

@@ -5,15 +5,16 @@ from collections.abc import Mapping, Sequence
 from markupsafe import Markup
 
 from vehicle.digits import number
+from vehicle.runs.report.figures_section import value_text
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import templates
-from vehicle.runs.targets.figure import Figure
+from vehicle.runs.targets.target import Target
 from vehicle.runs.targets.verdict import NOT_RUN, Rated, sentence, verdict
 
 fill = templates(__file__)
 
 
-def verdict_section(figures: Mapping[str, Figure], runs: Sequence[FinishedRun]) -> Markup:
+def verdict_section(figures: Mapping[str, Target], runs: Sequence[FinishedRun]) -> Markup:
     """Return the verdict on each car in words, and the table of limits and values.
 
     Args:
@@ -43,9 +44,5 @@ def verdict_section(figures: Mapping[str, Figure], runs: Sequence[FinishedRun]) 
 
 
 def _value(rated: Rated) -> str:
-    """Return value and half of its interval as text."""
-    if rated.state == NOT_RUN:
-        return "–"
-    if rated.value == float("inf"):
-        return "not settled"
-    return number(rated.value) + (f" ± {number(2.0 * rated.error, 2)}" if rated.error else "")
+    """Return value and half of its interval as text; a dash without a run."""
+    return "–" if rated.state == NOT_RUN else value_text(rated.value, rated.error)

@@ -7,14 +7,16 @@ from dataclasses import dataclass, replace
 from importlib import resources
 from pathlib import Path
 
+import numpy as np
+
 from vehicle.engines.simulation.recording import Recording
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.channel_words import channels_named
 from vehicle.model.parameters.shipped import CARS, vehicle_file
 from vehicle.model.parameters.toml_file import build, read_table
 from vehicle.runs.car import Car
-from vehicle.runs.targets.figure import Figure
-from vehicle.runs.targets.values import Histories, value_of
+from vehicle.runs.figures.run_batch import Runs
+from vehicle.runs.figures.value import require_unit, values_of
+from vehicle.runs.targets.target import Target
 from vehicle.signals.records.record_spectra import evaluated_from
 from vehicle.signals.records.run_summary import RunSummary
 
@@ -80,29 +82,39 @@ class RatedRun:
         return [text for text in overrides if not text.startswith("driving.speed=") and "one_sided=" not in text]
 
     @property
-    def histories(self) -> Histories:
+    def runs(self) -> Runs:
         """Time histories and static data for the figures."""
-        recording, vehicle = self.recording, self.car.vehicle
+        recording = self.recording
         road, obstacle = self.summary["input"].get("road") or {}, self.summary.get("obstacle")
-        return Histories(
+        return Runs(
             time=recording.time,
-            of=recording.__getitem__,
-            unit=recording.units.__getitem__,
-            named=lambda texts: channels_named(texts, tuple(recording.channels)),
-            skip=self.skip,
-            tyre_load=dict(self.summary["static"]["tyre_load_n"]),
-            dampers=vehicle.damped_wheels,
-            slip_velocity=vehicle.damper.slip_velocity if vehicle.damped_wheels else 0.0,
-            left_obstacle=None if obstacle is None else obstacle["to_s"],
+            channels={name: history[None] for name, history in recording.channels.items()},
+            vehicles=(self.car.vehicle,),
+            tyre_load={wheel: np.array([load]) for wheel, load in self.summary["static"]["tyre_load_n"].items()},
             random=road.get("class") is not None or road.get("profile") is not None,
+            left_obstacle=None if obstacle is None else obstacle["to_s"],
+            cars=(self.car,),
+            skip=self.skip,
         )
 
+    def value_of(self, target: Target) -> tuple[float, float | None]:
+        """Return the value of a target on this run and its standard error; None without an error.
 
-def read_targets(file: Path | str) -> dict[str, Figure]:
+        Raises:
+            ConfigurationError: a channel or wheel is missing in the run, or the unit of the target is wrong.
+            DataError: the record is too short for the band.
+        """
+        chosen = target.recorded_in(tuple(self.recording.channels))
+        require_unit(chosen, target.unit, self.recording.units)
+        values = values_of(chosen, self.runs)
+        return float(values.value[0]), None if values.error is None else float(values.error[0])
+
+
+def read_targets(file: Path | str) -> dict[str, Target]:
     """Return the figures of a targets file by the names of their tables.
 
     Args:
-        file: TOML file with a table for each figure, see `Figure`; or "ride", the shipped one.
+        file: TOML file with a table for each figure, see `Target`; or "ride", the shipped one.
 
     Raises:
         ConfigurationError: the file is missing, has no table, or a table is wrong; the message names it.
@@ -119,13 +131,13 @@ def read_targets(file: Path | str) -> dict[str, Figure]:
         if not isinstance(table, Mapping):
             raise ConfigurationError(f"{path}: {name}: found {table!r}, must be a section [{name}]")
         try:
-            figures[name] = build(Figure, table, name)
+            figures[name] = build(Target, table, name)
         except ConfigurationError as error:
             raise ConfigurationError(f"{path}: {error}") from None
     return figures
 
 
-def state_of(figure: Figure, value: float, error: float | None) -> str:
+def state_of(figure: Target, value: float, error: float | None) -> str:
     """Return the state of a figure: `MET`, `MISSED` or `UNDECIDED`.
 
     Args:
@@ -136,7 +148,7 @@ def state_of(figure: Figure, value: float, error: float | None) -> str:
     return MET if excess + doubt <= 0.0 else MISSED if excess - doubt > 0.0 else UNDECIDED
 
 
-def verdict(figures: Mapping[str, Figure], runs: Sequence[RatedRun]) -> dict[str, dict[str, Rated]]:
+def verdict(figures: Mapping[str, Target], runs: Sequence[RatedRun]) -> dict[str, dict[str, Rated]]:
     """Compare the figures of finished runs with their limits.
 
     Returns:
@@ -153,7 +165,7 @@ def verdict(figures: Mapping[str, Figure], runs: Sequence[RatedRun]) -> dict[str
             if not _is_on(run, figure):
                 continue
             try:
-                value, error = value_of(figure, run.histories)
+                value, error = run.value_of(figure)
             except ConfigurationError as fault:
                 raise ConfigurationError(f"{name} on {run.name}: {fault}") from None
             state = state_of(figure, value, error)
@@ -166,7 +178,7 @@ def verdict(figures: Mapping[str, Figure], runs: Sequence[RatedRun]) -> dict[str
     return rated
 
 
-def missing_runs(figures: Mapping[str, Figure], runs: Sequence[RatedRun]) -> str:
+def missing_runs(figures: Mapping[str, Target], runs: Sequence[RatedRun]) -> str:
     """Return a line on the inputs without a run, and the commands that make them; empty if every figure has its runs.
 
     Args:
@@ -185,13 +197,13 @@ def missing_runs(figures: Mapping[str, Figure], runs: Sequence[RatedRun]) -> str
             f"{' && '.join(commands)}")  # fmt: skip
 
 
-def _is_on(run: RatedRun, figure: Figure) -> bool:
+def _is_on(run: RatedRun, figure: Target) -> bool:
     """Return True if a run is on the input of a figure."""
     excitation = run.summary["input"]
     return figure.on(run.name, excitation["file"], excitation.get("road"))
 
 
-def _command_for(figure: Figure, run: RatedRun) -> str:
+def _command_for(figure: Target, run: RatedRun) -> str:
     """Return the command that runs the car of a run on the input of a figure."""
     name, file = run.summary["vehicle"]["name"], run.summary["vehicle"]["file"]
     shipped = name in CARS and (file is None or Path(file) == vehicle_file(name))
@@ -205,7 +217,7 @@ def _command_for(figure: Figure, run: RatedRun) -> str:
     return shlex.join([*parts, "--output", f"runs/{figure.run}"] if figure.run else parts)
 
 
-def sentence(figures: Mapping[str, Figure], car: str, rated: Mapping[str, Rated]) -> str:
+def sentence(figures: Mapping[str, Target], car: str, rated: Mapping[str, Rated]) -> str:
     """Return text with the met and missed targets of a car."""
 
     def named(state: str) -> list[str]:

@@ -183,7 +183,9 @@ class RoadDrive:
         wheels = {name: (behind, side) for name, behind, side in self.wheels}
         signal = drive(road, speed=self.speed / 3.6, wheels=wheels, duration=duration, rate=self.rate)
         if isinstance(road, IsoRoad) or not self.random:
-            return replace(signal, random=self.random)
+            obstacle = self.obstacle
+            left = None if obstacle is None else self._times(obstacle)[1]
+            return replace(signal, random=self.random, left_obstacle=left)
         return replace(signal, notices=(*road.notices, *acceleration_events(signal.displacement, signal.timestep)))
 
     def _road(self) -> tuple[IsoRoad | MeasuredRoad, float]:

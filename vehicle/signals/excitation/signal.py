@@ -70,6 +70,7 @@ class Signal:
         profile: wheel -> height of the road itself below the wheel [m], shape (n,), of which the displacement is what
             the tyre takes; for pictures only, by default for no wheel.
         random: False for one event, as a bump, or a level road: its values have no standard error.
+        left_obstacle: time at which the last wheel leaves an obstacle [s]; None for another input.
 
     Raises:
         DataError: shapes differ, a value is not finite, the grid is not uniform, a wheel is unknown.
@@ -84,6 +85,7 @@ class Signal:
     slope_velocity: Mapping[str, Vector] = field(default_factory=dict)
     profile: Mapping[str, Vector] = field(default_factory=dict)
     random: bool = True
+    left_obstacle: float | None = None
 
     def __repr__(self) -> str:
         """Return source, length and wheels in a line."""

@@ -18,6 +18,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.ranges import Range
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car import Car
+from vehicle.runs.figures.chosen_figure import chosen_figure
 from vehicle.settings import with_settings
 from vehicle.studies.optimisation.front_checks import (
     mujoco_differences,
@@ -28,7 +29,6 @@ from vehicle.studies.optimisation.front_checks import (
 )
 from vehicle.studies.optimisation.outcome import outcome
 from vehicle.studies.optimisation.problem import parsed_criteria, parsed_tolerance
-from vehicle.studies.optimisation.ride import ride_measure
 from vehicle.studies.optimisation.search import pymoo
 from vehicle.studies.optimisation.search_result import FoundCars
 from vehicle.studies.optimisation.search_settings import SearchSettings
@@ -37,6 +37,7 @@ from vehicle.studies.optimisation.trials import NO_TOLERANCES, Spread, Trials, b
 from vehicle.studies.optimisation.variables import problem_of, require_bounds, toleranced
 from vehicle.studies.sweeps.case_evaluation import evaluate
 from vehicle.studies.sweeps.executors import StandingExecutor, process_pool
+from vehicle.studies.sweeps.measure import measure_of
 from vehicle.studies.sweeps.study_size import state_size
 from vehicle.studies.sweeps.sweep_inputs import Inputs, common_start, file_of, inputs_of, require_speed_of_roads
 
@@ -120,7 +121,8 @@ def plan_search(
         raise ConfigurationError(f"inputs {', '.join(names)}: equal names; rename a file, or use each input once")
     start = common_start(sources, settings.skip)
     criteria = parsed_criteria(minimise, settings.maximise, settings.limits, names)
-    measure = ride_measure(vehicle, tuple(criterion.number for criterion in criteria), start)
+    figures = {criterion.number: chosen_figure(criterion.number, vehicle, criterion.option) for criterion in criteria}
+    measure = measure_of(vehicle, figures, start, errors=False)
     criteria = tuple(replace(criterion, unit=measure.units[criterion.number]) for criterion in criteria)
     problem = problem_of(vehicle, _ranges(vary), criteria, names)
     # Both ends of a range: a search over the speed of a road gives it twice.
@@ -166,8 +168,8 @@ def optimise(
         vary: path to (lower, upper) bound in the unit of the parameter, as {"front.damper.viscous": (800, 4000)};
             "*.damper.viscous" sets all dampers alike.
         inputs: files, names of shipped files, roads, signals; one or several.
-        minimise: objectives, as "unweighted", "weighted", "tyre_load", "travel"; with several inputs
-            "weighted@NAME", "weighted@mean" or "weighted@worst".
+        minimise: objectives, figures of the catalogue as "unweighted", "weighted", "tyre_load", "travel"; with several
+            inputs "weighted@NAME", "weighted@mean" or "weighted@worst".
 
     Returns:
         The Pareto front and its named cars; `print` shows them, `write` writes all files.

@@ -20,10 +20,10 @@ FINEST = 1e-4
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Criterion:
-    """Objective or limit: a quantity of the ride on an input or over all inputs.
+    """Objective or limit: a figure of the ride on an input or over all inputs.
 
     Attributes:
-        number: name of the quantity, see `ride.QUANTITIES`.
+        number: name of the figure, see `vehicle.runs.figures.chosen_figure`.
         input_name: name of an input, `MEAN` or `WORST`; empty for a single input.
         sense: 1 to minimise or for an upper limit, -1 to maximise or for a lower limit.
         limit: limit of the quantity; NaN for an objective.
@@ -35,6 +35,11 @@ class Criterion:
     sense: float = 1.0
     limit: float = math.nan
     unit: str = ""
+
+    @property
+    def option(self) -> str:
+        """Return the option of the criterion."""
+        return "--limit" if self.is_limit else "--minimise" if self.sense > 0 else "--maximise"
 
     @property
     def label(self) -> str:

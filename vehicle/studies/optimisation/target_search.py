@@ -15,7 +15,7 @@ from vehicle.model.parameters.paths import value_of as parameter_value
 from vehicle.model.parameters.ranges import LENGTH_OF_ONE, Range, is_coordinate
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car import Car
-from vehicle.runs.targets.figure import Figure
+from vehicle.runs.targets.target import Target
 from vehicle.runs.targets.verdict import CONFIDENCE, UNDECIDED, state_of
 from vehicle.signals.analysis.ride_comfort import ERROR
 from vehicle.studies.optimisation.smallest_change import SAMPLE, SAMPLE_SHARE, SmallestChange, smallest_change
@@ -51,7 +51,7 @@ class TargetSearch:
     car: Car
     ranges: tuple[Range, ...]
     values: tuple[float, ...]
-    figures: Mapping[str, Figure]
+    figures: Mapping[str, Target]
     before: tuple[float, ...]
     after: tuple[float, ...]
     before_error: tuple[float, ...]
@@ -101,7 +101,7 @@ class TargetSearch:
                 return "not settled"
             return number(value) + (f" +- {number(CONFIDENCE * error, 2)}" if error > 0.0 else "")
 
-        def state(figure: Figure, value: float, error: float) -> str:
+        def state(figure: Target, value: float, error: float) -> str:
             certain = state_of(figure, value, error if error > 0.0 else None) != UNDECIDED
             return state_of(figure, value, None) + ("" if certain else " within +-")
 
@@ -158,7 +158,7 @@ class TargetSearch:
 
 def meet_targets(
     car: Car,
-    figures: Mapping[str, Figure],
+    figures: Mapping[str, Target],
     ranges: Sequence[Range],
     *,
     duration: float | None = None,
@@ -237,7 +237,7 @@ def meet_targets(
     )
 
 
-def outlook(ranges: int, figures: Mapping[str, Figure], duration: float) -> str:
+def outlook(ranges: int, figures: Mapping[str, Target], duration: float) -> str:
     """Return text on the cars of a search before it begins; it has no time limit.
 
     Args:

@@ -20,11 +20,11 @@ from vehicle.errors import SimulationError, VehicleError
 from vehicle.model.parameters.force_elements import LIFTS
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car import Car, Run
+from vehicle.runs.figures.run_batch import Runs
 from vehicle.signals.excitation.signal import Signal
 from vehicle.studies.sweeps.case import Case, signal_of
 from vehicle.studies.sweeps.case_result import Result
 from vehicle.studies.sweeps.measure import BatchMeasure, Measure
-from vehicle.studies.sweeps.run_batch import Runs
 from vehicle.threads import one_blas_thread
 
 T = TypeVar("T")
@@ -222,15 +222,15 @@ def measured_batch(
             except SimulationError as error:
                 results[row] = _failed(error)
     if good:
-        for row, result in zip(good, _measured(cars, simulated, good, measure, signal.random), strict=True):
+        for row, result in zip(good, _measured(cars, simulated, good, measure, signal), strict=True):
             results[row] = result
     return results
 
 
 def _measured(
-    cars: Sequence[Car], simulated: BatchRuns, rows: list[int], measure: BatchMeasure, random: bool
+    cars: Sequence[Car], simulated: BatchRuns, rows: list[int], measure: BatchMeasure, signal: Signal
 ) -> list[Result]:
-    """Return the values of selected rows of a simulated batch; `random` as in `Runs`."""
+    """Return the values of selected rows of a simulated batch on a signal."""
     whole = len(rows) == len(cars)
     runs = Runs(
         time=simulated.time,
@@ -239,12 +239,14 @@ def _measured(
         tyre_load={
             wheel: np.array([cars[row].static.tyre_load[wheel] for row in rows]) for wheel in cars[0].vehicle.wheels
         },
-        random=random,
+        random=signal.random,
+        left_obstacle=signal.left_obstacle,
+        cars=tuple(cars[row] for row in rows),
     )
     try:
         columns = measure.of(runs)
     except OF_A_RUN as error:
-        return _retry_each(rows, error, lambda row: _measured(cars, simulated, [row], measure, random)[0])
+        return _retry_each(rows, error, lambda row: _measured(cars, simulated, [row], measure, signal)[0])
     results = []
     for index, row in enumerate(rows):
         try:

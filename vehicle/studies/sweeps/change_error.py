@@ -17,6 +17,7 @@ from vehicle.studies.sweeps.case_result import Row
 
 MEANING_OF_ERROR = "+-: half width of the 95 % interval of a change, over random inputs like this"
 NO_ERROR = "no +-: one event has no random error"
+UNKNOWN_ERROR = "no +-: the error of the change of this figure is not known"
 """Words of tables with and without errors."""
 
 

@@ -1,9 +1,9 @@
-"""Designs of a sweep whose cars the user names: values in every combination, the rows of a table, another measure."""
+"""Designs of a sweep whose cars the user names: values in every combination, the rows of a table."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -11,11 +11,8 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.ranges import parsed_variation
 from vehicle.runs.car import Car
 from vehicle.studies.sweeps.case_table import Combinations, RowChanges
-from vehicle.studies.sweeps.evaluation import Evaluation
-from vehicle.studies.sweeps.order_measure import order_measure
-from vehicle.studies.sweeps.plan import Design, SweepPlan, plan_sweep
+from vehicle.studies.sweeps.plan import SweepPlan, plan_sweep
 from vehicle.studies.sweeps.sweep_inputs import Inputs
-from vehicle.studies.sweeps.sweep_ranking import measure_lines
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
 from vehicle.studies.sweeps.sweep_table import read_variations
 
@@ -61,22 +58,3 @@ class VariationTable:
     def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
         """Return the checked sweep; see `Design`, and for the errors of the table `read_variations`."""
         return plan_sweep(car, RowChanges(*read_variations(self.file)), inputs, settings)
-
-
-@dataclass(frozen=True, slots=True)
-class OtherMeasure:
-    """Cars of another design, by another measure than comfort.
-
-    Attributes:
-        design: the cars.
-        measure: measure as text, see `order_measure`.
-    """
-
-    design: Design
-    measure: str
-
-    def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
-        """Return the checked sweep; see `Design`, and for a wrong measure `order_measure`."""
-        plan = self.design.plan(car, inputs, settings)
-        measure = order_measure(self.measure, plan.skip)
-        return replace(plan, measure=measure, evaluation_of=lambda table, _: Evaluation(measure_lines(table)))

@@ -15,7 +15,7 @@ from vehicle.runs.car import Car
 from vehicle.signals.analysis.ride_comfort import MEANING, SEAT_VALUE, UNWEIGHTED, WEIGHTED
 from vehicle.studies.sweeps.evaluation import REPEAT, Evaluation, Part, runs_part
 from vehicle.studies.sweeps.sweep_picture import PICTURE, can_be_drawn, draw_ranked
-from vehicle.studies.sweeps.sweep_ranking import RankedCars, SweptCases, ranked_cars, ranking_lines
+from vehicle.studies.sweeps.sweep_ranking import RankedCars, SweptCases, measure_lines, ranked_cars, ranking_lines
 
 
 def ranking_evaluation(table: SweptCases, caption: str) -> Evaluation:
@@ -37,6 +37,11 @@ def ranking_evaluation(table: SweptCases, caption: str) -> Evaluation:
         return [result, _cars_part(cars), runs_part(table), replace(REPEAT, values={"best": _best(cars, table)})]
 
     return Evaluation(ranking_lines(cars), {} if drawn is None else {PICTURE: drawn}, parts)
+
+
+def measured_evaluation(table: SweptCases, caption: str) -> Evaluation:
+    """Return the evaluation of a sweep over chosen cars with another measure than comfort: the values of the runs."""
+    return Evaluation(measure_lines(table), parts=lambda notes: [runs_part(table), REPEAT])
 
 
 def _best(cars: RankedCars, table: SweptCases) -> str:

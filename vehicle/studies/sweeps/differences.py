@@ -59,7 +59,7 @@ def has_differences(table: SweepTable) -> bool:
     cars = (case.overrides[case.shared :] for case in table.cases)
     first, good = next(cars, ()), (result for result in table.results if not result.reason)
     return (
-        UNWEIGHTED in table.units
+        table.units.get(f"{UNWEIGHTED}{ERROR}") == "-"  # else figures that were asked for
         and any(car != first for car in cars)
         and any(wave_names(UNWEIGHTED)[0] in result.values for result in islice(good, 1))
     )

@@ -15,8 +15,9 @@ from vehicle.arrays import Vector
 from vehicle.digits import aligned, number
 from vehicle.drawing.rendering.tornado_plot import draw_tornado, plot_tornado
 from vehicle.signals.formats.csv_table import RowWriter
-from vehicle.studies.sweeps.change_error import MEANING_OF_ERROR, NO_ERROR
+from vehicle.studies.sweeps.change_error import MEANING_OF_ERROR, NO_ERROR, UNKNOWN_ERROR
 from vehicle.studies.sweeps.evaluation import REPEAT, Evaluation, Part
+from vehicle.studies.sweeps.sweep_ranking import RANKED_BY
 
 EFFECTS, TORNADO = "effects.csv", "effects.png"
 """Names of the files in the folder of a sweep."""
@@ -84,17 +85,26 @@ class Effects:
 
     Attributes:
         effects: effects, sorted.
-        name: comfort value, as "weighted".
-        base: comfort value of the unchanged car, mean over the inputs [m/s2].
+        name: figure, as "weighted".
+        base: value of the unchanged car, mean over the inputs.
         without: parameters without effect.
+        unit: unit of the figure.
         inputs: number of inputs.
+        event: True if all inputs are single events.
     """
 
     effects: tuple[Effect, ...]
     name: str
     base: float
     without: tuple[str, ...]
+    unit: str = "m/s2"
     inputs: int = 1
+    event: bool = False
+
+    @property
+    def of_comfort(self) -> bool:
+        """Return True if the figure is comfort."""
+        return self.name in RANKED_BY
 
     def __str__(self) -> str:
         """Return the printed table and the result in words."""
@@ -103,7 +113,7 @@ class Effects:
     def __repr__(self) -> str:
         """Return the parameters with the largest effects in a line."""
         first = ", ".join(f"{each.path} {number(each.largest, 2)} %" for each in self.effects[:3])
-        return f"Effects({len(self.effects)} parameters, {self.name} {self.base:.4g} m/s2: {first})"
+        return f"Effects({len(self.effects)} parameters, {self.name} {self.base:.4g} {self.unit}: {first})"
 
     def plot(self, ax: Any = None) -> Any:
         """Draw the tornado chart and return its axes.
@@ -124,13 +134,20 @@ class Effects:
             path: PNG or SVG file.
             caption: tyres and evaluated span.
         """
-        title = f"Comfort, {self.base:.3g} m/s2 weighted, against single parameters"
+        value = (
+            f"Comfort, {self.base:.3g} m/s2 weighted"
+            if self.of_comfort
+            else f"{self.name}, {self.base:.3g} {self.unit}"
+        )
+        title = f"{value}, against single parameters"
         plot_tornado(path, *self.bars, title=title, caption=caption)
 
     @property
     def error_words(self) -> str:
         """Meaning of the half widths, or the reason why an event has no error."""
-        return MEANING_OF_ERROR if any(math.isfinite(each.half_width) for each in self.effects) else NO_ERROR
+        if any(math.isfinite(each.half_width) for each in self.effects):
+            return MEANING_OF_ERROR
+        return NO_ERROR if self.event or self.of_comfort else UNKNOWN_ERROR
 
     @property
     def shown(self) -> tuple[Effect, ...]:
@@ -171,7 +188,7 @@ def effect_lines(effects: Effects) -> list[str]:
     if len(effects.effects) > len(rows):
         lines.append(f"and {len(effects.effects) - len(rows)} parameters with smaller effects in {EFFECTS}")
     over = f", means of {effects.inputs} inputs" if effects.inputs > 1 else ""
-    base = f"{effects.base:.4g} m/s2 of the unchanged car"
+    base = f"{effects.base:.4g} {effects.unit.strip('-')}".rstrip() + " of the unchanged car"
     lines.append(f"change of {effects.name!r}, {base}{over}; {effects.error_words}")
     if effects.without:
         shown = ", ".join(effects.without[:3]) + (" ..." if len(effects.without) > 3 else "")
@@ -182,12 +199,14 @@ def effect_lines(effects: Effects) -> list[str]:
 def effect_sentence(effects: Effects) -> str:
     """Return text with the parameters of largest effect."""
     if not effects.effects:
-        return "No varied parameter changes the comfort here."
+        return f"No varied parameter changes {'the comfort' if effects.of_comfort else effects.name} here."
     first, *others = effects.effects
     if math.isfinite(first.half_width) and first.largest <= first.half_width:
         return "No effect is larger than its error: take a longer road, or a larger change."
     turns = [
         f"{end} makes the ride {number(abs(change), 2)} % {'rougher' if change > 0.0 else 'smoother'}"
+        if effects.of_comfort
+        else f"{end} {'raises' if change > 0.0 else 'lowers'} {effects.name} by {number(abs(change), 2)} %"
         for end, change in zip(first.ends, (first.change_low, first.change_high), strict=True)
         if math.isfinite(change)
     ]

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import inspect
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -14,12 +15,14 @@ from vehicle.engines.reduced.reduced_run import LONGEST_STEP
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import AXES, CORNERS
-from vehicle.runs.car import SATURATED_VELOCITY, Run
-from vehicle.signals.analysis.ride_comfort import comfort_columns, comfort_units
-from vehicle.signals.analysis.slip import first_slips, slip_shares
-from vehicle.studies.sweeps.run_batch import Runs, single
+from vehicle.runs.car import Run
+from vehicle.runs.figures.chosen_figure import ChosenFigure, chosen_figure
+from vehicle.runs.figures.run_batch import Runs, single
+from vehicle.runs.figures.value import values_of
+from vehicle.signals.analysis.ride_comfort import ERROR, comfort_columns, comfort_units, wave_names
 
 
+@runtime_checkable
 class Measure(Protocol):
     """Function that returns the values of a run; picklable, with a `repr` that identifies the measure."""
 
@@ -63,9 +66,122 @@ FRONT = tuple(CORNERS.values())[:2]
 """Front wheels."""
 
 
+def _require_skip(skip: float) -> None:
+    if not 0.0 <= skip < math.inf:
+        raise ConfigurationError(f"measure: skip {skip:g} s, must be a finite number of seconds, at least 0")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FigureMeasure:
+    """Measure of figures of the catalogue.
+
+    Attributes:
+        figures: name of the value and figure, with channels by name.
+        channels: channels that the figures read.
+        skip: excluded time at the beginning [s].
+        timestep: maximum step of the reduced engine [s]; by default that of a single run.
+        errors: add the standard error of each value, in its unit and NaN where unknown.
+        random: False for values without standard errors.
+    """
+
+    figures: tuple[tuple[str, ChosenFigure], ...]
+    channels: tuple[str, ...]
+    skip: float = 0.0
+    timestep: float = STEP
+    errors: bool = True
+    random: bool = True
+
+    def __post_init__(self) -> None:
+        _require_skip(self.skip)
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """Return name to unit of each value and of its standard error."""
+        units: dict[str, str] = {}
+        for name, chosen in self.figures:
+            suffixes = ("", ERROR) if self.errors and not chosen.figure.exact else ("",)
+            units |= {f"{name}{suffix}": chosen.unit_in() for suffix in suffixes}
+        return units
+
+    def __call__(self, run: Run) -> dict[str, float]:
+        """Return the values of a run."""
+        return of_one(self, run)
+
+    def of(self, runs: Runs) -> dict[str, Vector]:
+        """Return the values of r runs, (r,) each, with the waves of an RMS (`wave_names`), which are in no table.
+
+        NaN for an undefined value, and for a motion that has not settled.
+        """
+        runs = replace(runs, skip=self.skip, errors=self.errors, random=runs.random and self.random)
+        columns: dict[str, Vector] = {}
+        for name, chosen in self.figures:
+            value, error, waves = values_of(chosen, runs)
+            columns[name] = np.where(np.isinf(value), np.nan, value)
+            if not self.errors or chosen.figure.exact:
+                continue
+            columns[f"{name}{ERROR}"] = np.full(len(value), np.nan) if error is None else error
+            if not runs.random:
+                columns |= dict.fromkeys(wave_names(name), np.full(len(value), np.nan))
+            elif waves is not None:
+                parts = np.ascontiguousarray(waves).view(np.float64).T
+                columns |= dict(zip(wave_names(name), parts, strict=True))
+        return columns
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SingleMeasure:
+    """Measure of single runs in double precision.
+
+    Attributes:
+        each: measure of a run.
+    """
+
+    each: FigureMeasure
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Return the required channels."""
+        return self.each.channels
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """Return name to unit of each value."""
+        return self.each.units
+
+    @property
+    def skip(self) -> float:
+        """Return the excluded time at the beginning [s]."""
+        return self.each.skip
+
+    def __call__(self, run: Run) -> dict[str, float]:
+        """Return the values of a run."""
+        return self.each(run)
+
+
+def measure_of(
+    vehicle: Vehicle, figures: Mapping[str, ChosenFigure], skip: float, *, errors: bool = True, random: bool = True
+) -> FigureMeasure | SingleMeasure:
+    """Return the measure of named figures of a car.
+
+    Args:
+        vehicle: the vehicle.
+        figures: name of the value to figure, with channels by name.
+        skip, errors, random: see `FigureMeasure`.
+    """
+    channels = dict.fromkeys(name for each in figures.values() for name in each.channels_of(vehicle))
+    measure = FigureMeasure(
+        figures=tuple(figures.items()), channels=tuple(channels), skip=skip, errors=errors, random=random
+    )
+    return SingleMeasure(each=measure) if any(each.figure.alone for each in figures.values()) else measure
+
+
+SLIP_FIGURES = ("slip_share", "saturated_share", "first_slip")
+"""Figures of each damper in the table of comfort."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ComfortMeasure:
-    """Measure of comfort and slip: the values of `vehicle.signals.analysis.ride_comfort`, slip shares, first slip.
+    """Measure of comfort and slip: the values of `vehicle.signals.analysis.ride_comfort`, and `SLIP_FIGURES`.
 
     Attributes:
         skip: excluded time at the beginning for all values except the first slip [s].
@@ -80,8 +196,11 @@ class ComfortMeasure:
     timestep: float = STEP
 
     def __post_init__(self) -> None:
-        if not 0.0 <= self.skip < math.inf:
-            raise ConfigurationError(f"measure: skip {self.skip:g} s, must be a finite number of seconds, at least 0")
+        _require_skip(self.skip)
+
+    @property
+    def _slips(self) -> list[ChosenFigure]:
+        return [ChosenFigure(quantity=name, wheels=(wheel,)) for name in SLIP_FIGURES for wheel in self.wheels]
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -93,8 +212,7 @@ class ComfortMeasure:
     @property
     def units(self) -> Mapping[str, str]:
         """Return name to unit of each value."""
-        slip = {f"{share}_{wheel}": "-" for share in ("slip_share", "saturated_share") for wheel in self.wheels}
-        return comfort_units(seated=self.seat) | slip | {f"first_slip_{wheel}": "s" for wheel in self.wheels}
+        return comfort_units(seated=self.seat) | {slip.column: slip.unit_in() for slip in self._slips}
 
     def __call__(self, run: Run) -> dict[str, float]:
         """Return the values of a run."""
@@ -108,21 +226,14 @@ class ComfortMeasure:
         `damper.slip_velocity`, the saturated share is above 1 mm/s. The first slip refers to the whole run, as in
         `summary.json`; NaN without slip.
         """
-        kept = slice(round(self.skip / runs.timestep), None)
         rail = runs.stacked(*(f"seat_rail_acc_{axis}" for axis in AXES))
         cushion = runs.stacked(*(f"seat_acc_{axis}" for axis in AXES)) if self.seat else None
         # The waves are not in `units`, so in no table: they are for the error of the difference of two cars.
         numbers = comfort_columns(runs.timestep, rail, cushion, skip=self.skip)
         if not runs.random:
             numbers |= {name: np.full(len(rail), np.nan) for name in numbers if "_error" in name or "_wave_" in name}
-        velocity = {wheel: runs[f"damper_{wheel}_velocity"] for wheel in self.wheels}
-        limit = runs.slip_velocity if self.wheels else np.zeros(len(runs.vehicles))
-        for share, above in (("slip_share", limit), ("saturated_share", np.full_like(limit, SATURATED_VELOCITY))):
-            for wheel in self.wheels:
-                numbers[f"{share}_{wheel}"] = slip_shares(velocity[wheel][:, kept], above)
-        for wheel in self.wheels:
-            numbers[f"first_slip_{wheel}"] = first_slips(runs.time, velocity[wheel], limit)
-        return numbers
+        runs = replace(runs, skip=self.skip, errors=False)
+        return numbers | {slip.column: values_of(slip, runs).value for slip in self._slips}
 
 
 def comfort_measure(vehicle: Vehicle, skip: float) -> ComfortMeasure:
@@ -135,3 +246,66 @@ def comfort_measure(vehicle: Vehicle, skip: float) -> ComfortMeasure:
     damped = vehicle.damped_wheels
     wheels = tuple(wheel for wheel in FRONT if wheel in damped) or damped
     return ComfortMeasure(skip=skip, wheels=wheels, seat=vehicle.seated)
+
+
+RunFunction = Callable[[Run], float | Mapping[str, float]]
+"""Function of a run that returns a number or a dictionary of numbers."""
+
+MeasureChoice = Measure | RunFunction | str | Sequence[str] | None
+"""Measure of a sweep: names of figures, a function of a run, an object, or nothing for comfort."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FunctionMeasure:
+    """Measure by a function of a run.
+
+    Attributes:
+        function: the function; for worker processes one of a module.
+        skip: excluded time at the beginning [s], the `skip` of its runs.
+        channels: required channels; all.
+        units: empty: the table takes the names of its first finished run, with unit "?".
+    """
+
+    function: RunFunction
+    skip: float = 0.0
+    channels: None = None
+    units: Mapping[str, str] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        """Return the source of the function, which identifies stored rows; its name without a source."""
+        return f"FunctionMeasure({_source(self.function)}, skip={self.skip!r})"
+
+    def __call__(self, run: Run) -> dict[str, float]:
+        """Return the values of a run."""
+        values = self.function(replace(run, skip=self.skip))
+        return dict(values) if isinstance(values, Mapping) else {self.function.__name__: float(values)}
+
+
+def _source(function: RunFunction) -> str:
+    """Return the source text of a function; its name without a source."""
+    try:
+        return inspect.getsource(function)
+    except (OSError, TypeError):
+        return function.__qualname__
+
+
+def chosen_measure(measure: MeasureChoice, vehicle: Vehicle, skip: float) -> Measure:
+    """Return the measure of a setting: comfort by default, figures by their names, a function, or a measure itself.
+
+    Args:
+        measure: names of figures, a function of a run, or a measure; comfort by default.
+        vehicle: the vehicle.
+        skip: excluded time at the beginning [s].
+
+    Raises:
+        ConfigurationError: the vehicle lacks a figure.
+    """
+    if measure is None:
+        return comfort_measure(vehicle, skip)
+    if isinstance(measure, Measure):
+        return measure
+    if callable(measure):
+        return FunctionMeasure(function=measure, skip=skip)
+    names = [measure] if isinstance(measure, str) else measure
+    figures = [each for name in names for each in chosen_figure(name, vehicle, "--measure").columns()]
+    return measure_of(vehicle, {each.column: each for each in figures}, skip)

@@ -26,7 +26,7 @@ from vehicle.studies.sweeps.change_error import change_errors, half_width
 from vehicle.studies.sweeps.effects import Effect, Effects, effects_evaluation
 from vehicle.studies.sweeps.plan import SweepPlan, plan_sweep
 from vehicle.studies.sweeps.sweep_inputs import Inputs
-from vehicle.studies.sweeps.sweep_ranking import RANKED_BY, ROUNDING
+from vehicle.studies.sweeps.sweep_ranking import ROUNDING, figure_names
 from vehicle.studies.sweeps.sweep_settings import SHARE, SHIFT, EffectSettings, SweepSettings
 from vehicle.studies.sweeps.sweep_table import SweepTable
 
@@ -188,7 +188,7 @@ def effects_of(
         shift: change of each coordinate [m].
     """
     inputs = len({id(case.source) for case in table.cases})
-    name = next(each for each in RANKED_BY if each in table.units)
+    name = figure_names(table.units)[0]
     # The inputs vary slowest.
     rows = np.arange(len(table.cases)).reshape(inputs, -1)
     base = table.cases[0]
@@ -196,8 +196,9 @@ def effects_of(
     values = table.column(name)[rows]
     unchanged = values[:, :1]
     # Each input counts by its relative change, so that a loud one does not outweigh the others.
-    changes = 100.0 * np.mean(values / unchanged - 1.0, axis=0)
-    widths = 100.0 * half_width(change_errors(table.rows(), rows.T.tolist(), name)[0] / unchanged.T)
+    changes = 100.0 * np.mean(np.sign(unchanged) * (values / unchanged - 1.0), axis=0)
+    errors, events = change_errors(table.rows(), rows.T.tolist(), name)
+    widths = 100.0 * half_width(errors / np.abs(unchanged.T))
     varied = [path for path in parameters if path not in without]
     effects = []
     for index, path in enumerate(varied):
@@ -216,5 +217,11 @@ def effects_of(
     idle = [each.path for each in effects if each.largest <= 100.0 * ROUNDING]
     ranked = sorted((each for each in effects if each.path not in idle), key=lambda each: -each.largest)
     return Effects(
-        effects=tuple(ranked), name=name, base=float(np.mean(unchanged)), without=(*without, *idle), inputs=inputs
+        effects=tuple(ranked),
+        name=name,
+        unit=table.units[name],
+        base=float(np.mean(unchanged)),
+        without=(*without, *idle),
+        inputs=inputs,
+        event=bool(events.all()),
     )

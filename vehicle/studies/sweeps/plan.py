@@ -27,10 +27,10 @@ from vehicle.signals.excitation.road_drive import RoadDrive
 from vehicle.studies.sweeps.case import all_tyre_words, overrides_of, signal_of
 from vehicle.studies.sweeps.case_evaluation import OF_A_RUN, loaded_car, reason_for_mujoco
 from vehicle.studies.sweeps.case_table import Cases, Combinations, RowChanges
-from vehicle.studies.sweeps.comfort_ranking import ranking_evaluation
+from vehicle.studies.sweeps.comfort_ranking import measured_evaluation, ranking_evaluation
 from vehicle.studies.sweeps.dispatcher import FILL
 from vehicle.studies.sweeps.evaluation import Evaluation
-from vehicle.studies.sweeps.measure import BatchMeasure, Measure, comfort_measure
+from vehicle.studies.sweeps.measure import BatchMeasure, Measure, chosen_measure
 from vehicle.studies.sweeps.sweep import sweep_cases
 from vehicle.studies.sweeps.sweep_inputs import Inputs, common_start, file_of, inputs_of, require_speed_of_roads
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
@@ -157,12 +157,13 @@ def plan_sweep(
     vary: Variations,
     inputs: Inputs,
     settings: SweepSettings | None = None,
-    evaluation_of: Callable[[SweepTable, str], Evaluation] = ranking_evaluation,
+    evaluation_of: Callable[[SweepTable, str], Evaluation] | None = None,
 ) -> SweepPlan:
     """Check the arguments of a sweep and return the sweep; arguments and errors as in `sweep`.
 
     Args:
-        evaluation_of: returns the evaluation of a table; by default its cars in the order of comfort.
+        evaluation_of: returns the evaluation of a table; by default its cars in the order of comfort, or the values of
+            another measure.
     """
     settings, changes = settings or SweepSettings(), changes_of(vary)
     vehicle = file_of(car)
@@ -180,11 +181,11 @@ def plan_sweep(
     return SweepPlan(
         name=car.vehicle.name,
         cases=cases,
-        measure=settings.measure or comfort_measure(car.vehicle, start),
+        measure=chosen_measure(settings.measure, car.vehicle, start),
         skip=start,
         settings=settings,
         notes=(*body_rules(car.vehicle, [text.partition("=")[0] for text in each]), *idle),
-        evaluation_of=evaluation_of,
+        evaluation_of=evaluation_of or (ranking_evaluation if settings.measure is None else measured_evaluation),
     )
 
 

@@ -19,7 +19,7 @@ from vehicle.studies.sweeps.evaluation import Evaluation
 from vehicle.studies.sweeps.indices import SobolIndices, sobol_indices, sobol_sample
 from vehicle.studies.sweeps.plan import SweepPlan, plan_sweep
 from vehicle.studies.sweeps.sweep_inputs import Inputs
-from vehicle.studies.sweeps.sweep_ranking import SweptCases
+from vehicle.studies.sweeps.sweep_ranking import RANKED_BY, SweptCases, figure_names
 from vehicle.studies.sweeps.sweep_settings import SobolSettings, SweepSettings
 
 SOBOL = "sobol.csv"
@@ -99,7 +99,7 @@ class SobolSample:
 
 
 def comfort_indices(table: SweptCases, ranges: Sequence[Range]) -> dict[str, SobolIndices]:
-    """Return the indices of each comfort value of a sweep over a `SobolSample`: mean of the inputs, each over its mean.
+    """Return the indices of each figure of a sweep over a `SobolSample`: mean of the inputs, each over its mean.
 
     Args:
         table: the table.
@@ -109,12 +109,13 @@ def comfort_indices(table: SweptCases, ranges: Sequence[Range]) -> dict[str, Sob
         DataError: half of the base points have a failed run, or no parameter changes the comfort.
     """
     inputs = len({id(case.source) for case in table.cases})
-    names = [name for name in QUANTITIES if name in table.units]
+    comfort = figure_names(table.units)[0] in RANKED_BY
+    names = [name for name in QUANTITIES if name in table.units] if comfort else figure_names(table.units)
     try:
         # The inputs vary slowest.
         tables = [table.column(name).reshape(inputs, -1) for name in names]
         # Each input counts over its own mean, so that a loud one does not outweigh the others.
-        means = [np.mean(values / np.nanmean(values, axis=1, keepdims=True), axis=0) for values in tables]
+        means = [np.mean(values / np.abs(np.nanmean(values, axis=1, keepdims=True)), axis=0) for values in tables]
         return {name: sobol_indices(ranges, mean) for name, mean in zip(names, means, strict=True)}
     except DataError as error:
         raise DataError(f"--sobol: {error}") from None

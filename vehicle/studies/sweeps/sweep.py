@@ -87,7 +87,10 @@ def sweep_cases(cases: Sequence[Case], measure: Measure, settings: RunSettings) 
             )
             dispatcher.work(cases, keep, todo)
             rows.synchronise()
-        table = SweepTable(cases=cases, results=rows, units=measure.units, made=_made(cases, each, measure))
+        # A function of the user's own states no units: its names are those of the first finished run.
+        finished = next((each.values for each in rows if each.values), {}) if not measure.units else {}
+        units = measure.units or dict.fromkeys(finished, "?")
+        table = SweepTable(cases=cases, results=rows, units=units, made=_made(cases, each, measure))
         if folder is not None:
             write_table(table, folder, f"{len(todo)} runs computed in {clock.perf_counter() - began:.2f} s")
         return table

@@ -14,7 +14,7 @@ from vehicle.digits import number as number_text
 from vehicle.model.parameters.parameter_list import value_text
 from vehicle.model.parameters.paths import unit_of_override, values_of_override
 from vehicle.model.parameters.vehicle import load_vehicle
-from vehicle.signals.analysis.ride_comfort import MEANING, SEAT_PREFIX, SEAT_VALUE, UNWEIGHTED, WEIGHTED
+from vehicle.signals.analysis.ride_comfort import ERROR, MEANING, SEAT_PREFIX, SEAT_VALUE, UNWEIGHTED, WEIGHTED
 from vehicle.studies.sweeps.case import Case, parameter_cells
 from vehicle.studies.sweeps.case_result import Row
 from vehicle.studies.sweeps.change_error import MEANING_OF_ERROR, NO_ERROR, change_errors, half_width
@@ -171,10 +171,10 @@ def ranked_cars(table: SweptCases) -> RankedCars | None:
     Args:
         table: table of a sweep with `ComfortMeasure`.
     """
-    ranked_by = next((name for name in RANKED_BY if name in table.units), None)
-    if ranked_by is None:
-        return None
+    ranked_by = next((name for name in RANKED_BY if name in table.units), "")
     prefix = ranked_by.removesuffix(WEIGHTED)
+    if f"{prefix}{UNWEIGHTED}" not in table.units or (prefix and SEAT_VALUE not in table.units):
+        return None
     paths = table.paths()
     base = table.cases[0]
     vehicle = load_vehicle(base.vehicle, base.overrides[: base.shared])
@@ -285,11 +285,29 @@ def measure_lines(table: SweptCases) -> list[str]:
     base, units = table.cases[0], table.units
     shared = {text.partition("=")[0] for text in base.overrides[: base.shared]}
     paths = [path for path in table.paths() if path not in shared]
-    columns = [table.column(name) for name in units]
+    columns = {name: table.column(name) for name in units}
+    # An error that is known in no run has a column in the file alone.
+    columns = {name: each for name, each in columns.items() if np.isfinite(each).any() or not name.endswith(ERROR)}
     rows = [
-        [case.source.name, *parameter_cells(case, paths), *(number_text(float(each[row]), 4) for each in columns)]
+        [case.source.name, *parameter_cells(case, paths), *(_cell(float(each[row])) for each in columns.values())]
         for row, case in enumerate(islice(table.cases, SHOWN))
     ]
-    lines = aligned([["input", *paths, *(f"{name} [{unit}]" for name, unit in units.items())], *rows], left=1)
+    lines = aligned([["input", *paths, *(f"{name} [{units[name]}]" for name in columns)], *rows], left=1)
     left = len(table.cases) - len(rows)
     return [*lines, f"and {left} more runs in table.csv"] if left else lines
+
+
+def _cell(value: float) -> str:
+    """Return a value as text; a dash for an undefined one."""
+    return number_text(value, 4) if math.isfinite(value) else "-"
+
+
+def figure_names(units: Mapping[str, str]) -> tuple[str, ...]:
+    """Return the columns of figures: of a table of comfort that by which cars are ranked, else all without errors.
+
+    Args:
+        units: name of each value of a table to its unit.
+    """
+    if units.get(f"{UNWEIGHTED}{ERROR}") == "-":
+        return tuple(name for name in RANKED_BY if name in units)[:1]
+    return tuple(name for name in units if not name.endswith(ERROR))

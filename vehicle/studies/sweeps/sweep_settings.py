@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor
     from pathlib import Path
 
-    from vehicle.studies.sweeps.measure import Measure
+    from vehicle.studies.sweeps.measure import MeasureChoice
 
 SHIFT = 0.01
 """Default change of a coordinate [m], by which it is varied in place of a share: a share of it would depend on the
@@ -91,7 +91,12 @@ class SweepSettings(RunSettings):
 
     engine: str = engine_setting("auto")
     skip: float | None = skip_setting()
-    measure: Measure | None = setting("measure of each run; by default comfort and slip shares")
+    measure: MeasureChoice = setting(
+        "figure in place of comfort and slip shares, as travel, tyre_load, peak:seat_rail_acc_z or "
+        "order:1:seat_rail_acc_z; may be repeated",
+        action="append",
+        metavar="NAME",
+    )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -1,0 +1,1 @@
+"""Catalogue of ride figures: definition, unit, histories and value on runs of one or many cars."""

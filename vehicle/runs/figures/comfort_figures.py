@@ -1,0 +1,93 @@
+"""Comfort at the seat rail and on the cushion as figures; the values are those of `ride_comfort.comfort_columns`."""
+
+import numpy as np
+
+from vehicle.model.parameters.vehicle import Vehicle
+from vehicle.names import AXES
+from vehicle.runs.figures.figure import Details, Figure, Reduction, Values
+from vehicle.runs.figures.rows import unread
+from vehicle.runs.figures.run_batch import Runs
+from vehicle.signals.analysis.comfort_error import WAVES
+from vehicle.signals.analysis.ride_comfort import (
+    ERROR,
+    SEAT_PREFIX,
+    SEAT_VALUE,
+    UNWEIGHTED,
+    WEIGHTED,
+    comfort_units,
+    wave_names,
+)
+from vehicle.signals.analysis.samples import Vector
+from vehicle.signals.analysis.seat_value import seat_value
+
+POINTS = {"": "seat_rail", SEAT_PREFIX: "seat"}
+"""Prefix of a comfort value to its point."""
+
+
+def _channels(*points: str) -> tuple[str, ...]:
+    return tuple(f"{point}_acc_{axis}" for point in points for axis in AXES)
+
+
+def _comfort(point: str, name: str) -> Reduction:
+    """Return the reduction to a comfort value, overall or of an axis."""
+
+    def of(_: Vector, details: Details, runs: Runs) -> Values:
+        columns = runs.comfort(point, name)
+        if details.axis:
+            return Values(columns[f"{name}_{details.axis}"])
+        if not runs.errors:
+            return Values(columns[name])
+        parts = np.stack([columns[each] for each in wave_names(name)], axis=1)
+        waves = np.ascontiguousarray(parts).view(np.complex128).reshape(-1, WAVES)
+        return Values(columns[name], columns[name] * columns[f"{name}{ERROR}"], waves)
+
+    return Reduction(of=of, page="comfort" if (point, name) == ("seat_rail", WEIGHTED) else "")
+
+
+def _seat_value(_: Vector, __: Details, runs: Runs) -> Values:
+    above, below = runs["seat_acc_z"], runs["seat_rail_acc_z"]
+    values = [
+        seat_value(runs.timestep, cushion, rail, skip=runs.skip).rms if np.any(rail) else np.nan
+        for cushion, rail in zip(above, below, strict=True)
+    ]
+    return Values(np.array(values))
+
+
+def _figure(prefix: str, name: str, meaning: str) -> Figure:
+    """Return the figure of a comfort value at a point."""
+    point = POINTS[prefix]
+
+    def channels(_: Details, __: Vehicle) -> tuple[str, ...]:
+        # With the rail, as in a table of comfort.
+        return _channels("seat_rail", "seat") if prefix else _channels("seat_rail")
+
+    return Figure(
+        words=f"{name} acceleration of the {'cushion' if prefix else 'seat rail'}",
+        meaning=meaning,
+        unit="m/s2",
+        reads=unread(channels),
+        reduces=_comfort(point, name),
+        takes=("axis",),
+        of_car="seat" if prefix else "",
+    )
+
+
+COMFORT_FIGURES = {
+    UNWEIGHTED: _figure("", UNWEIGHTED, "unweighted RMS of the seat rail, 2 to 50 Hz, all axes [m/s2]"),
+    WEIGHTED: _figure("", WEIGHTED, "weighted RMS of the seat rail (ISO 2631-1), all axes [m/s2]"),
+    f"{SEAT_PREFIX}{UNWEIGHTED}": _figure(
+        SEAT_PREFIX, UNWEIGHTED, "unweighted RMS of the cushion, 2 to 50 Hz, all axes [m/s2]"
+    ),
+    f"{SEAT_PREFIX}{WEIGHTED}": _figure(
+        SEAT_PREFIX, WEIGHTED, "weighted RMS of the cushion (ISO 2631-1), all axes [m/s2]"
+    ),
+    SEAT_VALUE: Figure(
+        words="SEAT value",
+        meaning="weighted RMS of the cushion over that of the seat rail, vertical (ISO 10326-1) [-]",
+        unit=comfort_units(seated=True)[SEAT_VALUE],
+        reads=unread(lambda *_: _channels("seat_rail", "seat")),
+        reduces=Reduction(of=_seat_value),
+        of_car="seat",
+    ),
+}
+"""Name to figure."""

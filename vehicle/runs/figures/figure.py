@@ -1,0 +1,120 @@
+"""Ride figure: one record with name, meaning, unit, what it reads and how it is reduced to a number."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+from vehicle.model.parameters.vehicle import Vehicle
+from vehicle.runs.figures.run_batch import Runs
+from vehicle.signals.analysis.samples import Complex, Vector
+
+Better = Literal["less", "more", ""]
+"""Direction of a better ride; empty for a figure without one."""
+
+
+class Values(NamedTuple):
+    """Values of a figure on r runs."""
+
+    value: Vector
+    """Values, NaN where undefined; (r,)."""
+    error: Vector | None = None
+    """Standard errors in the unit of the value, (r,); None if unknown."""
+    waves: Complex | None = None
+    """Slow variations of an RMS for the error of a difference, see `comfort_error`; (r, `WAVES`)."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Details:
+    """Channels, wheels, band and other details of a figure.
+
+    Attributes:
+        channels, over: names or words of recorded channels, as "seat rail z".
+        band: lowest and highest frequency [Hz].
+        weighting: frequency weighting of all channels, as "Wk", or "seat".
+        wheels: wheels, as "fr"; all by default.
+        axis: "x", "y" or "z"; all by default.
+        order: multiple of the speed of a turning part.
+        angle: "crank", a wheel, or a force with a frequency; by default that of the first force.
+        motion: "heave", "pitch", "roll", "front wheel hop" or another of `motion_figures`, with "stuck" at the end for
+            dampers that stick.
+    """
+
+    channels: tuple[str, ...] = ()
+    over: tuple[str, ...] = ()
+    band: tuple[float, ...] | None = None
+    weighting: str = ""
+    wheels: tuple[str, ...] = ()
+    axis: str = ""
+    order: float | None = None
+    angle: str = ""
+    motion: str = ""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Rows:
+    """Time histories that a figure reads.
+
+    Attributes:
+        channels: names of the recorded channels for details and a car.
+        of: histories of r runs from the start of the evaluation on, (r, rows, n).
+        page: name of the histories in the page with sliders (`trial_worker.js`); empty for others.
+    """
+
+    channels: Callable[[Details, Vehicle], tuple[str, ...]]
+    of: Callable[[Details, Runs], Vector]
+    page: str = ""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Reduction:
+    """Reduction of histories (r, rows, n) to a number for each run.
+
+    Attributes:
+        of: values for histories, details and runs.
+        page: name of the reduction in the page with sliders (`trial_worker.js`); empty for others.
+    """
+
+    of: Callable[[Vector, Details, Runs], Values]
+    page: str = ""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Figure:
+    """Figure of a ride.
+
+    Attributes:
+        words: name on pages, as "variation of the tyre load".
+        meaning: definition with the unit; U is that of the channels.
+        unit: unit; empty for that of the channels.
+        reads: histories that it reads.
+        reduces: reduction to a number.
+        better: direction of a better ride.
+        needs: required details.
+        takes: further details.
+        of_car: required part of the car, "seat" or "damper"; empty without one.
+        companion: figure in the next column of a table.
+        alone: True for a figure of single runs in double precision, not of batches.
+        certain: True for a standard error that is also known on one event.
+        exact: True for a number of the car itself, which has no standard error.
+    """
+
+    words: str
+    meaning: str
+    reads: Rows
+    reduces: Reduction
+    unit: str = ""
+    better: Better = "less"
+    needs: tuple[str, ...] = ()
+    takes: tuple[str, ...] = ()
+    of_car: str = ""
+    companion: str = ""
+    alone: bool = False
+    certain: bool = False
+    exact: bool = False
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Return the names of all details in the order of a text."""
+        return (*self.needs, *self.takes)

@@ -1,0 +1,157 @@
+"""Reductions of time histories to one number for each run, with standard errors where they are known.
+
+On a random road a figure of one record is an estimate. The standard error of an RMS is that of a Gaussian vibration
+with the spectrum of the record (`vehicle.signals.analysis.comfort_error`); that of a share of time, or of a ratio of
+two RMS values, comes from `BLOCKS` blocks of the record. Extremes, doses and values over one obstacle have none.
+"""
+
+from collections.abc import Callable
+from itertools import pairwise
+
+import numpy as np
+
+from vehicle.errors import ConfigurationError
+from vehicle.runs.car import SATURATED_VELOCITY
+from vehicle.runs.figures.figure import Details, Reduction, Values
+from vehicle.runs.figures.rows import recorded, velocities
+from vehicle.runs.figures.run_batch import Runs
+from vehicle.signals.analysis.comfort_error import overall_error, overall_waves
+from vehicle.signals.analysis.exposure import crest_factor, mtvv, vibration_dose_value
+from vehicle.signals.analysis.samples import Vector
+from vehicle.signals.analysis.settled import settling_time
+from vehicle.signals.analysis.slip import first_slips, slip_shares
+from vehicle.signals.analysis.spectra import band_periodogram
+
+BLOCKS = 8
+"""Blocks of a record for the standard error of a share or a ratio: 7 degrees of freedom."""
+
+
+def _band(details: Details, samples: int, step: float) -> tuple[float, float]:
+    """Return the band of a figure; by default all lines from the first to 0.8 of the Nyquist frequency."""
+    return (details.band[0], details.band[1]) if details.band else (1.0 / (samples * step), 0.4 / step)
+
+
+def _rms(rows: Vector, details: Details, runs: Runs, squares: Callable[[Vector], Vector]) -> Values:
+    """Return the root of a sum of mean squares with its standard error.
+
+    Args:
+        rows: histories, whose lines in the band, or all, give the error; (r, rows, n).
+        squares: mean squares of histories without a band; (r,) of (r, rows, n).
+    """
+    value, error, waves = np.empty(len(rows)), [], []
+    whole = squares(rows) if details.band is None else None
+    for run, history in enumerate(rows):
+        if details.band is None and not runs.errors:
+            break
+        lines = band_periodogram(runs.timestep, history, _band(details, rows.shape[2], runs.timestep)).lines
+        assert lines is not None  # a periodogram
+        if details.band is not None:
+            value[run] = np.sqrt(np.sum(np.abs(lines) ** 2))
+        error.append(overall_error(lines[None])[0])
+        waves.append(overall_waves(lines[None])[0])
+    value = value if whole is None else np.sqrt(whole)
+    return Values(value, value * np.array(error), np.array(waves)) if runs.errors else Values(value)
+
+
+def _rms_of_channels(rows: Vector, details: Details, runs: Runs) -> Values:
+    return _rms(rows, details, runs, lambda each: np.sum(np.mean(each**2, axis=2), axis=1))
+
+
+def _rms_of_wheels(rows: Vector, details: Details, runs: Runs) -> Values:
+    # The root of the mean over the wheels.
+    values = _rms(rows, details, runs, lambda each: np.mean(np.mean(each**2, axis=2), axis=1))
+    return values if values.waves is None else values._replace(waves=values.waves / np.sqrt(rows.shape[1]))
+
+
+def _ratio(rows: Vector, details: Details, runs: Runs) -> Values:
+    below = recorded(details.over, details.weighting, runs)
+    band, step = _band(details, rows.shape[2], runs.timestep), runs.timestep
+
+    def ratios(part: slice) -> Vector:
+        squares = []
+        for each in (rows, below):
+            spectra = [band_periodogram(step, history[:, part], band) for history in each]
+            squares.append(np.array([each.density.sum() * each.resolution_hz for each in spectra]))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where(squares[1] > 0.0, np.sqrt(squares[0] / squares[1]), np.nan)
+
+    return Values(ratios(slice(None)), _of_blocks(ratios, rows.shape[2], runs))
+
+
+def _of_blocks(values: Callable[[slice], Vector], samples: int, runs: Runs) -> Vector | None:
+    """Return the standard error of the mean of the values of `BLOCKS` blocks, (r,)."""
+    if not runs.errors:
+        return None
+    edges = np.linspace(0, samples, BLOCKS + 1).astype(int)
+    blocks = [values(slice(begin, end)) for begin, end in pairwise(edges)]
+    return np.asarray(np.std(blocks, axis=0, ddof=1) / np.sqrt(BLOCKS))
+
+
+def _largest_crest(rows: Vector, *_: object) -> Values:
+    crests = [[crest_factor(row) or np.nan for row in run] for run in rows]
+    return Values(np.max(crests, axis=1))
+
+
+def _dose(rows: Vector, _: Details, runs: Runs) -> Values:
+    doses = [[vibration_dose_value(runs.timestep, row) for row in run] for run in rows]
+    return Values(np.sum(np.power(doses, 4), axis=1) ** 0.25)
+
+
+def _settling(rows: Vector, _: Details, runs: Runs) -> Values:
+    if runs.left_obstacle is None:
+        raise ConfigurationError('settling: the run has no obstacle; set it, for example obstacle = "cleat"')
+    time, longest = runs.time[runs.evaluated], []
+    for run in rows:
+        times = [settling_time(time, row, runs.left_obstacle) for row in run]
+        # Not settled at the end of the record.
+        longest.append(float("inf") if None in times else max(float(each or 0.0) for each in times))
+    return Values(np.array(longest))
+
+
+def _shares(rows: Vector, limits: Vector) -> Vector:
+    """Return the share of the time with |velocity| above the limit of each run; (r, dampers)."""
+    return np.stack([slip_shares(rows[:, damper], limits) for damper in range(rows.shape[1])], axis=1)
+
+
+def _slip(rows: Vector, _: Details, runs: Runs) -> Values:
+    limits = runs.slip_velocity
+    error = _of_blocks(lambda part: np.mean(_shares(rows[:, :, part], limits), axis=1), rows.shape[2], runs)
+    return Values(np.mean(_shares(rows, limits), axis=1), error)
+
+
+def _stick(rows: Vector, _: Details, runs: Runs) -> Values:
+    limits = runs.slip_velocity
+    sticks = 1.0 - _shares(rows, limits)
+    longest = np.argmax(sticks, axis=1)
+    chosen = rows[np.arange(len(rows)), longest]
+    error = _of_blocks(lambda part: slip_shares(chosen[:, part], limits), rows.shape[2], runs)
+    return Values(np.max(sticks, axis=1), error)
+
+
+def _saturated(rows: Vector, *_: object) -> Values:
+    return Values(np.mean(_shares(rows, np.full(len(rows), SATURATED_VELOCITY)), axis=1))
+
+
+def _first_slip(_: Vector, details: Details, runs: Runs) -> Values:
+    # Of the whole run, as in `summary.json`.
+    whole = velocities(details, runs)
+    each = [first_slips(runs.time, whole[:, damper], runs.slip_velocity) for damper in range(whole.shape[1])]
+    return Values(np.fmin.reduce(each))
+
+
+RMS = Reduction(of=_rms_of_channels, page="rms")
+WHEEL_RMS = Reduction(of=_rms_of_wheels, page="wheel_rms")
+RATIO = Reduction(of=_ratio)
+PEAK = Reduction(of=lambda rows, *_: Values(np.abs(rows).max(axis=(1, 2))), page="peak")
+PEAK_TO_PEAK = Reduction(of=lambda rows, *_: Values(np.ptp(rows, axis=2).max(axis=1)), page="peak_to_peak")
+LOWEST = Reduction(of=lambda rows, *_: Values(rows.min(axis=(1, 2))), page="lowest")
+LARGEST_CREST = Reduction(of=_largest_crest, page="largest_crest")
+MTVV = Reduction(
+    of=lambda rows, _, runs: Values(np.array([max(mtvv(runs.timestep, row) for row in run) for run in rows]))
+)
+DOSE = Reduction(of=_dose)
+SETTLING = Reduction(of=_settling)
+SLIP = Reduction(of=_slip)
+STICK = Reduction(of=_stick)
+SATURATED = Reduction(of=_saturated)
+FIRST_SLIP = Reduction(of=_first_slip)

@@ -1,0 +1,93 @@
+"""Figures of turning parts and of motions: amplitude at an order; frequency and damping of a motion."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.applied_force import CRANK
+from vehicle.runs.car.motion_figures import MotionFigure, motion_figures
+from vehicle.runs.figures.figure import Details, Figure, Reduction, Values
+from vehicle.runs.figures.rows import unread
+from vehicle.runs.figures.run_batch import Runs
+from vehicle.signals.analysis.order_lines import OrderLines, order_lines
+from vehicle.signals.analysis.samples import Vector
+
+STUCK = " stuck"
+"""End of the name of a motion for dampers that stick."""
+
+
+def _lines(details: Details, runs: Runs) -> list[OrderLines]:
+    """Return the amplitude of the channel at the order, for each run."""
+    lines = []
+    for run, vehicle in enumerate(runs.vehicles):
+        angle, speed = vehicle.composition.turning(details.angle or None)
+        if angle == CRANK and vehicle.composition.crank_run_up is not None:
+            raise ConfigurationError(f"orders: the speed of {angle} changes in this run; use order_cut")
+        histories = np.array([runs[channel][run] for channel in details.channels])
+        lines.append(order_lines(runs.time, histories, speed / (2.0 * np.pi), [details.order or 1.0], begin=runs.skip))
+    return lines
+
+
+def _order(_: Vector, details: Details, runs: Runs) -> Values:
+    lines = _lines(details, runs)
+    amplitude, error = (
+        np.array([float(values[0, 0]) for values in each])
+        for each in ([abs(line.amplitude) for line in lines], [line.error for line in lines])
+    )
+    return Values(amplitude, error)
+
+
+def _order_frequency(_: Vector, details: Details, runs: Runs) -> Values:
+    return Values(np.array([float(line.frequency[0]) for line in _lines(details, runs)]))
+
+
+def _of_motion(value: Callable[[MotionFigure], float | None]) -> Reduction:
+    """Return the reduction to a number of a motion of the car itself."""
+
+    def of(_: Vector, details: Details, runs: Runs) -> Values:
+        motion = details.motion.replace("_", " ")
+        state, name = ("stuck" if motion.endswith(STUCK) else "sliding"), motion.removesuffix(STUCK)
+        values = []
+        for car in runs.cars:
+            listed = {each.motion: each for each in motion_figures(car) if each.dampers == state}
+            if name not in listed:
+                raise ConfigurationError(f"motion {name!r}: must be one of {', '.join(listed)}")
+            number = value(listed[name])
+            values.append(np.nan if number is None else number)
+        return Values(np.array(values))
+
+    return Reduction(of=of)
+
+
+def _channels(details: Details, _: object) -> tuple[str, ...]:
+    return details.channels
+
+
+ORDER_FIGURES = {
+    "order": Figure(
+        words="amplitude at an order", meaning="amplitude of a channel at an order of crank or wheel [U]",
+        reads=unread(_channels), reduces=Reduction(of=_order), needs=("order", "channels"), takes=("angle",),
+        companion="order_frequency", alone=True, certain=True,
+    ),
+    "order_frequency": Figure(
+        words="frequency of the order", meaning="frequency of an order of crank or wheel [Hz]",
+        unit="Hz", reads=unread(_channels), reduces=Reduction(of=_order_frequency), better="",
+        needs=("order", "channels"), takes=("angle",), alone=True, exact=True,
+    ),
+}  # fmt: skip
+"""Name to figure of a turning part."""
+
+MOTION_FIGURES = {
+    "frequency": Figure(
+        words="natural frequency", meaning="undamped natural frequency of a motion of the car, as heave [Hz]",
+        unit="Hz", reads=unread(lambda *_: ()), reduces=_of_motion(lambda each: each.frequency_hz), better="",
+        needs=("motion",), exact=True,
+    ),
+    "damping_ratio": Figure(
+        words="damping ratio", meaning="damping ratio of a motion of the car, as heave, dampers at 0.1 m/s [-]",
+        unit="-", reads=unread(lambda *_: ()), reduces=_of_motion(lambda each: each.damping_ratio), better="",
+        needs=("motion",), exact=True,
+    ),
+}  # fmt: skip
+"""Name to figure of a motion."""
