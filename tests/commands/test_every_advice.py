@@ -9,25 +9,26 @@ import numpy as np
 import pytest
 
 from tests.advice import advised, run_advice
+from tests.failing_inputs import DATABASES, MAKERS, made
 from tests.signals.formats import logger_files
 from vehicle.signals.excitation.input_files import find_input
 
 ROOT = Path(__file__).resolve().parents[2]
-OUTSIDE = sorted(
-    path
-    for folder in (ROOT / "tests" / "data" / "uff", ROOT.parent / "shared" / "data" / "failing-inputs")
-    for path in (folder.iterdir() if folder.is_dir() else ())
-    if path.suffix not in (".md", ".dbc", "")
-)
+FOREIGN = sorted(path for path in (ROOT / "tests" / "data" / "uff").iterdir() if path.suffix)
 TEXTS = sorted(name for name, value in vars(logger_files).items() if name.isupper() and isinstance(value, str))
 TIME = np.arange(3000) / 100.0
 SINE = np.sin(2 * np.pi * 2.0 * TIME) * np.clip(TIME, 0.0, 1.0)
 
 
-@pytest.mark.parametrize("path", OUTSIDE, ids=lambda path: path.name)
+@pytest.mark.parametrize("path", FOREIGN, ids=lambda path: path.name)
 def test_files_of_other_programs(path, tmp_path):
-    database = path.parent / "imu.dbc"
-    run_advice(path, tmp_path, *(["--dbc", str(database)] if path.name.endswith("bus.log") else []))
+    run_advice(path, tmp_path)
+
+
+@pytest.mark.parametrize("name", MAKERS)
+def test_files_that_once_gave_wrong_numbers(name, tmp_path):
+    path = made(name, tmp_path)
+    run_advice(path, tmp_path, *(["--dbc", str(tmp_path / "car.dbc")] if name in DATABASES else []))
 
 
 @pytest.mark.parametrize("name", TEXTS)
