@@ -5,6 +5,9 @@ import os
 import shutil
 import tempfile
 
+# As in the Makefile, before numpy is imported: threads of small matrices only wait for each other.
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
 import pytest
 
 from tests.parts import PARTS, is_rest

@@ -1,4 +1,4 @@
-"""What a session shares does not depend on the test that asks for it first; the parts of the suite are what they say."""
+"""What a session shares depends on no test that asks first; the parts of the suite are what they say."""
 
 from pathlib import Path
 
@@ -6,7 +6,6 @@ import pytest
 
 from tests.parts import KEPT, REST, is_rest
 from tools.mutations import FAULTS
-
 
 TESTS = Path(__file__).parent
 

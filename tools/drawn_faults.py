@@ -3,8 +3,8 @@
     python -m tools.drawn_faults [--seed 1] [--each 2] [--package vehicle/engines ...] [--list]
 
 Each is one changed operator, sign, comparison or decimal number in a file that computes with numpy, drawn with a seed,
-so that a draw can be repeated. Its tests are those that import the changed module, then those of the folder of its
-name.
+so that a draw can be repeated. Its tests are those of the product that import the changed module, then those of the
+folder of its name.
 A fault that survives is either one that changes nothing (a start value, a tolerance, a limit never met) or a gap.
 """
 
@@ -19,6 +19,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+from tests.parts import is_rest
 from tools.mutations import ROOT, Fault, tried
 
 PACKAGES = (
@@ -121,6 +122,7 @@ def tests_of(file: str) -> str:
         path.relative_to(tests).as_posix()
         for path in sorted(tests.rglob("test_*.py"))
         if direct.search(path.read_text(encoding="utf-8"))
+        and not is_rest(path.relative_to(tests).as_posix(), renders=False)
     ]
     folder = Path(file).parent
     folder = folder if folder.parts[0] == "scenarios" else folder.relative_to("vehicle")
