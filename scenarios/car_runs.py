@@ -1,8 +1,7 @@
 """Runs of the complete car shared by studies: each case runs once, independent cases in parallel processes."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TypeVar
 
 from vehicle.engines.simulation.recording import Recording
 from vehicle.errors import SimulationError
@@ -13,9 +12,6 @@ from vehicle.studies.sweeps.executors import process_pool
 from vehicle.studies.sweeps.measure import Measure
 from vehicle.studies.sweeps.store import ROWS
 from vehicle.studies.sweeps.sweep import sweep
-
-Item = TypeVar("Item")
-Found = TypeVar("Found")
 
 
 class CarRuns:
@@ -90,14 +86,6 @@ class CarRuns:
 def recording_of(case: Case) -> Recording:
     """Run a case in a worker process and return its recording."""
     return run_of(case).recording
-
-
-def in_processes(function: Callable[[Item], Found], items: Sequence[Item], jobs: int) -> list[Found]:
-    """Return the values of a function of independent items in their order; in this process with one job."""
-    if jobs > 1 and len(items) > 1:
-        with process_pool(min(jobs, len(items))) as pool:
-            return list(pool.map(function, items))
-    return [function(item) for item in items]
 
 
 def swept(

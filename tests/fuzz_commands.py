@@ -1,4 +1,4 @@
-"""Damaged files and options of `compare`, `tune`, `drive`, `body`, of property files, ERD profiles and Chrono's cars.
+"""Damaged files and options of `compare`, `tune`, `drive`, `body`, of property files and ERD profiles.
 
 Run by `python -m tests.fuzz`.
 """
@@ -14,7 +14,6 @@ from pathlib import Path
 
 import numpy as np
 
-from tests.chrono_files import write_chrono
 from tests.fuzz_files import damaged
 from tests.fuzz_texts import mutated
 from tests.model.flexbody.modal_test import write_modes
@@ -174,15 +173,7 @@ def erd_case(rng: random.Random) -> Case:
     return main, [*words, "--engine", "reduced", "--no-figures", "--channels", "seat", "--output", "out"]
 
 
-def chrono_case(rng: random.Random) -> Case:
-    """A new car from damaged files of Project Chrono."""
-    folder = write_chrono(Path())
-    name = rng.choice(sorted(path.name for path in folder.iterdir()))
-    (folder / name).write_bytes(_mutated((folder / name).read_bytes(), rng))
-    return main, ["new", "mine", "--from", f"chrono:{folder / 'strut_model.json'}", "--json"]
-
-
 COMMAND_KINDS: dict[str, Callable[[random.Random], Case]] = {
     "compare": compare_case, "drive": drive_case, "tune": tune_case, "body": body_case, "property": property_case,
-    "erd": erd_case, "chrono": chrono_case,
+    "erd": erd_case,
 }  # fmt: skip

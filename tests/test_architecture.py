@@ -99,8 +99,8 @@ ROOMS: dict[str, set[str]] = {
 }
 """What each room, and each module above the rooms, imports of the package: this and no more, and all of it."""
 
-STUDIES = {"analysis", "assembly", "car", "commands", "excitation", "formats", "kinematics", "laws", "linear"} | {
-    *("optimisation", "output", "parameters", "reduced", "rendering", "simulation", "sweeps", "threads", "tuning")
+STUDIES = {"analysis", "assembly", "car", "commands", "excitation", "flexbody", "formats", "laws", "linear"} | {
+    *("output", "parameters", "reduced", "rendering", "simulation", "sweeps", "threads")
 }
 """What `scenarios` imports of the package; the package imports nothing of `scenarios`."""
 

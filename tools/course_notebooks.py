@@ -22,6 +22,9 @@ from vehicle.runs.output.folder import write_text  # noqa: E402
 COURSE = ROOT / "docs" / "course"
 BLOCK = re.compile(r"^```(\w*)[^\n]*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\((?!https?:|#)([^)\s]+)")
+CLONE = """import os
+
+os.environ["PYTHONPATH"] = os.path.abspath("{root}")  # the clone, whose folder `scenarios` checks the answers"""
 HIDDEN = re.compile(r"^<!--.*?-->\n", re.MULTILINE | re.DOTALL)
 DIRECTIVE = re.compile(r"^```\{.*?^```$", re.MULTILINE | re.DOTALL)
 
@@ -40,6 +43,7 @@ def notebook(page: Path, folder: Path) -> dict[str, Any]:
     """
     text = HIDDEN.sub("", DIRECTIVE.sub("", page.read_text(encoding="utf-8")))
     cells: list[dict[str, Any]] = []
+    _append(cells, "code", CLONE.format(root=os.path.relpath(ROOT, folder).replace(os.sep, "/")))
     end = 0
     for match in BLOCK.finditer(text):
         _prose(cells, text[end : match.start()], page, folder)

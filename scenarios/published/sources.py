@@ -39,8 +39,6 @@ THESIS = Source(
         "bump",
         "stribeck",
         "comfort_sensitivity",
-        "tornado",
-        "tuning",
         "quarter_car",
         "source_choice",
     ),

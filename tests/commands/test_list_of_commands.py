@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from scenarios.global_sensitivity import main as global_sensitivity
+from scenarios.comfort_sensitivity.__main__ import main as comfort_sensitivity
 from scenarios.study import study_parser
 from tests.patience import HANG
 from vehicle.__main__ import main
@@ -24,7 +24,7 @@ def parsers() -> dict[str, argparse.ArgumentParser]:
     """Every command of the package, a study, and the study with options of its own."""
     found = {name: import_module(module_of(name)).parser() for name in COMMANDS}
     study = study_parser("levels", quick="short")
-    return {**found, "study": study, "global_sensitivity": global_sensitivity.parser}
+    return {**found, "study": study, "comfort_sensitivity": comfort_sensitivity.parser}
 
 
 def test_the_list_has_a_line_for_each_command(capsys):

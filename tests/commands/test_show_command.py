@@ -52,6 +52,7 @@ def test_search(capsys):
         (["sedan", "--search", "mass", "--output", "x"], "--search and --output exclude each other"),
         (["--vehicle", "sedan"], "--vehicle is not an option here; name the car first"),
         (["lorry"], "lorry: is neither a file nor a shipped car"),
+        (["lorry.json"], "lorry.json: is no vehicle file: read are TOML files of cars"),
         (["sedan", "--force"], "--force: belongs to --output DIR"),
     ],
 )

@@ -20,7 +20,7 @@ SAMPLES, STEP_S = 300, 0.005
 READ = {
     "--input", "--road", "--dbc", "--vehicle", "--set", "--controller", "--measured", "--vary", "--table", "--profile",
     "--mass", "--dofs", "--nodes", "--residual", "--point-nodes", "--design", "--target", "--beside", "--tolerance",
-    "--parameters", "--frf", "--record", "--signal", "--rival", "--chrono-tyre", "--numbers", "--damper-curve-front",
+    "--parameters", "--frf", "--record", "--signal", "--rival", "--numbers", "--damper-curve-front",
     "--damper-curve-rear", "--channel", "--map", "--unit", "--cases", "--targets", "--cost",
 }  # fmt: skip
 """Options with a file, or with a text of its own, that is read."""

@@ -57,7 +57,6 @@ ELSEWHERE = {
     "runs/report/svg_figure.py": PRIVATE,
     "model/laws/controller_fmu.py": PRIVATE,
     "handover/fmu/fmu_file.py": GIVEN,
-    "studies/design/chrono_car.py": PRIVATE,
     "studies/optimisation/car_search.py": PRIVATE,
     "studies/sweeps/worker.py": "opens the null device",
     "commands/command_line.py": "opens the null device",

@@ -47,9 +47,8 @@ def parser() -> Parser:
         "--from",
         dest="source",
         metavar="CAR",
-        help="car to start from: a shipped car with four wheels (sedan, focus_road), the file of a car, or "
-        "chrono:FILE.json of a Project Chrono vehicle. Default with --car-class: sedan. Axles and "
-        "powertrain are scaled with the mass",
+        help="car to start from: a shipped car with four wheels (sedan, focus_road) or the file of a car. Default "
+        "with --car-class: sedan. Axles and powertrain are scaled with the mass",
     )
     parser.add_argument(
         "--car-class",
@@ -57,12 +56,6 @@ def parser() -> Parser:
         choices=CLASSES,
         help="class of the car, which sets default masses, lengths and ride frequencies; electric-suv has an "
         "electric drive, no engine",
-    )
-    parser.add_argument(
-        "--chrono-tyre",
-        type=Path,
-        metavar="FILE.json",
-        help="tyre of all wheels, for a Chrono vehicle whose file names no tyre",
     )
     parser.add_argument(
         "--numbers",
@@ -112,7 +105,6 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.runs.car.motion_figures import motion_figures
     from vehicle.runs.output.folder import output_folder, write_files, write_text
     from vehicle.runs.output.free_names import named
-    from vehicle.studies.design.chrono_car import PREFIX, new_chrono_car
     from vehicle.studies.design.new_car import new_car, template_files
     from vehicle.studies.design.stated_numbers import NAMES, stated_numbers
 
@@ -132,24 +124,15 @@ def _job(options: argparse.Namespace) -> None:
                 "--from is missing; give the car to start from, for example --from sedan, or a --car-class"
             )
         options.source = "sedan"
-    foreign = Path(options.source.removeprefix(PREFIX)) if options.source.startswith(PREFIX) else None
-    if options.chrono_tyre is not None and foreign is None:
-        raise ConfigurationError(
-            "--chrono-tyre: belongs to --from chrono:FILE.json; other cars state their tyres in the car file"
-        )
-    source = vehicle_file(options.source) if foreign is None else foreign
+    source = vehicle_file(options.source)
     try:
         folder = named(options.held, options.folder, force=options.force, protect=(source,))
     except ConfigurationError as error:
         raise ConfigurationError(str(error).replace("--output", "NAME", 1)) from None
-    if foreign is None:
-        result = new_car(name, options.source, stated)
-    else:
-        result = new_chrono_car(name, foreign, options.chrono_tyre, stated)
-    templates = template_files(source, result.car) if foreign is None else ()
+    result = new_car(name, options.source, stated)
     with output_folder(folder, force=options.force) as temporary:
         write_text(temporary / "vehicle.toml", result.text)
-        write_files(temporary, {file.name: file.read_bytes() for file in templates})
+        write_files(temporary, {file.name: file.read_bytes() for file in template_files(source, result.car)})
     file = folder / "vehicle.toml"
     figures = motion_figures(result.car)
     print_result(options, _checks(result, file, figures), _report(result, file, figures))

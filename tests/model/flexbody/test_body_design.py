@@ -2,16 +2,13 @@
 
 import re
 
-import numpy as np
 import pytest
 
-from vehicle.commands.body import main
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.body_design import read_design
 from vehicle.model.flexbody.body_frame import body_frame
-from vehicle.model.flexbody.body_model import BODY_DESIGN, TRIMMED_BODY
+from vehicle.model.flexbody.body_model import BODY_DESIGN
 from vehicle.model.flexbody.node_masses import NodeProperties
-from vehicle.model.flexbody.superelement_file import read_superelement
 from vehicle.model.parameters.shipped import FOCUS_FILE
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.car import Car
@@ -147,17 +144,3 @@ def test_more_modes_than_a_frame_has_are_refused(tmp_path):
         ConfigurationError, match="mode_count: found 13, must be at most 12, the elastic modes of 6 nodes"
     ):
         body_frame(read_design(file), vehicle.points, NodeProperties.of_body(vehicle.body, 0.0))
-
-
-def test_a_fit_prints_its_factors_and_builds_with_them(monkeypatch, capsys, tmp_path):
-    """The fit takes minutes and is tested elsewhere; here a stub replaces it."""
-    design = read_design(BODY_DESIGN)
-    fitted = {group: 1.1 * factor for group, factor in design.factors.items()}
-    monkeypatch.setattr("vehicle.model.flexbody.section_fit.fit_factors", lambda frame, start, weights: fitted)
-    assert main(["build", "--fit", "--output", str(tmp_path / "fitted.toml")]) == 0
-    printed = capsys.readouterr().out
-    group = design.fitted_groups[0]
-    assert f"members.{group}.factor = {fitted[group]:.5g}\n" in printed
-    built, shipped = read_superelement(tmp_path / "fitted.toml"), read_superelement(TRIMMED_BODY)
-    assert np.all(built.frequencies > shipped.frequencies)  # every fitted member is a tenth stiffer
-    assert np.all(built.frequencies < np.sqrt(1.1) * shipped.frequencies * 1.001)

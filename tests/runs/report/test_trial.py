@@ -14,10 +14,10 @@ from tests.patience import HANG
 from vehicle.drawing.rendering.wireframe import car_wireframe
 from vehicle.engines.linear.load_rows import displacement_rows
 from vehicle.engines.reduced.reduced_run import simulate_reduced
-from vehicle.handover.fmu.car_numbers import PARAMETERS
+from vehicle.handover.fmu.car_numbers import FRICTION, PARAMETERS
 from vehicle.handover.page.moving_car import picture_rows, static_shapes
 from vehicle.handover.page.page_input import LONGEST, PageInput, RunRoad, page_input
-from vehicle.handover.page.trial_data import CURVE_SCALES, FRICTION, _sliders, trial_data
+from vehicle.handover.page.trial_data import CURVE_SCALES, _sliders, trial_data
 from vehicle.names import AXES
 from vehicle.runs.car import Car, Road
 from vehicle.runs.output.saved_run import recorded_signal
@@ -390,4 +390,4 @@ def test_a_slider_has_room_above_its_value(car, friction):
     numbers: Any = SimpleNamespace(parameters=values)
     sliders = [each for each in _sliders(car, numbers, None) if each["id"].endswith("coulomb_friction")]
     assert sliders and all(each["low"] == 0.0 and each["value"] == friction for each in sliders)
-    assert min(each["high"] for each in sliders) >= max(2.0 * friction, FRICTION["coulomb_friction"][1])
+    assert min(each["high"] for each in sliders) >= max(2.0 * friction, FRICTION["coulomb_friction"].usual)

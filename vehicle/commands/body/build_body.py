@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +11,6 @@ from vehicle.commands.body.show_body import report
 from vehicle.commands.options import message_options, vehicle_options
 
 if TYPE_CHECKING:
-    from vehicle.model.flexbody.body_design import BodyDesign
     from vehicle.model.parameters.vehicle import Vehicle
 
 
@@ -28,32 +26,9 @@ def add(tasks: Any) -> None:
         metavar="FILE.toml",
         help="file of the body design; default: the design named in the vehicle file",
     )
-    design.add_argument(
-        "--fit",
-        action="store_true",
-        help="fit the factors of the beam sections to the published body modes of Bommer 2006 (first 19 Hz, "
-        "torsion 25.5 Hz, ninth 43 Hz), and print them as lines of a design. Takes minutes",
-    )
     output_options(built)
     vehicle_options(built)
     message_options(built, quiet=True)
-
-
-def _fitted(design: BodyDesign, vehicle: Vehicle, *, quiet: bool) -> BodyDesign:
-    """Return the design with section factors fitted on this car; print the factors unless quiet."""
-    from vehicle.model.flexbody.body_frame import body_frame
-    from vehicle.model.flexbody.node_masses import NodeProperties
-    from vehicle.model.flexbody.section_fit import STAGES, fit_factors
-
-    frame = body_frame(design, vehicle.points, NodeProperties.of_body(vehicle.body, design.least_ixx))
-    factors = fit_factors(frame, dict.fromkeys(design.factors, 1.0), STAGES)
-    for group in design.fitted_groups if not quiet else ():
-        print(f"members.{group}.factor = {factors[group]:.5g}")
-    members = {
-        name: replace(group, factor=factors[name]) if name in design.fitted_groups else group
-        for name, group in design.members.items()
-    }
-    return replace(design, members=members)
 
 
 def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
@@ -65,8 +40,6 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     require_output(options)
     file = options.design or body_file(vehicle, options.vehicle.parent if options.vehicle else None)
     design = read_design(file)
-    if options.fit:
-        design = _fitted(design, vehicle, quiet=options.quiet)
     model = design_superelement(design, vehicle.points, vehicle.composition.attachments(), vehicle.body)
     write(options, model)
     if options.quiet:

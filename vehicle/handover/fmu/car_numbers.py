@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -44,14 +44,35 @@ MAGIC, TOKEN, NAME, NOTICE = b"VEHFMU05", 40, 64, 160
 HEADER = len(MAGIC) + TOKEN + 16
 """Bytes before the record: `MAGIC`, token, length, sum."""
 
-PARAMETERS = {
-    "coulomb_friction": "N",
-    "static_friction": "N",
-    "stribeck_velocity": "m/s",
-    "stribeck_exponent": "",
-    "curve_scale": "",
-    "control": "",
-}
+
+class FrictionNumber(NamedTuple):
+    """Tunable number of the friction of a damper."""
+
+    unit: str  # unit; empty for a number
+    field: str  # its field in the record of the law
+    meaning: str  # description in the FMU
+    words: str  # words of its slider on a page
+    usual: float  # usual end of the slider, which is larger for a car with larger values
+
+
+FRICTION = {
+    "coulomb_friction": FrictionNumber("N", "friction_limit", "Coulomb friction Fd", "Coulomb friction", 300.0),
+    "static_friction": FrictionNumber(
+        "N", "static_limit", "static friction Fs of the Stribeck law, must be at least Fd",
+        "static friction (Stribeck)", 400.0,
+    ),
+    "stribeck_velocity": FrictionNumber(
+        "m/s", "stribeck_velocity", "velocity vs of the transition from static to sliding friction (Stribeck law)",
+        "Stribeck velocity", 0.2,
+    ),
+    "stribeck_exponent": FrictionNumber(
+        "", "stribeck_exponent", "exponent of the transition from static to sliding friction (Stribeck law)",
+        "Stribeck exponent", 4.0,
+    ),
+}  # fmt: skip
+"""Tunable numbers of the friction of a damper; all but the first belong to the Stribeck law."""
+
+PARAMETERS = {name: number.unit for name, number in FRICTION.items()} | {"curve_scale": "", "control": ""}
 """Tunable parameters of a damper, with units, in the order of runtime/car.h."""
 
 COMMANDS = {"force": "N", "coefficient": "N s/m"}
@@ -240,13 +261,17 @@ def _inner_nodes(law: Damper) -> tuple[int, int]:
     return whole.index(nodes[0]), whole.index(nodes[-1])
 
 
+def friction_numbers(law: Damper) -> list[str]:
+    """Return the names in `FRICTION` of the friction law of a damper."""
+    return list(FRICTION)[: len(FRICTION) if law.friction_law == "stribeck" else 1]
+
+
 def _parameters(laws: Sequence[Damper]) -> Vector:
     """Return the first values of `PARAMETERS`; (dampers, 6)."""
-    fields = ("friction_limit", "static_limit", "stribeck_velocity", "stribeck_exponent")
     records: list[Any] = [damper_nodes(law)[0] for law in laws]
     return np.array(
         [
-            [*(float(record[field]) for field in fields), 1.0, 1.0 if law.controlled else 0.0]
+            [*(float(record[number.field]) for number in FRICTION.values()), 1.0, 1.0 if law.controlled else 0.0]
             for record, law in zip(records, laws, strict=True)
         ]
     )

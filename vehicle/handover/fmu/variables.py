@@ -8,15 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vehicle.handover.fmu.car_numbers import COMMANDS, PARAMETERS, CarNumbers
+from vehicle.handover.fmu.car_numbers import COMMANDS, FRICTION, PARAMETERS, CarNumbers, friction_numbers
 from vehicle.model.parameters.force_elements import Damper
 
 FIRST_PLATE, FIRST_SLOPE, FIRST_FORCE, FIRST_COMMAND, FIRST_PARAMETER = 100, 5000, 7000, 10000, 20000
 FIRST_OUTPUT = 30000
 """First value references."""
-
-STRIBECK_ONLY = ("static_friction", "stribeck_velocity", "stribeck_exponent")
-"""Parameters of dampers with the Stribeck law alone."""
 
 UNITS = {
     "m": {"m": 1},
@@ -30,10 +27,7 @@ UNITS = {
 """Units of the variables in base units of the SI."""
 
 _MEANING = {
-    "coulomb_friction": "Coulomb friction Fd",
-    "static_friction": "static friction Fs of the Stribeck law, must be at least Fd",
-    "stribeck_velocity": "velocity vs of the transition from static to sliding friction (Stribeck law)",
-    "stribeck_exponent": "exponent of the transition from static to sliding friction (Stribeck law)",
+    **{name: number.meaning for name, number in FRICTION.items()},
     "curve_scale": "factor on the damping curve (without friction and gas); other values than 1 are exact to 0.1 %",
     "control": "1: the control law of the car acts; 0: softest setting, for an external controller that sets the "
     "coefficient command",
@@ -88,10 +82,9 @@ def variables(numbers: CarNumbers, dampers: Sequence[Damper]) -> list[Variable]:
         for part, (quantity, unit) in enumerate(COMMANDS.items()):
             add(FIRST_COMMAND + 2 * i + part, f"{name}_{quantity}_command", quantity, unit)
     for i, (name, law) in enumerate(zip(numbers.dampers, dampers, strict=True)):
+        missing = FRICTION.keys() - friction_numbers(law) | ({"control"} if not law.controlled else set())
         for k, (quantity, unit) in enumerate(PARAMETERS.items()):
-            if (quantity in STRIBECK_ONLY and law.friction_law != "stribeck") or (
-                quantity == "control" and not law.controlled
-            ):
+            if quantity in missing:
                 continue
             start = float(np.asarray(numbers.parameters)[i, k])
             add(FIRST_PARAMETER + len(PARAMETERS) * i + k, f"{name}_{quantity}", quantity, unit, start, "parameter")

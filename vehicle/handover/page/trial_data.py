@@ -20,7 +20,7 @@ from vehicle.engines.reduced.reduced_run import LONGEST_STEP
 from vehicle.engines.reduced.validity import rotating_bodies
 from vehicle.engines.simulation.recorded_acceleration import AHEAD, WEIGHTS
 from vehicle.errors import ConfigurationError
-from vehicle.handover.fmu.car_numbers import PARAMETERS, CarNumbers, numbers_with
+from vehicle.handover.fmu.car_numbers import FRICTION, PARAMETERS, CarNumbers, friction_numbers, numbers_with
 from vehicle.handover.fmu.output_rows import Output, Watched, car_outputs, joined_rows, motion_rows, watched_outputs
 from vehicle.handover.page.car_sets import stepped_sliders
 from vehicle.handover.page.moving_car import moving_picture, picture_rows, turning_parts
@@ -42,14 +42,6 @@ SCALES = (0.25, 4.0)
 
 CURVE_SCALES = (0.6, 2.0)
 """Range of the factor on the damper curve, within which it is exact to 0.1 %."""
-
-FRICTION = {
-    "coulomb_friction": ("Coulomb friction", 300.0),
-    "static_friction": ("static friction (Stribeck)", 400.0),
-    "stribeck_velocity": ("Stribeck velocity", 0.2),
-    "stribeck_exponent": ("Stribeck exponent", 4.0),
-}
-"""Parameters with a slider: words, and usual end of the range, which is larger for a car with larger values."""
 
 WINDOW = 4096
 """Samples of a window of the densities; LINES of trial_worker.js."""
@@ -196,17 +188,14 @@ def _sliders(car: Car, numbers: CarNumbers, road: RunRoad | None) -> list[dict[s
         axles.setdefault(axle_and_side(wheel)[0] if is_wheel(wheel) else damper.name, []).append(index)
     names, values = list(PARAMETERS), np.asarray(numbers.parameters)
     for axle, indices in axles.items():
-        law = dampers[indices[0]].law
-        of_law = FRICTION if law.friction_law == "stribeck" else ["coulomb_friction"]
-        for name in of_law:
-            words, usual = FRICTION[name]
+        for name in friction_numbers(dampers[indices[0]].law):
             value = float(values[indices[0], names.index(name)])
-            high = max(usual, 2.0 * value)
+            high = max(FRICTION[name].usual, 2.0 * value)
             low = 0.0 if name.endswith("friction") else 0.01 * high
             sliders.append(
                 {
                     "id": f"{axle}-{name}",
-                    "words": f"{axle} {words}",
+                    "words": f"{axle} {FRICTION[name].words}",
                     "unit": PARAMETERS[name],
                     "low": low,
                     "high": high,

@@ -24,9 +24,14 @@ def vehicle_file(path: Path | str) -> Path:
     """Return the vehicle file of a car: a path, the file in a folder, or the file of the shipped car of this name.
 
     Raises:
-        ConfigurationError: neither a file, nor the folder of a car, nor a shipped car.
+        ConfigurationError: neither a file, nor the folder of a car, nor a shipped car; or a car of another program.
     """
     path = Path(path)
+    if path.suffix == ".json":
+        raise ConfigurationError(
+            f"{path}: is no vehicle file: read are TOML files of cars, their folders and the names of shipped cars "
+            f"({', '.join(CARS)}), and in a vehicle file property files of Adams Car, for example curve = FILE.dpr"
+        )
     if path.is_dir() and (path / "vehicle.toml").is_file():
         return path / "vehicle.toml"
     if path.suffix or path.exists() or path.name != str(path):

@@ -197,5 +197,5 @@ def check_length(path: Path, claimed: float, available: float, part: str) -> Non
     if claimed < 0 or claimed > available:
         raise DataError(
             f"{path}: {part} states {claimed:.0f} bytes of data, but the file has only {available:.0f}; it "
-            "is truncated or damaged; export it again"
+            "is truncated or damaged: export it again"
         )

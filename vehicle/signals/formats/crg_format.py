@@ -253,7 +253,7 @@ def _table(path: Path, data: bytes, number_format: str, columns: int, rows: int 
         claim = "" if rows is None else f"; its header states {rows} rows"
         raise DataError(
             f"{path}: {len(lines)} lines of numbers, must be {per_row} for each row of {columns} values{claim}; "
-            "the file is truncated or damaged; export it again"
+            "the file is truncated or damaged: export it again"
         )
     cells = []
     for start in range(0, len(lines), per_row):
@@ -263,7 +263,7 @@ def _table(path: Path, data: bytes, number_format: str, columns: int, rows: int 
         if cell_count != columns:
             raise DataError(
                 f"{path}: row {len(cells)} of the numbers has {'more' if cell_count > columns else 'fewer'} than the "
-                f"{columns} numbers of its header; the file is damaged; export it again"
+                f"{columns} numbers of its header; the file is damaged: export it again"
             )
     try:
         numbers = [[np.nan if cell.startswith("*") else float(cell) for cell in row] for row in cells]

@@ -66,7 +66,7 @@ def read(path: Path) -> Measurement:
         claim = f"{samples} samples of " if samples > 0 else ""
         raise DataError(
             f"{path}: contains {values.size} numbers, but the header states {claim}{count} channels; the "
-            "file is truncated or damaged; export it again"
+            "file is truncated or damaged: export it again"
         )
     table = values.reshape(-1, count)
     start = float(keywords["XSTART"]) if "XSTART" in keywords and _is_number(keywords["XSTART"]) else 0.0

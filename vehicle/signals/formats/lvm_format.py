@@ -93,7 +93,7 @@ def _file_header(path: Path, lines: Sequence[str]) -> tuple[dict[str, str], int]
             return header, index + 1
         key, _, value = line.partition("\t") if "\t" in line else line.partition(",")
         header[key.strip()] = value.strip("\t ")
-    raise DataError(f"{path}: the line {END} after the file header is missing; the file is truncated; export it again")
+    raise DataError(f"{path}: the line {END} after the file header is missing; the file is truncated: export it again")
 
 
 def _segments(path: Path, lines: Sequence[str], first: int, separator: str) -> list[_Segment]:
@@ -124,7 +124,7 @@ def _segments(path: Path, lines: Sequence[str], first: int, separator: str) -> l
         else:
             segments[-1].rows.append((index + 1, line))
     if inside or not segments or not segments[-1].rows:
-        raise DataError(f"{path}: no rows of numbers in the last segment; the file is truncated; export it again")
+        raise DataError(f"{path}: no rows of numbers in the last segment; the file is truncated: export it again")
     return segments
 
 

@@ -296,7 +296,7 @@ def _check_elements(path: Path) -> dict[str, str]:
                 objects[named_object[0]] = named_object[1]
             position += 8 + count if data_type == COMPRESSED else 8 + count + -count % 8
         if position != size and size - position > 7:
-            raise DataError(f"{path}: the file ends within an element; it is truncated; save it again")
+            raise DataError(f"{path}: the file ends within an element; it is truncated: save it again")
     return objects
 
 

@@ -280,4 +280,4 @@ def _check_size(path: Path, group: object, size: int) -> None:
         address = getattr(block, "address", 0)
         length = getattr(block, "compressed_size", 0) or 0
         if address + length > size:
-            raise DataError(f"{path}: a data block is beyond the end of the file; it is truncated; export it again")
+            raise DataError(f"{path}: a data block is beyond the end of the file; it is truncated: export it again")

@@ -112,7 +112,7 @@ def _header(path: Path, data: bytes) -> dict[str, str]:
     while index < count:
         record = data[index * RECORD : (index + 1) * RECORD]
         if len(record) < RECORD:
-            raise DataError(f"{path}: the file ends within its header; it is truncated; export it again")
+            raise DataError(f"{path}: the file ends within its header; it is truncated: export it again")
         key, value = (part.split(b"\0")[0].decode("latin-1").strip() for part in (record[:32], record[32:]))
         if key:
             header[key] = value

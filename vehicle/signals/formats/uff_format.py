@@ -39,7 +39,7 @@ def read(path: Path) -> Measurement:
             continue
         end = END.search(data, block.start - 1)
         if end is None:
-            raise DataError(f"{path}: {where} has no end; the file is truncated; export it again")
+            raise DataError(f"{path}: {where} has no end; the file is truncated: export it again")
         lines = data[block.start : end.start()].splitlines()
         if block.number == 164:
             units = read_units(path, where, lines)

@@ -48,7 +48,7 @@ def read_function(path: Path, data: bytes, block: Block, where: str, units: Unit
     """Read a dataset 58: return the channel, its date, and the byte position after the dataset."""
     lines, position = _lines(data, block.start, 11)
     if len(lines) < 11:
-        raise DataError(f"{path}: {where} ends within its header; the file is truncated; export it again")
+        raise DataError(f"{path}: {where} ends within its header; the file is truncated: export it again")
     try:
         nodes = _points(lines[5])
         layout = cells(lines[6], (10, 10, 10, 13, 13, 13))
@@ -182,7 +182,7 @@ def _binary(
     if stated_bytes not in (0, size):
         raise DataError(
             f"{path}: {where}: states {stated_bytes} bytes of data for {shape[0] * shape[1]} numbers of {width} "
-            "bytes; the file is damaged; export it again"
+            "bytes; the file is damaged: export it again"
         )
     tail = data[position + size : position + size + 16].lstrip(b"\r\n ")
     if not tail.startswith(b"-1"):
@@ -200,7 +200,7 @@ def _ascii(path: Path, data: bytes, position: int, where: str, count: int) -> tu
     """Read the numbers of a text dataset; return them and the byte position after the dataset."""
     end = END.search(data, position - 1)
     if end is None:
-        raise DataError(f"{path}: {where} has no end; the file is truncated; export it again")
+        raise DataError(f"{path}: {where} has no end; the file is truncated: export it again")
     body = data[position : end.start()]
     if body.count(b"D") or body.count(b"d"):
         body = D_EXPONENT.sub(b"E", body)

@@ -51,4 +51,4 @@ def _check_chunks(path: Path) -> None:
         if name == b"data":
             return
         position += 8 + size + size % 2
-    raise DataError(f"{path}: contains no data; the file is truncated; export it again")
+    raise DataError(f"{path}: contains no data; the file is truncated: export it again")

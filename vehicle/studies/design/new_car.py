@@ -69,14 +69,13 @@ class NewCar:
 
 
 @one_blas_thread()
-def new_car(name: str, source: Path | str, stated: StatedNumbers, *, scale: bool = True) -> NewCar:
+def new_car(name: str, source: Path | str, stated: StatedNumbers) -> NewCar:
     """Make a new car.
 
     Args:
         name: name of the new car.
         source: template: name of a shipped car, or a vehicle file.
         stated: numbers of the new car; all others are those of its class or of the template, or estimated.
-        scale: False keeps masses, stiffnesses and tyres of axles and powertrain of the template, see `scaled_parts`.
 
     Returns:
         The car, whose numbers are met within `LOADS_MET` and `FREQUENCIES_MET`.
@@ -88,7 +87,7 @@ def new_car(name: str, source: Path | str, stated: StatedNumbers, *, scale: bool
     stated = of_class(stated)
     template = template_car(source)
     template_mass = car_masses(kerb_model(template.table, template)).mass
-    ratio = kerb_mass(stated, template_mass) / template_mass if scale else 1.0
+    ratio = kerb_mass(stated, template_mass) / template_mass
     stated = with_tyre_size(stated, template, ratio)
     engine = powertrain(stated.car_class)
     template = template.with_powertrain(engine)
@@ -109,7 +108,7 @@ def new_car(name: str, source: Path | str, stated: StatedNumbers, *, scale: bool
     table = solved({**table, "name": name, "solver": solver}, template, targets)
     sources |= {"name": "given", **_sources_of_targets(targets, stated, template)}
     car = new_car_of(table, template)
-    checks = checks_of(car, template, stated)
+    checks = _checks_of(car, template, stated)
     _require_met(checks)
     header = (
         f"{name}: made by `python -m vehicle new` from the template {template.name}.\n"
@@ -159,7 +158,7 @@ def _sources_of_targets(targets: list[Target], stated: StatedNumbers, template: 
     return sources
 
 
-def checks_of(car: Car, template: TemplateCar, stated: StatedNumbers) -> tuple[Check, ...]:
+def _checks_of(car: Car, template: TemplateCar, stated: StatedNumbers) -> tuple[Check, ...]:
     """Return all numbers of a car with their stated values."""
     kerb = kerb_model(car.vehicle.table, template)
     whole, loads = car_masses(kerb), axle_loads(kerb, template)

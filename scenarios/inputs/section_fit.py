@@ -1,4 +1,8 @@
-"""Fit of the section factors of the body to published and assumed modal data.
+"""Section factors of a body design, fitted to published and assumed modal data of the trimmed body of Bommer 2006.
+
+python -m scenarios.inputs.section_fit [--design FILE.toml] [--vehicle FILE.toml] [--set PATH=VALUE]
+
+It prints the factors as lines of a design, from which `python -m vehicle body build` makes a body model.
 
 Published for the body: nine modes, the first at 19 Hz and the ninth at 43 Hz, and that a torsion mode couples with the
 vertical wheel mode at 28 Hz. The torsion mode lies below the wheel mode and pushes it up: frequency and amplitude at
@@ -17,17 +21,26 @@ The remaining residuals make the fit unique and have low weights: modes spread o
 above the range, symmetric or antisymmetric modes, no node that moves far more than its surroundings, factors near one.
 """
 
+import argparse
 from collections.abc import Mapping
+from pathlib import Path
 
 import numpy as np
 import scipy
 
 from vehicle.arrays import Vector
+from vehicle.commands.command_line import parse_and_run
+from vehicle.commands.options import message_options, vehicle_options
+from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
-from vehicle.model.flexbody.body_frame import BodyFrame
+from vehicle.model.flexbody.body_design import read_design
+from vehicle.model.flexbody.body_frame import BodyFrame, body_frame
+from vehicle.model.flexbody.body_model import BODY_DESIGN
 from vehicle.model.flexbody.mode_names import global_patterns, modal_assurance
+from vehicle.model.flexbody.node_masses import NodeProperties
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.flexbody.symmetry import mirror_nodes, parity
+from vehicle.runs.car import Car
 
 FIRST_HZ, LAST_HZ = 19.0, 43.0
 """Frequencies of the first and last mode [Hz], published: Bommer 2006, section 3.1.2; first = lowest symmetric mode
@@ -148,3 +161,37 @@ def fit_factors(frame: BodyFrame, start: Mapping[str, float], weights: tuple[flo
             "sections of the design, so that the fit starts nearer."
         )
     return best
+
+
+def parser() -> Parser:
+    """Return the parser of the options."""
+    result = Parser(
+        prog="python -m scenarios.inputs.section_fit",
+        description="Fit the factors of the beam sections of a body design to the published body modes of Bommer 2006 "
+        f"(first {FIRST_HZ:g} Hz, torsion {TORSION_HZ:g} Hz, ninth {LAST_HZ:g} Hz) and print them as lines of a "
+        "design. Takes minutes.",
+    )
+    result.add_argument(
+        "--design", type=Path, default=BODY_DESIGN, metavar="FILE.toml", help="file of the body design; default: focus"
+    )
+    vehicle_options(result)
+    message_options(result)
+    return result
+
+
+def _job(options: argparse.Namespace) -> None:
+    design = read_design(options.design)
+    vehicle = Car.load(options.vehicle, options.overrides).vehicle
+    frame = body_frame(design, vehicle.points, NodeProperties.of_body(vehicle.body, design.least_ixx))
+    factors = fit_factors(frame, dict.fromkeys(design.factors, 1.0), STAGES)
+    for group in design.fitted_groups:
+        print(f"members.{group}.factor = {factors[group]:.5g}")
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command; returns its exit code."""
+    return parse_and_run(parser(), _job, arguments)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
