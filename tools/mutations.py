@@ -74,7 +74,7 @@ FAULTS = (
     Fault("vehicle/runs/report/differences.py", "100.0 * (other / first - 1.0)", "100.0 * (first / other - 1.0)", "runs/report/test_page.py runs/report runs/comparison"),
     Fault("vehicle/runs/comparison/frf_comparison.py", "np.nan_to_num(coherences[0], nan=1.0) * np", "np.nan_to_num(coherences[0], nan=1.0) + 0.0 * np", "runs/comparison/test_weights.py"),
     Fault("vehicle/handover/fmu/output_rows.py", "rate = displacements.poles * model.poles", "rate = displacements.poles * model.poles * 1.01", "handover/fmu/test_against_the_engine.py"),
-    Fault("vehicle/handover/page/trial_data.py", "high = max(usual, 2.0 * value)", "high = max(usual, 0.5 * value)", "runs/report"),
+    Fault("vehicle/handover/page/trial_data.py", "high = max(FRICTION[name].usual, 2.0 * value)", "high = max(FRICTION[name].usual, 0.5 * value)", "runs/report"),
     # studies, commands, scenarios
     Fault("vehicle/studies/tuning/frf_target.py", "np.exp(-2j * np.pi * delays[:, None] * frequency)", "np.exp(2j * np.pi * delays[:, None] * frequency)", "studies/tuning"),
     Fault("vehicle/studies/optimisation/front.py", "np.all(costs[kept] <= costs[row], axis=1)", "np.any(costs[kept] <= costs[row], axis=1)", "studies/optimisation/test_front.py"),
