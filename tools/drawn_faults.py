@@ -24,7 +24,7 @@ from tools.mutations import ROOT, Fault, tried
 
 PACKAGES = (
     *("vehicle/signals", "vehicle/model", "vehicle/engines", "vehicle/core", "vehicle/drawing"),
-    *("vehicle/runs", "vehicle/handover", "vehicle/studies", "vehicle/commands", "scenarios"),
+    *("vehicle/runs", "vehicle/handover", "vehicle/studies", "vehicle/commands"),
 )
 """Folders from which faults are drawn, the same number from each."""
 
@@ -124,8 +124,7 @@ def tests_of(file: str) -> str:
         if direct.search(path.read_text(encoding="utf-8"))
         and not is_rest(path.relative_to(tests).as_posix(), renders=False)
     ]
-    folder = Path(file).parent
-    folder = folder if folder.parts[0] == "scenarios" else folder.relative_to("vehicle")
+    folder = Path(file).parent.relative_to("vehicle")
     while not (tests / folder).is_dir():
         folder = folder.parent
     return " ".join([*found, folder.as_posix()])

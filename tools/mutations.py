@@ -2,8 +2,8 @@
 
     python tools/mutations.py [NUMBER ...] [--list]
 
-A fault is one changed text of one file. It is written, the named tests run up to the first failure, and the file is
-restored, also after Ctrl-C. Run it in a checkout without changes of your own: a fault is read by whoever reads the file
+A fault is one changed text of one file. It is written, those of the named tests that `make test` runs are run up to the
+first failure, and the file is restored, also after Ctrl-C. Run it in a checkout without changes of your own: a fault is read by whoever reads the file
 meanwhile. The exit code is 1 if a fault survives, or if its text is no longer there once.
 
 All 44 are caught: 26 by the tests that were there when they were seeded. 18 survived at first; tests were written for
@@ -116,6 +116,7 @@ def tried(fault: Fault) -> str:
     if text.count(fault.old) != 1:
         return f"not tried: its text stands {text.count(fault.old)} times in the file"
     command = [sys.executable, "-m", "pytest", "-q", "-x", "-n", "0", "-p", "no:cacheprovider", "--tb=no"]
+    command += ["--part", "product"]
     try:
         path.write_text(text.replace(fault.old, fault.new), encoding="utf-8")
         done = subprocess.run(
