@@ -3,8 +3,8 @@
     python tools/mutations.py [NUMBER ...] [--list]
 
 A fault is one changed text of one file. It is written, those of the named tests that `make test` runs are run up to the
-first failure, and the file is restored, also after Ctrl-C. Run it in a checkout without changes of your own: a fault is read by whoever reads the file
-meanwhile. The exit code is 1 if a fault survives, or if its text is no longer there once.
+first failure, and the file is restored, also after Ctrl-C. Run it in a checkout without changes of your own: a fault is
+read by whoever reads the file meanwhile. The exit code is 1 if a fault survives, or if its text is no longer there once.
 
 All 44 are caught: 26 by the tests that were there when they were seeded. 18 survived at first; tests were written for
 them, and two that were too small to matter were made larger. Try a fault whose tests do not end within `LONGEST_S` on
