@@ -1,5 +1,6 @@
 # make shaker   set everything up and run the main job with a film
-# make test     set everything up, check and test
+# make test     set everything up, check and test the product
+# make test-all make test, then the rest: studies of the sources, pages of the documentation, films
 # make check    format, lint and types only
 # make studies  the studies of the sources, whole (hours) -> docs/published-results.md
 # make faults   every system call of every command fails once (hours) -> docs/faults.md
@@ -16,7 +17,7 @@ BIN := $(VENV)/bin
 INPUT ?= low.csv
 export OMP_NUM_THREADS ?= 1
 
-.PHONY: shaker test check core core-sanitize studies faults docs course setup setup-tests tools mjcf benchmark lowest laptop test-windows clean
+.PHONY: shaker test test-all check core core-sanitize studies faults docs course setup setup-tests tools mjcf benchmark lowest laptop test-windows clean
 
 shaker: setup
 	@if $(BIN)/python -m vehicle.drawing.rendering.backend; then \
@@ -26,8 +27,13 @@ shaker: setup
 	  $(BIN)/python -m vehicle.shaker --input $(INPUT) --report --force; \
 	fi
 
+PYTEST := $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
+
 test: setup-tests .stamps/for-tests check
-	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
+	$(PYTEST) --part product
+
+test-all: test
+	$(PYTEST) --part rest
 
 check: setup-tests
 	$(BIN)/ruff format --check .

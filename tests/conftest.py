@@ -5,9 +5,13 @@ import os
 import shutil
 import tempfile
 
+# As in the Makefile, before numpy is imported: threads of small matrices only wait for each other.
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
 import pytest
 
-from tests.advice import LARGEST, run_advice
+from tests.parts import PARTS, is_rest
+from tests.processor_time import ProcessorTime, known
 from tests.shared_cars import share_cars
 from tests.undrawn import leave_out_drawings
 from tests.validation_page import check_page
@@ -15,15 +19,6 @@ from vehicle.runs.car import Car, Run
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.excitation.signal_file import read_signal
-
-LONGEST = (
-    *("documentation/test_pages", "studies/design/test_scaled_parts", "studies/sweeps/test_sweep"),
-    *("runs/report/test_trial", "studies/design/test_new_car", "runs/car/test_motion_figures"),
-    *("scenarios/test_quarter_car", "scenarios/test_tuning", "system/test_shaker_command"),
-    *("handover/bench/test_state", "documentation/test_site", "documentation/test_doctests"),
-    *("studies/tuning/test_posterior", "system/test_installation", "benchmarks/test_speed"),
-)
-"""Modules of tests that take the longest; two workers that begin with them end at about the same time."""
 
 
 class PresentTest:
@@ -49,14 +44,37 @@ class PresentTest:
             self.node = asking
 
 
-def pytest_collection_modifyitems(items):
-    """Begin with the longest modules."""
-    order = {f"tests/{name}.py": place for place, name in enumerate(LONGEST)}
-    items.sort(key=lambda item: order.get(item.nodeid.partition("::")[0], len(order)))
+def pytest_addoption(parser):
+    """Add the options of the suite."""
+    group = parser.getgroup("vehicle")
+    group.addoption("--part", choices=PARTS, help="part of the suite (default: product; with paths: all of them)")
+    group.addoption("--processor-time", action="store_true", help="print and write the time of folders and modules")
+
+
+def pytest_collection_modifyitems(config, items):
+    """Take the tests of a part, and begin with the longest modules."""
+    chosen: list[pytest.Item] = []
+    others: list[pytest.Item] = []
+    for item in items:
+        rest = is_rest(item.nodeid.removeprefix("tests/"), renders=item.get_closest_marker("render") is not None)
+        (chosen if config.option.part in ("all", "rest" if rest else "product") else others).append(item)
+    items[:] = sorted(chosen, key=lambda item: -known().get(module_of(item.nodeid), 0.0))
+    if others:
+        config.hook.pytest_deselected(items=others)
+
+
+def module_of(node: str) -> str:
+    """Return the path of the module of a test, relative to tests/."""
+    return node.partition("::")[0].removeprefix("tests/")
 
 
 def pytest_configure(config):
     """Draw figures only where a test looks at them; build equal cars once; keep the user's list of trusted code."""
+    # Workers get the option, and the paths as if they had been named.
+    named = config.args_source is not pytest.Config.ArgsSource.TESTPATHS
+    config.option.part = config.option.part or ("all" if named else "product")
+    if config.option.processor_time:
+        config.pluginmanager.register(ProcessorTime(), "processor time")
     # Not a TemporaryDirectory: a forked process would remove it at its end.
     folder = tempfile.mkdtemp(prefix="configuration-")
     config.add_cleanup(lambda: shutil.rmtree(folder, ignore_errors=True))
@@ -84,35 +102,6 @@ def pytest_runtest_call(item):
         raise
     check_page(item.nodeid)
     return result
-
-
-ADVISED = (
-    *("signals/formats", "signals/records", "signals/excitation", "commands", "runs/comparison"),
-    *("studies/mounts", "studies/replication", "studies/tuning"),
-    *("system/test_bad_inputs", "system/test_lost_files", "system/test_no_traceback", "system/test_road_run"),
-)
-"""Folders and modules of tests whose record files are those of users: `inspect` advises a command that accepts each of
-them."""
-
-_SEEN: set[tuple[str, int, bytes]] = set()
-
-
-@pytest.fixture(autouse=True)
-def _advice_is_accepted(request, tmp_path_factory):
-    """Run the commands that `inspect` advises for the files that a test leaves in its folder, each file once."""
-    files = request.node.path.relative_to(request.config.rootpath / "tests").as_posix()
-    if not files.startswith(ADVISED) or "tmp_path" not in request.fixturenames:
-        yield
-        return
-    folder = request.getfixturevalue("tmp_path")
-    yield
-    for file in sorted(folder.glob("*.*")):
-        if not file.is_file() or not 0 < file.stat().st_size < LARGEST:
-            continue
-        identity = (file.suffix, file.stat().st_size, file.read_bytes()[-4000:])
-        if identity not in _SEEN:
-            _SEEN.add(identity)
-            run_advice(file, tmp_path_factory.mktemp("advice"), whole=False)
 
 
 @pytest.fixture(scope="session")

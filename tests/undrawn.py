@@ -14,7 +14,12 @@ from pathlib import Path
 from typing import Any
 
 UNDRAWN = (
-    *("tests/commands/", "tests/documentation/test_pages", "tests/documentation/test_doctests", "tests/handover/"),
+    *(
+        "tests/commands/",
+        "tests/documentation/test_executed_pages",
+        "tests/documentation/test_doctests",
+        "tests/handover/",
+    ),
     *("tests/runs/", "tests/scenarios/", "tests/signals/", "tests/studies/", "tests/system/"),
 )
 """Folders and modules of tests that do not look at their figures."""

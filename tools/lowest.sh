@@ -4,7 +4,7 @@
 set -euo pipefail
 python=$1
 venv=$2
-smoke=(tests/documentation/test_pages.py::'test_a_page_runs_and_prints_what_it_shows[docs/tutorials/first-run.md]'
+smoke=(tests/documentation/test_executed_pages.py::'test_a_page_runs_and_prints_what_it_shows[docs/tutorials/first-run.md]'
   tests/engines/simulation/test_native.py tests/model/assembly/test_joints.py tests/studies/sweeps/test_case_evaluation.py
   tests/signals/analysis/test_frf.py tests/signals/analysis/test_weighting.py tests/runs/report/test_templates.py
   tests/runs/report/test_page.py tests/drawing/rendering/test_backend.py tests/drawing/rendering/test_film.py

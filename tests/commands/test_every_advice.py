@@ -1,33 +1,35 @@
-"""Every command that `inspect` advises runs: files of users, of other programs, and with each fault of a record.
+"""Every command that `inspect` advises runs: files of users, of other programs, and with each fault of a record."""
 
-The files that other tests make are checked where they are made, see `tests/conftest.py`.
-"""
-
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from tests.advice import advised, run_advice
+from tests.failing_inputs import DATABASES, MAKERS, made
 from tests.signals.formats import logger_files
+from tests.signals.formats.test_refused_without_need import crg
 from vehicle.signals.excitation.input_files import find_input
+from vehicle.signals.formats import hdf_format, matlab_format, mdf_format, rpc_format, uff_writer
+from vehicle.signals.formats.channel import Channel
 
 ROOT = Path(__file__).resolve().parents[2]
-OUTSIDE = sorted(
-    path
-    for folder in (ROOT / "tests" / "data" / "uff", ROOT.parent / "shared" / "data" / "failing-inputs")
-    for path in (folder.iterdir() if folder.is_dir() else ())
-    if path.suffix not in (".md", ".dbc", "")
-)
+FOREIGN = sorted(path for path in (ROOT / "tests" / "data" / "uff").iterdir() if path.suffix)
 TEXTS = sorted(name for name, value in vars(logger_files).items() if name.isupper() and isinstance(value, str))
 TIME = np.arange(3000) / 100.0
 SINE = np.sin(2 * np.pi * 2.0 * TIME) * np.clip(TIME, 0.0, 1.0)
 
 
-@pytest.mark.parametrize("path", OUTSIDE, ids=lambda path: path.name)
+@pytest.mark.parametrize("path", FOREIGN, ids=lambda path: path.name)
 def test_files_of_other_programs(path, tmp_path):
-    database = path.parent / "imu.dbc"
-    run_advice(path, tmp_path, *(["--dbc", str(database)] if path.name.endswith("bus.log") else []))
+    run_advice(path, tmp_path)
+
+
+@pytest.mark.parametrize("name", MAKERS)
+def test_files_that_once_gave_wrong_numbers(name, tmp_path):
+    path = made(name, tmp_path)
+    run_advice(path, tmp_path, *(["--dbc", str(tmp_path / "car.dbc")] if name in DATABASES else []))
 
 
 @pytest.mark.parametrize("name", TEXTS)
@@ -40,6 +42,83 @@ def test_files_of_loggers(name, tmp_path):
 @pytest.mark.parametrize("name", ["bump_1p5mm.csv", "low.csv"])
 def test_shipped_inputs(name, tmp_path):
     assert run_advice(find_input(name), tmp_path) == ["shaker"]
+
+
+RECORDS = {
+    "seat": ("comfort", {"Seat Z": ("m/s2", 1.0)}),
+    "plate": ("shaker", {"Shaker FL": ("m", 2e-3)}),
+    "rig": ("shaker compare", {"Shaker FL": ("m", 2e-3), "Hub FL z": ("m/s2", 1.0)}),
+}
+"""Record to the advised commands, and to unit and level of each channel."""
+
+
+def with_tdms(path, channels, _):
+    nptdms = pytest.importorskip("nptdms")
+    clock = {"wf_increment": 0.01, "wf_start_offset": 0.0}
+    with nptdms.TdmsWriter(path) as writer:
+        writer.write_segment(
+            [nptdms.ChannelObject("g", one.name, one.values, {**clock, "unit_string": one.unit}) for one in channels]
+        )
+
+
+def with_parquet(path, channels, _):
+    arrow, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
+    parquet.write_table(
+        arrow.table({"time [s]": TIME, **{f"{one.name} [{one.unit}]": one.values for one in channels}}), path
+    )
+
+
+def with_sheet(path, channels, _):
+    book = pytest.importorskip("openpyxl").Workbook()
+    book.active.append(["time [s]", *(f"{one.name} [{one.unit}]" for one in channels)])
+    for row in np.column_stack([TIME, *(one.values for one in channels)]).tolist():
+        book.active.append(row)
+    book.save(path)
+
+
+def with_text(path, channels, _):
+    heads = ",".join(["time [s]", *(f"{one.name} [{one.unit}]" for one in channels)])
+    np.savetxt(path, np.column_stack([TIME, *(one.values for one in channels)]), "%.6f", ",", header=heads, comments="")
+
+
+WRITERS: dict[str, Callable[..., None]] = {
+    "csv": with_text, "h5": hdf_format.write, "mat": matlab_format.write, "mf4": mdf_format.write,
+    "parquet": with_parquet, "rsp": rpc_format.write, "tdms": with_tdms, "uff": uff_writer.write, "xlsx": with_sheet,
+}  # fmt: skip
+"""Suffix of a format to a function of path, channels and a description that writes it."""
+
+
+@pytest.mark.parametrize("record", RECORDS)
+@pytest.mark.parametrize("suffix", WRITERS)
+def test_a_record_in_each_format(suffix, record, tmp_path):
+    advice, channels = RECORDS[record]
+    path = tmp_path / f"record.{suffix}"
+    made = [Channel(name=name, values=level * SINE, unit=unit, axis=TIME) for name, (unit, level) in channels.items()]
+    WRITERS[suffix](path, tuple(made), "a record")
+    assert run_advice(path, tmp_path) == advice.split()
+
+
+EMPTY = [""] * 1500
+PAIRS = (TIME, SINE, [*TIME[::2], *EMPTY], [*SINE[::2], *EMPTY])
+MARKED = (TIME, SINE, ["0", "1", *["run"] * 2998])
+TABLES = {
+    # heads, cells, advised commands
+    "pairs of times": ("Time [s],Seat Z [m/s2],Time [s],Rail Z [m/s2]", PAIRS, ["comfort"]),
+    "texts in another column": ("Time [s],Seat Z [m/s2],Marker [mm]", MARKED, ["comfort"]),
+    "a title above the head": ("Rig 7\ntime [s],displacement_fl [m]", (TIME, 1e-3 * SINE), ["shaker"]),
+}
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_tables_of_users(name, tmp_path):
+    heads, cells, commands = TABLES[name]
+    path = tmp_path / "table.csv"
+    path.write_text("\n".join([heads, *(",".join(map(str, row)) for row in zip(*cells, strict=True)), ""]))
+    assert run_advice(path, tmp_path) == commands
+
+
+def test_a_road_in_crg(tmp_path):
+    assert run_advice(crg(tmp_path / "road.crg", (0.0, 0.02)), tmp_path) == ["shaker"]
 
 
 def swapped():

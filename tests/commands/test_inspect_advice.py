@@ -63,7 +63,7 @@ def test_plate_and_accelerations_of_one_file_give_the_comparison(tmp_path, capsy
 
 
 def test_the_comparison_of_a_file_of_many_channels_is_short(tmp_path, capsys):
-    """Of 61 channels 25 fit the car; the command has plates and vertical accelerations (it runs at the teardown)."""
+    """Of 61 channels 25 fit the car; the command has plates and vertical accelerations, and runs."""
     time = np.arange(3600) / 400.0
     points = [*(f"Hub {wheel}" for wheel in ("VL", "VR", "HL", "HR")), "Motor", "Fahrersitz", "Sitzschiene"]
     names = [f"Stempel {wheel}" for wheel in ("VL", "VR", "HL", "HR")] + [
@@ -78,6 +78,7 @@ def test_the_comparison_of_a_file_of_many_channels_is_short(tmp_path, capsys):
     mapped = [word.split("=") for word in shlex.split(line) if "=" in word]
     assert len(mapped) == 10 and sum(model.startswith("plate_") for model, _ in mapped) == 4
     assert {name.removesuffix(" z") for model, name in mapped if model.endswith("_z")} == {*points} - {"Motor"}
+    assert run_advice(tmp_path / "a.csv", tmp_path) == ["shaker", "compare"]
     assert inspect([str(tmp_path / "a.csv"), "--json"]) == 0
     assert len(json.loads(capsys.readouterr().out)["comparison_left_out"]) == 15
 

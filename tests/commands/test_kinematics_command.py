@@ -49,27 +49,6 @@ def test_files(tmp_path, capsys):
     assert main([*arguments, "--force"]) == 0
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["--axle", "middle"], "--axle 'middle': is not an axle with wheels; choose from front"),
-        (["--axle", "rear"], "--axle 'rear': is not an axle with wheels"),
-        (["--travel", "50:10"], "--travel '50:10': must be A:B or A:B:STEP [mm]"),
-        (["--travel", "a:b"], "--travel 'a:b': must be A:B"),
-        (["--travel", "0:100:0.001"], "gives 100001 positions, must be at most 2001"),
-        (["--contact-force", "w=1"], "--contact-force 'w=1': must be AXIS=VALUE"),
-        (["--force", "w=1"], "set a force on the wheels with --contact-force"),
-        (["--replace"], "use --force to replace files"),
-        (["--force"], "--force: belongs to --output DIR"),
-        (["--moment", "x=nan"], "--moment 'x=nan': must be AXIS=VALUE"),
-        (["--ideal", "--contact-force", "x=1"], "--contact-force: belongs to elastic bushings"),
-    ],
-)
-def test_refusals(arguments, message, capsys):
-    assert main(arguments) == 2
-    assert message in capsys.readouterr().err
-
-
 def test_too_much_travel_is_no_position(capsys):
     assert main(["--ideal", "--travel=0:600:100"]) == 4
     assert "axle: " in capsys.readouterr().err

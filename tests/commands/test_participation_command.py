@@ -43,21 +43,3 @@ def test_tables_and_files_say_the_same(tmp_path, capsys):
         "what drives mode 2 (torsion), 25.48 Hz: share of each attachment in the force on this mode\n  +74.4 % "
         " suspension_mou"
     ) in printed
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    {
-        "frequency": (["--at", "-3"], "--at -3: must be above 0"),
-        "wheel": (["--wheel", "rr"], "wheel rr"),
-        "place": (
-            ["--response", "seat_rail"],
-            "channel seat_rail: must be an acceleration of the body: suspension_mount",
-        ),
-        "mode": (["--mode", "10"], "--mode 10: must be 1 to 9, the modes of this body"),
-        "rigid": (["--vehicle", "sedan"], "sedan: the body is rigid, so it has no modes; set body.flexible = true"),
-    }.values(),
-)
-def test_refusals(options, message, capsys):
-    assert main(["participation", *options]) == 2
-    assert message in capsys.readouterr().err

@@ -77,34 +77,6 @@ def test_modes_at_a_speed(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        (["--input", "low.csv", "--tyre", "rolling"], "--tyre: belongs to a road"),
-        (
-            [*ROAD, "--tyre", "standing", "--set", "driving.speed=20", "--vehicle", "sedan"],
-            "--tyre standing and --set driving.speed",
-        ),
-        (
-            [*ROAD, "--vehicle", "sedan", "--set", "driving.speed=1"],
-            "driving.speed=1: the speed of the car is given twice, also by the road with 72 km/h of --speed, 20 m/s",
-        ),
-        ([*ROAD, "--rpm", "800", "--set", "crank.rpm=900"], "--rpm and --set crank.rpm=900: both set crank.rpm; leave"),
-        (
-            [*ROAD[:6], "--timestep", "1e-3", "--set", "timestep=5e-4"],
-            "--timestep and --set timestep=5e-4: both set solver.",
-        ),
-        ([*ROAD, "--no-forces", "--set", "apply_forces=true"], "--no-forces and --set apply_forces=true: both set"),
-        ([*ROAD, "--tyre", "rolling"], "also stands on the ground without wheels"),
-    ],
-)
-def test_what_does_not_go_together_is_refused(
-    words: list[str], message: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
-    assert shaker.main([*words, "--output", str(tmp_path / "out")]) == 2
-    assert message in capsys.readouterr().err
-
-
-@pytest.mark.parametrize(
     ("command", "words"),
     [
         (modes, ["--vehicle", "sedan", "--speed", "80"]),

@@ -43,19 +43,3 @@ def test_search(capsys):
     assert lines[1].startswith("rear.damper.coulomb_friction     40")
     assert main(["sedan", "--search", "--json"]) == 0
     assert len(json.loads(capsys.readouterr().out)) > 200
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["sedan", "--search", "nowhere"], "no parameter of sedan contains 'nowhere' in its path"),
-        (["sedan", "--search", "mass", "--output", "x"], "--search and --output exclude each other"),
-        (["--vehicle", "sedan"], "--vehicle is not an option here; name the car first"),
-        (["lorry"], "lorry: is neither a file nor a shipped car"),
-        (["lorry.json"], "lorry.json: is no vehicle file: read are TOML files of cars"),
-        (["sedan", "--force"], "--force: belongs to --output DIR"),
-    ],
-)
-def test_refusals(arguments, message, capsys):
-    assert main(arguments) == 2
-    assert message in capsys.readouterr().err

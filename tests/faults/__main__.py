@@ -41,7 +41,7 @@ between them: these are the "different" ones. "Cases" are those that were made t
 calls, they have equal distances. The next command is run once for all cases of a command that leave the same names,
 lists and journals.
 
-`make faults` runs all different calls and writes this page; `make test` runs a sample. Rows with a `*` are of an
+`make faults` runs all different calls and writes this page; `make test-all` runs a sample. Rows with a `*` are of an
 earlier run of the page; where the column "some of each" is empty, of a version that moved all files after a kill.
 """
 

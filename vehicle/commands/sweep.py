@@ -158,14 +158,14 @@ def _design(options: argparse.Namespace) -> Design:
             "--sobol: needs --vary PATH=LOW:HIGH, and has no report; leave out --table and --report"
         )
     vary = tuple(options.vary)
-    design: Design = options.cases
+    if options.cases is not None:
+        listed: CaseFile = options.cases
+        return listed
     if options.each is not None:
-        design = SingleChanges(vary, *options.each)
-    elif options.sobol is not None:
-        design = SobolSample(vary, options.sobol)
-    elif design is None:
-        design = VariationTable(options.table) if options.table else EveryCombination(vary)
-    return design
+        return SingleChanges(vary, *options.each)
+    if options.sobol is not None:
+        return SobolSample(vary, options.sobol)
+    return VariationTable(options.table) if options.table else EveryCombination(vary)
 
 
 def _job(study: SweepStudy, console: Console) -> None:

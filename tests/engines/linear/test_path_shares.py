@@ -57,7 +57,7 @@ def test_forces_of_the_attachments_are_all_that_moves_the_body(name):
     """Newton's law of the body, rigid or flexible, holds with the forces alone."""
     car = without_moments(name)
     for damper in ("stuck", "sliding"):
-        for mode in modes_of(car, damper):
+        for mode in modes_of(car, damper)[::4]:
             forces = np.abs(shares_of(car, mode, damper).forces)
             straight = [0, 1, 2, *range(6, forces.shape[1])]
             assert forces[-1][straight].max() < 1e-6 * forces[:-1].max()

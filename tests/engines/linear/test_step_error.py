@@ -60,10 +60,10 @@ def test_the_part_and_the_step_are_named(case):
         require_accurate_step(car.model, car.matrices)
     step = f"{car.vehicle.solver.timestep:g}"
     assert re.match(rf"solver\.timestep: found {step} s, {expected}", str(caught.value)), str(caught.value)
-    advice = re.search(r"give (solver\.timestep=[0-9.e-]+)", str(caught.value))
-    if advice:
-        better = Car.load(None, [*settings, advice.group(1).rstrip(".")])
-        require_accurate_step(better.model, better.matrices)
+    advice = re.search(r"set (solver\.timestep=[0-9.e-]+[0-9])", str(caught.value))
+    assert advice
+    better = Car.load(None, [*settings, advice.group(1)])
+    require_accurate_step(better.model, better.matrices)
 
 
 def test_the_reduced_engine_does_not_depend_on_the_step(high_piece):

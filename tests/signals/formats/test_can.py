@@ -6,7 +6,8 @@ import re
 import numpy as np
 import pytest
 
-from tests.failing_inputs import FAILING, beside_the_project
+from tests.failing_inputs import SEAT as SEAT_Z
+from tests.failing_inputs import WITH_VALUES, comfort_of_seat, made
 from tests.signals.formats.can_logs import CONTAINERS, Frame, asc, mf4, write_log
 from tests.validation import validated
 from vehicle.commands.comfort import main as comfort
@@ -39,44 +40,41 @@ def times(channel):
     return channel.axis
 
 
-def weighted(name, database, channels):
-    choice = Choice(channels=channels, databases=(FAILING / database,))
-    return evaluate_comfort(FAILING / name, choice=choice).weighted_rms
+def weighted(path, channels):
+    choice = Choice(channels=channels, databases=(path.parent / "car.dbc",))
+    return evaluate_comfort(path, choice=choice).weighted_rms
 
 
-@beside_the_project
-def test_a_value_table_names_raw_values_and_keeps_factor_and_offset():
-    with_table = weighted("one_bus.log", "imu_with_val.dbc", SEAT)
-    assert with_table == weighted("one_bus.log", "imu.dbc", SEAT)
+def test_a_value_table_names_raw_values_and_keeps_factor_and_offset(tmp_path):
+    path = made("one_bus.log", tmp_path)
+    plain = weighted(path, SEAT)
+    (tmp_path / "car.dbc").write_text(WITH_VALUES)
+    with_table = weighted(path, SEAT)
+    assert with_table == plain
     validated(
-        "File readers", "weighted RMS along z of a CAN log whose database has a value table", with_table["z"], 0.2696,
-        abs=5e-5, unit="m/s2", source="second derivation: the record from which the log was made",
+        "File readers", "weighted RMS along z of a CAN log whose database has a value table", with_table["z"],
+        comfort_of_seat(tmp_path), rel=1e-9, unit="m/s2",
+        source="second derivation: the record from which the log was made",
     )  # fmt: skip
 
 
-@beside_the_project
-def test_two_buses_are_two_channels(capsys):
-    first = weighted("two_buses.log", "imu.dbc", {axis: f"{name} can0" for axis, name in SEAT.items()})
-    assert first["z"] == pytest.approx(0.2696, abs=5e-5)
-    channels = {one.name: one for one in read_record(FAILING / "two_buses.log", [FAILING / "imu.dbc"]).channels}
-    lines = (FAILING / "two_buses.log").read_text().splitlines()
-    payloads = [bytes.fromhex(line.partition("#")[2]) for line in lines if " can1 " in line]
-    z = [0.05 * int.from_bytes(data[4:], "little", signed=True) for data in payloads]
-    np.testing.assert_allclose(channels["Seat_Z can1"].values, z)
-    ratio = np.std(z) / np.std(channels["Seat_Z can0"].values)
-    assert ratio == pytest.approx(10.0, rel=0.01)  # two made signals, ten times apart within their factor of 0.05
-    arguments = ["--input", str(FAILING / "two_buses.log"), "--dbc", str(FAILING / "imu.dbc"), "--channel", "z=Seat_Z"]
-    assert comfort(arguments) == 3
+def test_two_buses_are_two_channels(tmp_path, capsys):
+    path = made("two_buses.log", tmp_path)
+    first = weighted(path, {axis: f"{name} can0" for axis, name in SEAT.items()})
+    assert first["z"] == pytest.approx(comfort_of_seat(tmp_path), rel=1e-9)
+    channels = {one.name: one for one in read_record(path, [tmp_path / "car.dbc"]).channels}
+    for factor, bus in ((1, "can0"), (10, "can1")):
+        np.testing.assert_allclose(channels[f"Seat_Z {bus}"].values, factor * SEAT_Z, atol=1e-12)
+    assert comfort(["--input", str(path), "--dbc", str(tmp_path / "car.dbc"), "--channel", "z=Seat_Z"]) == 3
     assert "'Seat_Z can0'" in (said := capsys.readouterr().err) and "'Seat_Z can1'" in said
 
 
-@beside_the_project
-def test_frames_of_can_fd_are_read():
-    found = read_record(FAILING / "fd.log", [FAILING / "fd.dbc"])
+def test_frames_of_can_fd_are_read(tmp_path):
+    found = read_record(made("fd.log", tmp_path), [tmp_path / "car.dbc"])
     channels = {one.name: one for one in found.channels}
     np.testing.assert_array_equal(channels["Seat_Z"].values, channels["Seat_X"].values)
     assert channels["Seat_Z"].values.size == 750 and channels["Seat_Z"].rate == pytest.approx(100.0)
-    assert "log of a CAN bus: 1500 frames, 1500 decoded by fd.dbc" in found.notices
+    assert "log of a CAN bus: 1500 frames, 1500 decoded by car.dbc" in found.notices
 
 
 def frames(classic):
