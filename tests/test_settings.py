@@ -50,9 +50,7 @@ NUMBERS = {
 UNLIMITED = {"--from", "--to"}
 """Options without limits: a time of a file may be negative."""
 
-LIMITED_LATER = {"--time-limit", "--samples", "--quantile", "--spacing", "--window", "--averages", "--lowpass"} | {
-    *("--levels", "--discrepancy")
-}
+LIMITED_LATER = {"--samples", "--levels"}
 """Options of studies whose limits depend on other values, and are checked with them."""
 
 

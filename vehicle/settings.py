@@ -7,6 +7,7 @@ documentation (`with_settings`).
 
 import inspect
 import math
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import field, fields
 from functools import update_wrapper
@@ -89,7 +90,9 @@ class Settings:
             for each in value if isinstance(value, tuple) else (value,):
                 if isinstance(each, int | float) and not isinstance(each, bool):
                     number = each if declared["factor"] == 1.0 else each / declared["factor"]
-                    require_within(declared["flag"], number, declared["within"] or FINITE, declared["factor"])
+                    require_within(
+                        declared["flag"], number, declared["within"] or FINITE, declared["factor"], _unit(declared)
+                    )
 
     def given(self, *, without: tuple[str, ...] = ()) -> dict[str, Any]:
         """Return the settings that are not left at their default, by name.
@@ -104,7 +107,14 @@ class Settings:
         }
 
 
-def require_within(flag: str, number: float, within: str, factor: float = 1.0) -> None:
+def _unit(declared: Mapping[str, Any]) -> str:
+    """Return the unit in the brackets of a declaration, as "Hz" of "frequency [Hz]"; empty without one."""
+    texts = (declared["option"].get("help", ""), declared["meaning"])
+    found = next((found for text in texts if (found := re.search(r"\[([^\]]+)\]", text))), None)
+    return found[1] if found and found[1] != "-" else ""
+
+
+def require_within(flag: str, number: float, within: str, factor: float = 1.0, unit: str = "") -> None:
     """Check a number of an option.
 
     Args:
@@ -112,6 +122,7 @@ def require_within(flag: str, number: float, within: str, factor: float = 1.0) -
         number: value of the option.
         within: interval, see `setting`.
         factor: 0.01 for a percentage.
+        unit: unit of the interval, for the message.
 
     Raises:
         ConfigurationError: the number is outside.
@@ -131,6 +142,8 @@ def require_within(flag: str, number: float, within: str, factor: float = 1.0) -
             allowed += " and finite"
         elif high != "inf":
             allowed += f"{'' if opened else ','} and {'up to' if closed else 'below'} {high}"
+    if unit and factor == 1.0 and within != FINITE:
+        allowed = allowed.replace(f" {low}", f" {low} {unit}", 1) if high == "inf" else f"{allowed} {unit}"
     text = str(number) if isinstance(number, int) else f"{number:g}"
     raise ConfigurationError(f"{flag} {text}{'' if factor == 1.0 else ' %'}: must be {allowed}")
 

@@ -116,7 +116,7 @@ def test_a_record_contains_its_plate(tmp_path):
     # What is left of the start at rest: sticking is remembered longer than two seconds at single instants.
     assert isinstance(entry.target, RecordTarget)
     assert np.sqrt(np.mean(entry.target.residuals(Car.load()) ** 2)) < 0.02
-    with pytest.raises(ConfigurationError, match="found a low-pass of 0 Hz, must be above 0"):
+    with pytest.raises(ConfigurationError, match="--lowpass 0: must be above 0 Hz"):
         measured_histories(Car.load(), file, None, names, lowpass=0.0)
     with pytest.raises(ConfigurationError, match="this record contains its plate"):
         measured_histories(Car.load(), file, None, names, delay=0.1)

@@ -199,11 +199,9 @@ def _quantile_and_samples(quantile: float | None, samples: int | None) -> tuple[
     """Return the quantile, NaN for the mean, and the number of cars within the tolerances for each car tried.
 
     Raises:
-        ConfigurationError: the quantile is out of range, or there are too few cars for the quantile.
+        ConfigurationError: there are too few cars for the quantile.
     """
     chosen = math.nan if quantile is None else quantile
-    if quantile is not None and not 0.5 <= chosen <= 1.0:
-        raise ConfigurationError(f"--quantile {chosen:g}: must be 0.5 to below 1, or 1 for the worst car")
     needed = samples_for(chosen) if chosen < 1.0 else 2
     if samples is None:
         return chosen, max(8, needed)

@@ -64,6 +64,7 @@ class SearchSettings(PoolSettings):
     quantile: float | None = setting(
         "of their numbers that counts, 0.5 to below 1; 1 is the worst of the K cars; their mean by default. A quantile "
         "Q needs 1/(1 - Q) cars; with it, 64 new cars around each named one show what share reaches its numbers",
+        within="[0.5, 1]",
         type=float,
         metavar="Q",
     )

@@ -87,11 +87,16 @@ class BandSettings(Settings):
         metavar="A:B",
     )
     spacing: float = setting(
-        "minimum distance of the fitted frequencies [Hz]; default: %(default)g", SPACING, type=float, metavar="HZ"
+        "minimum distance of the fitted frequencies [Hz]; default: %(default)g",
+        SPACING,
+        within="(0, inf)",
+        type=float,
+        metavar="HZ",
     )
     window: float | None = setting(
         "length of the Hann windows of measured FRFs [s]; FRFs of the model are estimated with the same "
         "windows; default: the whole record",
+        within="(0, inf)",
         type=float,
         metavar="S",
     )
@@ -105,6 +110,7 @@ class ResponseSettings(ReadingSettings, BandSettings):
         "number of independent averages of measured FRFs, if the file has no random errors; default: 1, which "
         "overestimates the noise",
         1.0,
+        within="(0, inf)",
         type=float,
         metavar="N",
     )
@@ -131,6 +137,7 @@ class HistorySettings(ReadingSettings):
     lowpass: float = setting(
         "corner frequency of the low-pass filter on measurement and model [Hz]; default: %(default)g",
         100.0,
+        within="(0, inf)",
         type=float,
         metavar="HZ",
     )
@@ -170,6 +177,7 @@ class PosteriorSettings(Settings):
         "expected relative error of the model in a third octave (standard deviation) [-]; default: %(default)g",
         DISCREPANCY,
         factor=0.01,
+        within="[0, 100)",
         type=float,
         metavar="PERCENT",
         help="expected relative error of the model in a third octave (standard deviation) [%%]; default: %(default)g",

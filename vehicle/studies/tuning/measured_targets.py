@@ -186,8 +186,6 @@ def _histories(
             f"{path}: --delay S and --drift correct the clock against a signal of another file; this record contains "
             "its plate. Remove both, or add --signal FILE; --delay GROUP=TIME is for sensors that lag the plate"
         )
-    if not lowpass > 0.0:
-        raise ConfigurationError(f"{path}: found a low-pass of {lowpass:g} Hz, must be above 0")
     signal, road, settled = _driven_input(car, path, measured, asked, settings, plates)
     delays = response_delays(measured, tuple(names), asked.delays, contained=contained)
     grid = uniform_axis(int(signal.duration / step + 1e-6) + 1, step)
