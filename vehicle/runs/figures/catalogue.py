@@ -21,6 +21,7 @@ from vehicle.runs.figures.reductions import (
     SLIP,
     STICK,
     WHEEL_RMS,
+    require_obstacle,
 )
 from vehicle.runs.figures.rows import CHANNELS, LOAD_FORCES, LOAD_VARIATIONS, LOADS, TRAVELS, VELOCITIES
 from vehicle.runs.figures.turning_figures import MOTION_FIGURES, ORDER_FIGURES
@@ -42,6 +43,7 @@ FIGURES: dict[str, Figure] = COMFORT_FIGURES | {
         words="vibration dose value",
         meaning="vibration dose value, fourth root of the sum of the fourth powers of the channels [m/s^1.75]",
         unit="m/s^1.75", reads=CHANNELS, reduces=DOSE, needs=("channels", "weighting"),
+        of_unit="m/s2",
     ),
     "mtvv": Figure(
         words="largest running RMS",
@@ -55,7 +57,7 @@ FIGURES: dict[str, Figure] = COMFORT_FIGURES | {
     "settling": Figure(
         words="settling time",
         meaning="time after an obstacle in which |channel| stays above 10 % of its peak, longest of all channels [s]",
-        unit="s", reads=CHANNELS, reduces=SETTLING, needs=("channels",),
+        unit="s", reads=CHANNELS, reduces=SETTLING, needs=("channels",), on_input=require_obstacle,
     ),
     "ratio": Figure(
         words="ratio of RMS values", meaning="RMS of the channels divided by that of the channels in `over` [-]",

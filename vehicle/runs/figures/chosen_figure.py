@@ -21,7 +21,8 @@ from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import AXES, channel_units, is_wheel
 from vehicle.runs.figures.catalogue import FIGURES
 from vehicle.runs.figures.figure import Details, Figure
-from vehicle.runs.figures.rows import SEAT
+from vehicle.runs.figures.rows import SEAT, axis_weighting
+from vehicle.runs.figures.turning_figures import ORDER_FREQUENCY
 from vehicle.signals.analysis.weighting import WEIGHTINGS
 
 FORMS = {
@@ -93,7 +94,7 @@ class ChosenFigure(Details):
     @property
     def column(self) -> str:
         """Return the name in tables, as "travel_fr" or "peak_seat_rail_acc_z"; the angle of an order is not in it."""
-        if self.quantity == "order_frequency":
+        if self.quantity == ORDER_FREQUENCY:
             return self.quantity
         parts = [text for key, text in self.details.items() if key != "angle"]
         return "_".join([self.quantity, *parts]).replace(" ", "_")
@@ -108,10 +109,22 @@ class ChosenFigure(Details):
 
         Args:
             units: recorded channel to its unit; by default those of the names.
+
+        Raises:
+            ConfigurationError: channels of several units, or of another unit than the figure needs.
         """
-        if self.figure.unit:
-            return self.figure.unit
-        return units[self.channels[0]] if units is not None else channel_units(self.channels[:1])[self.channels[0]]
+        figure = self.figure
+        for names in (self.channels, self.over):
+            known = channel_units(names) if units is None else units
+            found = {name: known[name] for name in names}
+            needed = figure.of_unit or next(iter(found.values()), "")
+            # The largest of crest factors or settling times has no unit of the channels.
+            if (figure.of_unit or self.over or not figure.unit) and {*found.values()} - {needed}:
+                listed = ", ".join(f"{name} [{unit}]" for name, unit in found.items())
+                raise ConfigurationError(
+                    f"channels: found {listed}; {self.quantity} needs channels in {figure.of_unit or 'one unit'}"
+                )
+        return figure.unit or (channel_units(self.channels[:1]) if units is None else units)[self.channels[0]]
 
     def recorded_in(self, channels: Sequence[str]) -> Self:
         """Return the figure with the names of its channels in place of their words.
@@ -124,6 +137,16 @@ class ChosenFigure(Details):
     def channels_of(self, vehicle: Vehicle) -> tuple[str, ...]:
         """Return the channels of a car that the figure reads."""
         return self.figure.reads.channels(self, vehicle)
+
+    def require(self, vehicle: Vehicle) -> None:
+        """Check the figure for a car, before a run.
+
+        Raises:
+            ConfigurationError: a seat weighting of a channel without an axis, or an unknown motion or angle.
+        """
+        for name in (*self.channels, *self.over):
+            axis_weighting(self.weighting, name)
+        self.figure.require(self, vehicle)
 
     def columns(self) -> tuple[ChosenFigure, ...]:
         """Return the figures of a table: this figure and its companion."""
@@ -171,6 +194,8 @@ def chosen_figure(text: str, vehicle: Vehicle, option: str = "figure") -> Chosen
         channels = (*vehicle.channels, *vehicle.load_channels)
         chosen = chosen.recorded_in(channels)
         chosen.channels_of(vehicle)
+        chosen.unit_in()
+        chosen.require(vehicle)
     except ConfigurationError as error:
         raise ConfigurationError(f"{option} {text!r}: {error}") from None
     return chosen

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
@@ -23,6 +24,11 @@ class Values(NamedTuple):
     """Standard errors in the unit of the value, (r,); None if unknown."""
     waves: Complex | None = None
     """Slow variations of an RMS for the error of a difference, see `comfort_error`; (r, `WAVES`)."""
+
+    def first(self) -> tuple[float, float | None]:
+        """Return value and standard error of the first run; None for an unknown or undefined error."""
+        error = math.nan if self.error is None else float(self.error[0])
+        return float(self.value[0]), error if math.isfinite(error) else None
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -80,6 +86,10 @@ class Reduction:
     page: str = ""
 
 
+def _accept(*_: object) -> None:
+    """Accept all details."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Figure:
     """Figure of a ride.
@@ -98,6 +108,10 @@ class Figure:
         alone: True for a figure of single runs in double precision, not of batches.
         certain: True for a standard error that is also known on one event.
         exact: True for a number of the car itself, which has no standard error.
+        of_unit: required unit of the channels; empty for any.
+        require: checks the details for a car; raises ConfigurationError.
+        on_input: checks the details for a car on an input, with the time at which it leaves an obstacle [s] or None;
+            raises ConfigurationError.
     """
 
     words: str
@@ -113,6 +127,14 @@ class Figure:
     alone: bool = False
     certain: bool = False
     exact: bool = False
+    of_unit: str = ""
+    require: Callable[[Details, Vehicle], None] = _accept
+    on_input: Callable[[Details, Vehicle, float | None], object] = _accept
+
+    @property
+    def asks_input(self) -> bool:
+        """Return True for a figure that exists only on some inputs."""
+        return self.on_input is not _accept
 
     @property
     def keys(self) -> tuple[str, ...]:

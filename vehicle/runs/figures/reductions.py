@@ -97,9 +97,22 @@ def _dose(rows: Vector, _: Details, runs: Runs) -> Values:
     return Values(np.sum(np.power(doses, 4), axis=1) ** 0.25)
 
 
+def require_obstacle(_: object, __: object, left_obstacle: float | None) -> None:
+    """Check that an input has an obstacle.
+
+    Args:
+        left_obstacle: time at which the last wheel leaves it [s]; None without one.
+
+    Raises:
+        ConfigurationError: no obstacle.
+    """
+    if left_obstacle is None:
+        raise ConfigurationError("settling: the run has no obstacle; choose a road with one, for example cleat:20x50")
+
+
 def _settling(rows: Vector, _: Details, runs: Runs) -> Values:
-    if runs.left_obstacle is None:
-        raise ConfigurationError('settling: the run has no obstacle; set it, for example obstacle = "cleat"')
+    require_obstacle(None, None, runs.left_obstacle)
+    assert runs.left_obstacle is not None
     time, longest = runs.time[runs.evaluated], []
     for run in rows:
         times = [settling_time(time, row, runs.left_obstacle) for row in run]

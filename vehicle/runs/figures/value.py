@@ -84,8 +84,8 @@ def shown_figures(names: Sequence[str], runs: Runs, option: str = "--measure") -
             values = values_of(chosen, runs)
         except ConfigurationError as fault:
             raise ConfigurationError(f"{option} {name!r}: {fault}") from None
-        error = None if values.error is None else float(values.error[0])
-        shown.append(ShownFigure(title=chosen.title, value=float(values.value[0]), error=error, unit=chosen.unit_in()))
+        value, error = values.first()
+        shown.append(ShownFigure(title=chosen.title, value=value, error=error, unit=chosen.unit_in()))
     return shown
 
 

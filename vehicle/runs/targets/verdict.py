@@ -17,8 +17,9 @@ from vehicle.runs.car import Car
 from vehicle.runs.figures.run_batch import Runs
 from vehicle.runs.figures.value import require_unit, values_of
 from vehicle.runs.targets.target import Target
+from vehicle.signals.analysis.comfort import COMFORT_BAND
 from vehicle.signals.records.record_spectra import evaluated_from
-from vehicle.signals.records.run_summary import RunSummary
+from vehicle.signals.records.run_summary import RunSummary, unweighted_rms
 
 MET, MISSED, UNDECIDED, NOT_RUN = "met", "missed", "undecided", "no run"
 """States of a figure."""
@@ -86,6 +87,8 @@ class RatedRun:
         """Time histories and static data for the figures."""
         recording = self.recording
         road, obstacle = self.summary["input"].get("road") or {}, self.summary.get("obstacle")
+        # A slow input narrows the band of all points.
+        bands = [unweighted_rms(comfort)[1] for comfort in self.summary["comfort"].values()]
         return Runs(
             time=recording.time,
             channels={name: history[None] for name, history in recording.channels.items()},
@@ -95,6 +98,7 @@ class RatedRun:
             left_obstacle=None if obstacle is None else obstacle["to_s"],
             cars=(self.car,),
             skip=self.skip,
+            band=next(iter(bands), COMFORT_BAND),
         )
 
     def value_of(self, target: Target) -> tuple[float, float | None]:
@@ -106,8 +110,7 @@ class RatedRun:
         """
         chosen = target.recorded_in(tuple(self.recording.channels))
         require_unit(chosen, target.unit, self.recording.units)
-        values = values_of(chosen, self.runs)
-        return float(values.value[0]), None if values.error is None else float(values.error[0])
+        return values_of(chosen, self.runs).first()
 
 
 def read_targets(file: Path | str) -> dict[str, Target]:
@@ -142,9 +145,10 @@ def state_of(figure: Target, value: float, error: float | None) -> str:
 
     Args:
         value: its value; infinite for an acceleration that does not settle.
-        error: standard error; None if unknown.
+        error: standard error; None or NaN if unknown.
     """
-    excess, doubt = figure.sense * (value - figure.limit), CONFIDENCE * (error or 0.0)
+    doubt = CONFIDENCE * error if error is not None and math.isfinite(error) else 0.0
+    excess = figure.sense * (value - figure.limit)
     return MET if excess + doubt <= 0.0 else MISSED if excess - doubt > 0.0 else UNDECIDED
 
 

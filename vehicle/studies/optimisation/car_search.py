@@ -37,6 +37,7 @@ from vehicle.studies.optimisation.trials import NO_TOLERANCES, Spread, Trials, b
 from vehicle.studies.optimisation.variables import problem_of, require_bounds, toleranced
 from vehicle.studies.sweeps.case_evaluation import evaluate
 from vehicle.studies.sweeps.executors import StandingExecutor, process_pool
+from vehicle.studies.sweeps.figure_inputs import require_on_inputs
 from vehicle.studies.sweeps.measure import measure_of
 from vehicle.studies.sweeps.study_size import state_size
 from vehicle.studies.sweeps.sweep_inputs import Inputs, common_start, file_of, inputs_of, require_speed_of_roads
@@ -129,6 +130,8 @@ def plan_search(
     require_speed_of_roads(
         sources, [[f"{each.path}={end!r}" for end in (each.low, each.high)] for each in _ranges(vary)]
     )
+    ends = [[f"{each.path}={getattr(each, end)!r}" for each in _ranges(vary)] for end in ("low", "high")]
+    require_on_inputs(measure, car, ends, sources)
     require_bounds(file, car.overrides, problem)
     spread = NO_TOLERANCES
     tolerances = settings.tolerances

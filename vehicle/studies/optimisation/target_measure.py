@@ -43,12 +43,14 @@ def _checked(name: str, target: Target, run: Run) -> Target:
     """Return a target with its channels by name.
 
     Raises:
-        ConfigurationError: a channel is not recorded, or the unit is wrong.
+        ConfigurationError: a channel is not recorded, the unit is wrong, or the input has no such figure.
     """
     try:
         chosen = target.recorded_in(run.channels)
         chosen.channels_of(run.car.vehicle)
         require_unit(chosen, target.unit, run.recording.units)
+        chosen.require(run.car.vehicle)
+        chosen.figure.on_input(chosen, run.car.vehicle, run.signal.left_obstacle)
     except ConfigurationError as error:
         raise ConfigurationError(f"{name}: {error}") from None
     return chosen

@@ -4,6 +4,7 @@ import math
 import threading
 import time as clock
 from collections.abc import Callable, Hashable, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -24,7 +25,7 @@ from vehicle.runs.figures.run_batch import Runs
 from vehicle.signals.excitation.signal import Signal
 from vehicle.studies.sweeps.case import Case, signal_of
 from vehicle.studies.sweeps.case_result import Result
-from vehicle.studies.sweeps.measure import BatchMeasure, Measure
+from vehicle.studies.sweeps.measure import BatchMeasure, ComfortMeasure, Measure, figures_of
 from vehicle.threads import one_blas_thread
 
 T = TypeVar("T")
@@ -140,10 +141,18 @@ def _single(case: Case, measure: Measure, engine: str | None = None) -> Result:
     try:
         with _ONE_AT_A_TIME:
             run = run_of(replace(case, engine=engine or case.engine), measure.channels)
-        values = _checked({name: float(value) for name, value in measure(run).items()})
+        with _lock_of(measure):
+            values = _checked({name: float(value) for name, value in measure(run).items()})
     except OF_A_RUN as error:
         return _failed(error, started)
     return Result(values=values, engine=run.recording.statistics.engine, seconds=clock.perf_counter() - started)
+
+
+def _lock_of(measure: Measure) -> AbstractContextManager[object]:
+    """Return the lock of MuJoCo for a measure that may build a model: functions, and figures of the car itself."""
+    figures = figures_of(measure)
+    free = isinstance(measure, ComfortMeasure) or (figures and not any(each.figure.exact for each in figures))
+    return nullcontext() if free else _ONE_AT_A_TIME
 
 
 def _batch_results(cases: Sequence[Case], measure: BatchMeasure) -> list[Result]:
@@ -244,7 +253,8 @@ def _measured(
         cars=tuple(cars[row] for row in rows),
     )
     try:
-        columns = measure.of(runs)
+        with _lock_of(measure):
+            columns = measure.of(runs)
     except OF_A_RUN as error:
         return _retry_each(rows, error, lambda row: _measured(cars, simulated, [row], measure, signal)[0])
     results = []

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import inspect
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -18,8 +17,10 @@ from vehicle.names import AXES, CORNERS
 from vehicle.runs.car import Run
 from vehicle.runs.figures.chosen_figure import ChosenFigure, chosen_figure
 from vehicle.runs.figures.run_batch import Runs, single
+from vehicle.runs.figures.turning_figures import ORDER_FREQUENCY
 from vehicle.runs.figures.value import values_of
 from vehicle.signals.analysis.ride_comfort import ERROR, comfort_columns, comfort_units, wave_names
+from vehicle.studies.sweeps.function_measure import FunctionMeasure, RunFunction
 
 
 @runtime_checkable
@@ -172,7 +173,15 @@ def measure_of(
     measure = FigureMeasure(
         figures=tuple(figures.items()), channels=tuple(channels), skip=skip, errors=errors, random=random
     )
-    return SingleMeasure(each=measure) if any(each.figure.alone for each in figures.values()) else measure
+    # A batch records no force elements (`Vehicle.load_channels`).
+    alone = any(each.figure.alone for each in figures.values()) or not {*channels} <= {*vehicle.channels}
+    return SingleMeasure(each=measure) if alone else measure
+
+
+def figures_of(measure: Measure) -> tuple[ChosenFigure, ...]:
+    """Return the figures of the catalogue in a measure; none for another measure."""
+    each = measure.each if isinstance(measure, SingleMeasure) else measure
+    return tuple(chosen for _, chosen in each.figures) if isinstance(each, FigureMeasure) else ()
 
 
 SLIP_FIGURES = ("slip_share", "saturated_share", "first_slip")
@@ -248,45 +257,8 @@ def comfort_measure(vehicle: Vehicle, skip: float) -> ComfortMeasure:
     return ComfortMeasure(skip=skip, wheels=wheels, seat=vehicle.seated)
 
 
-RunFunction = Callable[[Run], float | Mapping[str, float]]
-"""Function of a run that returns a number or a dictionary of numbers."""
-
 MeasureChoice = Measure | RunFunction | str | Sequence[str] | None
 """Measure of a sweep: names of figures, a function of a run, an object, or nothing for comfort."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class FunctionMeasure:
-    """Measure by a function of a run.
-
-    Attributes:
-        function: the function; for worker processes one of a module.
-        skip: excluded time at the beginning [s], the `skip` of its runs.
-        channels: required channels; all.
-        units: empty: the table takes the names of its first finished run, with unit "?".
-    """
-
-    function: RunFunction
-    skip: float = 0.0
-    channels: None = None
-    units: Mapping[str, str] = field(default_factory=dict)
-
-    def __repr__(self) -> str:
-        """Return the source of the function, which identifies stored rows; its name without a source."""
-        return f"FunctionMeasure({_source(self.function)}, skip={self.skip!r})"
-
-    def __call__(self, run: Run) -> dict[str, float]:
-        """Return the values of a run."""
-        values = self.function(replace(run, skip=self.skip))
-        return dict(values) if isinstance(values, Mapping) else {self.function.__name__: float(values)}
-
-
-def _source(function: RunFunction) -> str:
-    """Return the source text of a function; its name without a source."""
-    try:
-        return inspect.getsource(function)
-    except (OSError, TypeError):
-        return function.__qualname__
 
 
 def chosen_measure(measure: MeasureChoice, vehicle: Vehicle, skip: float) -> Measure:
@@ -308,4 +280,25 @@ def chosen_measure(measure: MeasureChoice, vehicle: Vehicle, skip: float) -> Mea
         return FunctionMeasure(function=measure, skip=skip)
     names = [measure] if isinstance(measure, str) else measure
     figures = [each for name in names for each in chosen_figure(name, vehicle, "--measure").columns()]
-    return measure_of(vehicle, {each.column: each for each in figures}, skip)
+    return measure_of(vehicle, _columns(figures), skip)
+
+
+def _columns(figures: Sequence[ChosenFigure]) -> dict[str, ChosenFigure]:
+    """Return the figures by the names of their columns; frequencies of several orders have the order in their name.
+
+    Raises:
+        ConfigurationError: two figures have the same name.
+    """
+    frequencies = {(each.order, each.angle) for each in figures if each.quantity == ORDER_FREQUENCY}
+    columns: dict[str, ChosenFigure] = {}
+    for each in figures:
+        name = each.column
+        if each.quantity == ORDER_FREQUENCY:
+            name = "_".join([name, f"{each.order:g}", *filter(None, [each.angle])]) if len(frequencies) > 1 else name
+        elif columns.get(name, each) != each:
+            raise ConfigurationError(
+                f"--measure: {columns[name].title!r} and {each.title!r} have the same column {name}; run a sweep for "
+                "each of them"
+            )
+        columns.setdefault(name, each)
+    return columns

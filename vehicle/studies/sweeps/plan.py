@@ -30,6 +30,7 @@ from vehicle.studies.sweeps.case_table import Cases, Combinations, RowChanges
 from vehicle.studies.sweeps.comfort_ranking import measured_evaluation, ranking_evaluation
 from vehicle.studies.sweeps.dispatcher import FILL
 from vehicle.studies.sweeps.evaluation import Evaluation
+from vehicle.studies.sweeps.figure_inputs import require_on_inputs
 from vehicle.studies.sweeps.measure import BatchMeasure, Measure, chosen_measure
 from vehicle.studies.sweeps.sweep import sweep_cases
 from vehicle.studies.sweeps.sweep_inputs import Inputs, common_start, file_of, inputs_of, require_speed_of_roads
@@ -178,10 +179,12 @@ def plan_sweep(
     idle = tuple(set.intersection(*(set(_idle_notes(vehicle, state, changes, settings.engine)) for state in states)))
     if idle and all(_all_idle(vehicle, state, each, settings.engine) for state in states):
         raise ConfigurationError(f"vary: every run would be the same car: {'; '.join(idle)}")
+    measure = chosen_measure(settings.measure, car.vehicle, start)
+    require_on_inputs(measure, car, [changes[0], changes[-1]], sources)
     return SweepPlan(
         name=car.vehicle.name,
         cases=cases,
-        measure=chosen_measure(settings.measure, car.vehicle, start),
+        measure=measure,
         skip=start,
         settings=settings,
         notes=(*body_rules(car.vehicle, [text.partition("=")[0] for text in each]), *idle),
