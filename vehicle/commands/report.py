@@ -73,7 +73,7 @@ class ReportSettings(Settings):
 
 
 def _job(settings: ReportSettings, console: Console) -> None:
-    from vehicle.handover.page.report_file import write_report
+    from vehicle.handover.page.report_file import require_figures, write_report
 
     missing = next((run for run in settings.runs if not run.is_dir()), None)
     if missing is not None:
@@ -86,6 +86,7 @@ def _job(settings: ReportSettings, console: Console) -> None:
                 f"--video: shows two runs side by side, found {len(settings.runs)}; for a film of a single run, give "
                 "--video to shaker"
             )
+        require_figures(settings.runs, settings.measure)
         film = _film(settings, console)
     write_report(
         settings.runs,

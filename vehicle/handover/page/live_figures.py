@@ -55,16 +55,18 @@ def page_figures(car: Car, measure: Sequence[str]) -> list[dict[str, Any]]:
 def figure_data(figures: Sequence[Mapping[str, Any]], outputs: Mapping[str, int]) -> dict[str, Any]:
     """Return the entry of the live figures for the page; nothing without figures.
 
+    A figure of a channel that is no output of the module, as the displacement of a plate, is left out.
+
     Args:
         figures: see `page_figures`.
         outputs: output of the module to its number.
     """
-    if not figures:
-        return {}
     listed = []
     for figure in figures:
         names = [name.replace(ACCELERATION, DISPLACEMENT) for name in figure["channels"]]
+        if not {*names} <= outputs.keys():
+            continue
         derived = [ACCELERATION in name for name in figure["channels"]]
         kept = {key: value for key, value in figure.items() if key != "channels"}
         listed.append({**kept, "outputs": [outputs[name] for name in names], "derived": derived})
-    return {"figures": listed}
+    return {"figures": listed} if listed else {}

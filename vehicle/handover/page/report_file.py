@@ -9,10 +9,14 @@ from pathlib import Path
 from vehicle.errors import ConfigurationError
 from vehicle.handover.page.trial_section import trial
 from vehicle.leftovers import mention
+from vehicle.model.parameters.vehicle import load_vehicle
+from vehicle.runs.figures.chosen_figure import chosen_figure
 from vehicle.runs.output.folder import check_file, write_text
+from vehicle.runs.output.saved_run import file_of_run
 from vehicle.runs.report.finished_run import read_run
 from vehicle.runs.report.page import report_page
 from vehicle.runs.targets.verdict import missing_runs, read_targets
+from vehicle.signals.records.run_summary import read_summary
 
 
 def write_report(
@@ -58,6 +62,7 @@ def write_report(
     path = Path(file)
     check_file(path, ending=".html", force=force)
     figures = None if targets is None else read_targets(targets)
+    require_figures(folders, measure)
     finished = [read_run(folder) for folder in folders]
     if notice is not None and figures is not None and (text := missing_runs(figures, finished)):
         notice(text)
@@ -74,3 +79,20 @@ def write_report(
     )
     write_text(path, page)
     return path
+
+
+def require_figures(folders: Sequence[Path], measure: Sequence[str]) -> None:
+    """Check the names of figures for the cars of finished runs, before anything is drawn.
+
+    Args:
+        folders: folders of runs.
+        measure: names of figures, see `Run.figure`.
+
+    Raises:
+        ConfigurationError: a folder holds no run, or its car lacks a figure.
+        DataError: a file of a run is missing or damaged.
+    """
+    for folder in folders if measure else ():
+        vehicle = load_vehicle(file_of_run(folder, read_summary(folder), "vehicle"))
+        for name in measure:
+            chosen_figure(name, vehicle, "--measure")
