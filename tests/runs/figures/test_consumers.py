@@ -9,6 +9,7 @@ import pytest
 
 from tests.documentation.test_figures_page import PAGE, rows, table_of
 from vehicle import Car, road, sweep
+from vehicle.commands.bench import main as bench
 from vehicle.commands.optimise import main as optimise
 from vehicle.commands.report import main as report
 from vehicle.commands.sweep import main as sweep_command
@@ -98,6 +99,17 @@ def test_targets_report_and_page(run, tmp_path, monkeypatch):
     run.save("other")
     assert report(["run", "other", *asked, "--quiet", "--output", "b.html"]) == 0
     assert f"<td>{WORDS}</td>" in (tmp_path / "b.html").read_text(encoding="utf-8")
+
+
+def test_an_unknown_name_ends_report_and_bench_at_once(run, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    for folder in ("first", "second"):
+        run.save(folder)
+    monkeypatch.setattr("vehicle.commands.report._film", lambda *_: pytest.fail("the film was rendered"))
+    assert report(["first", "second", "--video", "--measure", "foo", "--quiet"]) == 2
+    monkeypatch.setattr("vehicle.handover.bench.server.open_server", lambda *_: pytest.fail("the bench was opened"))
+    assert bench(["sedan", "--road", "C", "--speed", "80", "--measure", "foo"]) == 2
+    assert capsys.readouterr().err.count("--measure 'foo': sedan has no figure 'foo'") == 2
 
 
 @pytest.mark.usefixtures("added")

@@ -14,8 +14,9 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.figures.catalogue import FIGURES
 from vehicle.runs.figures.run_batch import Runs, evaluated
-from vehicle.runs.figures.value import require_unit, values_of
+from vehicle.runs.figures.value import require_unit, shown_figures, values_of
 from vehicle.runs.output.run_obstacle import obstacle_values
+from vehicle.runs.report.finished_run import read_run
 from vehicle.runs.targets.target import Target
 from vehicle.runs.targets.verdict import (
     MET,
@@ -28,6 +29,7 @@ from vehicle.runs.targets.verdict import (
     state_of,
     verdict,
 )
+from vehicle.signals.analysis.comfort import COMFORT_BAND
 from vehicle.signals.analysis.ride_comfort import comfort_columns
 
 RAIL = ("seat rail x", "seat rail y", "seat rail z")
@@ -252,3 +254,21 @@ def test_what_a_run_does_not_have(on_road):
 def test_shipped_targets():
     figures = read_targets("ride")
     assert len(figures) >= 10 and all(each.source for each in figures.values())
+
+
+def test_an_undefined_error_leaves_a_verdict_decided():
+    limited = figure("rms", channels=RAIL)
+    assert state_of(limited, 0.1, np.nan) == state_of(limited, 0.1, None) == MET
+
+
+def test_a_saved_run_keeps_the_band_of_a_slow_input(sedan, tmp_path):
+    """A record at 100 Hz ends below 50 Hz, and the figure of the saved run is that of the run."""
+    time = np.arange(0.0, 12.0, 0.01)
+    level = 1e-3 * np.sin(2 * np.pi * 1.5 * time) + 1e-4 * np.sin(2 * np.pi * 30.0 * time)
+    rows = "".join(f"{t:.2f},{z:.9f}\n" for t, z in zip(time, level, strict=True))
+    (tmp_path / "slow.csv").write_text(f"time [s],displacement [m]\n{rows}", encoding="utf-8")
+    run = sedan.run(tmp_path / "slow.csv", engine="reduced")
+    run.save(tmp_path / "run")
+    saved = read_run(tmp_path / "run").runs
+    assert saved.band == evaluated(run).band != COMFORT_BAND
+    assert shown_figures(["unweighted"], saved)[0].value == pytest.approx(run.figure("unweighted"), rel=1e-6)

@@ -11,13 +11,15 @@ from scenarios.signals.bump import bump_shape
 from tests.studies.sweeps.sweep_samples import ShortRoad, grid
 from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.runs.car import Car
+from vehicle.runs.figures.chosen_figure import chosen_figure
 from vehicle.signals.analysis.ride_comfort import UNWEIGHTED, WEIGHTED, wave_names
 from vehicle.signals.analysis.seat_value import weighted_rms_of
 from vehicle.signals.excitation.signal import Signal, uniform_time
 from vehicle.signals.excitation.signal_file import write_signal
+from vehicle.studies.sweeps import case_evaluation
 from vehicle.studies.sweeps.case import Case, SignalFile, signal_of
 from vehicle.studies.sweeps.case_evaluation import evaluate
-from vehicle.studies.sweeps.measure import ComfortMeasure
+from vehicle.studies.sweeps.measure import ComfortMeasure, FigureMeasure, SingleMeasure, measure_of
 
 MEASURE = ComfortMeasure(skip=0.2)
 ROADS = [ShortRoad(name="one"), ShortRoad(name="two", seed=2)]
@@ -142,3 +144,21 @@ def test_standing_and_rolling_cars_are_simulated_apart():
     results = evaluate(cases, MEASURE)
     assert not any(result.reason for result in results)
     assert numbers(evaluate(cases[::-1], MEASURE)) == numbers(results)[::-1]
+
+
+@pytest.mark.parametrize(("name", "locked"), [("frequency:heave", True), ("travel", False)])
+def test_only_a_figure_of_the_car_itself_takes_the_lock_of_mujoco(monkeypatch, cases, name, locked):
+    """MuJoCo builds the car for it, and an executor may use threads."""
+    held, of = [], FigureMeasure.of
+
+    def seen(measure, runs):
+        held.append(case_evaluation._ONE_AT_A_TIME.locked())
+        return of(measure, runs)
+
+    monkeypatch.setattr(FigureMeasure, "of", seen)
+    figures = {each: chosen_figure(each, Car.load().vehicle) for each in (name, "weighted")}
+    batch = measure_of(Car.load().vehicle, figures, 0.2)
+    assert isinstance(batch, FigureMeasure)
+    assert not any(result.reason for result in evaluate(cases[:1], batch))
+    assert not any(result.reason for result in evaluate(cases[:1], SingleMeasure(each=batch)))
+    assert held == [locked, locked]
