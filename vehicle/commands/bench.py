@@ -101,15 +101,14 @@ def settings_of(options: argparse.Namespace) -> BenchSettings:
 def _job(settings: BenchSettings, console: Console) -> None:
     from vehicle.handover.bench.drive import bench_drive
     from vehicle.handover.bench.guard import Guard
+    from vehicle.handover.bench.numbers import require_figures
     from vehicle.handover.bench.page import Page
     from vehicle.handover.bench.server import close_server, open_server
     from vehicle.handover.bench.state import BenchState
     from vehicle.runs.car import Car
-    from vehicle.runs.figures.chosen_figure import chosen_figure
 
     car = Car.load(settings.car.vehicle, settings.car.overrides)
-    for name in settings.measure:
-        chosen_figure(name, car.vehicle, "--measure")
+    require_figures(car, settings.measure)
     source = _source(settings.source, car)
     guard = Guard()
     server = open_server(guard, settings.port)

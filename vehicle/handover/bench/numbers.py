@@ -74,6 +74,16 @@ def _row(shown: ShownFigure, name: str) -> tuple[float, str]:
     return (100.0 * value, "%") if name.startswith("slip ") else (value, shown.unit)
 
 
+def require_figures(car: Car, measure: Sequence[str]) -> None:
+    """Check the names of figures for a car, before anything is compiled.
+
+    Raises:
+        ConfigurationError: the car lacks a figure.
+    """
+    for name in measure:
+        chosen_figure(name, car.vehicle, "--measure")
+
+
 @one_blas_thread()
 def numbers(car: Car, drive: BenchDrive, measure: Sequence[str] = ()) -> BenchNumbers:
     """Run a car on the input of a bench with the reduced engine, and evaluate the runs.

@@ -115,12 +115,12 @@ class ChosenFigure(Details):
         """
         figure = self.figure
         for names in (self.channels, self.over):
-            known = channel_units(names) if units is None else units
-            found = {name: known[name] for name in names}
-            needed = figure.of_unit or next(iter(found.values()), "")
+            channel_unit = channel_units(names) if units is None else units
+            unit_of = {name: channel_unit[name] for name in names}
+            needed = figure.of_unit or next(iter(unit_of.values()), "")
             # The largest of crest factors or settling times has no unit of the channels.
-            if (figure.of_unit or self.over or not figure.unit) and {*found.values()} - {needed}:
-                listed = ", ".join(f"{name} [{unit}]" for name, unit in found.items())
+            if (figure.of_unit or self.over or not figure.unit) and {*unit_of.values()} - {needed}:
+                listed = ", ".join(f"{name} [{unit}]" for name, unit in unit_of.items())
                 raise ConfigurationError(
                     f"channels: found {listed}; {self.quantity} needs channels in {figure.of_unit or 'one unit'}"
                 )

@@ -17,9 +17,8 @@ from vehicle.runs.car import Car
 from vehicle.runs.figures.run_batch import Runs
 from vehicle.runs.figures.value import require_unit, values_of
 from vehicle.runs.targets.target import Target
-from vehicle.signals.analysis.comfort import COMFORT_BAND
 from vehicle.signals.records.record_spectra import evaluated_from
-from vehicle.signals.records.run_summary import RunSummary, unweighted_rms
+from vehicle.signals.records.run_summary import RunSummary, comfort_band
 
 MET, MISSED, UNDECIDED, NOT_RUN = "met", "missed", "undecided", "no run"
 """States of a figure."""
@@ -87,8 +86,6 @@ class RatedRun:
         """Time histories and static data for the figures."""
         recording = self.recording
         road, obstacle = self.summary["input"].get("road") or {}, self.summary.get("obstacle")
-        # A slow input narrows the band of all points.
-        bands = [unweighted_rms(comfort)[1] for comfort in self.summary["comfort"].values()]
         return Runs(
             time=recording.time,
             channels={name: history[None] for name, history in recording.channels.items()},
@@ -98,7 +95,7 @@ class RatedRun:
             left_obstacle=None if obstacle is None else obstacle["to_s"],
             cars=(self.car,),
             skip=self.skip,
-            band=next(iter(bands), COMFORT_BAND),
+            band=comfort_band(self.summary),
         )
 
     def value_of(self, target: Target) -> tuple[float, float | None]:

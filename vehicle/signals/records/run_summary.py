@@ -263,6 +263,11 @@ def unweighted_rms(comfort: ComfortSummary) -> tuple[dict[str, Any], tuple[float
     return rms, (low, high)
 
 
+def comfort_band(summary: RunSummary) -> tuple[float, float]:
+    """Return the band of the unweighted RMS of a run [Hz], which a slow input narrows."""
+    return next((unweighted_rms(comfort)[1] for comfort in summary["comfort"].values()), COMFORT_BAND)
+
+
 def read_summary(folder: Path) -> RunSummary:
     """Read `summary.json` in the folder of a run, and check its keys and types.
 

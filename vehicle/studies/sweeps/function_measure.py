@@ -107,7 +107,7 @@ def _content(value: Any, above: tuple[int, ...]) -> Any:
     def inner(part: Any) -> Any:
         return _content(part, (*above, id(value)))
 
-    kind = type(value)
+    type_of_value = type(value)
     if isinstance(value, ModuleType):
         file = None if _installed(value.__name__) else getattr(value, "__file__", None)
         return (value.__name__, hashlib.sha256(Path(file).read_bytes()).hexdigest() if file else "")
@@ -121,17 +121,17 @@ def _content(value: Any, above: tuple[int, ...]) -> Any:
         return [inner(part) for part in (value.__code__, value.__defaults__, value.__kwdefaults__, _read_values(value))]
     if isinstance(value, CodeType):
         return (value.co_code, value.co_names, [inner(each) for each in value.co_consts])
-    if kind in (list, tuple):
-        return (kind.__name__, [inner(each) for each in value])
-    if kind in (set, frozenset):
-        return (kind.__name__, sorted(repr(inner(each)) for each in value))
-    if kind is dict:
+    if type_of_value in (list, tuple):
+        return (type_of_value.__name__, [inner(each) for each in value])
+    if type_of_value in (set, frozenset):
+        return (type_of_value.__name__, sorted(repr(inner(each)) for each in value))
+    if type_of_value is dict:
         return ("dict", [(inner(key), inner(each)) for key, each in value.items()])
-    reduce = copyreg.dispatch_table.get(kind)
-    made = reduce(value) if reduce else value.__reduce_ex__(4)
-    if isinstance(made, str):
-        return (getattr(value, "__module__", ""), made)
-    return [inner(tuple(part) if isinstance(part, Iterator) else part) for part in made]
+    reduce = copyreg.dispatch_table.get(type_of_value)
+    parts = reduce(value) if reduce else value.__reduce_ex__(4)
+    if isinstance(parts, str):
+        return (getattr(value, "__module__", ""), parts)
+    return [inner(tuple(part) if isinstance(part, Iterator) else part) for part in parts]
 
 
 def _read_values(function: FunctionType) -> dict[str, Any]:

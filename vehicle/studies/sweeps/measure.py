@@ -174,8 +174,8 @@ def measure_of(
         figures=tuple(figures.items()), channels=tuple(channels), skip=skip, errors=errors, random=random
     )
     # A batch records no force elements (`Vehicle.load_channels`).
-    alone = any(each.figure.alone for each in figures.values()) or not {*channels} <= {*vehicle.channels}
-    return SingleMeasure(each=measure) if alone else measure
+    unbatched = any(each.figure.alone for each in figures.values()) or not {*channels} <= {*vehicle.channels}
+    return SingleMeasure(each=measure) if unbatched else measure
 
 
 def figures_of(measure: Measure) -> tuple[ChosenFigure, ...]:
