@@ -84,7 +84,7 @@ class SobolSample:
         def evaluation(table: SweptCases, caption: str) -> Evaluation:
             indices = comfort_indices(table, ranges)
             left = ", ".join(name for name in _names(table.units) if name not in indices)
-            without = [f"no indices of {left}: its values are all equal, or most are missing"] if left else []
+            without = [f"no indices of {left}: all values are equal, or most are missing"] if left else []
             return Evaluation([*index_lines(indices), *without], {SOBOL: lambda path: write_indices(path, indices)})
 
         return plan_sweep(car, sample, inputs, settings, evaluation)
