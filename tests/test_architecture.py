@@ -78,7 +78,7 @@ ROOMS: dict[str, set[str]] = {
     "page": {"analysis", "car", "excitation", "figures", "fmu", "formats", "laws", "linear", "output", "parameters"}
     | {"records", "reduced", "rendering", "report", "simulation", "targets"},
     "bench": {"analysis", "assembly", "car", "excitation", "figures", "formats", "linear", "output", "page"}
-    | {"parameters", "records", "reduced", "rendering", "report", "shapes", "threads"},
+    | {"parameters", "reduced", "rendering", "report", "shapes", "threads"},
     "design": {"car", "flexbody", "kinematics", "parameters", "simulation", "threads"},
     "mounts": {"formats", "parameters"},
     "dampers": {"formats", "parameters", "records", "rendering", "report"},

@@ -84,7 +84,7 @@ def test_the_file_holds_the_road_beside_what_the_tyre_takes(tmp_path, capsys):
         (["--class", "K", "--speed", "80"], 2, "road class 'K': must be one of A, B"),
         (["--class", "A", "--speed", "0"], 2, "--speed 0 km/h: must be above 0"),
         (["--class", "A", "--speed", "nan"], 2, "--speed nan km/h"),
-        (["--class", "A", "--speed", "80", "--coherence", "2"], 2, "coherence 2.0; allowed: 0 to 1"),
+        (["--class", "A", "--speed", "80", "--coherence", "2"], 2, "--coherence 2: must be 0 to 1"),
         (["--profile", "missing.csv", "--speed", "80"], 2, "missing.csv"),
         (
             ["--profile", "p.csv", "--speed", "80", "--duration", "9"],

@@ -27,7 +27,7 @@ APPENDS = "appends finished rows; half a row is left out when they are read agai
 PRIVATE = "a private folder, or a cache, which holds no results"
 
 ELSEWHERE = {
-    "commands/shaker.py": GIVEN,
+    "handover/page/shaken_run.py": GIVEN,
     "drawing/rendering/figure.py": GIVEN,
     "drawing/rendering/film.py": GIVEN,
     "model/flexbody/superelement_file.py": GIVEN,

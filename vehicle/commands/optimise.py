@@ -50,7 +50,7 @@ def parser() -> Parser:
         action="append",
         default=[],
         metavar="NUMBER[@INPUT]",
-        help="an objective: a figure of a ride, as unweighted, weighted, seat_weighted, tyre_load, travel, "
+        help="an objective: a figure of a ride, as weighted, seat_weighted [m/s2], tyre_load [-], travel [m], "
         "peak:seat_rail_acc_z; of an axis or wheel weighted_z, travel_fr; after the @ an input, as road_A_120 or the "
         "stem of a file, or mean or worst of all. May be repeated",
     )

@@ -95,6 +95,7 @@ def _steady_points(settings: ShakerSettings, engine_given: bool, speed: float | 
         engine_given: True if the command line has --engine.
         speed: value of --speed.
     """
+    settings.require_forces()
     if isinstance(settings.source, PlateSettings):
         raise ConfigurationError("--rpm A:B:STEP: steady points are runs on a road; leave out --input")
     car, destination = settings.car, settings.destination

@@ -106,7 +106,7 @@ def test_runs_stand_beside_each_other(reported, tmp_path, monkeypatch, capsys):
     """The figures of each run are those of a single one, and are left out here, as is the film of both."""
 
     def film(folders, path, take, **options):
-        assert folders == [reported.folder] * 2 and take["slow"] == 4.0
+        assert list(folders) == [reported.folder] * 2 and take["slow"] == 4.0
         path.write_bytes(b"film")
         return "as they are"
 

@@ -35,4 +35,5 @@ def test_every_template_is_filled_by_a_module_beside_it():
     assert len(files) > 20, "the templates were not found"
     for file in files:
         code = "".join(path.read_text("utf-8") for path in file.parents[1].glob("*.py"))
-        assert re.search(rf'fill\(\s*"{file.stem}"|"{file.name}"', code), f"{file} is not used"
+        used = rf'fill\(\s*"{file.stem}"|"{file.name}"|Part\("[^"]*", "[^"]*", "{file.stem}"'
+        assert re.search(used, code), f"{file} is not used"

@@ -15,7 +15,7 @@ from vehicle.model.parameters.recorded_channels import recorded_channels
 from vehicle.model.parameters.semi_active_damper import FMU
 from vehicle.runs.output.folder import output_folder
 from vehicle.runs.output.listener import Listener
-from vehicle.signals.excitation.crank_speed import RPM, crank_overrides, measured_speed
+from vehicle.signals.excitation.crank_speed import crank_overrides, measured_speed
 from vehicle.signals.excitation.evaluation_start import evaluation_start
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.input_settings import DriveInput, PlateSettings
@@ -77,7 +77,7 @@ def _shake(
     if isinstance(source, DriveInput):
         from vehicle.runs.car.road import road_of
 
-        drive = road_of(source).under(choice.load(), choice.overrides)
+        drive = road_of(source, others=settings.measured.measured is not None).under(choice.load(), choice.overrides)
         file, stem = drive.road, drive.name
         choice = replace(choice, overrides=(*choice.overrides, *drive.overrides))
     else:
@@ -159,14 +159,9 @@ def _shake(
 
 def _with_forces(settings: ShakerSettings) -> tuple[PlateSettings | DriveInput, CarChoice]:
     """Return the input without the channel of the crankshaft, and the car with its speed or without its forces."""
-    picks = settings.source.record.picks
+    settings.require_forces()
     choice = settings.car
     if settings.no_forces:
-        if settings.rpm is not None or any(text.startswith(RPM) for text in picks):
-            raise ConfigurationError(
-                "--rpm has no effect with --no-forces, which leaves out the forces of the crankshaft; leave "
-                "out one of them"
-            )
         choice = choice.with_("--no-forces", "apply_forces=false")
     source, overrides = measured_speed(settings.source, settings.rpm)
     if settings.rpm is not None:

@@ -10,6 +10,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.car_choice import CarChoice
 from vehicle.runs.output.destination import Destination, ReportChoice
 from vehicle.settings import Settings, engine_setting, part, setting, skip_setting
+from vehicle.signals.excitation.crank_speed import RPM
 from vehicle.signals.excitation.input_settings import DriveInput, PlateSettings
 from vehicle.signals.formats.formats import TABLES, WRITTEN
 from vehicle.signals.records.measured_settings import MeasuredSettings
@@ -91,6 +92,18 @@ class ShakerSettings(Settings):
         const=True,
         metavar="HZ",
     )
+
+    def require_forces(self) -> None:
+        """Check that the crankshaft is not given a speed while its forces are left out.
+
+        Raises:
+            ConfigurationError: `rpm`, or a channel with the speed, beside `no_forces`.
+        """
+        if self.no_forces and (self.rpm is not None or any(text.startswith(RPM) for text in self.source.record.picks)):
+            raise ConfigurationError(
+                "--rpm has no effect with --no-forces, which leaves out the forces of the crankshaft; leave "
+                "out one of them"
+            )
 
     def chosen_engine(self) -> tuple[str, str]:
         """Return the engine, and the reason if it differs from `engine`.

@@ -157,14 +157,17 @@ def named_road(text: str) -> str | Path:
     return text.upper() if len(text) == 1 else Path(text)
 
 
-def road_of(drive: DriveInput) -> Road:
+def road_of(drive: DriveInput, *, others: bool = False) -> Road:
     """Return the road of the settings of a drive.
+
+    Args:
+        others: see `RecordSettings.choice`.
 
     Raises:
         ConfigurationError: no speed, or a road of another form.
     """
     road = named_road(drive.road) if isinstance(drive.road, str) else drive.road
-    return Road(road, drive.require_speed(), choice=drive.choice() or Choice(), **drive.settings.given())
+    return Road(road, drive.require_speed(), choice=drive.choice(others=others) or Choice(), **drive.settings.given())
 
 
 road = Road

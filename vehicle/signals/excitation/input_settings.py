@@ -99,12 +99,16 @@ class DriveInput(Settings):
     settings: RoadSettings = part(RoadSettings)
     record: RecordSettings = part(RecordSettings)
 
-    def choice(self) -> Choice | None:
+    def choice(self, *, others: bool = False) -> Choice | None:
         """Return the channels of a road recorded over time, or None.
 
         The rate is that of the run; the times are those of the file.
+
+        Args:
+            others: see `RecordSettings.choice`.
         """
-        return replace(self.record, rate=None).choice("height", further=("speed",)) if self.over_time else None
+        record = replace(self.record, rate=None)
+        return record.choice("height", further=("speed",), others=others) if self.over_time else None
 
     @property
     def over_time(self) -> bool:
