@@ -184,6 +184,6 @@ def test_another_measure_than_comfort_is_refused_before_the_first_run(tmp_path, 
     (tmp_path / "cases.toml").write_text(FILE, encoding="utf-8")
     assert main(["--cases", "cases.toml", "--measure", "weighted"]) == 2
     assert "measure: the cars of a file are compared by comfort; leave out --measure" in capsys.readouterr().err
-    for measure in ("travel", len):
+    for measure in ("travel", ["travel", "weighted"]):
         with pytest.raises(ConfigurationError, match="compared by comfort"):
             read_cases(tmp_path / "cases.toml").plan(Car.load(), (), SweepSettings(measure=measure))
