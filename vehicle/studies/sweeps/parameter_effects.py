@@ -214,9 +214,9 @@ def effects_of(
     unchanged = values[:, :1]
     for row, value in zip(rows[:, 0], unchanged[:, 0], strict=True):
         if not np.isfinite(value) or value == 0.0:
-            found = "is 0" if value == 0.0 else f"has no value ({table.results[row].reason or 'it is undefined'})"
+            fault = "is 0" if value == 0.0 else f"has no value ({table.results[row].reason or 'it is undefined'})"
             raise DataError(
-                f"--each: {name} of the unchanged car on {table.cases[row].source.name} {found}, so no change has a "
+                f"--each: {name} of the unchanged car on {table.cases[row].source.name} {fault}, so no change has a "
                 "percentage; choose another figure or another input"
             )
     # Each input counts by its relative change, so that a loud one does not outweigh the others.

@@ -83,8 +83,8 @@ class SobolSample:
 
         def evaluation(table: SweptCases, caption: str) -> Evaluation:
             indices = comfort_indices(table, ranges)
-            left = ", ".join(name for name in _names(table.units) if name not in indices)
-            without = [f"no indices of {left}: all values are equal, or most are missing"] if left else []
+            left_out = ", ".join(name for name in _columns_of(table.units) if name not in indices)
+            without = [f"no indices of {left_out}: all values are equal, or most are missing"] if left_out else []
             return Evaluation([*index_lines(indices), *without], {SOBOL: lambda path: write_indices(path, indices)})
 
         return plan_sweep(car, sample, inputs, settings, evaluation)
@@ -115,16 +115,16 @@ def comfort_indices(table: SweptCases, ranges: Sequence[Range]) -> dict[str, Sob
     inputs = len({id(case.source) for case in table.cases})
     indices: dict[str, SobolIndices] = {}
     faults: list[DataError] = []
-    for name in _names(table.units):
+    for name in _columns_of(table.units):
         # The inputs vary slowest.
         values = table.column(name).reshape(inputs, -1)
         # Each input counts over its own mean, so that a loud one does not outweigh the others.
         count = np.maximum(np.count_nonzero(np.isfinite(values), axis=1, keepdims=True), 1)
         scale = np.abs(np.nansum(values, axis=1, keepdims=True) / count)
         mean = np.mean(values / np.where(scale > 0.0, scale, 1.0), axis=0)
-        there = np.isfinite(mean)
-        if there.any() and np.ptp(mean[there]) <= ROUNDING:
-            mean[there] = 1.0
+        finite = np.isfinite(mean)
+        if finite.any() and np.ptp(mean[finite]) <= ROUNDING:
+            mean[finite] = 1.0
         try:
             indices[name] = sobol_indices(ranges, mean)
         except DataError as error:
@@ -134,7 +134,7 @@ def comfort_indices(table: SweptCases, ranges: Sequence[Range]) -> dict[str, Sob
     return indices
 
 
-def _names(units: Mapping[str, str]) -> Sequence[str]:
+def _columns_of(units: Mapping[str, str]) -> Sequence[str]:
     """Return the columns that may have indices: of a table of comfort both values, else all figures."""
     return [name for name in QUANTITIES if name in units] if is_comfort(units) else figure_names(units)
 
