@@ -20,6 +20,7 @@ from vehicle.studies.sweeps import case_evaluation
 from vehicle.studies.sweeps.case import Case, SignalFile, signal_of
 from vehicle.studies.sweeps.case_evaluation import evaluate
 from vehicle.studies.sweeps.measure import ComfortMeasure, FigureMeasure, SingleMeasure, measure_of
+from vehicle.studies.sweeps.plan import sweep
 
 MEASURE = ComfortMeasure(skip=0.2)
 ROADS = [ShortRoad(name="one"), ShortRoad(name="two", seed=2)]
@@ -162,3 +163,11 @@ def test_only_a_figure_of_the_car_itself_takes_the_lock_of_mujoco(monkeypatch, c
     assert not any(result.reason for result in evaluate(cases[:1], batch))
     assert not any(result.reason for result in evaluate(cases[:1], SingleMeasure(each=batch)))
     assert held == [locked, locked]
+
+
+def test_a_figure_of_the_car_alone_reads_no_channel():
+    """A sweep of a natural frequency divided by the number of channels: 0."""
+    found = sweep(Car.load(), {"body.mass": [1200.0, 1500.0]}, ROADS[0], measure="frequency:heave", engine="reduced")
+    cars = [Car.load(overrides=[f"body.mass={mass}"]) for mass in (1200, 1500)]
+    alone = [car.run(ROADS[0].signal(), engine="reduced").figure("frequency:heave") for car in cars]
+    assert found.column("frequency_heave") == pytest.approx(alone) and alone[0] > alone[1]
