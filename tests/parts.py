@@ -20,6 +20,8 @@ REST = {
     "faults/": "system calls of commands fail",
     "scenarios/test_": "studies of the sources run",
     "system/test_fuzz.py": "mutated files and options",
+    "system/test_hostile_cars.py": "every command on cars with native code",
+    "system/test_killed_": "commands killed at a rename, and what a user does then",
     "system/test_installation.py": "the wheel is built and installed",
 }
 """Beginning of a test under tests/ to what it does that the product does not need at every change."""

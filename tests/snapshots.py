@@ -7,9 +7,10 @@ words, read `git diff` instead of assertions. A new case is a new line `$ COMMAN
 import sys
 import tempfile
 from collections.abc import Iterator
+from itertools import zip_longest
 from pathlib import Path
 
-from tests.documentation.pages import first_difference, output_of
+from tests.documentation.pages import output_of
 
 FOLDER = Path(__file__).parent / "commands" / "snapshots"
 
@@ -33,9 +34,13 @@ def printed(line: str, folder: Path) -> list[str]:
 
 
 def changed(name: str, folder: Path) -> list[str]:
-    """Return the commands of a file that print something else, with the first line that is missing."""
-    pairs = ((line, first_difference(shown, printed(line, folder))) for line, shown in cases(name))
-    return [f"{line}: no line {missing!r}" for line, missing in pairs if missing is not None]
+    """Return the commands of a file that print something else, with their first other line; numbers count too."""
+    differences = []
+    for line, shown in cases(name):
+        pairs = zip_longest(shown, printed(line, folder))
+        if other := next((pair for pair in pairs if pair[0] != pair[1]), None):
+            differences.append(f"{line}: {other[1]!r} in place of {other[0]!r}")
+    return differences
 
 
 def main(arguments: list[str]) -> int:

@@ -157,6 +157,7 @@ def test_a_run_without_the_forces_of_its_car(tmp_path, capsys):
     assert "apply_forces = false" in (calm_folder / "vehicle.toml").read_text(encoding="utf-8")
     for more, said in (
         (["--road", "B", "--rpm", "750"], "--rpm has no effect with --no-forces"),
+        (["--road", "B", "--rpm", "1000:2000:500"], "--rpm has no effect with --no-forces"),
         (["--road", "level"], "the forces of the vehicle file are left out by --no-forces"),
     ):
         assert shaker([*words, *more]) == 2

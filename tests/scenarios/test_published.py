@@ -226,11 +226,12 @@ def test_the_full_table_writes_the_page_of_the_documents(studies, tmp_path, monk
     assert {path.name for path in published.HOME.iterdir()} >= {"results.json", "figures"}
 
 
-def test_a_fresh_copy_of_the_kept_results_may_be_replaced(studies, tmp_path):
-    # Without the list of written files, as in a clone.
+def test_the_kept_results_may_be_replaced_with_their_list_alone(studies, tmp_path):
+    """A clone has the list of written files; without it nothing shows that the program wrote them."""
     assert command(tmp_path) == 0
-    (tmp_path / "table" / ".vehicle-files").unlink()
     assert command(tmp_path, "--reuse", "--force") == 0
+    (tmp_path / "table" / ".vehicle-files").unlink()
+    assert command(tmp_path, "--reuse", "--force") == 2
 
 
 def test_a_failed_study_ends_the_command(studies, tmp_path, monkeypatch, capsys):

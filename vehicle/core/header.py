@@ -11,7 +11,9 @@ SOURCES = Path(__file__).parent / "source"
 def _text(header: str) -> str:
     """Return a header without comments and continued lines."""
     text = (SOURCES / header).read_text(encoding="utf-8")
-    return re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL).replace("\\\n", " ")
+    text = re.sub(r"/\*.*?\*/|//[^\n]*", "", text, flags=re.DOTALL)
+    # A compiler takes blanks behind the backslash too.
+    return re.sub(r"\\[ \t]*\n", " ", text)
 
 
 def listed(header: str, macro: str, entry: str) -> list[tuple[str, ...]]:
@@ -20,7 +22,10 @@ def listed(header: str, macro: str, entry: str) -> list[tuple[str, ...]]:
     Raises:
         KeyError: the header lacks the macro.
     """
-    definition = re.search(rf"^#define {macro}\({entry}\)(.*)$", _text(header), flags=re.MULTILINE)
+    definition = re.search(rf"^\s*#\s*define\s+{macro}\({entry}\)(.*)$", _text(header), flags=re.MULTILINE)
     if definition is None:
-        raise KeyError(macro)
-    return [tuple(re.split(r",\s*", arguments)) for arguments in re.findall(rf"\b{entry}\(([^)]*)\)", definition[1])]
+        raise KeyError(f"{SOURCES / header} has no line '#define {macro}({entry})'")
+    return [
+        tuple(each.strip() for each in arguments.split(","))
+        for arguments in re.findall(rf"\b{entry}\(([^)]*)\)", definition[1])
+    ]

@@ -154,6 +154,12 @@ def test_the_command_makes_the_drive(tmp_path):
     np.testing.assert_array_equal(signal.displacement["fr"], signal.displacement["fl"])
     with pytest.raises(ConfigurationError, match="no --channel"):
         source.record.choice("height")
+    # A unit of another name belongs to the measurement beside the run.
+    beside = input_of(parser().parse_args([*words, "--unit", "knuckle_fr_acc_z=g"]))
+    assert isinstance(beside, DriveInput)
+    assert road_of(beside, others=True) == road_of(source)
+    with pytest.raises(ConfigurationError, match="no --channel"):
+        road_of(beside)
 
 
 def profile(path, length=50.0):

@@ -142,7 +142,7 @@ def law_fields(names: LawNames, numbers: Numbers, timestep: float) -> dict[str, 
             "hold": np.array(numbers.get("hold/body", np.zeros(0))),
         },
         "round": {"radii": fields("round", names.bushings, 1)[:, 0].copy()},
-        # Extension of the chamber falls by the fluid, that of the rubber by its share of local stiffness.
+        # The fluid shortens the chamber by its own motion, and lengthens the rubber by its share of local stiffness.
         "fluids": {"factors": np.array([factor for share in shares for factor in (-1.0, float(share))])},
     }
 

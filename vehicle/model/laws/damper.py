@@ -9,7 +9,7 @@ the function for the remainder.
 """
 
 import dataclasses
-import importlib
+import importlib.util
 from typing import Any
 
 import numpy as np
@@ -119,13 +119,14 @@ def _friction_laws() -> dict[str, type[Friction]]:
     laws: dict[str, type[Friction]] = {}
     for name in FRICTION_LAWS:
         title = name.title().replace("_", "")
-        try:
-            law = laws[name] = getattr(importlib.import_module(f"vehicle.model.laws.{name}"), title)
-        except (ModuleNotFoundError, AttributeError):
+        module = f"vehicle.model.laws.{name}"
+        law = getattr(importlib.import_module(module), title, None) if importlib.util.find_spec(module) else None
+        if law is None:
             raise ConfigurationError(
                 f"friction law {name}: EACH_FRICTION_LAW of laws.h has it; add vehicle/model/laws/{name}.py with the "
                 f"class {title}"
-            ) from None
+            )
+        laws[name] = law
         numbers = [entry.name for entry in dataclasses.fields(law)]
         if missing := [number for number in numbers if number not in (RECORD.names or ())]:
             raise ConfigurationError(
