@@ -138,3 +138,11 @@ def test_command(tmp_path, capsys, monkeypatch):
     ):
         assert main([*words, *more, "--output", "wrong"]) == 2
         assert message in capsys.readouterr().err
+
+
+def test_an_exact_figure_has_no_standard_error(sedan):
+    """A natural frequency has no column of errors, which ended in a KeyError."""
+    heave = Target(quantity="frequency", motion="heave", unit="Hz", at_most=5.0, **ON_ROAD)
+    found = meet_targets(sedan, targets(2.0, 0.1) | {"heave": heave}, RANGES[:1], duration=3.0)
+    assert found.change.cost == 0.0 and np.isnan(found.after_error[2]) and found.after_error[0] > 0.0
+    assert "+-" not in found.rows()[2][4] and found.rows()[2][5] == "met"

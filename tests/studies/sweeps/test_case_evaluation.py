@@ -18,6 +18,7 @@ from vehicle.signals.excitation.signal_file import write_signal
 from vehicle.studies.sweeps.case import Case, SignalFile, signal_of
 from vehicle.studies.sweeps.case_evaluation import evaluate
 from vehicle.studies.sweeps.measure import ComfortMeasure
+from vehicle.studies.sweeps.plan import sweep
 
 MEASURE = ComfortMeasure(skip=0.2)
 ROADS = [ShortRoad(name="one"), ShortRoad(name="two", seed=2)]
@@ -142,3 +143,11 @@ def test_standing_and_rolling_cars_are_simulated_apart():
     results = evaluate(cases, MEASURE)
     assert not any(result.reason for result in results)
     assert numbers(evaluate(cases[::-1], MEASURE)) == numbers(results)[::-1]
+
+
+def test_a_figure_of_the_car_alone_reads_no_channel():
+    """A sweep of a natural frequency divided by the number of channels: 0."""
+    found = sweep(Car.load(), {"body.mass": [1200.0, 1500.0]}, ROADS[0], measure="frequency:heave", engine="reduced")
+    cars = [Car.load(overrides=[f"body.mass={mass}"]) for mass in (1200, 1500)]
+    alone = [car.run(ROADS[0].signal(), engine="reduced").figure("frequency:heave") for car in cars]
+    assert found.column("frequency_heave") == pytest.approx(alone) and alone[0] > alone[1]

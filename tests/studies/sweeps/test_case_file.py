@@ -176,3 +176,14 @@ def test_equal_cars_and_other_options_are_refused(tmp_path, capsys, monkeypatch)
     assert "cases 'soft' and 'same' are the same car" in capsys.readouterr().err
     assert main(["--cases", "cases.toml", "--vary", "damper.viscous=1,2"]) == 2
     assert "leave out --vary" in capsys.readouterr().err
+
+
+def test_another_measure_than_comfort_is_refused_before_the_first_run(tmp_path, capsys, monkeypatch):
+    """In Python it ended in a StopIteration after all runs."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "cases.toml").write_text(FILE, encoding="utf-8")
+    assert main(["--cases", "cases.toml", "--measure", "weighted"]) == 2
+    assert "measure: the cars of a file are compared by comfort; leave out --measure" in capsys.readouterr().err
+    for measure in ("travel", ["travel", "weighted"]):
+        with pytest.raises(ConfigurationError, match="compared by comfort"):
+            read_cases(tmp_path / "cases.toml").plan(Car.load(), (), SweepSettings(measure=measure))

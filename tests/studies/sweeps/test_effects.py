@@ -2,14 +2,16 @@
 
 import csv
 import io
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from vehicle import Car, road
 from vehicle.commands.sweep import main
-from vehicle.errors import ConfigurationError
+from vehicle.errors import ConfigurationError, DataError
 from vehicle.studies.sweeps.case import parameter_cells
+from vehicle.studies.sweeps.case_result import Result
 from vehicle.studies.sweeps.differences import DifferencesWriter
 from vehicle.studies.sweeps.effects import Effect, Effects, effect_sentence, write_effects
 from vehicle.studies.sweeps.parameter_effects import (
@@ -121,6 +123,37 @@ def test_parameters_without_effect_are_named():
         single_changes(vehicle, varied_parameters(vehicle, ("damper.stribeck_friction",)), 0.2)
 
 
+def test_of_an_undefined_figure_there_is_no_change_in_percent():
+    """It was called without effect; so was a parameter whose changed cars have no value."""
+    car = Car.load("sedan")
+    parameters = varied_parameters(car.vehicle, ("rear.damper.viscous", "front.main_spring.stiffness"))
+    changes, _ = single_changes(car.vehicle, parameters, 0.2)
+    plan = plan_sweep(car, changes, road("B", 80, duration=3), SweepSettings(engine="reduced", measure="travel"))
+    table = plan.run()
+
+    def of_values(*values):
+        results = [Result(values={"travel": value}) for value in values]
+        return effects_of(replace(table, results=results), parameters, 0.2)
+
+    for base, found in ((NAN, r"has no value \(it is undefined\)"), (0.0, "is 0")):
+        with pytest.raises(DataError, match=f"--each: travel of the unchanged car on road_B_80 {found}, so no change"):
+            of_values(*[base] * len(changes))
+    found = of_values(1.0, *[NAN] * (len(changes) - 1))
+    assert len(found.effects) == len(parameters) and found.without == ()
+    assert effect_sentence(found) == "No changed car has travel: see the reasons in table.csv."
+    assert of_values(*[1.0] * len(changes)).without == tuple(parameters)
+
+
+def test_parameters_are_ranked_by_one_figure(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    words = ["--input", "bump_7p5mm.csv", "--vary", "damper.viscous", "--each", "10%"]
+    assert main([*words, "--measure", "travel", "--measure", "tyre_load"]) == 2
+    message = "--each ranks by one figure; give one --measure, not 2"
+    assert message in capsys.readouterr().err
+    with pytest.raises(ConfigurationError, match=message):
+        parameter_effects(Car.load(), "bump_7p5mm.csv", measure=["travel", "tyre_load"])
+
+
 def effect(path, low, high, half_width=NAN):
     return Effect(path=path, unit="N", value=10.0, low=8.0, high=12.0, step="20 %", change_low=low, change_high=high,
                   half_width=half_width)  # fmt: skip
@@ -187,7 +220,7 @@ def test_table_file_and_picture(tmp_path):
         "c,,,,,0,0,",
     ]
     text = str(effects)
-    assert "failed" in text and "without effect here: 1 parameters (c)" in text and "-4.00 %" in text
+    assert "no value" in text and "without effect here: 1 parameters (c)" in text and "-4.00 %" in text
     axes = effects.plot()
     labels = [label.get_text() for label in axes.get_yticklabels()]
     assert labels == ["a  10 N", "b  10 N"]

@@ -111,7 +111,7 @@ def test_bad_arguments():
         sobol_sample(UNIT, 100)
     with pytest.raises(DataError, match="found 7, must be a multiple of 5"):
         sobol_indices(UNIT, np.arange(7.0))
-    with pytest.raises(DataError, match="1 of 2 base points have a failed run, must be at most half"):
+    with pytest.raises(DataError, match="1 of 2 base points have a failed run or no value, must be at most half"):
         sobol_indices(UNIT, [1.0, 2.0, np.nan, 3.0, 4.0, *range(5)])
     with pytest.raises(DataError, match="all values are equal"):
         sobol_indices(UNIT, np.ones(5))

@@ -76,6 +76,30 @@ def test_failed_runs_are_left_out_and_counted(inputs):
         comfort_indices(table, RANGES)
 
 
+def test_a_figure_without_change_or_value_leaves_the_others_their_indices(inputs):
+    plan = SobolSample(BOUNDS, 64).plan(Car.load(), inputs[0], SweepSettings(engine="reduced"))
+    values = np.array([sum(float(text.partition("=")[2]) for text in case.overrides) for case in plan.cases])
+    columns = {
+        "weighted": values,
+        "travel": 2.0 * values,
+        "order_frequency": 20.0 + 1e-9 * values,  # rounding
+        "slip_share": np.zeros(len(values)),
+        "first_slip": np.full(len(values), np.nan),
+    }
+    units = dict.fromkeys([*columns, "weighted_error"], "m/s2")
+    table: Any = SimpleNamespace(cases=plan.cases, units=units, column=columns.__getitem__)
+    # Figures that were asked for: the first is no sign of comfort, whose table has relative errors.
+    indices = comfort_indices(table, RANGES)
+    assert list(indices) == ["weighted", "travel"]
+    assert indices["weighted"].total == pytest.approx(indices["travel"].total)
+    said = plan.evaluation_of(table, "").lines[-1]
+    assert said.startswith("no indices of order_frequency, slip_share, first_slip: all values are equal, or most ")
+    for name, message in (("slip_share", "all values are equal"), ("first_slip", "64 of 64 base points have a failed")):
+        table.units = {name: "-"}
+        with pytest.raises(DataError, match=f"--sobol: values: {message}"):
+            comfort_indices(table, RANGES)
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [

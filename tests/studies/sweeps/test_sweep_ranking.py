@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from matplotlib import pyplot
 
-from vehicle.errors import ConfigurationError
+from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.ride_comfort import wave_names
 from vehicle.studies.sweeps.case import Case, SignalFile
 from vehicle.studies.sweeps.case_result import Result
 from vehicle.studies.sweeps.comfort_ranking import ranking_evaluation
 from vehicle.studies.sweeps.sweep_page import sweep_page
 from vehicle.studies.sweeps.sweep_picture import can_be_drawn, draw_ranked
-from vehicle.studies.sweeps.sweep_ranking import measure_lines, ranked_cars, ranking_lines
+from vehicle.studies.sweeps.sweep_ranking import figure_names, measure_lines, ranked_cars, ranking_lines
 from vehicle.studies.sweeps.sweep_table import SweepTable
 
 UNITS = {"unweighted": "m/s2", "weighted": "m/s2"}
@@ -74,6 +74,17 @@ def test_another_measure_has_its_table():
     lines = measure_lines(table)
     assert lines[0].split() == ["input", "front.spring", "weighted", "[m/s2]"] and len(lines) == 5
     assert lines[1].split() == [table.cases[0].source.name, "30", "1"]
+
+
+def test_a_value_named_like_an_error_is_a_figure():
+    """It has no value column beside it; without any figure the refusal is a sentence."""
+    assert figure_names({"path_error": "?"}) == ("path_error",)
+    assert figure_names({"travel": "m", "travel_error": "m", "path_error": "m"}) == ("travel", "path_error")
+    assert figure_names({"weighted": "m/s2", "unweighted_error": "-"}) == ("weighted",)
+    with pytest.raises(DataError, match="measure: no run has a value"):
+        figure_names({})
+    table = replace(table_of([("30",), ("10",)], ["front.spring"]), units={"path_error": "m"})
+    assert measure_lines(table)[0].split()[-2:] == ["path_error", "[m]"]
 
 
 def test_a_loud_input_does_not_outweigh_a_quiet_one():

@@ -195,7 +195,8 @@ def meet_targets(
 
     def values(positions: Vector, executor: StandingExecutor) -> Vector:
         changes = [_texts(started, position) for position in positions]
-        columns: dict[str, Vector] = {}
+        # An exact figure, as a natural frequency, has no standard error.
+        columns = {f"{name}{ERROR}": np.full(len(changes), np.nan) for name in names}
         for index, (source, measure) in enumerate(measures.items()):
             settings = SweepSettings(engine="reduced", measure=measure, skip=measure.skip, executor=executor, jobs=jobs)
             plan = plan_sweep(car, changes, source, settings)

@@ -175,8 +175,11 @@ def _batch_results(cases: Sequence[Case], measure: BatchMeasure) -> list[Result]
 
 
 def cars_at_once(samples: float, channels: int) -> int:
-    """Return the number of cars whose channels fit into `ROOM`, at least one; from `LANES` on in full vectors."""
-    size = int(max(ROOM / (8.0 * channels * (samples + 1.0)), 1.0))
+    """Return the number of cars whose channels fit into `ROOM`, at least one; from `LANES` on in full vectors.
+
+    Figures of the car alone, as a natural frequency, read no channel.
+    """
+    size = int(max(ROOM / (8.0 * max(channels, 1) * (samples + 1.0)), 1.0))
     return size - (size % LANES if size > LANES else 0)
 
 

@@ -72,9 +72,17 @@ class CaseFile:
                 raise ConfigurationError(f"CaseFile.speeds: no speed on {name!r}; add {name!r} = [80], in km/h")
 
     def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
-        """Return the checked sweep of every car of the file, on its inputs; see `Design`."""
+        """Return the checked sweep of every car of the file, on its inputs; see `Design`.
+
+        Raises:
+            ConfigurationError: a measure without comfort, by which the cars are compared.
+        """
         chosen = Car.load(self.vehicle, car.overrides) if self.vehicle else car
-        return plan_sweep(chosen, list(self.cars.values()), self.inputs, settings, self._evaluation)
+        plan = plan_sweep(chosen, list(self.cars.values()), self.inputs, settings, self._evaluation)
+        name = next((each for each in RANKED_BY if each in plan.measure.units), "")
+        if name.replace(WEIGHTED, UNWEIGHTED) not in plan.measure.units:
+            raise ConfigurationError("measure: the cars of a file are compared by comfort; leave out --measure")
+        return plan
 
     def _evaluation(self, table: SweptCases, caption: str) -> Evaluation:
         results = case_results(table, self)

@@ -24,7 +24,7 @@ from vehicle.signals.formats.csv_table import RowWriter
 from vehicle.studies.sweeps.case import Case, Input
 from vehicle.studies.sweeps.case_result import Row
 from vehicle.studies.sweeps.change_error import is_event
-from vehicle.studies.sweeps.sweep_ranking import RANKED_BY
+from vehicle.studies.sweeps.sweep_ranking import RANKED_BY, is_comfort
 from vehicle.studies.sweeps.sweep_table import SweepTable
 
 DIFFERENCES = "differences.csv"
@@ -59,7 +59,7 @@ def has_differences(table: SweepTable) -> bool:
     cars = (case.overrides[case.shared :] for case in table.cases)
     first, good = next(cars, ()), (result for result in table.results if not result.reason)
     return (
-        table.units.get(f"{UNWEIGHTED}{ERROR}") == "-"  # else figures that were asked for
+        is_comfort(table.units)
         and any(car != first for car in cars)
         and any(wave_names(UNWEIGHTED)[0] in result.values for result in islice(good, 1))
     )

@@ -36,7 +36,7 @@ class Effect:
         value: value of the car.
         low, high: changed values.
         step: size of the change as text, "20 %", or "10 mm" for a coordinate.
-        change_low, change_high: change of the weighted comfort value at them [%]; NaN for a failed run.
+        change_low, change_high: change of the weighted comfort value at them [%]; NaN for a failed run or no value.
         half_width: half width of the 95 % interval of a change on roads of the class [%], the larger of both; NaN
             without one.
     """
@@ -176,7 +176,7 @@ def effect_lines(effects: Effects) -> list[str]:
             f"{number(each.value, 4)} {each.unit}",
             *([each.step] if len(steps) > 1 else []),
             *(
-                f"{change:+.2f} %" if math.isfinite(change) else "failed"
+                f"{change:+.2f} %" if math.isfinite(change) else "no value"
                 for change in (each.change_low, each.change_high)
             ),
             f"{each.half_width:.2f}" if math.isfinite(each.half_width) else "-",
@@ -210,6 +210,8 @@ def effect_sentence(effects: Effects) -> str:
         for end, change in zip(first.ends, (first.change_low, first.change_high), strict=True)
         if math.isfinite(change)
     ]
+    if not turns:
+        return f"No changed car has {'comfort' if effects.of_comfort else effects.name}: see the reasons in table.csv."
     following = [each for each in others[:2] if not each.largest <= each.half_width]
     text = f"{first.path} matters most: {', '.join(turns)}"
     if following:
@@ -255,7 +257,7 @@ def _parts(effects: Effects, draw: Callable[[Path], object], notes: Sequence[str
     rows = []
     for each in effects.effects:
         changes = (
-            f"{change:+.2f}" if math.isfinite(change) else "failed" for change in (each.change_low, each.change_high)
+            f"{change:+.2f}" if math.isfinite(change) else "no value" for change in (each.change_low, each.change_high)
         )
         width = number(each.half_width if math.isfinite(each.half_width) else None, 2)
         width = ", ".join(filter(None, (width, each.mark.replace("+-", "±"))))

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from vehicle.digits import number
-from vehicle.errors import ConfigurationError
+from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.parameters.idle import idle_parameters
 from vehicle.model.parameters.parameter_list import parameter_list
 from vehicle.model.parameters.paths import value_at
@@ -113,6 +113,17 @@ def single_changes(
     return changes, without
 
 
+def _require_one_figure(settings: SweepSettings) -> None:
+    """Check that parameters are ranked by one figure.
+
+    Raises:
+        ConfigurationError: names of several figures.
+    """
+    names = settings.measure
+    if isinstance(names, Sequence) and not isinstance(names, str) and len(names) > 1:
+        raise ConfigurationError(f"--each ranks by one figure; give one --measure, not {len(names)}")
+
+
 def _is_curve(path: str, value: Any) -> bool:
     """Return True for the forces of a curve, as `damper.force` over `damper.velocity`."""
     return path.rpartition(".")[2] == "force" and isinstance(value, list | tuple)
@@ -139,8 +150,10 @@ def parameter_effects(car: Car, inputs: Inputs, settings: EffectSettings) -> Eff
         Effects, largest first; printed as a table and as text.
 
     Raises:
-        ConfigurationError: a group without parameters, a share out of range, and as in `sweep`.
+        ConfigurationError: a group without parameters, a share out of range, several figures, and as in `sweep`.
+        DataError: the unchanged car has no value, or 0, of which there is no percentage.
     """
+    _require_one_figure(settings)
     changes, effects = SingleChanges(settings.groups, settings.share, settings.shift).of(car.vehicle)
     return effects(plan_sweep(car, changes, inputs, settings).run())
 
@@ -164,7 +177,8 @@ class SingleChanges:
         return changes, lambda table: effects_of(table, parameters, self.share, without, self.shift)
 
     def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
-        """Return the checked sweep; see `Design`; errors: see `varied_parameters` and `single_changes`."""
+        """Return the checked sweep; see `Design`; errors: as in `parameter_effects`."""
+        _require_one_figure(settings)
         changes, effects = self.of(car.vehicle)
         return plan_sweep(
             car, changes, inputs, settings, lambda table, caption: effects_evaluation(effects(table), caption)
@@ -186,6 +200,9 @@ def effects_of(
         share: relative change of each parameter [-].
         without: parameters without effect, which have no run.
         shift: change of each coordinate [m].
+
+    Raises:
+        DataError: the unchanged car has no value on an input, or 0, of which there is no percentage.
     """
     inputs = len({id(case.source) for case in table.cases})
     name = figure_names(table.units)[0]
@@ -195,6 +212,13 @@ def effects_of(
     vehicle = load_vehicle(base.vehicle, base.overrides[: base.shared])
     values = table.column(name)[rows]
     unchanged = values[:, :1]
+    for row, value in zip(rows[:, 0], unchanged[:, 0], strict=True):
+        if not np.isfinite(value) or value == 0.0:
+            fault = "is 0" if value == 0.0 else f"has no value ({table.results[row].reason or 'it is undefined'})"
+            raise DataError(
+                f"--each: {name} of the unchanged car on {table.cases[row].source.name} {fault}, so no change has a "
+                "percentage; choose another figure or another input"
+            )
     # Each input counts by its relative change, so that a loud one does not outweigh the others.
     changes = 100.0 * np.mean(np.sign(unchanged) * (values / unchanged - 1.0), axis=0)
     errors, events = change_errors(table.rows(), rows.T.tolist(), name)
@@ -214,7 +238,11 @@ def effects_of(
                 half_width=float(max(widths[low], widths[high])),
             )
         )  # fmt: skip
-    idle = [each.path for each in effects if each.largest <= 100.0 * ROUNDING]
+    idle = [
+        each.path
+        for each in effects
+        if np.isfinite((each.change_low, each.change_high)).all() and each.largest <= 100.0 * ROUNDING
+    ]
     ranked = sorted((each for each in effects if each.path not in idle), key=lambda each: -each.largest)
     return Effects(
         effects=tuple(ranked),

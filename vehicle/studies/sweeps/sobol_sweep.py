@@ -19,7 +19,7 @@ from vehicle.studies.sweeps.evaluation import Evaluation
 from vehicle.studies.sweeps.indices import SobolIndices, sobol_indices, sobol_sample
 from vehicle.studies.sweeps.plan import SweepPlan, plan_sweep
 from vehicle.studies.sweeps.sweep_inputs import Inputs
-from vehicle.studies.sweeps.sweep_ranking import RANKED_BY, SweptCases, figure_names
+from vehicle.studies.sweeps.sweep_ranking import ROUNDING, SweptCases, figure_names, is_comfort
 from vehicle.studies.sweeps.sweep_settings import SobolSettings, SweepSettings
 
 SOBOL = "sobol.csv"
@@ -83,7 +83,9 @@ class SobolSample:
 
         def evaluation(table: SweptCases, caption: str) -> Evaluation:
             indices = comfort_indices(table, ranges)
-            return Evaluation(index_lines(indices), {SOBOL: lambda path: write_indices(path, indices)})
+            left_out = ", ".join(name for name in _columns_of(table.units) if name not in indices)
+            without = [f"no indices of {left_out}: all values are equal, or most are missing"] if left_out else []
+            return Evaluation([*index_lines(indices), *without], {SOBOL: lambda path: write_indices(path, indices)})
 
         return plan_sweep(car, sample, inputs, settings, evaluation)
 
@@ -101,24 +103,40 @@ class SobolSample:
 def comfort_indices(table: SweptCases, ranges: Sequence[Range]) -> dict[str, SobolIndices]:
     """Return the indices of each figure of a sweep over a `SobolSample`: mean of the inputs, each over its mean.
 
+    A figure that no parameter changes, as the frequency of an order, has no indices.
+
     Args:
         table: the table.
         ranges: the parameters.
 
     Raises:
-        DataError: half of the base points have a failed run, or no parameter changes the comfort.
+        DataError: no figure has indices: half of the base points have a failed run, or no parameter changes a figure.
     """
     inputs = len({id(case.source) for case in table.cases})
-    comfort = figure_names(table.units)[0] in RANKED_BY
-    names = [name for name in QUANTITIES if name in table.units] if comfort else figure_names(table.units)
-    try:
+    indices: dict[str, SobolIndices] = {}
+    faults: list[DataError] = []
+    for name in _columns_of(table.units):
         # The inputs vary slowest.
-        tables = [table.column(name).reshape(inputs, -1) for name in names]
+        values = table.column(name).reshape(inputs, -1)
         # Each input counts over its own mean, so that a loud one does not outweigh the others.
-        means = [np.mean(values / np.abs(np.nanmean(values, axis=1, keepdims=True)), axis=0) for values in tables]
-        return {name: sobol_indices(ranges, mean) for name, mean in zip(names, means, strict=True)}
-    except DataError as error:
-        raise DataError(f"--sobol: {error}") from None
+        count = np.maximum(np.count_nonzero(np.isfinite(values), axis=1, keepdims=True), 1)
+        scale = np.abs(np.nansum(values, axis=1, keepdims=True) / count)
+        mean = np.mean(values / np.where(scale > 0.0, scale, 1.0), axis=0)
+        finite = np.isfinite(mean)
+        if finite.any() and np.ptp(mean[finite]) <= ROUNDING:
+            mean[finite] = 1.0
+        try:
+            indices[name] = sobol_indices(ranges, mean)
+        except DataError as error:
+            faults.append(error)
+    if not indices:
+        raise DataError(f"--sobol: {faults[0]}")
+    return indices
+
+
+def _columns_of(units: Mapping[str, str]) -> Sequence[str]:
+    """Return the columns that may have indices: of a table of comfort both values, else all figures."""
+    return [name for name in QUANTITIES if name in units] if is_comfort(units) else figure_names(units)
 
 
 def write_indices(path: Path, indices: Mapping[str, SobolIndices]) -> None:

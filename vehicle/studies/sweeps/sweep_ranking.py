@@ -11,6 +11,7 @@ import numpy as np
 from vehicle.arrays import Vector
 from vehicle.digits import aligned
 from vehicle.digits import number as number_text
+from vehicle.errors import DataError
 from vehicle.model.parameters.parameter_list import value_text
 from vehicle.model.parameters.paths import unit_of_override, values_of_override
 from vehicle.model.parameters.vehicle import load_vehicle
@@ -287,7 +288,7 @@ def measure_lines(table: SweptCases) -> list[str]:
     paths = [path for path in table.paths() if path not in shared]
     columns = {name: table.column(name) for name in units}
     # An error that is known in no run has a column in the file alone.
-    columns = {name: each for name, each in columns.items() if np.isfinite(each).any() or not name.endswith(ERROR)}
+    columns = {name: each for name, each in columns.items() if np.isfinite(each).any() or not _is_error(name, units)}
     rows = [
         [case.source.name, *parameter_cells(case, paths), *(_cell(float(each[row])) for each in columns.values())]
         for row, case in enumerate(islice(table.cases, SHOWN))
@@ -302,12 +303,29 @@ def _cell(value: float) -> str:
     return number_text(value, 4) if math.isfinite(value) else "-"
 
 
+def is_comfort(units: Mapping[str, str]) -> bool:
+    """Return True for a table of comfort, whose errors are relative, False for figures that were asked for."""
+    return units.get(f"{UNWEIGHTED}{ERROR}") == "-"
+
+
 def figure_names(units: Mapping[str, str]) -> tuple[str, ...]:
     """Return the columns of figures: of a table of comfort that by which cars are ranked, else all without errors.
 
     Args:
         units: name of each value of a table to its unit.
+
+    Raises:
+        DataError: the table has no value.
     """
-    if units.get(f"{UNWEIGHTED}{ERROR}") == "-":
-        return tuple(name for name in RANKED_BY if name in units)[:1]
-    return tuple(name for name in units if not name.endswith(ERROR))
+    if is_comfort(units):
+        names = tuple(name for name in RANKED_BY if name in units)[:1]
+    else:
+        names = tuple(name for name in units if not _is_error(name, units))
+    if not names:
+        raise DataError("measure: no run has a value; run one car alone for the reason")
+    return names
+
+
+def _is_error(name: str, units: Mapping[str, str]) -> bool:
+    """Return True for the standard error of another column; a value of the user may be named "path_error"."""
+    return name.endswith(ERROR) and name.removesuffix(ERROR) in units
