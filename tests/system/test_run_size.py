@@ -27,9 +27,9 @@ def test_a_long_run_is_stated_with_its_remedy(tmp_path, monkeypatch):
     # 3.6e6 samples of 100 channels: 2.88 GB, and 0.3 GB + 1 GB beside; 8 and 13 byte a sample on the disk.
     assert text.startswith("100 channels of 3600 s need about 4.2 GB of memory and 7.6 GB on the disk; for less,")
     assert "--channels" in text
-    # In MuJoCo 230 byte a sample more.
-    text = run_size(tmp_path, 3600.0, 1000.0, 100, ["npz"], reduced=False)
-    assert "need about 5 GB of memory and 2.9 GB on" in text
+    # In MuJoCo 700 byte a sample at least.
+    text = run_size(tmp_path, 3600.0, 1000.0, 5, ["npz"], reduced=False)
+    assert "need about 2.8 GB of memory and 0.14 GB on" in text
     # The free memory is of this moment: it is stated, at any size, and refuses nothing.
     monkeypatch.setattr(module, "physical_memory", lambda: 1e11)
     monkeypatch.setattr(module, "free_memory", lambda: 2e8)

@@ -14,12 +14,14 @@ BYTES = {"npz": 8.0, "h5": 8.0, "mf4": 8.0, "mat": 8.0, "uff": 8.0, "rpc": 4.0, 
 """Size of a sample of a channel in a file [byte]; csv: nine digits, sign, point and comma."""
 
 BESIDE, OF_SAMPLE = 0.3e9, 280.0
-"""Memory of a run in addition to its recording [byte]: program and model; for each sample plates and an evaluation; in
-MuJoCo `ENERGIES` are added.
+"""Memory of a run in addition to its recording [byte]: program and model; for each sample plates and an evaluation.
 
 Measured peaks of an hour at 1 kHz with the reduced engine [GB], and `run_size`: 44 channels 2.5 and 2.6; 61 channels
 3.1 and 3.1.
 """
+
+OF_SAMPLE_IN_MUJOCO = 700.0
+"""Least memory of a run in MuJoCo for each sample [byte], with energies; 653 measured with 46 channels, 699 with 3."""
 
 STATED_FROM = 1e9
 """Minimum size that is stated before the run [byte]."""
@@ -27,7 +29,7 @@ STATED_FROM = 1e9
 BASE = 0.17e9
 """Memory of a process with its program and its car [byte]; 0.14e9 to 0.19e9 measured."""
 
-PLATES, ENERGIES = 220.0, 230.0
+PLATES, PLATES_OF_MUJOCO = 220.0, 450.0
 """Memory of a run for each sample, in addition to its channels [byte]: plates, spectra; in MuJoCo also energies."""
 
 CHANNEL = 22.0
@@ -46,9 +48,9 @@ def run_size(
 ) -> str:
     """Return a message on the memory and the disk of a run; empty below `STATED_FROM`.
 
-    memory = 8 n c + (`OF_SAMPLE` + `ENERGIES`) n + `BESIDE`, disk = n c (sum of `BYTES` of the formats)
+    memory = n max(8 c + `OF_SAMPLE`, `OF_SAMPLE_IN_MUJOCO`) + `BESIDE`, disk = n c (sum of `BYTES` of the formats)
 
-    n samples of c channels
+    n samples of c channels; the maximum in MuJoCo only
 
     Args:
         folder: folder of the run, which need not exist.
@@ -56,7 +58,7 @@ def run_size(
         rate: recorded samples a second [Hz].
         channels: number of recorded channels.
         formats: formats of the time histories, for example "npz".
-        reduced: False if the car may run with MuJoCo; the reduced engine has no `ENERGIES`.
+        reduced: False if the car may run with MuJoCo.
 
     Raises:
         ConfigurationError: the recording exceeds half the memory, or see `stated_size`.
@@ -66,7 +68,7 @@ def run_size(
     return stated_size(
         folder,
         f"{channels} channels of {duration:g} s",
-        samples * (8.0 * channels + OF_SAMPLE + (0.0 if reduced else ENERGIES)) + BESIDE,
+        samples * max(8.0 * channels + OF_SAMPLE, 0.0 if reduced else OF_SAMPLE_IN_MUJOCO) + BESIDE,
         samples * channels * sum(BYTES[form] for form in formats),
         "for less, name the channels (--channels), or set a lower solver.record_rate",
     )
@@ -88,13 +90,13 @@ def stated_size(folder: Path, subject: str, memory: float, disk: float, remedy: 
         ConfigurationError: more than the memory of the machine, or than the free disk.
     """
     there = next(parent for parent in (folder.absolute(), *folder.absolute().parents) if parent.is_dir())
-    for name, needed, limit, where, least in (
+    for name, needed, limit, where, bound in (
         ("", memory, physical_memory(), "of memory", "the memory of this machine,"),
         (f"{folder}: ", disk, float(shutil.disk_usage(there).free), "on the disk", "the free"),
     ):
         if needed > limit:
             raise ConfigurationError(
-                f"{name}{subject} need {needed / 1e9:.3g} GB {where}, must be at most {least} {limit / 1e9:.3g} GB; "
+                f"{name}{subject} need {needed / 1e9:.3g} GB {where}, must be at most {bound} {limit / 1e9:.3g} GB; "
                 f"{remedy}"
             )
     free = free_memory()
@@ -116,12 +118,12 @@ def say_size(folder: Path, subject: str, memory: float, disk: float, remedy: str
 def batch_memory(samples: float, channels: int, *, cars: int = 1, reduced: bool = True) -> float:
     """Return the memory of a process that simulates and evaluates cars together [byte].
 
-    memory = `BASE` + n (`PLATES` + `ENERGIES` + `CHANNEL` channels cars), with n samples of each channel
+    memory = `BASE` + n (`PLATES` + `CHANNEL` channels cars), with n samples of each channel
 
     Args:
         samples: number n of samples.
         channels: channels of each car.
         cars: cars of a batch; MuJoCo runs each by itself.
-        reduced: see `run_size`.
+        reduced: False if a car may run with MuJoCo.
     """
-    return BASE + samples * (PLATES + (0.0 if reduced else ENERGIES) + CHANNEL * channels * cars)
+    return BASE + samples * ((PLATES if reduced else PLATES_OF_MUJOCO) + CHANNEL * channels * cars)

@@ -76,7 +76,7 @@ def _worker(each: Collection[Case], runs: int, measure: Measure) -> tuple[float,
     """Return the largest memory of a process [byte], and the samples of this run."""
     vehicles: dict[tuple[Path | None, tuple[str, ...]], Vehicle] = {}
     durations: dict[Input, float] = {}
-    found = []
+    simulated = []
     for case in each:
         # The statement must not end a sweep: an invalid car, and an input of the user that raises, are failed rows.
         with suppress(Exception):
@@ -84,10 +84,10 @@ def _worker(each: Collection[Case], runs: int, measure: Measure) -> tuple[float,
                 durations[case.source] = _duration(case.source)
             if (car := (case.vehicle, rates_of(case))) not in vehicles:
                 vehicles[car] = load_vehicle(case.vehicle, case.overrides)
-            found.append((case, vehicles[car], durations[case.source]))
+            simulated.append((case, vehicles[car], durations[case.source]))
     others = sum(sorted(durations.values())[-KEPT_SIGNALS:-1])
     largest = 0.0, 0.0
-    for case, vehicle, duration in found:
+    for case, vehicle, duration in simulated:
         rate = vehicle.solver.record_rate
         samples, channels = rate * duration, len(vehicle.channels if measure.channels is None else measure.channels)
         batch = case.engine != "mujoco" and isinstance(measure, BatchMeasure)
@@ -99,4 +99,4 @@ def _worker(each: Collection[Case], runs: int, measure: Measure) -> tuple[float,
 
 def _duration(source: Input) -> float:
     """Return the length of an input [s]; of a road without making it."""
-    return getattr(source, "duration", None) or signal_of(source).duration
+    return float(getattr(source, "duration", None) or signal_of(source).duration)
