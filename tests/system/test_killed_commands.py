@@ -11,7 +11,7 @@ from tests.faults.commands import DOOR, run_words
 from tests.faults.user import KILLED, dies_at, in_fork, judged, kills
 from vehicle import replacement
 from vehicle.errors import ConfigurationError, OutputError
-from vehicle.leftovers import mention
+from vehicle.leftovers import REPLACED, mention
 from vehicle.runs.output import work_folder
 from vehicle.runs.output.folder import check_study, output_folder, study_folder, whole_files, write_text
 from vehicle.runs.output.work_folder import put_in_order
@@ -116,6 +116,22 @@ def test_a_failing_exchange_leaves_the_results_of_before(tmp_path, monkeypatch):
     with pytest.raises(OutputError, match=r"cannot be written: Input/output error; the earlier results are unchanged$"):
         results(tmp_path / "run", "new")
     assert read(tmp_path / "run") == ["old", "old"] and visible(tmp_path) == ["run"]
+
+
+def test_a_folder_without_a_right_to_write_in_is_replaced(tmp_path, monkeypatch):
+    """Its own names cannot change: no mark, nothing removed; the exchange needs the folder above only."""
+    results(tmp_path / "run", "old")
+    opened = os.open
+
+    def refused(path, flags, *mode):
+        if Path(path).name == REPLACED:
+            raise PermissionError(13, "Permission denied", str(path))
+        return opened(path, flags, *mode)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "open", refused)
+        results(tmp_path / "run", "new")
+    assert read(tmp_path / "run") == ["new", "new"] and visible(tmp_path) == ["run"]
 
 
 def test_undeletable_old_results_are_no_error(tmp_path, monkeypatch, capsys):

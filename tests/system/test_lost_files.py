@@ -127,6 +127,8 @@ def test_discarding_leaves_the_files_of_others(tmp_path):
     put(tmp_path / "run", "a.csv")
     (tmp_path / "run" / f".a.csv.{os.getpid()}.partial.csv").write_text("what a killed process left")
     (tmp_path / "run" / ".b.csv.lock").write_text("1\n")
+    (tmp_path / "run" / ".vehicle-unfinished").write_text("folder\n")  # journals of an earlier version
+    (tmp_path / "run" / ".vehicle-complete-new").write_text("folder\n")
     assert foreign(tmp_path / "run") == []
     (tmp_path / "run" / "mine.txt").write_text("mine")
     discard(tmp_path / "run")

@@ -1,13 +1,15 @@
 """Memory and disk of a run are stated before it starts, and refused where they do not fit."""
 
+import ctypes
+import os
 import shutil
 from types import SimpleNamespace
 
 import pytest
 
+from vehicle import machine
 from vehicle.commands import shaker
 from vehicle.errors import ConfigurationError
-from vehicle.machine import free_memory, physical_memory
 from vehicle.runs.output import run_size as module
 from vehicle.runs.output.run_size import BYTES, run_size
 from vehicle.signals.formats.formats import WRITTEN
@@ -20,21 +22,31 @@ def test_every_format_has_its_size():
 def test_a_long_run_is_stated_with_its_remedy(tmp_path, monkeypatch):
     monkeypatch.setattr(module, "free_memory", lambda: 1e11)
     monkeypatch.setattr(shutil, "disk_usage", lambda _: SimpleNamespace(free=1e11))
-    assert run_size(tmp_path / "new" / "run", 60.0, 1000.0, 100, ["npz"]) == ""
-    text = run_size(tmp_path / "new" / "run", 3600.0, 1000.0, 100, ["npz", "csv"])
+    assert run_size(tmp_path / "new" / "run", 60.0, 1000.0, 100, ["npz"], reduced=True) == ""
+    text = run_size(tmp_path / "new" / "run", 3600.0, 1000.0, 100, ["npz", "csv"], reduced=True)
     # 3.6e6 samples of 100 channels: 2.88 GB, and 0.3 GB + 1 GB beside; 8 and 13 byte a sample on the disk.
     assert text.startswith("100 channels of 3600 s need about 4.2 GB of memory and 7.6 GB on the disk; for less,")
     assert "--channels" in text
+    # In MuJoCo 700 byte a sample at least.
+    text = run_size(tmp_path, 3600.0, 1000.0, 5, ["npz"], reduced=False)
+    assert "need about 2.8 GB of memory and 0.14 GB on" in text
+    # The free memory is of this moment: it is stated, at any size, and refuses nothing.
+    monkeypatch.setattr(module, "physical_memory", lambda: 1e11)
+    monkeypatch.setattr(module, "free_memory", lambda: 2e8)
+    text = run_size(tmp_path, 60.0, 1000.0, 5, ["npz"], reduced=True)
+    assert text.startswith("5 channels of 60 s need about 0.32 GB of memory (free now: 0.2 GB) and 0.0024 GB on the")
 
 
-def test_what_exceeds_the_free_disk_or_memory_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(module, "free_memory", lambda: 3e9)
-    with pytest.raises(ConfigurationError, match=r"need 4\.19 GB of memory, must be at most the free 3 GB; for less"):
-        run_size(tmp_path, 3600.0, 1000.0, 100, ["npz"])
-    monkeypatch.setattr(module, "free_memory", lambda: 1e11)
+def test_what_exceeds_the_free_disk_or_the_memory_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(module, "physical_memory", lambda: 3e9)
+    with pytest.raises(
+        ConfigurationError, match=r"need 4\.19 GB of memory, must be at most the memory of this machine, 3 GB; for less"
+    ):
+        run_size(tmp_path, 3600.0, 1000.0, 100, ["npz"], reduced=True)
+    monkeypatch.setattr(module, "physical_memory", lambda: 1e11)
     monkeypatch.setattr(shutil, "disk_usage", lambda _: SimpleNamespace(free=1e9))
     with pytest.raises(ConfigurationError, match=r"need 2\.88 GB on the disk, must be at most the free 1 GB; for less"):
-        run_size(tmp_path, 3600.0, 1000.0, 100, ["npz"])
+        run_size(tmp_path, 3600.0, 1000.0, 100, ["npz"], reduced=True)
 
 
 def test_the_size_is_that_of_the_files(tmp_path, capsys, monkeypatch):
@@ -48,6 +60,30 @@ def test_the_size_is_that_of_the_files(tmp_path, capsys, monkeypatch):
     assert stated == pytest.approx(files, rel=0.15)  # text has fewer digits where numbers are short
 
 
-def test_free_memory_is_a_part_of_the_memory_or_all_of_it():
-    assert free_memory() > 1e7
-    assert physical_memory() > 1e8
+@pytest.mark.skipif(os.name == "nt", reason="reads /proc/meminfo")
+def test_memory_is_that_of_linux_and_of_its_container(tmp_path, monkeypatch):
+    monkeypatch.setattr(machine, "MEMINFO", tmp_path / "meminfo")
+    monkeypatch.setattr(machine, "CONTAINER", tmp_path)
+    whole = machine.physical_memory()
+    assert whole == float(os.sysconf("SC_PAGE_SIZE")) * os.sysconf("SC_PHYS_PAGES")
+    assert machine.free_memory() == whole  # the system does not say
+    (tmp_path / "meminfo").write_text("MemFree: 1 kB\nMemAvailable:  30000 kB\nSwapFree:  2000 kB\n")
+    assert machine.free_memory() == 32000.0 * 1024.0
+    (tmp_path / "memory.current").write_text("6000000\n")
+    (tmp_path / "memory.max").write_text("max\n")
+    assert machine.physical_memory() == whole and machine.free_memory() == 32000.0 * 1024.0
+    (tmp_path / "memory.max").write_text("8000000\n")
+    assert machine.physical_memory() == 8e6 and machine.free_memory() == 2e6
+
+
+def test_free_memory_of_windows_is_with_the_page_file(monkeypatch):
+    """MEMORYSTATUSEX: length and load, all and free memory, all and free with the page file."""
+
+    def fill(status):
+        status[1:5] = [16, 8, 24, 12]
+        return 1
+
+    kernel = SimpleNamespace(GlobalMemoryStatusEx=fill)
+    monkeypatch.setattr(ctypes, "windll", SimpleNamespace(kernel32=kernel), raising=False)
+    monkeypatch.setattr(machine, "os", SimpleNamespace(name="nt"))
+    assert (machine.physical_memory(), machine.free_memory()) == (16.0, 12.0)

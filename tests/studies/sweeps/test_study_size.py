@@ -2,9 +2,11 @@
 
 import shutil
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from tests.studies.sweeps.sweep_samples import ShortRoad, grid
@@ -26,11 +28,12 @@ MEASURE = ComfortMeasure()
 
 @pytest.fixture
 def machine(monkeypatch):
-    """Set the free memory and the free disk [byte]."""
+    """Set the memory, all of it free, and the free disk [byte]."""
 
     def set_free(*, memory: float = 1e15, disk: float = 1e15) -> None:
         for module in (run_size, study_size):
             monkeypatch.setattr(module, "free_memory", lambda: memory)
+        monkeypatch.setattr(run_size, "physical_memory", lambda: memory)
         monkeypatch.setattr(shutil, "disk_usage", lambda _: SimpleNamespace(free=disk))
 
     set_free()
@@ -68,6 +71,8 @@ def test_memory_follows_length_engine_inputs_and_processes(machine, capsys):
     assert capsys.readouterr().err == ""  # once in a process
     state(cases(1.0)[:1], jobs=8)
     assert "on 8 processes need about 11 GB" in capsys.readouterr().err
+    state(cases(1.0)[:1], 2, jobs=8)  # six processes have no run
+    assert f"need about {(2 * batch_memory(3.6e6, 5) + 6 * BASE) / 1e9:.2g} GB" in capsys.readouterr().err
     hours = [1.0 + 0.1 * number for number in range(KEPT_SIGNALS + 4)]
     each = [cases(hour)[0] for hour in hours]
     kept = SIGNAL * 3.6e6 * sum(hours[-KEPT_SIGNALS:-1])
@@ -81,22 +86,35 @@ def test_memory_follows_length_engine_inputs_and_processes(machine, capsys):
 def test_what_exceeds_the_free_memory_is_refused_with_the_processes_that_fit(machine, tmp_path):
     machine(memory=5e9)
     with pytest.raises(
-        ConfigurationError, match=r"need 10\.9 GB of memory, must be at most the free 5 GB; .*--jobs 3,"
+        ConfigurationError, match=r"need 10\.9 GB of memory, must be at most the memory of .* 5 GB; .*--jobs 3,"
     ):
         state(cases(1.0)[:1], jobs=8)
     machine(memory=1e9)
     with pytest.raises(
-        ConfigurationError, match=r"need 1\.36 GB of memory, must be at most the free 1 GB; for less, s"
+        ConfigurationError, match=r"need 1\.36 GB of memory, must be at most the memory of .* 1 GB; for less, s"
     ):
         sweep_cases(cases(1.0), MEASURE, RunSettings(folder=tmp_path))
     assert not (tmp_path / "table.csv").exists()
 
 
-def test_workers_elsewhere_have_their_own_memory(machine):
+def test_the_case_that_needs_most_counts(machine):
+    """Of the rates of a sweep, whatever their order, and of its engines."""
+    machine(memory=1e9)
+    for rates in (["2000", "200"], ["200", "2000"]):
+        runs = grid({"solver.record_rate": rates}, roads(1.0), engine="reduced")
+        with pytest.raises(ConfigurationError, match=r"2 runs of up to 7\.2e\+06 samples .* need 2\.55 GB"):
+            sweep_cases(runs, MEASURE, RunSettings())
+    each = [cases(1.0, engine=engine)[0] for engine in ("mujoco", "reduced")]
+    with pytest.raises(ConfigurationError, match=r"need 2\.19 GB"):
+        state([*each, grid({"body.mass": ["-1.0"]}, roads(1.0), engine="reduced")[0]])
+
+
+def test_workers_elsewhere_have_their_own_memory(machine, tmp_path):
     machine(memory=1e9, disk=1e6)
     state(cases(1.0)[:1], executor=ThreadPoolExecutor)
     with pytest.raises(ConfigurationError, match=r"1000 runs need 0\.00174 GB on the disk, must .* vary fewer values"):
-        state(cases(1.0)[:1], 1000, executor=ThreadPoolExecutor)
+        state(cases(1.0)[:1], 1000, executor=ThreadPoolExecutor, folder=tmp_path)
+    state(cases(1.0)[:1], 1000, executor=ThreadPoolExecutor)  # stores nothing
 
 
 def test_the_rows_have_the_stated_size(machine, tmp_path, capsys, monkeypatch):
@@ -111,8 +129,24 @@ def test_the_rows_have_the_stated_size(machine, tmp_path, capsys, monkeypatch):
     assert stated == pytest.approx(written, rel=0.25)  # heads of the tables
 
 
-def test_an_invalid_car_is_left_to_its_row(machine):
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Raises:
+    """Input of a user with a fault."""
+
+    name: str = "raises"
+
+    def signal(self):
+        raise ZeroDivisionError
+
+    def identity(self):
+        return {"name": self.name}
+
+
+def test_an_invalid_car_or_input_is_left_to_its_row(machine):
     state(grid({"body.mass": ["-1.0"]}, roads(1.0), engine="reduced")[:1])
+    sources: list[Any] = [Raises(), ShortRoad()]
+    result = sweep_cases(grid({"damper.viscous": [1500.0]}, sources, engine="reduced"), MEASURE, RunSettings())
+    assert [case.source.name for case, _ in result.failed] == ["raises"]
 
 
 def test_a_search_is_refused_before_its_first_car(machine, tmp_path, capsys, monkeypatch):
@@ -121,7 +155,7 @@ def test_a_search_is_refused_before_its_first_car(machine, tmp_path, capsys, mon
     words = ["--vary", "damper.viscous=1000:2000", "--minimise", "weighted", "--road", "C", "--speed", "80"]
     assert optimise.main([*words, "--duration", "5", "--cars", "8", "--population", "8", "--quiet"]) == 2
     said = capsys.readouterr().err
-    assert "8 runs of up to 5e+03 samples in one process need 0.1" in said and "must be at most the free 0.1 GB" in said
+    assert "8 runs of up to 5e+03 samples in one process need 0.1" in said and "memory of this machine, 0.1 GB" in said
     assert not (tmp_path / "runs" / "optimise").exists()
     machine(disk=1e3)
     assert optimise.main([*words, "--duration", "5", "--cars", "2000", "--quiet"]) == 2
@@ -134,9 +168,13 @@ def test_orders_and_fits_are_refused_before_their_first_run(machine, capsys):
     assert orders.main([*words, "--speed", "100:120:10", "--duration", "600"]) == 2
     assert "error: runs of 600 s need 0.368 GB of memory, must be" in capsys.readouterr().err
     signal = SimpleNamespace(duration=3600.0)
-    measured: Any = SimpleNamespace(signal=signal, target=SimpleNamespace(recorded=("seat_rail_acc_z",)))
+    data = SimpleNamespace(response=np.zeros((2, 1000)))
+    measured: Any = SimpleNamespace(signal=signal, target=SimpleNamespace(recorded=("seat_rail_acc_z",), data=data))
     vehicle = Car.load().vehicle
     with pytest.raises(ConfigurationError, match=r"1 measurements of up to 3\.6e\+06 samples need 1\.87 GB of memory"):
+        state_fit_size(vehicle, [measured], 3, "mujoco")
+    data.response = np.zeros((2, 10**7))  # and 8 (2 * 2e7) (1 + 9) byte of residuals
+    with pytest.raises(ConfigurationError, match=r"need 5\.07 GB of memory"):
         state_fit_size(vehicle, [measured], 3, "mujoco")
     measured.signal = None
     state_fit_size(vehicle, [measured], 3, "mujoco")

@@ -131,7 +131,8 @@ def _shake(
     road = None if drive is None else drive.summary(signal)
     signal = signal if drive is None else replace(signal, source=drive.name)
     count, rate = len(channels or car.vehicle.channels), car.vehicle.solver.record_rate
-    if size := run_size(output, signal.duration, rate, count, [settings.time_format, *settings.formats]):
+    formats = [settings.time_format, *settings.formats]
+    if size := run_size(output, signal.duration, rate, count, formats, reduced=engine == "reduced"):
         listener.notice(size)
     with output_folder(output, force=settings.destination.force, protect=protect) as folder:
         try:

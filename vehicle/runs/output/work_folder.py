@@ -150,8 +150,9 @@ def _exchanged(work: Path, goal: Path) -> bool:
     """Exchange new results with marked earlier ones in one step; False if the system cannot, see `exchange`."""
     done = False
     try:
-        os.close(os.open(goal / REPLACED, os.O_WRONLY | os.O_CREAT | PLAIN, 0o644))
-        synchronise(goal)
+        with suppress(OSError):  # the exchange needs no right to write in the folder
+            os.close(os.open(goal / REPLACED, os.O_WRONLY | os.O_CREAT | PLAIN, 0o644))
+            synchronise(goal)
         done = exchange(work, goal)
     finally:
         if not done:

@@ -29,9 +29,11 @@ GENERATED = "mjcf; never edited by hand"
 GENERATED_PAGE = "<!-- Written by `python -m"
 """In the head of generated pages of the documentation."""
 _LEFT_OVER = re.compile(
-    r"(^|/)(\.[^/]+\.lock|\.[^/]+\.\d+\.partial[^/]*|\.vehicle-replaced|\.[^/]+\.partial/\.vehicle-files)$"
+    r"(^|/)(\.[^/]+\.lock|\.[^/]+\.\d+\.partial[^/]*|\.vehicle-(replaced|(unfinished|complete)(-new)?)"
+    r"|\.[^/]+\.partial/\.vehicle-files)$"
 )
-"""Files that a killed process leaves: locks, unfinished files, mark of replaced results, list of a hidden folder."""
+"""Files that a killed process leaves: locks, unfinished files, mark of replaced results, list of a hidden folder; and
+the journal of an earlier version."""
 DIGITS = 32
 _LINE = re.compile(rf"(?:([0-9a-f]{{{DIGITS}}})  )?(.+)")
 SHOWN = 5
@@ -224,7 +226,7 @@ def discard(folder: Path, *, kept: Sequence[str] = ()) -> None:
     removable = {name for name in files if name in names and _unchanged(folder / name, names[name])}
     removable |= {name for name in files - removable if _is_left_over(folder, name)}
     removable -= {*kept, MARKER} if kept else set()
-    for name in sorted(removable, key=lambda name: (name.startswith(".vehicle-"), name)):  # the list is the last
+    for name in sorted(removable, key=lambda name: (name.startswith(".vehicle-"), name)):  # list and mark are the last
         (folder / name).unlink(missing_ok=True)
     inner = [path for path in folder.rglob("*") if path.is_dir() and not path.is_symlink()]
     for emptied in [*sorted(inner, key=lambda path: -len(path.parts)), folder]:

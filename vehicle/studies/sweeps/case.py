@@ -109,6 +109,11 @@ def overrides_of(source: Input) -> tuple[str, ...]:
     return overrides
 
 
+def rates_of(case: Case) -> tuple[str, ...]:
+    """Return the overrides of the record rate, on which the size of a run depends."""
+    return tuple([text for text in case.overrides if "record_rate" in text])
+
+
 def drivings(cases: Sequence[Case]) -> Mapping[str, tuple[Driving, ...]]:
     """Return name of the input to the driving states of its cars; invalid cars are left out."""
     # Thousands of cases share a few speeds; no other override changes the speed.

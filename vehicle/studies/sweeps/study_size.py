@@ -4,11 +4,10 @@ from collections.abc import Collection
 from contextlib import suppress
 from pathlib import Path
 
-from vehicle.errors import VehicleError
 from vehicle.machine import free_memory
-from vehicle.model.parameters.vehicle import load_vehicle
-from vehicle.runs.output.run_size import batch_memory, say_size
-from vehicle.studies.sweeps.case import Case, signal_of
+from vehicle.model.parameters.vehicle import Vehicle, load_vehicle
+from vehicle.runs.output.run_size import BASE, batch_memory, say_size
+from vehicle.studies.sweeps.case import Case, Input, rates_of, signal_of
 from vehicle.studies.sweeps.case_evaluation import BATCH_CARS, cars_at_once
 from vehicle.studies.sweeps.executors import StandingExecutor
 from vehicle.studies.sweeps.measure import BatchMeasure, Measure
@@ -38,12 +37,14 @@ def state_size(
 
     A process has one batch of cars at a time, so its memory depends on the longest input and not on the number of runs:
 
-    memory = jobs (`batch_memory` + `SIGNAL` n (inputs - 1)) + `CASE` runs,    disk = size of a row times runs
+    memory = busy (`batch_memory` + `SIGNAL` n (inputs - 1)) + (jobs - busy) `BASE` + `CASE` runs
+
+    busy = min(jobs, runs),    disk = size of a row times runs; 0 without a folder
 
     Workers of an executor of the user may be on other machines: only the disk is judged then.
 
     Args:
-        each: a case of each input.
+        each: a case of each input, vehicle, engine and record rate.
         runs: number of runs: of a sweep that are not stored yet, of a search in a generation.
         measure: measure of the runs.
         settings: processes, and folder of the rows.
@@ -51,18 +52,19 @@ def state_size(
         numbers: numbers in a row of this table.
 
     Raises:
-        ConfigurationError: more than the free memory or the free disk, with the settings that fit.
+        ConfigurationError: more than the memory of the machine or the free disk, with the settings that fit.
     """
     worker = samples = 0.0
     if settings.executor is None or isinstance(settings.executor, StandingExecutor):
-        with suppress(VehicleError):  # an invalid car is a failed row
-            samples, worker = _worker(each, runs, measure)
-    memory = settings.jobs * worker + CASE * runs if worker else 0.0
+        worker, samples = _worker(each, runs, measure)
+    busy = min(settings.jobs, runs)
+    memory = busy * worker + (settings.jobs - busy) * BASE + CASE * runs if worker else 0.0
     disk = cars * (ROW_OF_CAR + VALUE_OF_CAR * numbers) if cars else runs * (ROW + VALUE * len(measure.units))
+    disk = 0.0 if settings.folder is None else disk
     remedy = "for less, shorten the inputs, or set a lower solver.record_rate"
     if settings.jobs > 1 and worker:
         fit = max(int((free_memory() - CASE * runs) / worker), 1)
-        fewer = f"--jobs {fit}" if fit < settings.jobs else "fewer processes (--jobs)"
+        fewer = f"--jobs {fit}" if fit < busy else "fewer processes (--jobs)"
         remedy = f"for less, use {fewer}, shorten the inputs, or set a lower solver.record_rate"
     if disk > memory:
         remedy = "for less, vary fewer values, or use fewer inputs"
@@ -71,19 +73,30 @@ def state_size(
 
 
 def _worker(each: Collection[Case], runs: int, measure: Measure) -> tuple[float, float]:
-    """Return samples of the longest run and memory of a process [byte]."""
-    first = next(iter(each))
-    vehicle = load_vehicle(first.vehicle, first.overrides)
-    channels = len(vehicle.channels if measure.channels is None else measure.channels)
-    durations = [_duration(case) for case in each]
-    samples = vehicle.solver.record_rate * max(durations)
-    batch = first.engine != "mujoco" and isinstance(measure, BatchMeasure)
-    cars = min(cars_at_once(samples, channels), BATCH_CARS, -(-runs // len(each))) if batch else 1
-    others = sorted(durations)[-KEPT_SIGNALS:-1]
-    kept = SIGNAL * vehicle.solver.record_rate * sum(others)
-    return samples, batch_memory(samples, channels, cars=cars, reduced=first.engine == "reduced") + kept
+    """Return the largest memory of a process [byte], and the samples of this run."""
+    vehicles: dict[tuple[Path | None, tuple[str, ...]], Vehicle] = {}
+    durations: dict[Input, float] = {}
+    simulated = []
+    for case in each:
+        # The statement must not end a sweep: an invalid car, and an input of the user that raises, are failed rows.
+        with suppress(Exception):
+            if case.source not in durations:
+                durations[case.source] = _duration(case.source)
+            if (car := (case.vehicle, rates_of(case))) not in vehicles:
+                vehicles[car] = load_vehicle(case.vehicle, case.overrides)
+            simulated.append((case, vehicles[car], durations[case.source]))
+    others = sum(sorted(durations.values())[-KEPT_SIGNALS:-1])
+    largest = 0.0, 0.0
+    for case, vehicle, duration in simulated:
+        rate = vehicle.solver.record_rate
+        samples, channels = rate * duration, len(vehicle.channels if measure.channels is None else measure.channels)
+        batch = case.engine != "mujoco" and isinstance(measure, BatchMeasure)
+        cars = min(cars_at_once(samples, channels), BATCH_CARS, -(-runs // len(each))) if batch else 1
+        memory = batch_memory(samples, channels, cars=cars, reduced=case.engine == "reduced") + SIGNAL * rate * others
+        largest = max(largest, (memory, samples))
+    return largest
 
 
-def _duration(case: Case) -> float:
+def _duration(source: Input) -> float:
     """Return the length of an input [s]; of a road without making it."""
-    return getattr(case.source, "duration", None) or signal_of(case.source).duration
+    return float(getattr(source, "duration", None) or signal_of(source).duration)

@@ -12,7 +12,7 @@ from vehicle.arrays import Indices
 from vehicle.model.parameters.driving import tyre_words
 from vehicle.runs.output.locks import folder_lock
 from vehicle.settings import with_settings
-from vehicle.studies.sweeps.case import Case, drivings
+from vehicle.studies.sweeps.case import Case, drivings, rates_of
 from vehicle.studies.sweeps.case_keys import CaseKeys
 from vehicle.studies.sweeps.case_result import Block
 from vehicle.studies.sweeps.dispatcher import Dispatcher
@@ -104,8 +104,8 @@ sweep = with_settings(RunSettings)(sweep_cases)
 
 
 def _one_of_each(cases: Sequence[Case]) -> Collection[Case]:
-    """Return a case for each input, vehicle file and engine."""
-    return {(id(case.source), case.vehicle, case.engine): case for case in cases}.values()
+    """Return a case for each input, vehicle file, engine and record rate."""
+    return {(id(case.source), case.vehicle, case.engine, rates_of(case)): case for case in cases}.values()
 
 
 def _made(cases: Sequence[Case], each: Collection[Case], measure: Measure) -> dict[str, Any]:

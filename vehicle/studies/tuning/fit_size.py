@@ -26,7 +26,7 @@ def state_fit_size(vehicle: Vehicle, measurements: Sequence[MeasuredTarget], par
         engine: engine of the last steps.
 
     Raises:
-        ConfigurationError: more than the free memory.
+        ConfigurationError: more than the memory of the machine.
     """
     longest, residuals, memory = 0.0, 0, 0.0
     for target, signal in ((each.target, each.signal) for each in measurements):
@@ -37,6 +37,8 @@ def state_fit_size(vehicle: Vehicle, measurements: Sequence[MeasuredTarget], par
         longest = max(longest, samples)
         if isinstance(target, RecordTarget):
             residuals += target.kept.size * len(target.recorded)
+        else:
+            residuals += 2 * target.data.response.size  # real and imaginary part
     say_size(
         Path(),
         f"{len(measurements)} measurements of up to {longest:.3g} samples",
