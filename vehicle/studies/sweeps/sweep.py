@@ -17,7 +17,6 @@ from vehicle.studies.sweeps.case_keys import CaseKeys
 from vehicle.studies.sweeps.case_result import Block
 from vehicle.studies.sweeps.dispatcher import Dispatcher
 from vehicle.studies.sweeps.executors import ThisProcess, process_pool
-from vehicle.studies.sweeps.function_measure import FunctionMeasure
 from vehicle.studies.sweeps.measure import Measure
 from vehicle.studies.sweeps.program import libraries, program_digest
 from vehicle.studies.sweeps.store import ROWS, StoredRows
@@ -55,8 +54,6 @@ def sweep_cases(cases: Sequence[Case], measure: Measure, settings: RunSettings) 
         SimulationError: the executor broke and cannot be created again; finished rows are stored.
     """
     folder, progress = settings.folder, settings.progress
-    if folder is not None and isinstance(measure, FunctionMeasure):
-        measure.identity()  # raises the error of a function whose rows could be taken for those of another
     key_of, each = CaseKeys(measure), _one_of_each(cases)
     for case in each:
         key_of(case)  # raises the error of an input or a vehicle file before the first run
