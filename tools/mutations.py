@@ -45,7 +45,7 @@ FAULTS = (
     Fault("vehicle/signals/excitation/iso_road.py", "int(np.ceil(self.envelope.reach * parts / step)) + 1", "1", "signals/excitation/test_iso_road.py signals/excitation/test_tyre_envelope.py"),
     Fault("vehicle/signals/excitation/iso_road.py", "speed * slope[: steps + 1] * rise + rise_rate * z", "speed * slope[: steps + 1] * rise", "signals/excitation/test_iso_road.py signals/excitation/test_tyre_envelope.py"),
     Fault("scenarios/signals/bump.py", "6.0 * np.pi * since", "5.9 * np.pi * since", "scenarios/signals signals/excitation"),
-    Fault("vehicle/signals/records/integration.py", "(frequency / corner) ** (2 * ORDER)", "(frequency / corner) ** ORDER", "signals/records/test_acceleration.py signals/formats/test_record.py"),
+    Fault("vehicle/signals/records/integration.py", "(frequency / corner) ** (2 * ORDER)", "(frequency / corner) ** ORDER", "signals/records/test_integration.py"),
     Fault("vehicle/signals/formats/units.py", '"lbf": 4.4482216152605', '"lbf": 4.4822216152605', "signals/formats/test_units.py"),
     Fault("vehicle/signals/formats/clock.py", "long = multiples > 1.5", "long = multiples > 2.5", "signals/formats/test_stamps.py signals/records/test_resampled.py signals/formats/test_logger.py"),
     # model
