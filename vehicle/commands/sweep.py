@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import sys
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -117,14 +116,11 @@ def settings_of(options: argparse.Namespace) -> SweepStudy:
     # Heavy packages are imported after the arguments are known to be good.
     from vehicle.studies.sweeps.sweep_study import SweepStudy
 
-    car = car_of(options)
-    if options.cases is not None and options.cases.vehicle:
-        car = replace(car, vehicle=Path(options.cases.vehicle))
     return read(
         options,
         SweepStudy,
         design=_design(options),
-        car=car,
+        car=car_of(options),
         inputs=inputs_of(options),
         destination=destination_of(options),
         report=read(options, ReportChoice),

@@ -11,8 +11,11 @@ import pytest
 from vehicle import Car, road
 from vehicle.commands.sweep import main
 from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.car_choice import CarChoice
+from vehicle.runs.output.destination import Destination
 from vehicle.studies.sweeps.case_file import UNCHANGED, CaseFile, read_cases
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
+from vehicle.studies.sweeps.sweep_study import SweepStudy
 
 FILE = """
 vehicle = "sedan"
@@ -157,8 +160,19 @@ def test_the_best_of_one_state_is_a_sentence(tmp_path):
     """In Python as in the command; without laden states it begins with the inputs."""
     cases = CaseFile(vehicle="sedan", roads=("A",), speeds=(60.0,), duration=3.0, variants={"soft": SOFT, "hard": HARD})
     for speeds, beginning in (((60.0,), "On road_A_60 the smoothest variant is"), ((60.0, 80.0), "Over all inputs ")):
-        plan = replace(cases, speeds=speeds).plan(Car.load(), (), SweepSettings(engine="reduced"))
-        assert plan.name == "sedan" and plan.evaluation_of(plan.run(), "").lines[-1].startswith(beginning)
+        plan = replace(cases, speeds=speeds).plan(Car.load("sedan"), (), SweepSettings(engine="reduced"))
+        assert plan.evaluation_of(plan.run(), "").lines[-1].startswith(beginning)
+
+
+def test_the_car_of_the_file_takes_the_changes_of_the_study(tmp_path):
+    """The front axle of the rig has no rear damper, so a car loaded before that of the file would refuse them."""
+    cases = CaseFile(vehicle="sedan", roads=("A",), speeds=(60.0,), duration=3.0, variants={"soft": SOFT, "hard": HARD})
+    choice = CarChoice(overrides=("rear.damper.coulomb_friction=20",))
+    study = SweepStudy(
+        design=cases, car=choice, runs=SweepSettings(engine="reduced"), destination=Destination(output=tmp_path / "out")
+    )
+    result = study.run()
+    assert (result.runs, result.failed) == (3, 0)
 
 
 def test_states_alone_have_no_best(tmp_path, capsys, monkeypatch):
@@ -186,4 +200,4 @@ def test_another_measure_than_comfort_is_refused_before_the_first_run(tmp_path, 
     assert "measure: the cars of a file are compared by comfort; leave out --measure" in capsys.readouterr().err
     for measure in ("travel", ["travel", "weighted"]):
         with pytest.raises(ConfigurationError, match="compared by comfort"):
-            read_cases(tmp_path / "cases.toml").plan(Car.load(), (), SweepSettings(measure=measure))
+            read_cases(tmp_path / "cases.toml").plan(Car.load("sedan"), (), SweepSettings(measure=measure))

@@ -43,7 +43,7 @@ class CaseFile:
         speeds: speeds on each of them [km/h]; or a table of each road to its speeds, as {C = [80], D = [50]}.
         signals: signal files, or names of shipped files.
         duration: length of a class [s]; by default that of a run.
-        vehicle: name or file of the car; by default that of the command.
+        vehicle: name or file of the car; by default that of the study.
         states: name of a laden state to its changed parameters.
         variants: name of a variant to its changed parameters.
 
@@ -77,8 +77,7 @@ class CaseFile:
         Raises:
             ConfigurationError: a measure without comfort, by which the cars are compared.
         """
-        chosen = Car.load(self.vehicle, car.overrides) if self.vehicle else car
-        plan = plan_sweep(chosen, list(self.cars.values()), self.inputs, settings, self._evaluation)
+        plan = plan_sweep(car, list(self.cars.values()), self.inputs, settings, self._evaluation)
         name = next((each for each in RANKED_BY if each in plan.measure.units), "")
         if name.replace(WEIGHTED, UNWEIGHTED) not in plan.measure.units:
             raise ConfigurationError("measure: the cars of a file are compared by comfort; leave out --measure")

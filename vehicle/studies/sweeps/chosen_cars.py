@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.ranges import parsed_variation
@@ -26,6 +26,7 @@ class EveryCombination:
             fastest.
     """
 
+    vehicle: ClassVar[str] = ""
     values: Mapping[str, Sequence[Any]] | Sequence[str]
 
     def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
@@ -53,6 +54,7 @@ class VariationTable:
         file: table whose columns are parameter paths; or the table of another sweep.
     """
 
+    vehicle: ClassVar[str] = ""
     file: Path
 
     def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -166,6 +166,7 @@ class SingleChanges:
         groups, share, shift: see `EffectSettings`.
     """
 
+    vehicle: ClassVar[str] = ""
     groups: Sequence[str] = ()
     share: float = SHARE
     shift: float = SHIFT

@@ -149,6 +149,10 @@ def _difference(reason: str) -> str:
 class Design(Protocol):
     """Design of a sweep: the varied parameters, and the evaluation of their table."""
 
+    @property
+    def vehicle(self) -> str:
+        """Return the name or file of the car; empty for that of the study."""
+
     def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
         """Check cars and inputs before the first run and return the sweep; arguments and errors as in `sweep`."""
 

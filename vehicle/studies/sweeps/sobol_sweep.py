@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 
@@ -69,6 +70,7 @@ class SobolSample:
         base: number of base points, a power of two, at least `indices.LEAST_BASE`.
     """
 
+    vehicle: ClassVar[str] = ""
     bounds: Mapping[str, tuple[float, float]] | Sequence[str]
     base: int
 

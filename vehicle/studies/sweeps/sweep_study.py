@@ -74,7 +74,8 @@ class SweepStudy:
         Raises:
             VehicleError: as in `sweep`; a folder that cannot be written.
         """
-        plan = self.design.plan(Car.load(self.car.vehicle, self.car.overrides), self.inputs, self.runs)
+        car = Car.load(self.design.vehicle or self.car.vehicle, self.car.overrides)
+        plan = self.design.plan(car, self.inputs, self.runs)
         to = self.destination
         output = to.study_folder(OUTPUT, rows=(ROWS,))
         report = self.report.path(to, output)
