@@ -88,10 +88,7 @@ def compare(car: Car, signal: Signal, skip: float, title: str) -> None:
             scale * np.std(linear[0]) - 100.0,
             scale * np.std(odd + second) - 100.0,
         )
-        print(
-            f"{channel:<26}" + "".join(f"{value:9.2f}" for value in values),
-            flush=True,
-        )
+        print(f"{channel:<26}" + "".join(f"{value:9.2f}" for value in values), flush=True)
 
 
 def arcs(car: Car, motion: Motion) -> dict[str, Vector]:

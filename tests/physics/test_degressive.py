@@ -127,9 +127,7 @@ def test_the_damper_of_the_car_follows_its_law(degressive_car, high_piece):
     run = degressive_car.run(high_piece)
     damper = degressive_car.vehicle.damper
     law = Degressive(
-        low_damping=damper.degressive_viscous,
-        high_damping=damper.viscous,
-        knee_velocity=damper.degressive_velocity,
+        low_damping=damper.degressive_viscous, high_damping=damper.viscous, knee_velocity=damper.degressive_velocity
     )
     velocity, force = run["damper_fr_velocity"], run["damper_fr_force"]
     sliding = np.abs(velocity) > 1e-3

@@ -234,10 +234,7 @@ REFUSED: dict[str, tuple[dict[str, object], str]] = {
     "gap": ({"channel": "gap", "ends_at_zero": True}, "gap"),
     "harmonics too": ({"harmonics": [[1, 1, 0]], "frequency": 5.0}, "found together with harmonics"),
     "no file": ({"file": "nowhere.csv"}, "nowhere.csv: the file does not exist"),
-    "too fast": (
-        {"channel": "fast", "ends_at_zero": True},
-        "solver.record_rate: found 1000 Hz, must be at least",
-    ),
+    "too fast": ({"channel": "fast", "ends_at_zero": True}, "solver.record_rate: found 1000 Hz, must be at least"),
 }
 
 

@@ -94,11 +94,7 @@ def test_rounding_is_no_result_and_limits_have_the_friction_that_acts():
 
 REFUSED: dict[str, tuple[dict[str, float], dict[str, Any], str]] = {
     "no force": ({}, {"rpm": [750.0]}, "level: moves no plate"),
-    "both": (
-        IMBALANCE,
-        {"rpm": [750.0], "speed": [80.0]},
-        "of the crankshaft [1/min] or speeds of the car [km/h]",
-    ),
+    "both": (IMBALANCE, {"rpm": [750.0], "speed": [80.0]}, "of the crankshaft [1/min] or speeds of the car [km/h]"),
     "no crank": (IMBALANCE, {"rpm": [750.0], "angle": "wheel_fr"}, "wheel_fr does not turn with the crankshaft"),
     "not the crank": (IMBALANCE, {"rpm": [750.0]}, "sedan has no force that turns with crank"),
     "too many": (IMBALANCE, {"speed": np.linspace(60.0, 90.0, 500).tolist()}, "found 500 points, must be at most 400"),

@@ -131,11 +131,7 @@ def test_a_run_out_is_no_slope_on_a_road_either():
 
 def test_a_batch_answers_wheels_as_single_cars_do():
     """Cars of one batch with different run-outs, and with equal ones, are those of single runs."""
-    changes = [
-        TABLES["run-out"],
-        {"front.right.nonuniformity.runout": [[1.0, 1e-4, 0.0]]},
-        TABLES["rolling radius"],
-    ]
+    changes = [TABLES["run-out"], {"front.right.nonuniformity.runout": [[1.0, 1e-4, 0.0]]}, TABLES["rolling radius"]]
     rolling: dict[str, object] = {"driving.speed": SPEED / 3.6}
     cars = [Car.load("focus_road", {**rolling, **change}) for change in changes for _ in range(4)]
     smooth = road("level", SPEED, duration=6)

@@ -151,13 +151,7 @@ def test_unknown_channel():
 
 def test_groups_of_parts(car):
     names = ("body", "engine", "main_spring_upper_fr", "stabilizer_rod_fl", "tyre_fl")
-    assert [group_of(car.matrices, name) for name in names] == [
-        "body",
-        "engine",
-        "body",
-        "stabilizer",
-        "wheel_fl",
-    ]
+    assert [group_of(car.matrices, name) for name in names] == ["body", "engine", "body", "stabilizer", "wheel_fl"]
 
 
 def test_newtons_beside_metres_are_no_dependent_vectors(monkeypatch):

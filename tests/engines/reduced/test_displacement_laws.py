@@ -167,12 +167,7 @@ def test_a_batch_follows_the_single_run():
     )
     for index, car in enumerate(cars):
         single = simulate_reduced(
-            pole_model(car),
-            ROAD_OF_STOPS,
-            dampers=run["dampers"][0],
-            tyre_load=run["tyre_load"][0],
-            step=5e-4,
-            **RUN,
+            pole_model(car), ROAD_OF_STOPS, dampers=run["dampers"][0], tyre_load=run["tyre_load"][0], step=5e-4, **RUN
         )
         for name in RUN["channels"]:
             error = np.std(batch.channels[name][index] - single[name]) / np.std(single[name])

@@ -30,10 +30,7 @@ ROAD = random_road(rms=2e-3, seed=2006, wheel="fr", duration=8.0, lower_band_edg
 
 def matrices(tyre_damping=0.0):
     """Two independent quarter cars; coordinates body, wheel, damper over wheel, for the right and the left."""
-    side = {
-        "mass": np.diag([CAR.body.mass, CAR.wheel.mass, 0.0]),
-        "stiffness": np.zeros((3, 3)),
-    }
+    side = {"mass": np.diag([CAR.body.mass, CAR.wheel.mass, 0.0]), "stiffness": np.zeros((3, 3))}
     damper, spring, mount = np.array([0.0, 1.0, 1.0]), np.array([1.0, -1.0, 0.0]), np.array([1.0, -1.0, -1.0])
     side["mass"] += CAR.damper.mass * np.outer(damper, damper)
     side["stiffness"] += CAR.spring.stiffness * np.outer(spring, spring) + CAR.mount.stiffness * np.outer(mount, mount)

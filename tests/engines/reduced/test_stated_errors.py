@@ -74,10 +74,7 @@ def test_main_channels_decide() -> None:
 
 @pytest.mark.parametrize(
     ("name", "road"),
-    [
-        ("sedan", Road("half_round:29", speed=30.3)),
-        ("focus_road", Road("pothole:20x300", speed=40.0)),
-    ],
+    [("sedan", Road("half_round:29", speed=30.3)), ("focus_road", Road("pothole:20x300", speed=40.0))],
     ids=["sedan_lifts_off", "focus_road_pothole"],
 )
 def test_stated_errors_against_mujoco(name: str, road: Road) -> None:

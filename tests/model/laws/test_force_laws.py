@@ -169,11 +169,7 @@ BAD = [
         {"low_damping": 1.0, "high_damping": 1.0, "knee_velocity": -0.1},
         "Degressive.knee_velocity: found -0.1 m/s, must be at least 0.0",
     ),
-    (
-        Coulomb,
-        {"friction_limit": 75.0, "smoothing": 0.0},
-        "Coulomb.smoothing: found 0.0 s/m, must be greater than 0.0",
-    ),
+    (Coulomb, {"friction_limit": 75.0, "smoothing": 0.0}, "Coulomb.smoothing: found 0.0 s/m, must be greater than 0.0"),
     (
         Coulomb,
         {"friction_limit": -75.0, "smoothing": 1e5},
@@ -184,11 +180,7 @@ BAD = [
         {"friction_limit": 75.0, "smoothing": np.array([1e5, -1.0])},
         "Coulomb.smoothing: found -1.0 s/m, must be greater than 0.0",
     ),
-    (
-        Switch,
-        {"limit": 50.0, "band": 0.0, "return_time": 1e-3},
-        "Switch.band: found 0.0 m/s, must be greater than 0.0",
-    ),
+    (Switch, {"limit": 50.0, "band": 0.0, "return_time": 1e-3}, "Switch.band: found 0.0 m/s, must be greater than 0.0"),
     (
         Switch,
         {"limit": 50.0, "band": 1e-6, "return_time": -1.0},

@@ -23,26 +23,14 @@ def put(text: str) -> tuple[str, str]:
 
 VEHICLES = {
     # Keys that nobody knows.
-    "of the car": ("gravity = 9.81", "gravity = 9.81\ncolour = 3", "colour: unknown parameter; the most similar known"),
-    "of the body": (
-        "mass = 813.0",
-        "mass = 813.0\nmas = 3",
-        "body.mas: unknown parameter; the most similar known name is mass",
-    ),
-    "of an element": (
-        "viscous =",
-        "viscus = 1\nviscous =",
-        "front.damper.viscus: unknown parameter; the most similar known",
-    ),
-    "of an axle": (
-        "[front.damper]",
-        "[front.dampers]",
-        ("front.dampers: unknown parameter; the most similar known name"),
-    ),
+    "of the car": ("gravity = 9.81", "gravity = 9.81\ncolour = 3", "colour: unknown parameter; did you mean"),
+    "of the body": ("mass = 813.0", "mass = 813.0\nmas = 3", "body.mas: unknown parameter; did you mean mass"),
+    "of an element": ("viscous =", "viscus = 1\nviscous =", "front.damper.viscus: unknown parameter; did you mean"),
+    "of an axle": ("[front.damper]", "[front.dampers]", ("front.dampers: unknown parameter; did you mean")),
     "part of an axle": (
         "[front.parts.caliper]",
         "[front.parts.brake]",
-        "front.parts.brake: unknown parameter; the most similar known",
+        "front.parts.brake: unknown parameter; did you mean",
     ),
     "no value": (
         "viscous = 2250.0",
@@ -56,7 +44,7 @@ VEHICLES = {
     "a bushing of a side": (*put("[front.left.bushings.arm_reer]"), "front.left.bushings.arm_reer: unknown parameter"),
     "deep in a side": (
         *put("[front.left.bushings.arm_rear]\nstifness = [1e5, 1e5, 1e5]"),
-        "front.left.bushings.arm_rear.stifness: unknown parameter; the most similar known name is stiffness",
+        "front.left.bushings.arm_rear.stifness: unknown parameter; did you mean stiffness",
     ),
     "deeper in a side": (
         *put("[front.left.damper.stop]\ndisplacment = [0, 1]"),
@@ -72,7 +60,7 @@ VEHICLES = {
     # Templates.
     "no template": ('template = "blocks"', "", "rear.template: missing; the section needs template = NAME"),
     "no template below": (*put("[seat.driver]\nparts = {}"), "seat.driver.template: missing"),
-    "a table of no kind": (*put("[reer]\nname = 1"), "reer: unknown parameter; the most similar known name is rear"),
+    "a table of no kind": (*put("[reer]\nname = 1"), "reer: unknown parameter; did you mean rear"),
     "no such template": (
         'template = "blocks"',
         'template = "bloks"',
@@ -81,18 +69,10 @@ VEHICLES = {
             "similar name is blocks"
         ),
     ),
-    "a number as template": (
-        'template = "blocks"',
-        "template = 3",
-        "rear.template: found 3, must be a text in quotes",
-    ),
+    "a number as template": ('template = "blocks"', "template = 3", "rear.template: found 3, must be a text in quotes"),
     "a name with a blank": (*put('["re ar"]\ntemplate = "blocks"'), "re ar: found 're ar', must consist of letters"),
     # Points.
-    "missing": (
-        "tie_outer = [",
-        "tie_outr = [",
-        "front.hardpoints.tie_outr: unknown parameter; the most similar known",
-    ),
+    "missing": ("tie_outer = [", "tie_outr = [", "front.hardpoints.tie_outr: unknown parameter; did you mean"),
     "twice": ("seat = [", "seat = [1, 0, 1]\nseat = [", "not a TOML file: Cannot overwrite a value (at line"),
     "twice under two names": (
         "seat = [",
@@ -194,16 +174,8 @@ VEHICLES = {
         "connection.x: connects engine to itself",
     ),
     "place": (*put(f"[connection.x]\n{LINK.replace('at', '#')}"), "connection.x.at: missing"),
-    "part of an output": (
-        'on = "engine"',
-        'on = "engin"',
-        "outputs.engine.on: unknown part 'engin'; the most similar name is",
-    ),
-    "point of an output": (
-        'at = "engine_cog"',
-        'at = "engine_kog"',
-        "outputs.engine.at: unknown point 'engine_kog'",
-    ),
+    "part of an output": ('on = "engine"', 'on = "engin"', "outputs.engine.on: unknown part 'engin'; did you mean"),
+    "point of an output": ('at = "engine_cog"', 'at = "engine_kog"', "outputs.engine.at: unknown point 'engine_kog'"),
     "two of one name": (*put(f"[connection.arm_rear_fr]\n{LINK}"), "arm_rear_fr: two elements have this name"),
     "an alias": ("[alias]", '[alias]\nx = "front.nothing"', "alias.x: unknown parameter front.nothing"),
     "a bushing": ("[front.bushings.arm_rear]", "[front.bushings.arm_front]", "front.bushings.arm_rear: missing;"),
@@ -215,11 +187,7 @@ VEHICLES = {
         *put("[engine.left.bushings.hydromount]\nstiffness = [1e5, 1e5, 1e5]"),
         "engine.left.bushings.hydromount: three_mounts.toml does not use this section; it is not mirrored",
     ),
-    "nothing to stand on": (
-        TEXT[TEXT.index("[rear]") : TEXT.index("# Channels")],
-        "",
-        "found 0 m, must be 0.5 to 8 m",
-    ),
+    "nothing to stand on": (TEXT[TEXT.index("[rear]") : TEXT.index("# Channels")], "", "found 0 m, must be 0.5 to 8 m"),
 }
 
 

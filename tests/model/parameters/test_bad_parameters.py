@@ -95,10 +95,7 @@ CASES = {
     ),
     "31 text for a number": ('damper.viscous="2250"', "damper.viscous: found '2250', must be a number"),
     "31 truth value": ("damper.viscous=true", "damper.viscous: found True, must be a number"),
-    "31 truth value in a vector": (
-        "body.cog=[2.157, true, 1.011]",
-        "body.cog: found True, must be a number",
-    ),
+    "31 truth value in a vector": ("body.cog=[2.157, true, 1.011]", "body.cog: found True, must be a number"),
     "31 two components": (
         "bushings.tyre.stiffness=[1e5, 1e5]",
         "bushings.tyre.stiffness: found (100000.0, 100000.0), must be a list of 3 numbers [N/m]",
@@ -118,14 +115,8 @@ CASES = {
         "damper.friction_law=viscous",
         f"damper.friction_law: found 'viscous', must be one of {', '.join(FRICTION_LAWS)}",
     ),
-    "32 XML in a name": (
-        'name="a\\"/><b"',
-        "name: found 'a\"/><b', must be a name of letters, digits, '_', '.', '-'",
-    ),
-    "32 newline in a name": (
-        'name="a\\nb"',
-        "name: found 'a\\nb', must be a name of letters, digits, '_', '.', '-'",
-    ),
+    "32 XML in a name": ('name="a\\"/><b"', "name: found 'a\"/><b', must be a name of letters, digits, '_', '.', '-'"),
+    "32 newline in a name": ('name="a\\nb"', "name: found 'a\\nb', must be a name of letters, digits, '_', '.', '-'"),
     "32 quote in a file name": (
         'body.superelement="it\'s"',
         "body.superelement: found \"it's\", must be a name of letters, digits, '_', '.', '-'",

@@ -10,12 +10,8 @@ MOUNT = 'suspension_mount = { shape = "top_mount", points = ["strut_top"] }'
 LINE = 'along = ["damper_bottom", "strut_top"]'
 
 TEMPLATES = {
-    "unknown list": ("above = [", "abuve = [", "abuve: unknown key; the most similar known key is above"),
-    "unknown key": (
-        'kind = "ball"',
-        'kynd = "ball"',
-        "joint.lower_ball.kynd: unknown parameter; the most similar known name",
-    ),
+    "unknown list": ("above = [", "abuve = [", "abuve: unknown key; did you mean above"),
+    "unknown key": ('kind = "ball"', 'kynd = "ball"', "joint.lower_ball.kynd: unknown parameter; did you mean"),
     "unknown kind": (
         'kind = "ball"',
         'kind = "bell"',
@@ -27,11 +23,7 @@ TEMPLATES = {
         'moving = "damper_tip"',
         "connection.suspension_mount.moving: unknown name 'damper_tip",
     ),
-    "unknown point": (
-        'at = "tie_outer"',
-        'at = "tie_outa"',
-        "unknown name 'tie_outa'; the most similar is tie_outer",
-    ),
+    "unknown point": ('at = "tie_outer"', 'at = "tie_outa"', "unknown name 'tie_outa'; did you mean tie_outer"),
     "unknown joint": ('joint = "damper"', 'joint = "dampr"', "damper.damper.joint: unknown name 'dampr'"),
     "side of a part": ('child = "a_arm"', 'child = "a_arm:lft"', "joint.2.child: found side 'lft', must be left"),
     "side of a point": ('at = "tie_outer"', 'at = "tie_outer:links"', "found side 'links', must be left, right"),
@@ -41,16 +33,8 @@ TEMPLATES = {
     "a word for a switch": ("mirrored = true", 'mirrored = "yes"', "mirrored: found 'yes', must be true or false"),
     "a number as meaning": ('tie_inner = "steering rod on the body"', "tie_inner = 3", "hardpoints.tie_inner: found 3"),
     "a number for two points": ("above = [", "above = [3,", "above: found 3, must be a list"),
-    "a default of no port": (
-        'rack = "body"',
-        'rak = "body"',
-        "port_defaults.rak: unknown name 'rak'; the most similar",
-    ),
-    "a port as no part": (
-        'rack = "body"',
-        'rack = "bodi"',
-        "port_defaults.rack: unknown name 'bodi'; the most similar",
-    ),
+    "a default of no port": ('rack = "body"', 'rak = "body"', "port_defaults.rak: unknown name 'rak'; did you mean"),
+    "a port as no part": ('rack = "body"', 'rack = "bodi"', "port_defaults.rack: unknown name 'bodi'; did you mean"),
     "one point above": (
         "above = [",
         'above = [["strut_top"],',
@@ -63,16 +47,8 @@ TEMPLATES = {
         f"{LINE}, axis = [0, 0, 1]",
         "joint.damper.along: a joint of kind slide needs either two points in along, or axis",
     ),
-    "an axis of no length": (
-        LINE,
-        "axis = [0, 0, 0]",
-        "joint.damper.axis: found [0.0, 0.0, 0.0], must not be zero",
-    ),
-    "an axis in the plane": (
-        LINE,
-        "axis = [0, 1]",
-        "joint.damper.axis: found (0.0, 1.0), must be a list of 3 numbers",
-    ),
+    "an axis of no length": (LINE, "axis = [0, 0, 0]", "joint.damper.axis: found [0.0, 0.0, 0.0], must not be zero"),
+    "an axis in the plane": (LINE, "axis = [0, 1]", "joint.damper.axis: found (0.0, 1.0), must be a list of 3 numbers"),
     "along one point": (
         LINE,
         'along = ["strut_top"]',
@@ -153,11 +129,7 @@ TEMPLATES = {
         "hardpoints.wheel_center: defined twice",
     ),
     "two connections": ('name = "arm_front"', 'name = "arm_rear"', "arm_rear_fl: two elements have this name"),
-    "two joints": (
-        'name = "lower_ball"',
-        'name = "damper"',
-        "joint.damper: defined twice; rename one joint",
-    ),
+    "two joints": ('name = "lower_ball"', 'name = "damper"', "joint.damper: defined twice; rename one joint"),
     "two outputs": ('name = "damper_top", on', 'name = "knuckle", on', "knuckle_fl: two elements have this name"),
     "two wheels": (
         "use = [",
@@ -174,7 +146,7 @@ TEMPLATES = {
         'template = "wheel"',
         'template = "weel"',
         (
-            "'weel': the file is neither in the folder of the vehicle file nor in the package; the most similar "
+            "'weel': the file is neither in the folder of the vehicle file nor in the package; did you mean "
             "name is wheel"
         ),
     ),
@@ -191,11 +163,7 @@ TEMPLATES = {
         "use.with.hub: missing; wheel.toml needs this port (part that carries",
     ),
     "no such port": ("hub = ", "hob = ", "use.with.hob: wheel.toml has no port of this name, only ['hub']"),
-    "a port without part": (
-        'hub = "knuckle"',
-        'hub = "knukle"',
-        "unknown name 'knukle'; the most similar is knuckle",
-    ),
+    "a port without part": ('hub = "knuckle"', 'hub = "knukle"', "unknown name 'knukle'; did you mean knuckle"),
 }
 
 

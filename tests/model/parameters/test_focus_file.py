@@ -142,14 +142,11 @@ def test_an_override_may_name_an_axis():
         (
             "damper.coulomb_fricton=1",
             "--set damper.coulomb_fricton=1: unknown parameter damper.coulomb_fricton; "
-            "the most similar path is front.damper.coulomb_friction",
+            "did you mean front.damper.coulomb_friction",
         ),
         ("damper", "--set damper: must be PATH=VALUE, for example damper.coulomb_friction=93.75"),
         ("=3", "--set =3: must be PATH=VALUE, for example damper.coulomb_friction=93.75"),
-        (
-            "main_spring=3",
-            "--set main_spring=3: main_spring is a group; set one of front.main_spring.stiffness",
-        ),
+        ("main_spring=3", "--set main_spring=3: main_spring is a group; set one of front.main_spring.stiffness"),
         *(
             (
                 f"damper.viscous={text}",

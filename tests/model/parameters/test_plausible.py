@@ -153,12 +153,8 @@ def test_impossible_cars_are_refused_when_they_are_built(case):
 
 
 ROAD_VEHICLES = {
-    "a light body": [
-        *("body.mass=300", "body.inertia.ixx=443", "main_spring.stiffness=12000"),
-    ],
-    "a heavy one": [
-        *("body.mass=1600", "main_spring.stiffness=60000"),
-    ],
+    "a light body": [*("body.mass=300", "body.inertia.ixx=443", "main_spring.stiffness=12000")],
+    "a heavy one": [*("body.mass=1600", "main_spring.stiffness=60000")],
     "on the moon": ["gravity=1.62"],
     "weightless": ["gravity=0"],
     "no stabilizer": ["stabilizer.torsional_stiffness=0"],

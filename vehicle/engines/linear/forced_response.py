@@ -64,12 +64,7 @@ def force_amplitudes(matrices: CarMatrices) -> Complex:
 
 
 def unit_response(
-    matrices: CarMatrices,
-    channels: Sequence[str],
-    frequencies: Sequence[float],
-    forces: Indices,
-    *,
-    stuck: bool,
+    matrices: CarMatrices, channels: Sequence[str], frequencies: Sequence[float], forces: Indices, *, stuck: bool
 ) -> Complex:
     """Return Z of Re(Z exp(jWt)) of acceleration channels per unit of applied forces; (forces, channels, frequencies).
 

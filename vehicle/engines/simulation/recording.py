@@ -95,9 +95,7 @@ class Recording:
     def only(self, channels: Sequence[str]) -> Recording:
         """Return the recording with a subset of its channels."""
         return replace(
-            self,
-            channels={name: self[name] for name in channels},
-            units={name: self.units[name] for name in channels},
+            self, channels={name: self[name] for name in channels}, units={name: self.units[name] for name in channels}
         )
 
     @property

@@ -37,8 +37,8 @@ def pulling_tyres(forces: Mapping[str, Vector], record_rate: float) -> tuple[tup
     if pull > SMALL_PULL:
         return (f"{text}{PULLS}",), ()
     return (), (
-        f"{text}the pull of the linear tyre is {100.0 * pull:.1f} % of its dynamic load (RMS), which "
-        "moves comfort, its axes and the RMS of tyre loads by less than 2 %",
+        f"{text}the linear tyre pulls with {100.0 * pull:.1f} % of its dynamic load (RMS), which "
+        "changes comfort, its axes and the RMS of tyre loads by less than 2 %",
     )
 
 

@@ -83,10 +83,7 @@ def _reach(car: Composition, name: str, local_points: Mapping[str, Point]) -> di
 
 
 def add_shapes(
-    spec: mujoco.MjSpec,
-    shapes: Mapping[str, Shape],
-    origins: Mapping[str, Vector],
-    springs: Iterable[PlacedSpring],
+    spec: mujoco.MjSpec, shapes: Mapping[str, Shape], origins: Mapping[str, Vector], springs: Iterable[PlacedSpring]
 ) -> None:
     """Add a visible mesh for every shape to a specification; masses, inertias and joints do not change.
 

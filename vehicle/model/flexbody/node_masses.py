@@ -33,13 +33,7 @@ _MAX_STEPS = 50
 
 
 def matched_masses(
-    guess: Vector,
-    freedom: Vector,
-    positions: Vector,
-    *,
-    mass: float,
-    cog: Vector,
-    inertia_about_cog: Vector,
+    guess: Vector, freedom: Vector, positions: Vector, *, mass: float, cog: Vector, inertia_about_cog: Vector
 ) -> Vector:
     """Return the positive masses [kg], (n,), nearest to an estimate that have a given mass, CoG and inertia.
 

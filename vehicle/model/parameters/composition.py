@@ -338,7 +338,7 @@ class Composition:
         return None if left else replace(self, **updated)
 
     def turning(self, name: str | None = None) -> tuple[str, float]:
-        """Return name and angular speed [rad/s] of what turns.
+        """Return name and angular speed [rad/s] of a rotating part or of a force with a frequency.
 
         Args:
             name: crank, a wheel, or a force with a frequency; by default the angle of the first force.
@@ -351,7 +351,7 @@ class Composition:
         first = next((force.law.angle or force.name for force in self.forces if force.harmonics), None)
         chosen = name or first or next(iter(speeds), None)
         if chosen not in speeds:
-            message = f"these turn: {', '.join(speeds)}" if speeds else "nothing turns; set --speed or crank.rpm"
+            message = f"choose from {', '.join(speeds)}" if speeds else "set --speed or crank.rpm"
             raise ConfigurationError(f"angle: found {chosen!r}, which does not turn; {message}")
         return chosen, speeds[chosen]
 

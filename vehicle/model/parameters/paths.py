@@ -66,7 +66,7 @@ def _only(matches: Sequence[str], path: str) -> str:
     if len(matches) > 1:
         more = f" or one of {len(matches) - SHOWN} others" if len(matches) > SHOWN else ""
         raise ConfigurationError(
-            f"parameter {path} is ambiguous: it may be {', '.join(matches[:SHOWN])}{more}; give more of its path"
+            f"parameter {path} is ambiguous: it may be {', '.join(matches[:SHOWN])}{more}; write more of its path"
         )
     return matches[0]
 
@@ -99,9 +99,9 @@ def _missing(table: Mapping[str, Any], path: str, candidates: Iterable[str]) -> 
     """Return the error of a path that does not exist, with the nearest path or the law that lacks the parameter."""
     law = next(iter(_existing(table, f"{path}_law")), "")
     if not law.endswith("viscous_law"):
-        return ConfigurationError(f"unknown parameter {path}; the most similar path is {nearest(path, candidates)}")
+        return ConfigurationError(f"unknown parameter {path}; did you mean {nearest(path, candidates)}?")
     return ConfigurationError(
-        f"unknown parameter {path}, because {law} = {value_at(table, law)} has none; to add it, set --set "
+        f"unknown parameter {path}: {law} = {value_at(table, law)} has none; to add it, set --set "
         f"{law}=linear --set {path}=VALUE"
     )
 
@@ -252,17 +252,17 @@ def value_of(vehicle: Any, path: str) -> float:
         default = component(declared.get("default"), path)
         if _is_number(default):
             return float(default)
-        raise ConfigurationError(f"parameter {path}: is not given in this vehicle and has no default; set its value")
+        raise ConfigurationError(f"parameter {path}: not set in this vehicle, and without a default; set its value")
     try:
         value = value_at(table, full_path(table, path))
         if _is_number(value):
             return float(value)
-        raise ConfigurationError(f"the most similar path is {nearest(path, _numbers(table))}")
+        reason = ""
     except ConfigurationError as error:
         # For a misspelt path, show the nearest number, not the nearest text.
-        misspelt = str(error).startswith("unknown parameter")
-        reason = f"the most similar path is {nearest(path, _numbers(table))}" if misspelt else str(error)
-        raise ConfigurationError(f"parameter {path}: is not a number of the vehicle; {reason}") from None
+        reason = "" if str(error).startswith("unknown parameter") else str(error)
+    reason = reason or f"did you mean {nearest(path, _numbers(table))}?"
+    raise ConfigurationError(f"parameter {path}: is not a number of the vehicle; {reason}")
 
 
 def overrides_of(vehicle: Any, values: Mapping[str, float]) -> tuple[str, ...]:
@@ -377,7 +377,7 @@ def parsed_value(assignment: str, text: str, old: Any) -> Any:
     """
     if _is_number(old) and RELATIVE.search(text):
         raise ConfigurationError(
-            f"--set {assignment}: must be the new value, not a change of the present one, which is {old:g}"
+            f"--set {assignment}: must be the new value itself, not a change of the present value {old:g}"
         )
     if DECIMAL.fullmatch(text):
         return float(text)  # the most frequent case; the TOML parser is slow

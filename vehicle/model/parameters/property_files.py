@@ -102,8 +102,8 @@ def _turning(file: PropertyFile) -> float:
     if max(slopes) - min(slopes) > TURNING_AGREES * max(map(abs, slopes)):
         raise DataError(
             f"{file.path}: TX, TY, TZ_CURVE have {', '.join(f'{slope:.4g}' for slope in slopes)} N m/rad at "
-            "rest; but a bushing has a single number for all axes; set rotational_stiffness [N m/rad] in the "
-            "same section of the vehicle file"
+            "rest, but a bushing has one rotational stiffness for all axes; set rotational_stiffness [N m/rad] in "
+            "the same section of the vehicle file"
         )
     return sum(slopes) / len(slopes)
 

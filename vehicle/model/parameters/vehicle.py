@@ -34,7 +34,7 @@ class Solver(Validated):
 
     record_rate: float = quantity("Hz", "sampling rate of the recorded channels", at_least=125.0, at_most=1e5)
     timestep: float | None = quantity(
-        "s", "time step [s]; not given: the largest one that keeps the calculation stable and accurate", at_least=1e-6,
+        "s", "time step [s]; default: the largest stable and accurate step", at_least=1e-6,
         at_most=0.005, default=None,
     )  # fmt: skip
 
@@ -52,7 +52,7 @@ class Head(Validated):
     gravity: float = quantity("m/s2", "gravity", at_least=0.0, at_most=30.0, why="9.81 on Earth; 0: no weight")
     shaker_wheel: str = quantity(
         "-",
-        "wheel whose plate moves if the name of a displacement column states no wheel",
+        "wheel that a displacement column moves if its name contains no wheel",
         choices=tuple(CORNERS.values()),
         default="fr",
     )

@@ -202,7 +202,7 @@ class BodyMatrices(BodyNodes):
         if lowest <= 1e-9 * highest:
             raise DataError(
                 f"mass: all mass is on one line (principal moments of inertia {lowest:.3g} to {highest:.3g} kg "
-                "m2). Add rotational inertia to the point masses, or mass beside the line."
+                "m2). Add rotational inertia to the point masses, or mass off this line."
             )
         return MassProperties(mass=mass, cog=cog, inertia=inertia)
 
