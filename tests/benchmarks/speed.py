@@ -83,6 +83,7 @@ class Effort:
 
     Attributes:
         repeats: interleaved repetitions of each measurement.
+        starts: repetitions of a start in a new process, after a first one.
         steps: steps of one repetition.
         seconds: length of the timed runs [s].
         accuracy_seconds: length of the runs that are compared with an eighth of the step [s].
@@ -90,6 +91,7 @@ class Effort:
     """
 
     repeats: int = 7
+    starts: int = 7
     steps: int = 2000
     seconds: float = 4.0
     accuracy_seconds: float = 60.0
@@ -181,7 +183,7 @@ def batch_factor(car: Car, signal: Signal) -> float:
 
 
 def start_ms(statement: str, repeats: int) -> float:
-    """Return the processor time of a statement in a new process [ms]: the minimum of repetitions after a first run."""
+    """Return the processor time of a statement in a new process [ms]: minimum after a first run, or that run."""
     code = f"import time; begin = time.process_time(); {statement}; print(time.process_time() - begin)"
     command = [sys.executable, "-c", code]
     times = [subprocess.run(command, capture_output=True, text=True, check=True).stdout for _ in range(repeats + 1)]
@@ -191,18 +193,8 @@ def start_ms(statement: str, repeats: int) -> float:
 def shaker_ms(repeats: int) -> float:
     """Return the processor time of the command `shaker` with the reduced engine in a new process [ms]."""
     with tempfile.TemporaryDirectory() as folder:
-        words = [
-            "shaker",
-            "--input",
-            "low.csv",
-            "--engine",
-            "reduced",
-            "--output",
-            f"{folder}/run",
-            "--force",
-            "--quiet",
-        ]
-        return start_ms(f"import sys; sys.argv = {words}; from vehicle.commands.shaker import main; main()", repeats)
+        words = ["--input", "low.csv", "--engine", "reduced", "--output", f"{folder}/run", "--force", "--quiet"]
+        return start_ms(f"from vehicle.commands.shaker import main; main({words})", repeats)
 
 
 def accuracy(car: Car, seconds: float) -> Figures:
@@ -279,9 +271,9 @@ def measure(effort: Effort) -> Figures:
         "four_wheel_step_us": median(four_wheel),
         "four_wheel_step_ratio": median(four / two for four, two in zip(four_wheel, native, strict=True)),
         "four_wheel_reduced_realtime_factor": median(four_wheel_reduced),
-        "import_ms": start_ms("import vehicle", effort.repeats),
-        "shaker_ms": shaker_ms(effort.repeats),
-        "first_car_ms": start_ms("from vehicle import Car; Car.load('focus')", effort.repeats),
+        "import_ms": start_ms("import vehicle", effort.starts),
+        "shaker_ms": shaker_ms(effort.starts),
+        "first_car_ms": start_ms("from vehicle import Car; Car.load('focus')", effort.starts),
         "case_ms": min(case_ms(effort.cases) for _ in range(2)),
         "parts_us": parts["native"],
         "plain_parts_us": parts["plain"],

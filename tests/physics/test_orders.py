@@ -21,7 +21,7 @@ from vehicle.runs.report.order_page import order_points_sentences, order_rows
 
 IMBALANCE = {"front.right.imbalance.mass": 0.004, "front.right.imbalance.radius": 0.2}
 NO_FRICTION = {f"{axle}.damper.coulomb_friction": 0.0 for axle in ("front", "rear")}
-SPEEDS = (60.0, 100.0, 140.0)
+SPEEDS = (60.0, 140.0)
 
 
 @pytest.mark.parametrize("limit", ["stuck", "without friction"])
@@ -112,7 +112,7 @@ def test_wrong_points_are_refused(name):
 
 def test_the_command_writes_table_pictures_and_report(tmp_path, capsys):
     sets = [word for path, value in IMBALANCE.items() for word in ("--set", f"{path}={value}")]
-    command = ["orders", "--vehicle", "sedan", "--speed", "100:120:10", "--orders", "1,3", "--duration", "5", *sets]
+    command = ["orders", "--vehicle", "sedan", "--speed", "100:120:20", "--orders", "1,3", "--duration", "4", *sets]
     folder = tmp_path / "orders"
     assert main([*command, "--output", str(folder)]) == 0
     said = capsys.readouterr().out
@@ -151,13 +151,7 @@ def test_several_channels_come_from_the_same_runs(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (
-            [],
-            (
-                "error: orders: the speeds are missing; set --rpm A:B:STEP, for example 700:3000:50, or --speed "
-                "A:B:STEP, for example 60:160:5\n"
-            ),
-        ),
+        ([], ("error: orders: the speeds are missing")),
         (["--rpm", "700:3000"], "the step between the speeds is missing, for example 700:3000:115; for a run-up type"),
         (["--rpm", "900:700:50"], "must be A:B:STEP with 0 < A < B, for example 700:3000:50"),
         (["--rpm", "700:3000:1"], "gives 2301 points, must be at most 400; use a larger step"),

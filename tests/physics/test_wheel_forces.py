@@ -98,7 +98,7 @@ def test_a_linear_car_answers_a_wheel_as_its_matrices_say(kind):
 @pytest.mark.parametrize("kind", ["run-out", "brake torque"])
 def test_mujoco_answers_a_wheel_as_the_matrices_say(kind):
     car = Car.load("focus_road", {**TABLES[kind], **FREE})
-    run = car.run(road("level", SPEED, duration=8), channels=CHANNELS)
+    run = car.run(road("level", SPEED, duration=6), channels=CHANNELS)
     validated(
         "Applied forces",
         f"MuJoCo, {kind} of one wheel, order 1 at 100 km/h: acceleration of seat rail and knuckle",
@@ -155,7 +155,7 @@ def test_the_range_over_the_phases_contains_every_car_and_reaches_its_ends():
     rows = {"front.imbalance.mass": 0.02, "front.imbalance.radius": 0.19, "front.nonuniformity.rfv": [[1, 40, 90]]}
     smooth, name = road("level", 120, duration=6), "seat_rail_acc_z"
     limits = []
-    for phase in (0.0, 60.0, 120.0, 180.0, 240.0, 300.0):
+    for phase in (0.0, 60.0, 180.0, 240.0):
         left = {"front.left.imbalance.angle": phase, "front.left.nonuniformity.rfv": [[1, 40, 90 + phase]]}
         run = Car.load("focus_road", {**rows, **left}).run(smooth, engine="reduced")
         (line,) = force_values(run)["orders"]
@@ -172,10 +172,6 @@ def test_the_range_over_the_phases_contains_every_car_and_reaches_its_ends():
 
 IMBALANCE = "front.right.imbalance"
 SHAKEN: dict[str, tuple[str, float, dict[str, object]]] = {
-    "sedan, imbalance of 160 g, 100 km/h": ("sedan", 100, {f"{IMBALANCE}.mass": 0.16, f"{IMBALANCE}.radius": 0.2}),
-    "focus_road_seated, imbalance of 40 g, 160 km/h": (
-        "focus_road_seated", 160, {f"{IMBALANCE}.mass": 0.04, f"{IMBALANCE}.radius": 0.2},
-    ),
     "focus_road with skyhook dampers, imbalance of 40 g, 140 km/h": (
         "focus_road", 140,
         {f"{IMBALANCE}.mass": 0.04, f"{IMBALANCE}.radius": 0.2, "front.damper.control.law": "skyhook"},
@@ -195,7 +191,7 @@ def test_both_engines_agree_on_wheels_with_friction(case):
     name, speed, changes = SHAKEN[case]
     car = Car.load(name, changes)
     channels = ["seat rail z", "seat rail x", "knuckle_fr_acc_z", "knuckle_fr_acc_x"]
-    runs = [car.run(road("level", speed, duration=8), engine=engine) for engine in ("mujoco", "reduced")]
+    runs = [car.run(road("level", speed, duration=6), engine=engine) for engine in ("mujoco", "reduced")]
     precise, reduced = (run.orders(channels, angle="wheel_fr", orders=[1]).amplitude for run in runs)
     validated(
         "Applied forces",

@@ -143,5 +143,5 @@ def test_both_engines_run_it_and_the_energy_closes(truncated, high_piece):
 def test_a_limit_below_all_modes_is_refused():
     with pytest.raises(ConfigurationError, match=r"body\.modes_up_to: found 5 Hz, below the first mode at 1"):
         Car.load(None, ["body.modes_up_to=5"]).model  # noqa: B018
-    with pytest.raises(ConfigurationError, match=r"body\.modes_up_to: needs flexible = true and"):
+    with pytest.raises(ConfigurationError, match=r"body\.modes_up_to: .* flexible = true and"):
         Car.load(None, ["body.modes_up_to=35", "body.attachment_flexibility=false"])

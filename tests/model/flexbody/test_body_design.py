@@ -47,7 +47,7 @@ BAD = {
     "a mass missing": (
         "mass = 4.0  # [kg] assumed: A-arm bracket of the subframe\n",
         "",
-        "nodes.arm_front.mass: missing; this parameter must be given [kg]",
+        "nodes.arm_front.mass: missing",
     ),
     "negative mass": ("mass = 4.0", "mass = -4.0", "nodes.arm_front.mass: found -4.0 kg, must be greater than 0.0"),
     "text for a number": ("mass = 4.0", 'mass = "four"', "nodes.arm_front.mass: found 'four', must be a number"),
@@ -72,7 +72,7 @@ BAD = {
     "node made twice": (
         "[nodes.sill_rear]",
         "[nodes.cowl_right]\nplace = [1.0, 0.0, 1.0]\nmass = 1.0\nfreedom = 1.0\n[nodes.sill_rear]",
-        "nodes: cowl_right defined twice; rename one entry",
+        "nodes: cowl_right defined twice",
     ),
     "member to nowhere": (
         '"rail_front-arm_front"',
@@ -89,15 +89,11 @@ BAD = {
     "half a section": (
         "wall = 0.0018  # [m] assumed: nominal section\n",
         "",
-        ("members.front_rails.between: the section has width; must have width and wall (a tube) or area (a strut)"),
+        ("members.front_rails.between: the section has width"),
     ),
     "tube and strut": ("width = 0.055", "area = 1e-5\nwidth = 0.055", "the section has width, wall, area; must have"),
     "factor of zero": ("factor = 1.0962", "factor = 0.0", "members.front_rails.factor: found 0.0, must be greater"),
-    "a node without a tube": (
-        '"seat-seat_rail"',
-        '"seat_rail-seat_rail_right"',
-        "nodes: seat could turn freely, because no tube ends there; add members with width and wall",
-    ),
+    "a node without a tube": ('"seat-seat_rail"', '"seat_rail-seat_rail_right"', "nodes: seat could turn freely"),
     "nodes in one place": (
         "[0.15, 0.52, 0.82]",
         "[0.877, 0.548, 1.23]",

@@ -46,7 +46,7 @@ def weighted_squares(point: str, acceleration: Vector, interval: float) -> float
     """Return the sum of the squares of weighted accelerations over axes and samples [m2/s4].
 
     Args:
-        point: point with a comfort value; its weighting is that of `vehicle.runs.car.Run.comfort`.
+        point: point with a comfort value; weighted as by `vehicle.runs.car.Run.comfort`.
         acceleration: along x, y, z [m/s2]; (3, n).
         interval: sampling interval [s].
     """

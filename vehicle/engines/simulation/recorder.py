@@ -163,7 +163,7 @@ class Recorder:
         return self.rows.whole(self.new_poses[new], self.buffers.modal_position[self.pose_index[index] - self.done])
 
     def _stored_energy(self, half: float) -> float:
-        """Return the kinetic, elastic and gravity energy [J] at the present time; store that of the rubber friction."""
+        """Return the kinetic, elastic and gravity energy [J] at present; store the energy of the rubber friction."""
         # Use the generated model: the armature of the integration is not a mass of the car.
         model, rows = self.car.model, self.rows
         e, state, preload = rows.layout, rows.state, rows.weights.preload

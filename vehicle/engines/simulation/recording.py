@@ -39,7 +39,7 @@ class Statistics:
         energies: energy balance; None for the reduced engine, whose matrices contain no parts.
         notices: messages about the computation.
         within_validity: False for a motion outside the valid range of the engine, which needs another engine.
-        errors: what linear geometry makes of the RMS of each channel, as a share with its sign; empty if unknown.
+        errors: relative error of the RMS of each channel from linear geometry, with its sign; empty if unknown.
     """
 
     engine: str

@@ -19,7 +19,7 @@ class CarChoice:
 
     Attributes:
         vehicle: vehicle file; by default the car of Bommer 2006.
-        overrides: changed parameters, as "path=value".
+        overrides: changed parameters, for example "path=value".
     """
 
     vehicle: Path | None = None

@@ -131,7 +131,7 @@ def _file(folder: Path, name: str, path: str) -> Path:
 
 
 def _beside(folder: Path, name: str) -> Path:
-    """Return a file beside the vehicle file; if none is there, that in the working folder, as `--set` is typed."""
+    """Return a file in the folder of the vehicle file, otherwise in the working folder, where `--set` is typed."""
     beside, typed = folder / name, Path(name)
     return typed if typed.is_file() and not beside.exists() else beside
 

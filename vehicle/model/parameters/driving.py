@@ -54,7 +54,7 @@ class Driving(Validated):
 
     @property
     def words(self) -> str:
-        """State of the tyres for summaries and captions, as "rolling at 80 km/h"."""
+        """State of the tyres for summaries and captions, for example "rolling at 80 km/h"."""
         return tyre_words([self])
 
 

@@ -63,7 +63,7 @@ class LinearBushing:
 
 NO_FRICTION: Point = (0.0, 0.0, 0.0)
 SHORTEST_STROKE = 1e-6
-"""Minimum friction stroke [m] of an axis with friction: shorter strokes are a hundredth of those of thin rubber."""
+"""Minimum friction stroke [m] of an axis with friction: a hundredth of the stroke of thin rubber."""
 
 
 def _friction_force() -> Any:
@@ -152,7 +152,7 @@ class Hydromount:
 
     K(s) = Kz1 + Dz1 s + Kz2 Dz2 s / (Dz2 s + Kz2) + Kb Z / (Kb + Z) with Z = mt s^2 + ct s. A decoupler
     gives way to the pressure in parallel with the track, with md, cd and its membrane Km, beyond the gap its seat too.
-    Rubber friction acts as that of `Bushing`.
+    For rubber friction see `Bushing`.
     """
 
     stiffness: Point = quantity("N/m", "Kx, Ky, Kz1", at_least=0.0, length=3, **STIFFEST)

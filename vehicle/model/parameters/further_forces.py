@@ -1,4 +1,4 @@
-"""Forces of a vehicle file on any part, and those of its turning wheels, placed."""
+"""Placement of the forces of a vehicle file: on parts, on joints, of turning wheels and engines."""
 
 import cmath
 import math
@@ -20,7 +20,7 @@ from vehicle.model.parameters.quantity import NAME_PATTERN
 from vehicle.model.parameters.toml_file import build, convert, did_you_mean
 
 PLACE_KEYS = ("on", "at", "force", "moment", "axes", "against", "joint")
-"""Keys of a force other than those of its history."""
+"""Keys of a force that place it; the others describe its history."""
 
 AXES_OF = ("vehicle", "part")
 """Axes of the direction of a force: those of the vehicle, or of the part that it acts on, which turn with it."""
@@ -41,7 +41,7 @@ class ForceTargets:
         points: hardpoints by name [m].
         joints: kind of each hinge and slide by its name.
         spinning: parts that turn with a rolling wheel.
-        speeds: angular speed [rad/s] of each angle: crank, and each wheel, as "wheel_fr"; 0 at rest.
+        speeds: angular speed [rad/s] of each angle: crank, and each wheel, for example "wheel_fr"; 0 at rest.
         run_up: run-up of the crankshaft, whose highest speed is in `speeds`; None at constant speed.
     """
 

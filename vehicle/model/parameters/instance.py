@@ -166,7 +166,7 @@ class Instance:
         return (*SIDE_SIGN, None) if self.template.mirrored else (None,)
 
     def label(self, name: str, side: str | None) -> str:
-        """Return the name of an element in the model, as "knuckle_fr", "cushion_driver" or "engine"."""
+        """Return the name of an element in the model, for example "knuckle_fr", "cushion_driver" or "engine"."""
         if self.template.wheel is not None:
             corner = {"front": "f", "rear": "r"}.get(self.name, f"{self.name}_")
             return f"{name}_{corner}{side[0]}" if side else f"{name}_{self.name}"
@@ -248,7 +248,7 @@ def instances(
 
     Args:
         table: vehicle file, see `read_table`.
-        folders: folders of user templates, searched before those of the package.
+        folders: folders of user templates, searched before the package.
         points: hardpoints of the file [m].
 
     Raises:

@@ -1,7 +1,7 @@
 """Parameters by their dotted paths: list, values, units and overrides.
 
-A path names the tables down to a value, as "front.bushings.suspension_mount.stiffness"; the component of a vector is
-the last name, as in "front.bushings.suspension_mount.stiffness.z". The end of a path is sufficient if it is unique, as
+A path names the tables down to a value, for example "front.bushings.suspension_mount.stiffness", and a component by its
+axis, "front.bushings.suspension_mount.stiffness.z". The end of a path is sufficient if it is unique:
 "suspension_mount.stiffness.z". A vehicle file may define further names in the table `alias`.
 """
 
@@ -318,7 +318,7 @@ def quantity_of(car: Any, path: str) -> Mapping[str, Any]:
     """Return the declaration of a parameter, see `quantity`: unit, meaning, range.
 
     Args:
-        car: a vehicle, or a parameter class, as QuarterCar.
+        car: a vehicle, or a parameter class, for example QuarterCar.
         path: path of a value or of a component; for a class the whole path.
 
     Raises:

@@ -32,10 +32,10 @@ Point = tuple[float, float]
 
 
 def require_type(file: PropertyFile, *allowed: str) -> None:
-    """Check that a property file is that of an element of the right type.
+    """Check that a property file describes the right type of element.
 
     Raises:
-        DataError: it is that of another element.
+        DataError: it describes another type.
     """
     if file.file_type not in allowed:
         needed = " or ".join(f"a {NAMES[name]} ({name!r})" for name in allowed)

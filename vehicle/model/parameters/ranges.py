@@ -20,7 +20,7 @@ def is_coordinate(vehicle: Any, path: str) -> bool:
 
     Args:
         vehicle: the vehicle.
-        path: path of a component, as "front.hardpoints.strut_top.z".
+        path: path of a component, for example "front.hardpoints.strut_top.z".
 
     Raises:
         ConfigurationError: the path does not lead to a quantity.

@@ -10,7 +10,7 @@ from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.quantity import quantity, validate
 
 ROD_RADIUS = 0.01
-"""Default radius [m] of a rod without inertia, assumed: that of a steering or stabilizer rod."""
+"""Default radius [m] of a rod without inertia, assumed: a steering or stabilizer rod."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -32,7 +32,7 @@ class Part:
         default=(0.0, 0.0, 0.0),
     )
     between: tuple[str, ...] | None = quantity(
-        "-", "hardpoints whose mean is the centre of gravity; by default those of the template", default=None
+        "-", "hardpoints whose mean is the centre of gravity; default: the points of the template", default=None
     )
     radius: float = quantity(
         "m",

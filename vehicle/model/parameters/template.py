@@ -37,7 +37,7 @@ def read_template(name: str, options: Iterable[str], folders: Iterable[Path]) ->
     Args:
         name: name of the file, without its extension.
         options: tables of the vehicle file that enable a `use` with `when`.
-        folders: folders searched before that of the package.
+        folders: folders searched before the package.
 
     Raises:
         ConfigurationError: a missing template, an unknown key, or a name that does not exist; with file and table.

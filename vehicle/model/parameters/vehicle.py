@@ -78,7 +78,7 @@ class Vehicle:
         table: vehicle file with overrides, nested tables; cars with equal tables are equal.
         name: name of the car.
         gravity: gravity [m/s2].
-        shaker_wheel: wheel that a shaker drives by default, as "fr".
+        shaker_wheel: wheel that a shaker drives by default, for example "fr".
         shaker_wheel_in_source: side of that wheel in the words of the source: "right", "left" or "unsaid".
         body: trimmed body.
         solver: numerics.
@@ -102,12 +102,12 @@ class Vehicle:
 
     @property
     def points(self) -> Mapping[str, Point]:
-        """Hardpoints by name, as "strut_top_fr" [m]."""
+        """Hardpoints by name, for example "strut_top_fr" [m]."""
         return self.composition.points
 
     @property
     def wheels(self) -> tuple[str, ...]:
-        """Names of the wheels with a plate, as "fr"."""
+        """Names of the wheels with a plate, for example "fr"."""
         return tuple(wheel.name for wheel in self.composition.wheels)
 
     @property
@@ -128,7 +128,7 @@ class Vehicle:
         return (*self.acceleration_channels, *wheel_channels(self.wheels, dampers))
 
     def wheel_text(self, wheel: str, *, source: bool = True) -> str:
-        """Return a wheel for captions, by side and by channel, as "driver's left front wheel (fl)".
+        """Return a wheel for captions, by side and by channel, for example "driver's left front wheel (fl)".
 
         Args:
             wheel: name of the wheel.

@@ -14,7 +14,7 @@ from vehicle.arrays import Indices, Vector
 from vehicle.errors import DataError
 
 _NAMES = re.compile(r"(?!nan|inf)[a-z_]\w*([\s,]+[a-z_]\w*)*", re.IGNORECASE)
-"""Header line of column names, as "node,direction". Headers with units in brackets do not match."""
+"""Header line of column names, for example "node,direction". Headers with units in brackets do not match."""
 
 
 def text_of(path: Path, advice: str = "", *, encoding: str = "ascii", errors: str = "strict") -> str:
