@@ -172,13 +172,10 @@ def batch_factor(car: Car, signal: Signal) -> float:
     """Simulated time of all cars of a batch over its computing time, tables and all, channels of comfort and slip."""
     started = time.perf_counter()
     simulate_batch(
-        [car.poles] * BATCH,
-        signal,
-        dampers=[[damper.law for damper in car.vehicle.composition.dampers]] * BATCH,
-        record_rate=car.vehicle.solver.record_rate,
-        tyre_load=[car.model.static.tyre_load] * BATCH,
+        [car.poles] * BATCH, signal, dampers=[[damper.law for damper in car.vehicle.composition.dampers]] * BATCH,
+        record_rate=car.vehicle.solver.record_rate, tyre_load=[car.model.static.tyre_load] * BATCH,
         channels=[name for name in FEW if not name.endswith("_force")],
-    )
+    )  # fmt: skip
     return BATCH * signal.duration / (time.perf_counter() - started)
 
 

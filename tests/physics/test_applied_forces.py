@@ -88,13 +88,10 @@ def test_a_linear_car_answers_a_force_as_its_matrices_say(name):
     # At 1 kHz the record itself is 2e-6 low at 58 Hz.
     car = forced("focus", PLACES[name], **FREE, **{"solver.record_rate": 2000.0})
     validated(
-        "Applied forces",
-        f"Reduced engine, {name}, 8 to 58 Hz: acceleration of seat rail, knuckle and engine",
-        lines_of(car.run(level(car, 12.0), engine="reduced", channels=CHANNELS)),
-        solved(car),
-        source="second derivation: matrices with the joints as constraints, line by line",
-        peak=1e-6,
-    )
+        "Applied forces", f"Reduced engine, {name}, 8 to 58 Hz: acceleration of seat rail, knuckle and engine",
+        lines_of(car.run(level(car, 12.0), engine="reduced", channels=CHANNELS)), solved(car),
+        source="second derivation: matrices with the joints as constraints, line by line", peak=1e-6,
+    )  # fmt: skip
 
 
 def test_mujoco_answers_a_force_as_the_matrices_say_at_the_step_that_it_chooses():
@@ -104,11 +101,9 @@ def test_mujoco_answers_a_force_as_the_matrices_say_at_the_step_that_it_chooses(
     validated(
         "Applied forces",
         "MuJoCo, force on the seat rail of the body, 8 to 58 Hz: acceleration of seat rail, knuckle and engine",
-        lines_of(run),
-        solved(car),
-        source="second derivation: matrices with the joints as constraints, line by line",
+        lines_of(run), solved(car), source="second derivation: matrices with the joints as constraints, line by line",
         peak=1e-3,
-    )
+    )  # fmt: skip
     assert energies_of(run).residual < 5e-3
 
 
@@ -122,21 +117,15 @@ def test_both_engines_agree_on_an_imbalance_whose_dampers_slip():
     validated(
         "Applied forces",
         "Imbalance of 40 g, 140 km/h, dampers that stick and slip: order 1 of seat rail and knuckle in both engines",
-        reduced,
-        precise,
-        source="second derivation: MuJoCo",
-        rel=5e-3,
-    )
+        reduced, precise, source="second derivation: MuJoCo", rel=5e-3,
+    )  # fmt: skip
     assert energies_of(runs[0]).residual < 5e-3
     batch = simulate_batch(
-        [car.with_({"driving.speed": 140 / 3.6}).poles] * 8,
-        runs[0].signal,
-        dampers=[[damper.law for damper in car.vehicle.composition.dampers]] * 8,
-        record_rate=1000.0,
-        tyre_load=[car.with_({"driving.speed": 140 / 3.6}).static.tyre_load] * 8,
-        channels=["seat_rail_acc_z"],
+        [car.with_({"driving.speed": 140 / 3.6}).poles] * 8, runs[0].signal,
+        dampers=[[damper.law for damper in car.vehicle.composition.dampers]] * 8, record_rate=1000.0,
+        tyre_load=[car.with_({"driving.speed": 140 / 3.6}).static.tyre_load] * 8, channels=["seat_rail_acc_z"],
         step=2e-4,
-    )
+    )  # fmt: skip
     single, eighth = runs[1]["seat_rail_acc_z"], batch.channels["seat_rail_acc_z"][7]
     assert np.std(eighth - single) < 2e-4 * np.std(single)
 
@@ -153,11 +142,9 @@ def test_both_engines_record_the_same_loads():
     validated(
         "Applied forces",
         "force of 45 N on a knuckle, 12 Hz: loads of all elements in both engines, difference over RMS",
-        [np.std(reduced[name] - precise[name]) / np.std(precise[name]) for name in strong],
-        0.0,
-        source="second derivation: MuJoCo",
-        abs=5e-3,
-    )
+        [np.std(reduced[name] - precise[name]) / np.std(precise[name]) for name in strong], 0.0,
+        source="second derivation: MuJoCo", abs=5e-3,
+    )  # fmt: skip
 
 
 def test_a_mean_force_is_in_equilibrium_and_moves_nothing():
@@ -263,12 +250,9 @@ def test_a_run_lies_at_its_limits_where_dampers_stick_or_have_no_friction() -> N
             "Applied forces",
             f"order 1 of an imbalance of 2 g, dampers {'stick' if limit == 'stuck' else 'without friction'}: seat rail "
             "in the run against the linear car at one frequency",
-            line["amplitude"][name],
-            expected[name],
-            source="second derivation: equations of second order, line by line",
-            rel=1e-3,
-            unit="m/s2",
-        )
+            line["amplitude"][name], expected[name],
+            source="second derivation: equations of second order, line by line", rel=1e-3, unit="m/s2",
+        )  # fmt: skip
 
 
 def test_wheels_of_two_radii_beat() -> None:
@@ -288,11 +272,6 @@ def test_wheels_of_two_radii_beat() -> None:
     assert len(dips) == 2
     period = 2.0 * np.pi * R1 * R2 / (110 / 3.6 * (R2 - R1))
     validated(
-        "Applied forces",
-        "period of the beat of two imbalances whose tyres differ by 0.4 % in radius, 110 km/h",
-        (dips[1] - dips[0]) / 1000.0,
-        period,
-        source="closed form: 2 pi R1 R2/(V (R2 - R1))",
-        rel=5e-3,
-        unit="s",
-    )
+        "Applied forces", "period of the beat of two imbalances whose tyres differ by 0.4 % in radius, 110 km/h",
+        (dips[1] - dips[0]) / 1000.0, period, source="closed form: 2 pi R1 R2/(V (R2 - R1))", rel=5e-3, unit="s",
+    )  # fmt: skip

@@ -100,11 +100,9 @@ def test_a_force_of_a_file_moves_the_linear_car(tmp_path, kind, factor, limit):
     validated(
         "Applied forces",
         f"{kind} engine, force of a file on the seat rail: accelerations of seat rail, knuckle and engine",
-        histories(run),
-        integrated(car, factor * pulse(np.arange(0.0, 4.0 + 0.5 / FINE, 1.0 / FINE))),
-        source="second derivation: exact integration of each eigenvector at 20 kHz",
-        peak=limit,
-    )
+        histories(run), integrated(car, factor * pulse(np.arange(0.0, 4.0 + 0.5 / FINE, 1.0 / FINE))),
+        source="second derivation: exact integration of each eigenvector at 20 kHz", peak=limit,
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("growth", ["constant", "squared"])
@@ -124,11 +122,9 @@ def test_a_run_up_moves_the_linear_car(growth):
     validated(
         "Applied forces",
         f"run-up from 600 to 1200 rpm, orders 1 and 2, {growth} amplitudes: seat rail, knuckle and engine",
-        histories(run),
-        integrated(car, force),
-        source="second derivation: exact integration of each eigenvector at 20 kHz",
-        peak=1e-4,
-    )
+        histories(run), integrated(car, force),
+        source="second derivation: exact integration of each eigenvector at 20 kHz", peak=1e-4,
+    )  # fmt: skip
 
 
 def test_both_engines_agree_on_a_run_up_of_an_engine_with_friction():
@@ -139,11 +135,9 @@ def test_both_engines_agree_on_a_run_up_of_an_engine_with_friction():
     validated(
         "Applied forces",
         "run-up of a four-cylinder engine from 700 to 1500 rpm, with friction: both engines, difference over RMS",
-        np.std(histories(reduced) - histories(precise), axis=1) / np.std(histories(precise), axis=1),
-        0.0,
-        source="second derivation: MuJoCo",
-        abs=5e-3,
-    )
+        np.std(histories(reduced) - histories(precise), axis=1) / np.std(histories(precise), axis=1), 0.0,
+        source="second derivation: MuJoCo", abs=5e-3,
+    )  # fmt: skip
     energies = precise.recording.statistics.energies
     assert energies is not None and energies.residual < 5e-3
     # The torque of the gas does not grow with the speed, all else with its square: at 900 rpm the steady engine.
@@ -274,19 +268,13 @@ def test_what_mujoco_differs_by_is_the_square_of_a_force():
     validated(
         "Applied forces",
         "MuJoCo, force of 600 over 60 N on the seat rail: even parts of seat rail, knuckle and engine over the peak",
-        even[0] / even[1],
-        10.0,
-        source="closed form: a part of second order over one of first order grows with the force",
-        rel=1e-2,
-    )
+        even[0] / even[1], 10.0,
+        source="closed form: a part of second order over one of first order grows with the force", rel=1e-2,
+    )  # fmt: skip
     validated(
-        "Applied forces",
-        "MuJoCo, force of 600 N and 60 N on the seat rail: odd parts against the linear car",
-        np.array(odd),
-        0.0,
-        source="second derivation: reduced engine",
-        abs=2e-4,
-    )
+        "Applied forces", "MuJoCo, force of 600 N and 60 N on the seat rail: odd parts against the linear car",
+        np.array(odd), 0.0, source="second derivation: reduced engine", abs=2e-4,
+    )  # fmt: skip
 
 
 def test_a_measured_speed_of_the_crankshaft_turns_its_forces(tmp_path):
@@ -305,11 +293,9 @@ def test_a_measured_speed_of_the_crankshaft_turns_its_forces(tmp_path):
     validated(
         "Applied forces",
         "force over the angle of a measured speed of the crankshaft, 700 to 1400 rpm: seat rail, knuckle and engine",
-        histories(run),
-        integrated(car, force * rise(time)),
-        source="second derivation: exact integration of each eigenvector at 20 kHz",
-        peak=1e-4,
-    )
+        histories(run), integrated(car, force * rise(time)),
+        source="second derivation: exact integration of each eigenvector at 20 kHz", peak=1e-4,
+    )  # fmt: skip
     assert run["speed_crank"] == pytest.approx(60.0 * speed[::20], rel=1e-9)
     # Points on a line are the run-up of two numbers.
     points = np.column_stack([np.arange(9.0), 600.0 + 75.0 * np.arange(9.0)])

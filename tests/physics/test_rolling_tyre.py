@@ -117,17 +117,9 @@ def test_rigid_car_is_the_single_track_car(tmp_path: Path, speed: float, trail: 
     cornering = {"front": 1.2e3, "rear": 2e3}
     stiff = {"carcass_lateral": 1e7, "carcass_longitudinal": 1e7, "trail": trail}
     car = rolling_car(
-        tmp_path,
-        speed,
-        mount=3 * (1e9,),
-        turning=1e6,
-        damping=1e5,
-        inertia=1e-3 / SPINS["tyre"],
-        tyre=stiff,
-        cornering=cornering,
-        vertical=1e9,
-        overrides=["driving.hold_frequency=0.02"],
-    )
+        tmp_path, speed, mount=3 * (1e9,), turning=1e6, damping=1e5, inertia=1e-3 / SPINS["tyre"], tyre=stiff,
+        cornering=cornering, vertical=1e9, overrides=["driving.hold_frequency=0.02"],
+    )  # fmt: skip
     cog = (BODY * COG[0] + sum(2 * sum(MASSES.values()) * position for position in AXLES.values())) / WHOLE
     omega, zeta = 2.0 * np.pi * 0.02, 0.7
     # The inertia of the wheels is nearly zero.

@@ -96,19 +96,15 @@ def test_stated_errors_against_mujoco(name: str, road: Road) -> None:
     validated(
         "Reduced engine",
         f"{name}: stated errors of the RMS of all channels of seat and body over {road.road}, largest difference",
-        max(abs(errors[channel] - found[channel]) for channel in found if channel.startswith(("seat", "body"))),
-        0.0,
-        source="second derivation: MuJoCo at half its step",
-        abs=0.01,
-    )
+        max(abs(errors[channel] - found[channel]) for channel in found if channel.startswith(("seat", "body"))), 0.0,
+        source="second derivation: MuJoCo at half its step", abs=0.01,
+    )  # fmt: skip
     validated(
         "Reduced engine",
         f"{name}: stated errors of the RMS of knuckles, dampers and tyres over {road.road}, largest difference",
-        max(abs(errors[channel] - found[channel]) for channel in found),
-        0.0,
-        source="second derivation: MuJoCo at half its step",
-        abs=0.03,
-    )
+        max(abs(errors[channel] - found[channel]) for channel in found), 0.0,
+        source="second derivation: MuJoCo at half its step", abs=0.03,
+    )  # fmt: skip
     assert not reduced.statistics.within_validity and ": RMS about " in reduced.statistics.warnings[-1]
 
 
@@ -138,11 +134,9 @@ def test_friction_of_bushings_is_linearised(name: str, changes: list[str], chann
         "Reduced engine",
         f"{name}, bushings with friction{' everywhere' if changes else ' at the rack'}: stated errors of the RMS of "
         f"{', '.join(channels)} on class C, largest difference",
-        max(abs(errors[channel] - found[channel]) for channel in errors),
-        0.0,
-        source="second derivation: MuJoCo at a quarter of its step",
-        abs=0.005 if name == "sedan_steering" else 0.01,
-    )
+        max(abs(errors[channel] - found[channel]) for channel in errors), 0.0,
+        source="second derivation: MuJoCo at a quarter of its step", abs=0.005 if name == "sedan_steering" else 0.01,
+    )  # fmt: skip
 
 
 def test_every_nonlinear_element_is_in_the_linear_motion(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -193,11 +187,9 @@ def test_parts_of_a_record_state_what_the_whole_states(monkeypatch: pytest.Monke
     validated(
         "Reduced engine",
         "sedan on class C: stated errors of all main channels in two parts of 3 s, largest difference from the whole",
-        max(abs(parts[channel] - whole[channel]) for channel in whole if is_main(channel)),
-        0.0,
-        source="second derivation: the record of 6 s as a whole",
-        abs=0.01,
-    )
+        max(abs(parts[channel] - whole[channel]) for channel in whole if is_main(channel)), 0.0,
+        source="second derivation: the record of 6 s as a whole", abs=0.01,
+    )  # fmt: skip
 
 
 def test_an_applied_force_leaves_the_forces_of_laws_where_they_are() -> None:

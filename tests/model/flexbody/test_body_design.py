@@ -128,7 +128,5 @@ def test_more_modes_than_a_frame_has_are_refused(tmp_path):
     file = tmp_path / "small.toml"
     file.write_text(head.replace("mode_count = 9", "mode_count = 13") + body + members + "width = 0.05\nwall = 0.001\n")
     vehicle = load_vehicle()
-    with pytest.raises(
-        ConfigurationError, match="mode_count: found 13, must be at most 12, the elastic modes of 6 nodes"
-    ):
+    with pytest.raises(ConfigurationError, match="mode_count: found 13, must be at most 12"):
         body_frame(read_design(file), vehicle.points, NodeProperties.of_body(vehicle.body, 0.0))

@@ -42,11 +42,7 @@ BAD = {
         "position_m = [0.0, -0.5]",
         "node 2, position_m: shape (3,), must be (2,)",
     ),
-    "edge": (
-        '["corner_0", "corner_1"]',
-        '["corner_0", "nose"]',
-        "edges: ['corner_0', 'nose'] is not a pair of node names",
-    ),
+    "edge": ('["corner_0", "corner_1"]', '["corner_0", "nose"]', "edges: ['corner_0', 'nose'] is not a pair of"),
     "format": ("modal superelement 2", "modal superelement 7", "format is 'modal superelement 7'"),
     "node renamed, edges not": ('"corner_7"\n', '"corner_6"\n', "edges: "),
 }

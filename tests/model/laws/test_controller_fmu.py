@@ -258,9 +258,7 @@ def test_an_fmu_that_would_fill_the_disk_is_refused_before_it_is_unpacked(tmp_pa
 @VERSIONS
 def test_an_fmu_that_does_not_start_is_refused(tmp_path, version):
     path = controller_fmu(tmp_path / "other.fmu", version, token="{another}")
-    with pytest.raises(
-        SimulationError, match=r"damper_fr: controller other\.fmu cannot be started \(.*; try the FMU alone"
-    ):
+    with pytest.raises(SimulationError, match=r"damper_fr: controller other\.fmu cannot be started \("):
         started(path)
 
 

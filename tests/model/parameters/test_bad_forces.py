@@ -92,21 +92,13 @@ def car_with(**force: object) -> Car:
 def test_a_force_that_cannot_act_in_a_run_is_refused():
     shake = {"on": "engine", "moment": [0, 1, 0], "harmonics": [[2, 40, 0]]}
     smooth = road("level", 100, duration=3)
-    with pytest.raises(
-        ConfigurationError, match=r"crank does not turn; set the speed of the crankshaft .*--set crank\.rpm"
-    ):
+    with pytest.raises(ConfigurationError, match=r"crank does not turn; .*--set crank\.rpm"):
         car_with(**shake, angle="crank").run(smooth)
     with pytest.raises(ConfigurationError, match="wheel_fr does not turn; the wheels stand; drive on a road"):
         car_with(**shake, angle="wheel_fr").run("low.csv")
-    with pytest.raises(
-        ConfigurationError, match=r"solver\.record_rate: found 1000 Hz, must be at least 2000 Hz, or a force of"
-    ):
+    with pytest.raises(ConfigurationError, match=r"solver\.record_rate: found 1000 Hz, must be at least 2000 Hz"):
         car_with(**shake, frequency=150.0).run(smooth)
-    with pytest.raises(
-        ConfigurationError,
-        match=r"solver\.timestep: found 0\.001 s, must be at most "
-        r".* for a force of 100 Hz",
-    ):
+    with pytest.raises(ConfigurationError, match=r"solver\.timestep: found 0\.001 s, must be at most .* 100 Hz"):
         car_with(**shake, frequency=50.0).with_({"solver.timestep": 1e-3}).run(smooth)
     with pytest.raises(ConfigurationError, match="moves no plate, and sedan has no force that shakes it; add a force"):
         Car.load("sedan").run(smooth)

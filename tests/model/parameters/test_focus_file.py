@@ -148,10 +148,7 @@ def test_an_override_may_name_an_axis():
         ("=3", "--set =3: must be PATH=VALUE, for example damper.coulomb_friction=93.75"),
         ("main_spring=3", "--set main_spring=3: main_spring is a group; set one of front.main_spring.stiffness"),
         *(
-            (
-                f"damper.viscous={text}",
-                f"--set damper.viscous={text}: must be the new value",
-            )
+            (f"damper.viscous={text}", f"--set damper.viscous={text}: must be the new value")
             for text in ("+20", "+25%", "*1.2", "2250+20")
         ),
         ("damper.viscous=many", ("--set damper.viscous=many: cannot read many")),

@@ -95,17 +95,13 @@ def test_values_arrive_where_their_paths_say(car):
 )
 def test_a_path_that_is_no_number_is_refused_with_the_nearest(car, path):
     for use in (lambda: overrides_of(car.vehicle, {path: 1.0}), lambda: value_of(car.vehicle, path)):
-        with pytest.raises(
-            ConfigurationError, match=f"parameter {path}: is not a number of the vehicle; did you mean "
-        ):
+        with pytest.raises(ConfigurationError, match=f"parameter {path}: .*; did you mean "):
             use()
 
 
 def test_the_nearest_path_has_its_axis(car):
     for misspelt in ("bushings.suspension_mount.stifness.z", "suspension_mount.stifness.z"):
-        with pytest.raises(
-            ConfigurationError, match=r"did you mean front\.bushings\.suspension_mount\.stiffness\.z\?$"
-        ):
+        with pytest.raises(ConfigurationError, match=r"did you mean front\.bushings\.suspension_mount\.stiffness\.z"):
             value_of(car.vehicle, misspelt)
 
 
@@ -155,9 +151,7 @@ def test_optional_keys_are_given_where_the_law_has_them():
     arm = next(one.law for one in links if one.name == "arm_front_fl")
     assert arm is not None and arm.damping == (9.0, 9.0, 9.0)
     for text, near in (("gas_forse=1", "damper.gas_force"), ("*.stopp=1", "damper.stop"), ("w.tabel_x=1", "table_x")):
-        with pytest.raises(
-            ConfigurationError, match=rf"^--set {re.escape(text)}: unknown parameter .* did you mean .*{near}\?$"
-        ):
+        with pytest.raises(ConfigurationError, match=rf"^--set {re.escape(text)}: unknown .* did you mean .*{near}\?$"):
             load_vehicle(None, [text])
     with pytest.raises(ConfigurationError, match="parameter table_x is ambiguous: it may be"):
         load_vehicle(None, ["table_x=1"])

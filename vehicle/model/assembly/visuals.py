@@ -24,12 +24,7 @@ PART_GROUP = 2
 
 
 def visible_shapes(vehicle: Vehicle, *, rig: bool = True) -> dict[str, Shape]:
-    """Return the shapes of a car and its rig at the design position, by name; parts without a known role are rods.
-
-    Args:
-        vehicle: the car.
-        rig: include the plates and their supports.
-    """
+    """Return the shapes of a car and its rig at the design position, by name; parts without a known role are rods."""
     car = vehicle.composition
     points = {name: np.array(point) for name, point in car.points.items()}
     corners = {

@@ -153,10 +153,6 @@ class BodyDesign:
     def member_ends(self, group: str, placed: Mapping[str, Mapping[str, Point]]) -> list[tuple[str, str]]:
         """Return the end nodes of every member of a group.
 
-        Args:
-            group: name of the group.
-            placed: node positions returned by `placed`.
-
         Raises:
             ConfigurationError: a member names an unknown node or connects a node with itself.
         """

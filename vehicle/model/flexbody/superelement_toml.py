@@ -149,10 +149,6 @@ def _tables(content: dict[str, Any], table_type: str, older: bool) -> list[dict[
 def numbers(value: Any, where: str) -> Vector:
     """Convert a value to a regular array of numbers.
 
-    Args:
-        value: number or nested lists of numbers.
-        where: item named in messages.
-
     Raises:
         DataError: rows of different length, or entries other than numbers.
     """

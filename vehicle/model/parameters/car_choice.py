@@ -39,10 +39,6 @@ class CarChoice:
     def require_once(self, option: str, texts: Sequence[str]) -> None:
         """Check that the parameters that an option sets are not changed to another value too.
 
-        Args:
-            option: name, for the message.
-            texts: "path=value".
-
         Raises:
             ConfigurationError: a change sets one of these parameters.
         """

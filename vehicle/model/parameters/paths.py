@@ -268,10 +268,6 @@ def value_of(vehicle: Any, path: str) -> float:
 def overrides_of(vehicle: Any, values: Mapping[str, float]) -> tuple[str, ...]:
     """Return overrides "path=value" of numbers, for `override`.
 
-    Args:
-        vehicle: the car.
-        values: path to value.
-
     Raises:
         ConfigurationError: a path does not lead to a number of the car.
     """
@@ -287,12 +283,7 @@ def unit_of(car: Any, path: str) -> str:
 
 
 def unit_of_override(vehicle: Any, path: str) -> str:
-    """Return the unit of the parameters that an override sets; empty for a text and for a key that the file lacks.
-
-    Args:
-        vehicle: the vehicle.
-        path: see `meant`.
-    """
+    """Return the unit of the parameters that an override sets; empty for a text and for a key that the file lacks."""
     try:
         first, *_ = meant(vehicle.table, path)
     except ConfigurationError:
@@ -301,12 +292,7 @@ def unit_of_override(vehicle: Any, path: str) -> str:
 
 
 def values_of_override(vehicle: Any, path: str) -> list[Any]:
-    """Return the different values that an override would replace; empty for keys that the file lacks.
-
-    Args:
-        vehicle: the vehicle.
-        path: see `meant`.
-    """
+    """Return the different values that an override would replace; empty for keys that the file lacks."""
     try:
         values = [value_at(vehicle.table, whole) for whole in meant(vehicle.table, path)]
     except ConfigurationError:
@@ -366,11 +352,6 @@ def _is_number(value: Any) -> bool:
 
 def parsed_value(assignment: str, text: str, old: Any) -> Any:
     """Parse the value of an override; a word without quotes is a text if the old value is a text.
-
-    Args:
-        assignment: the override, for messages.
-        text: text of the value.
-        old: value that is replaced.
 
     Raises:
         ConfigurationError: the text is not a TOML value, or a change of the old value such as +20 or 125%.

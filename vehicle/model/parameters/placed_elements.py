@@ -198,10 +198,6 @@ def placed_outputs(car: Mapping[str, Instance], further: Sequence[PlacedOutput])
 
     An output marked `first` keeps its plain name in the first instance, where it takes precedence over an output of
     the vehicle file.
-
-    Args:
-        car: instances by name.
-        further: outputs of the vehicle file.
     """
     outputs, firsts = list[PlacedOutput](), set[str]()
     for instance in car.values():

@@ -206,12 +206,6 @@ def _require_no_mean_about(force: PlacedForce, wheel: PlacedWheel, spinning: set
 
     A steady M drives or brakes the wheel: the road exerts M/R along x at the contact, and the car takes its reaction.
 
-    Args:
-        force: applied force.
-        wheel: rolling wheel.
-        spinning: parts that turn with the wheel.
-        hub: part that carries the wheel.
-
     Raises:
         ConfigurationError: M is not zero.
     """

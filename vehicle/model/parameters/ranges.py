@@ -148,10 +148,6 @@ class Variation:
 def parsed_variation(option: str, text: str) -> Variation:
     """Parse the text of an option: `PATH=A,B,C` values, `PATH=A:B:N` equally spaced values, `PATH=A:B` bounds.
 
-    Args:
-        option: name of the option, for messages.
-        text: value of the option.
-
     Raises:
         ConfigurationError: an unknown form, descending bounds, or a number of values below 2.
     """

@@ -48,12 +48,7 @@ def read_template(name: str, options: Iterable[str], folders: Iterable[Path]) ->
 
 
 def own_templates(names: Iterable[str], folders: Iterable[Path]) -> list[Path]:
-    """Return the user files of templates and of the templates that they include.
-
-    Args:
-        names: names of the templates.
-        folders: see `read_template`.
-    """
+    """Return the user files of templates and of the templates that they include."""
     files, listed = dict[str, Path](), list(names)
     for name in listed:
         path = next(folder / f"{name}.toml" for folder in (*folders, SHIPPED) if (folder / f"{name}.toml").is_file())

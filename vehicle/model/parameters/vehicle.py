@@ -287,10 +287,6 @@ def vehicle_of(table: Mapping[str, Any], folder: Path | None = None) -> Vehicle:
 def overridden(file: Path, overrides: Iterable[str]) -> dict[str, Any]:
     """Read a vehicle file and replace or add values.
 
-    Args:
-        file: TOML file.
-        overrides: texts "path.to.parameter=value".
-
     Raises:
         ConfigurationError: the file or an override is wrong.
     """
@@ -305,11 +301,6 @@ def overridden(file: Path, overrides: Iterable[str]) -> dict[str, Any]:
 
 def varied_file(table: Mapping[str, Any], overrides: Iterable[str], folder: Path) -> dict[str, Any]:
     """Return a vehicle file after one variation, see `varied_table`, with the absolute path of a given body model.
-
-    Args:
-        table: vehicle file; not changed.
-        overrides: texts "path.to.parameter=value".
-        folder: folder of the file.
 
     Raises:
         ConfigurationError: an override is wrong.

@@ -38,11 +38,6 @@ def text_of(path: Path, advice: str = "", *, encoding: str = "ascii", errors: st
 def rows_of_numbers(path: Path, columns: int, *, separator: str = ",") -> Vector:
     """Read a text file with rows of numbers of equal length, shape (rows, columns); skip a header line of names.
 
-    Args:
-        path: text file.
-        columns: required number of columns.
-        separator: separator of the numbers besides blanks.
-
     Raises:
         DataError: the file is unreadable, empty or truncated, or has entries
             other than numbers or rows of unequal length.
