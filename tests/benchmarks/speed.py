@@ -66,12 +66,9 @@ BATCH = 16
 """Cars that are run at once."""
 
 PARTS = {
-    "position": "mjTIMER_POSITION",
-    "velocity": "mjTIMER_VELOCITY",
-    "control": "mjTIMER_ACTUATION",
-    "constraint": "mjTIMER_CONSTRAINT",
-    "advance": "mjTIMER_ADVANCE",
-}
+    "position": "mjTIMER_POSITION", "velocity": "mjTIMER_VELOCITY", "control": "mjTIMER_ACTUATION",
+    "constraint": "mjTIMER_CONSTRAINT", "advance": "mjTIMER_ADVANCE",
+}  # fmt: skip
 """Parts of a step that MuJoCo's timers know; `control` holds the callbacks, the rest is inertia and sensors."""
 
 Figures = dict[str, float | str | dict[str, float]]

@@ -217,10 +217,10 @@ def test_the_force_of_an_imbalance_points_to_the_mass_and_turns_forward():
 
 
 def test_order_lines_find_amplitude_and_its_error_in_noise():
-    time = np.arange(20001) / 1e3
+    time = np.arange(60001) / 1e3
     random, turns = np.random.Generator(np.random.PCG64(1)), 15.95
     record = 0.3 * np.cos(2 * np.pi * turns * time + 0.4) + 0.1 * np.sin(6 * np.pi * turns * time)
-    noisy = record + random.standard_normal((200, time.size))
+    noisy = record + random.standard_normal((100, time.size))
     exact = order_lines(time, record[None], turns, [1, 2, 3]).amplitude[0]
     assert np.max(np.abs(exact - [0.3 * np.exp(0.4j), 0.0, -0.1j])) < 1e-5
     found = order_lines(time, noisy, turns, [1, 3])

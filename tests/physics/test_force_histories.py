@@ -252,7 +252,7 @@ def test_a_run_up_needs_both_numbers():
 
 def test_what_mujoco_differs_by_is_the_square_of_a_force():
     """The mean of the runs with F and -F has the even part alone, their difference the odd one, that of the method."""
-    car, smooth = Car.load("focus", {**FREE, **ON_RAIL}), road("level", 0, duration=2)
+    car, smooth = Car.load("focus", {**FREE, **ON_RAIL}), road("level", 0, duration=2.5)
 
     def run(kind: str, factor: float) -> np.ndarray:
         return histories(

@@ -249,15 +249,12 @@ def test_varied_speed_and_tyre_are_those_of_a_car_that_is_built() -> None:
         assert np.max(np.abs(varied - other)) < 1e-8 * max(np.max(np.abs(other)), 1.0), name
 
 
-@pytest.mark.parametrize(
-    ("vehicle", "override", "message"),
-    [
-        ("focus", "driving.speed=20", "also stands on the ground without wheels"),
-        ("sedan", "front.hardpoints.tyre_patch.x=0.76", "or the load would drive"),
-        ("sedan", "front.parts.tyre.inertia.x=0.9", "must be round about the axle"),
-        ("sedan", "front.parts.brake_disc.offset.z=0.01", "must be round about the axle"),
-    ],
-)
+@pytest.mark.parametrize(("vehicle", "override", "message"), [
+    ("focus", "driving.speed=20", "also stands on the ground without wheels"),
+    ("sedan", "front.hardpoints.tyre_patch.x=0.76", "or the load would drive"),
+    ("sedan", "front.parts.tyre.inertia.x=0.9", "must be round about the axle"),
+    ("sedan", "front.parts.brake_disc.offset.z=0.01", "must be round about the axle"),
+])  # fmt: skip
 def test_cars_that_cannot_roll_are_refused(vehicle: str, override: str, message: str) -> None:
     from vehicle.errors import ConfigurationError
 

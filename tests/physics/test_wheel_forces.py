@@ -149,7 +149,7 @@ def test_the_range_over_the_phases_contains_every_car_and_reaches_its_ends():
     rows = {"front.imbalance.mass": 0.02, "front.imbalance.radius": 0.19, "front.nonuniformity.rfv": [[1, 40, 90]]}
     smooth, name = road("level", 120, duration=6), "seat_rail_acc_z"
     limits = []
-    for phase in (0.0, 60.0, 180.0, 240.0):
+    for phase in (0.0, 60.0, 120.0, 240.0):
         left = {"front.left.imbalance.angle": phase, "front.left.nonuniformity.rfv": [[1, 40, 90 + phase]]}
         run = Car.load("focus_road", {**rows, **left}).run(smooth, engine="reduced")
         (line,) = force_values(run)["orders"]

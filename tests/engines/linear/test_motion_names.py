@@ -36,21 +36,18 @@ def named(vertical, frequency=12.0):
     return description(shares)
 
 
-@pytest.mark.parametrize(
-    ("vertical", "name"),
-    [
-        ((1, 1, 0, 0), "front wheel hop, sides in phase"),
-        ((0, 0, 1, -1), "rear wheel hop, sides opposite"),
-        ((1j, -0.9j, 0.3, 0.3), "front wheel hop, sides opposite"),
-        ((1, 0.2, 0, 0), "right front wheel hop"),
-        ((0, 0, 0.1, -3), "left rear wheel hop"),
-        ((1, 1, 1, 1), "front and rear wheel hop, sides in phase, axles in phase"),
-        ((1, 1, -1, -1), "front and rear wheel hop, sides in phase, axles opposite"),
-        ((1, -1, -1, 1), "front and rear wheel hop, sides opposite, axles opposite"),
-        ((1, 1, -1.1, -1), "rear wheel hop, sides in phase"),
-        ((1, 1, 1.2, -1.3), "rear wheel hop, sides opposite"),
-    ],
-)
+@pytest.mark.parametrize(("vertical", "name"), [
+    ((1, 1, 0, 0), "front wheel hop, sides in phase"),
+    ((0, 0, 1, -1), "rear wheel hop, sides opposite"),
+    ((1j, -0.9j, 0.3, 0.3), "front wheel hop, sides opposite"),
+    ((1, 0.2, 0, 0), "right front wheel hop"),
+    ((0, 0, 0.1, -3), "left rear wheel hop"),
+    ((1, 1, 1, 1), "front and rear wheel hop, sides in phase, axles in phase"),
+    ((1, 1, -1, -1), "front and rear wheel hop, sides in phase, axles opposite"),
+    ((1, -1, -1, 1), "front and rear wheel hop, sides opposite, axles opposite"),
+    ((1, 1, -1.1, -1), "rear wheel hop, sides in phase"),
+    ((1, 1, 1.2, -1.3), "rear wheel hop, sides opposite"),
+])  # fmt: skip
 def test_wheels_in_phase_opposite_and_alone(vertical, name):
     assert named(vertical) == name
 

@@ -20,7 +20,7 @@ def presliding(stiffness: float | None) -> dict[str, object]:
 
 @pytest.mark.parametrize("level", ROADS)
 def test_every_channel_against_mujoco(level):
-    car, road = Car.load("focus_road", presliding(5e5)), Road(level, speed=ROADS[level], duration=5)
+    car, road = Car.load("focus_road", presliding(5e5)), Road(level, speed=ROADS[level], duration=6)
     stepped, reduced = car.run(road), car.run(road, engine="reduced")
     ratios = {
         name: np.std(reduced[name][3000:]) / np.std(values[3000:])

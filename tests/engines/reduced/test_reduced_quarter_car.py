@@ -126,12 +126,9 @@ def test_friction_against_the_stiff_solver(solved):
 def test_stribeck_against_the_stiff_solver():
     """A smooth Stribeck law, mild enough that both see the same steepness at rest."""
     changes = {
-        "friction_law": "stribeck",
-        "coulomb_friction": 40.0,
-        "stribeck_friction": 75.0,
-        "stribeck_velocity": 0.03,
+        "friction_law": "stribeck", "coulomb_friction": 40.0, "stribeck_friction": 75.0, "stribeck_velocity": 0.03,
         "stribeck_exponent": 3.5,
-    }
+    }  # fmt: skip
 
     law = Clamped(
         law=Stribeck(

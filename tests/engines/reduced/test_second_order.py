@@ -25,13 +25,9 @@ RMS = 5e-3
 """RMS of the plates [m]: vertical accelerations of the wheels as on class B at 80 km/h."""
 
 WITHOUT_FRICTION = [
-    "front.damper.viscous_law=linear",
-    "front.damper.viscous=2500",
-    "front.damper.coulomb_friction=0",
-    "rear.damper.coulomb_friction=0",
-    "driving.speed=22",
-    "solver.timestep=0.0005",
-]
+    "front.damper.viscous_law=linear", "front.damper.viscous=2500", "front.damper.coulomb_friction=0",
+    "rear.damper.coulomb_friction=0", "driving.speed=22", "solver.timestep=0.0005",
+]  # fmt: skip
 """Changes that leave `kinematic_reference` and `sedan` nonlinear by their geometry alone."""
 
 

@@ -57,14 +57,9 @@ def test_a_warning_is_about_comfort_its_axes_and_forces() -> None:
 
 def test_main_channels_decide() -> None:
     main = [
-        "seat_acc_x",
-        "seat_rail_acc_z",
-        "body_front_acc_x",
-        "steering_wheel_rim_acc_y",
-        "knuckle_fr_acc_y",
-        "tyre_fl_force_z",
-        "damper_rr_force",
-    ]
+        "seat_acc_x", "seat_rail_acc_z", "body_front_acc_x", "steering_wheel_rim_acc_y", "knuckle_fr_acc_y",
+        "tyre_fl_force_z", "damper_rr_force",
+    ]  # fmt: skip
     assert all(misses_main({channel: -0.03}) for channel in main)
     assert not misses_main({"engine_acc_x": 0.3, "seat_acc_x": 0.01})
     assert not any(is_main(channel) for channel in ("damper_top_fl_acc_x", "roof_left_rear_acc_x", "engine_acc_z"))

@@ -26,12 +26,9 @@ from vehicle.model.parameters.force_elements import FRICTION_LAWS, NUMBERS
 from vehicle.model.parameters.vehicle import load_vehicle
 
 STRIBECK = {
-    "friction_limit": 65.0,
-    "static_limit": 125.0,
-    "stribeck_velocity": 0.03,
-    "stribeck_exponent": 3.5,
+    "friction_limit": 65.0, "static_limit": 125.0, "stribeck_velocity": 0.03, "stribeck_exponent": 3.5,
     "smoothing": 1e3,
-}
+}  # fmt: skip
 LAWS = [
     Degressive(low_damping=15000.0, high_damping=1500.0, knee_velocity=0.02),
     Coulomb(friction_limit=75.0, smoothing=1e3),
@@ -116,11 +113,8 @@ def test_stribeck_follows_3_2():
 @pytest.mark.parametrize("word", ["coulomb", "stribeck"])
 def test_the_record_of_a_damper_is_its_law(word):
     numbers: dict[str, Any] = {
-        "coulomb_friction": 65.0,
-        "stribeck_friction": 125.0,
-        "stribeck_velocity": 0.03,
-        "stribeck_exponent": 2.0,
-    }
+        "coulomb_friction": 65.0, "stribeck_friction": 125.0, "stribeck_velocity": 0.03, "stribeck_exponent": 2.0,
+    }  # fmt: skip
     valve: dict[str, Any] = {"viscous_law": "degressive", "degressive_viscous": 15000.0, "degressive_velocity": 0.02}
     damper = dataclasses.replace(load_vehicle().damper, friction_law=word, **numbers, **valve)
     record = pack(damper)

@@ -225,15 +225,12 @@ def test_both_engines_agree_on_idle(name: str) -> None:
     )  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("changes", "said"),
-    [
-        ({"firing": [1, 3, 4]}, "engine.orders.firing: found [1.0, 3.0, 4.0], must name each of the 4 cylinders"),
-        ({"rod": 0.04}, "engine.orders.rod: found 0.04 m, must be above half the stroke"),
-        ({"cylinder_axis": [0, 1, 0]}, "engine.orders.cylinder_axis: found [0.0, 1.0, 0.0], must be across"),
-        ({"torque": 1500.0}, "engine.orders.torque: found 1500 N m, must be at most"),
-    ],
-)
+@pytest.mark.parametrize(("changes", "said"), [
+    ({"firing": [1, 3, 4]}, "engine.orders.firing: found [1.0, 3.0, 4.0], must name each of the 4 cylinders"),
+    ({"rod": 0.04}, "engine.orders.rod: found 0.04 m, must be above half the stroke"),
+    ({"cylinder_axis": [0, 1, 0]}, "engine.orders.cylinder_axis: found [0.0, 1.0, 0.0], must be across"),
+    ({"torque": 1500.0}, "engine.orders.torque: found 1500 N m, must be at most"),
+])  # fmt: skip
 def test_a_wrong_engine_is_refused(changes: dict[str, Any], said: str) -> None:
     numbers = {f"engine.orders.{key}": value for key, value in {**FOUR, **changes}.items()}
     with pytest.raises(ConfigurationError) as raised:

@@ -81,18 +81,10 @@ def test_values_arrive_where_their_paths_say(car):
     assert overrides_of(car.vehicle, {}) == ()
 
 
-@pytest.mark.parametrize(
-    "path",
-    [
-        "bushings.suspension_mount.stifness.z",
-        "bushings.suspension_mount.stiffness",
-        "bushings.suspension_mount.stiffness.w",
-        "damper.friction_law",
-        "damper",
-        "body.flexible",
-        "w",
-    ],
-)
+@pytest.mark.parametrize("path", [
+    "bushings.suspension_mount.stifness.z", "bushings.suspension_mount.stiffness",
+    "bushings.suspension_mount.stiffness.w", "damper.friction_law", "damper", "body.flexible", "w",
+])  # fmt: skip
 def test_a_path_that_is_no_number_is_refused_with_the_nearest(car, path):
     for use in (lambda: overrides_of(car.vehicle, {path: 1.0}), lambda: value_of(car.vehicle, path)):
         with pytest.raises(ConfigurationError, match=f"parameter {path}: .*; did you mean "):
@@ -159,12 +151,9 @@ def test_optional_keys_are_given_where_the_law_has_them():
 
 def test_units_are_those_of_the_fields(car):
     units = {
-        "damper.viscous": "N s/m",
-        "bushings.tyre.stiffness": "N/m",
-        "bushings.tyre.stiffness.z": "N/m",
-        "parts.engine.mass": "kg",
-        "hardpoints.strut_top.x": "m",
-    }
+        "damper.viscous": "N s/m", "bushings.tyre.stiffness": "N/m", "bushings.tyre.stiffness.z": "N/m",
+        "parts.engine.mass": "kg", "hardpoints.strut_top.x": "m",
+    }  # fmt: skip
     assert {path: unit_of(car.vehicle, path) for path in units} == units
     for path in ("damper", "body.flexible", "front.template", "outputs.seat.on"):
         with pytest.raises(ConfigurationError, match=f"parameter {path}: is not a value of a vehicle"):

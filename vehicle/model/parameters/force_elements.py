@@ -138,7 +138,7 @@ class Tyre(LinearBushing):
         at_most=0.1, why="a third of half the contact length by the brush model, 0.02 to 0.04 m", default=0.0,
     )  # fmt: skip
     rolling_radius: float | None = quantity(
-        "m", "effective rolling radius, for forces that turn with the wheel; not given: height of the wheel "
+        "m", "effective rolling radius, for forces that turn with the wheel; default: height of the wheel "
             "centre, 3 to 5 % less", above=0.1, at_most=1.0, default=None,
     )  # fmt: skip
 

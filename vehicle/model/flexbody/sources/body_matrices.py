@@ -133,7 +133,7 @@ class BodyMatrices(BodyNodes):
             where = self.nodes[self.node[loose[0]]]
             raise DataError(
                 f"stiffness: degree of freedom {self.direction[loose[0]] + 1} of node {where} has no stiffness, "
-                f"and {loose.size - 1} others neither. Leave them out, or connect the node."
+                f"nor have {loose.size - 1} others. Leave them out, or connect the node."
             )
 
     def scaled(self, length: float, mass: float) -> BodyMatrices:
