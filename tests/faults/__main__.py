@@ -12,6 +12,7 @@ from pathlib import Path
 from tests.faults.cases import FAULTS
 from tests.faults.jobs import commands
 from tests.faults.table import ROOT, Count, build, counted, outcomes
+from tools.wrap_docs import wrapped
 
 PAGE = ROOT / "docs" / "faults.md"
 
@@ -69,7 +70,7 @@ def page(table: dict[tuple[str, str], Count], names: Sequence[str], earlier: str
         f"- {name}, {fault}: {case['wrong']}" for (name, fault), c in table.items() for case in c.wrong
     )
     lines += ["", "What was wrong:", "", *(text[:400] for text in texts)] if texts else []
-    return "\n".join(lines) + "\n"
+    return wrapped("\n".join(lines) + "\n")
 
 
 def _rows(table: dict[tuple[str, str], Count], name: str) -> list[Cells]:
