@@ -52,8 +52,8 @@ does not give: they are listed and never counted. Figures that show the same hal
 count once.
 
 **What slip is.** The thesis does not define it. Shares of time: |v| above 6 mm/s, chosen with the other open numbers.
-End of sticking, as in figures 3.12 and 3.38: above 1 mm/s, where the friction is saturated. The quarter car counts above
-0.1 mm/s (100 / eps). Rows that another definition would change give the values by the others.
+End of sticking, as in figures 3.12 and 3.38: above 1 mm/s, where the friction is saturated. The quarter car counts
+above 0.1 mm/s (100 / eps). Rows that another definition would change give the values by the others.
 
 **Two cars.** The printed Ixx of 1000 kg m2 has a roll mode of 6.5 Hz, in the thesis as here; the measured car had
 5.8 Hz, and an axis of chapter 3 that holds a measurement holds that car too. Column `{BESIDE_NAME}` has our value
