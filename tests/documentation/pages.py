@@ -104,18 +104,15 @@ def commands(block: str) -> list[Command]:
 def agrees(expected: str, line: str) -> bool:
     """True if a line of output has the text of the expected line, and its numbers within the tolerance."""
     expected, line = " ".join(expected.split()), " ".join(line.split())
-    pieces = NUMBER.split(expected)
-    pattern = "(" + NUMBER.pattern + ")"
-    regex = pattern.join(re.escape(piece).replace(re.escape("..."), ".*?") for piece in pieces)
-    match = re.fullmatch(regex, line)
-    if match is None:
-        return False
-    for text, number in zip(NUMBER.findall(expected), match.groups(), strict=True):
-        mantissa, _, exponent = text.lower().partition("e")
-        digit = 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
-        if abs(float(text) - float(number)) > max(0.01 * abs(float(text)), 1.01 * digit * ("." in mantissa)):
-            return False
-    return True
+    pieces = (re.escape(piece).replace(re.escape("..."), ".*?") for piece in NUMBER.split(expected))
+    match = re.fullmatch(f"({NUMBER.pattern})".join(pieces), line)
+    return match is not None and all(map(_close, NUMBER.findall(expected), match.groups()))
+
+
+def _close(text: str, number: str) -> bool:
+    mantissa, _, exponent = text.lower().partition("e")
+    digit = 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
+    return abs(float(text) - float(number)) <= max(0.01 * abs(float(text)), 1.01 * digit * ("." in mantissa))
 
 
 def first_difference(expected: list[str], lines: list[str]) -> str | None:
