@@ -1,5 +1,7 @@
 """Pages are wrapped at 100 columns, and read as before."""
 
+import re
+
 import pytest
 
 from tools import wrap_docs
@@ -29,6 +31,6 @@ def test_no_line_begins_another_block(word):
 
 
 def test_a_page_that_would_change_is_refused(monkeypatch):
-    monkeypatch.setattr(wrap_docs, "BLOCK", wrap_docs.re.compile("$^"))
+    monkeypatch.setattr(wrap_docs, "BLOCK", re.compile("$^"))
     with pytest.raises(ValueError, match="list"):
         wrapped(f"{'a' * 99} - {'b' * 20}\n")
