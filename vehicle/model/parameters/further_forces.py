@@ -126,7 +126,7 @@ def further_force(name: str, value: Any, targets: ForceTargets) -> PlacedForce:
     if axes == "part" and on in targets.spinning:
         raise ConfigurationError(
             f"{path}.axes: found 'part' on {on}, which turns with the wheel; instead set two forces along "
-            "axes of the vehicle, with harmonics over the angle of the wheel, like those of an imbalance"
+            "axes of the vehicle, with harmonics over the angle of the wheel, like an imbalance"
         )
     against = named_part(path, table, "against", {*targets.parts}) if "against" in table else ""
     if against == on:
