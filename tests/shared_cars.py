@@ -15,8 +15,8 @@ from vehicle.model.parameters.shipped import VEHICLES, vehicle_file
 from vehicle.runs.car import Car
 
 SHARED = (
-    *("tests/commands/", "tests/documentation/test_executed_pages", "tests/engines/", "tests/model/"),
-    *("tests/physics/", "tests/runs/car/", "tests/runs/comparison/", "tests/signals/", "tests/studies/"),
+    *("tests/commands/", "tests/documentation/test_executed_pages", "tests/physics/", "tests/runs/car/"),
+    *("tests/runs/comparison/", "tests/signals/", "tests/studies/"),
     *(f"tests/system/test_{name}" for name in ("bad_inputs", "lost_files", "no_traceback", "road_run")),
 )
 """Folders and modules of tests that share cars."""
