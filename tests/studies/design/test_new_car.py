@@ -38,6 +38,10 @@ def words(numbers):
     return [word for name, value in numbers.items() for word in (f"--{name}", str(value))]
 
 
+def stated(**numbers):
+    return stated_numbers(None, numbers)
+
+
 @pytest.fixture(scope="module")
 def compact(tmp_path_factory):
     """A car of seven numbers, far from the sedan."""
@@ -125,7 +129,7 @@ def test_the_numbers_of_the_sedan_give_its_comfort(tmp_path, capsys):
     checks = json.loads(capsys.readouterr().out)["checks"]
     assert {name for name, check in checks.items() if check["stated"]} == {name.replace("-", "_") for name in SEDAN}
     assert max(abs(check["deviation"]) for check in checks.values()) < 1e-4
-    road = Road("B", speed=80, duration=10)
+    road = Road("B", speed=80, duration=3)
     same, sedan = (one.run(road, engine="reduced").comfort().unweighted.overall for one in (car, Car.load("sedan")))
     validated(
         "Published cars",
@@ -165,55 +169,36 @@ def test_a_numbers_file_a_damper_test_and_a_load(tmp_path, capsys):
     assert json.loads(capsys.readouterr().out)["checks"]["kerb_mass"]["value"] == pytest.approx(1500.0)
 
 
-def test_the_command_line_takes_precedence_over_the_file(tmp_path):
-    (tmp_path / "numbers.toml").write_text("kerb_mass = 1500.0\nwheelbase = 2.7\n")
-    stated = stated_numbers(tmp_path / "numbers.toml", {"kerb_mass": 1400.0, "wheelbase": None})
-    assert (stated.kerb_mass, stated.wheelbase) == (1400.0, 2.7)
-
-
-def test_an_axle_load_in_percent_is_a_share_of_the_kerb_mass(tmp_path):
-    (tmp_path / "numbers.toml").write_text('kerb_mass = 1500\nfront_axle_load = "57%"\n')
-    assert stated_numbers(tmp_path / "numbers.toml", {}).front_axle_load == pytest.approx(855.0, rel=1e-12)
-    assert stated_numbers(None, {"kerb_mass": 1000.0, "rear_axle_load": "43 %"}).rear_axle_load == pytest.approx(430.0)
+def test_a_number_is_typed_or_of_the_file_and_an_axle_load_in_percent_is_a_share(tmp_path):
+    file = tmp_path / "numbers.toml"
+    file.write_text('kerb_mass = 1500.0\nwheelbase = 2.7\nfront_axle_load = "57%"\n')
+    assert stated_numbers(file, {}).front_axle_load == pytest.approx(855.0, rel=1e-12)
+    typed = stated_numbers(file, {"kerb_mass": 1400.0, "wheelbase": None})
+    assert (typed.kerb_mass, typed.wheelbase) == (1400.0, 2.7)
+    assert stated(kerb_mass=1000.0, rear_axle_load="43 %").rear_axle_load == pytest.approx(430.0)
 
 
 @pytest.mark.parametrize(
     ("numbers", "message"),
     [
-        (
-            "--kerb-mass 120",
-            "--kerb-mass: parts of sedan, scaled by 0.0726, are outside the range of cars: engine.parts.engine.mass",
-        ),
-        ("--kerb-mass 1500 --front-axle-load 1800", "--front-axle-load: .* must be inside the wheelbase of 2.757"),
-        (
-            "--kerb-mass 1450 --front-axle-load 57",
-            "--front-axle-load 57 kg: is 3.9 % of the kerb mass of 1450 kg, must be at least 20 %; cars have 42 to "
-            "65 % of it on the front axle; for 57 % of the kerb mass type --front-axle-load 57%",
-        ),
-        ("--rear-axle-load 43%", "--rear-axle-load 43%: is a share of the kerb mass; state --kerb-mass too"),
-        ("--front-axle-load many%", "'many%': must be a number in kg, or a share of the kerb mass as 57%"),
-        ("--cog-height 550", "--cog-height: found 550.0 m, must be at most 1.5 .m, not mm; cars have 0.44 to 0.85 m"),
-        ("--damping-ratio-front 30", "front: found 30.0, must be at most 3.0 .a ratio: 30 % of the critical damping"),
-        ("--cog-x 3", "--cog-x: the centre of gravity would be 3.000 m behind the front axle"),
-        ("--kerb-mass 1500 --front-axle-load 800 --rear-axle-load 800", "together 1600 kg, must be the kerb mass"),
-        (
-            "--ride-frequency-front 0.4",
-            "0.4 Hz: cannot be reached, must be 0.78.* to 3.4.* Hz, with front.main_spring",
-        ),
-        (
-            "--track-front 0.8",
-            ("--track-front 0.8 m: must be above 0.826 m, or front.hardpoints.tie_inner would be 13 mm"),
-        ),
-        ("--roll-inertia 200", "the body would have I.*check --yaw-inertia"),
-        ("--wheel-hop-front 80", "--wheel-hop-front: found 80.0 Hz, must be at most 30.0"),
-        ("--pitch-frequency 2 --pitch-inertia 3000", "each follows from the other; leave one of the two out"),
-        (
-            "--tyre-size 205-55-16",
-            "--tyre-size '205-55-16': not the size of a radial tyre; write width/height R rim, as 205/55R16",
-        ),
-        ("--tyre-size 205/55R99", "rim 99 inch, must be 10 to 24"),
-        ("--tyre-size 205/55R16 --tyre-radius 0.3", "the size gives the radius; leave one of the two out"),
-        ("--damper-curve-front none.csv", "front.damper.curve: .*none.csv does not exist"),
+        ("--kerb-mass 120", "--kerb-mass: .*0.0726, .*engine.parts.engine.mass"),
+        ("--kerb-mass 1500 --front-axle-load 1800", "--front-axle-load: .*2.757"),
+        ("--kerb-mass 1450 --front-axle-load 57", "57 kg: .*3.9 % .* 1450 kg, .* 20 %; .*--front-axle-load 57%"),
+        ("--rear-axle-load 43%", "--rear-axle-load 43%: .*--kerb-mass"),
+        ("--front-axle-load many%", "'many%': .*57%"),
+        ("--cog-height 550", "--cog-height: found 550.0 m, .* 1.5 .*0.44 to 0.85 m"),
+        ("--damping-ratio-front 30", "front: found 30.0, .* 3.0 .*30 %"),
+        ("--cog-x 3", "--cog-x: .* 3.000 m"),
+        ("--kerb-mass 1500 --front-axle-load 800 --rear-axle-load 800", "1600 kg"),
+        ("--ride-frequency-front 0.4", "0.4 Hz: .* 0.78.* to 3.4.* Hz.*front.main_spring"),
+        ("--track-front 0.8", "--track-front 0.8 m: .* 0.826 m, .*front.hardpoints.tie_inner .*13 mm"),
+        ("--roll-inertia 200", "I.*--yaw-inertia"),
+        ("--wheel-hop-front 80", "--wheel-hop-front: found 80.0 Hz, .* 30.0"),
+        ("--pitch-frequency 2 --pitch-inertia 3000", "--pitch-"),
+        ("--tyre-size 205-55-16", "'205-55-16': .*205/55R16"),
+        ("--tyre-size 205/55R99", "99 inch, .* 10 to 24"),
+        ("--tyre-size 205/55R16 --tyre-radius 0.3", "--tyre-"),
+        ("--damper-curve-front none.csv", "front.damper.curve: .*none.csv"),
     ],
 )
 def test_a_car_that_cannot_be_is_rejected_by_name(numbers, message, tmp_path, capsys):
@@ -224,10 +209,9 @@ def test_a_car_that_cannot_be_is_rejected_by_name(numbers, message, tmp_path, ca
 
 def test_templates_without_four_wheels_and_names_of_shipped_cars_are_rejected(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    assert main(["mine", "--from", "focus"]) == 2
-    assert "needs two axles with two wheels each" in capsys.readouterr().err
-    assert main(["sedan", "--from", "sedan"]) == 2
-    assert "is the name of a shipped car" in capsys.readouterr().err
+    for words, message in ((["mine", "--from", "focus"], "two axles"), (["sedan", "--from", "sedan"], "shipped car")):
+        assert main(words) == 2
+        assert message in capsys.readouterr().err
 
 
 def test_estimates_are_inside_the_survey_for_a_measured_car():
@@ -264,13 +248,6 @@ def test_the_size_of_a_tyre_is_its_radius_without_load(surveyed):
     assert 0.015 < deflection < 0.025
     assert wheels["fl"].center[2] - wheels["fl"].patch[2] + deflection == pytest.approx(0.31595, abs=1e-5)
 
-
-def test_the_size_of_a_tyre_is_said_to_set_its_radius_alone(tmp_path, capsys):
-    made(tmp_path / "low", "--tyre-size", "205/45R16")
-    assert any("sets the radius alone" in note for note in json.loads(capsys.readouterr().out)["notes"])
-
-
-def test_a_tyre_of_a_van_has_its_c():
     assert unloaded_radius("215/65R16C 109/107T") == unloaded_radius("215/65R16") == pytest.approx(0.34295, abs=1e-6)
 
 
@@ -292,7 +269,7 @@ def test_survey_inertia_is_that_of_the_whole_car(surveyed):
 
 
 def test_contradictions_are_found_before_any_computation():
-    with pytest.raises(ConfigurationError, match="the curve sets the damping"):
-        stated_numbers(None, {"damping_ratio_front": 0.3, "damper_curve_front": "a.csv"})
-    with pytest.raises(ConfigurationError, match="most similar known name is kerb_mass"):
-        stated_numbers(None, {"kerb_mas": 3.0})
+    with pytest.raises(ConfigurationError, match="curve"):
+        stated(damping_ratio_front=0.3, damper_curve_front="a.csv")
+    with pytest.raises(ConfigurationError, match="kerb_mass"):
+        stated(kerb_mas=3.0)
