@@ -45,13 +45,8 @@ def test_files_and_summary(tmp_path, capsys):
     folder = tmp_path / "out"
     assert main([*records(tmp_path), "--output", str(folder)]) == 0
     said = capsys.readouterr().out
-    assert (
-        "chosen: linear damping + Coulomb friction, the simplest law whose error on left-out tests is within "
-        "one standard error"
-    ) in said
-    assert (
-        "the friction at rest is not determined, because the slowest test reaches 126 mm/s, must be below 10 mm/s"
-    ) in said
+    assert "chosen: linear damping + Coulomb friction" in said
+    assert "not determined: friction at rest" in said and "126 mm/s" in said and "10 mm/s" in said
     damper = build(Damper, tomllib.loads((folder / "damper.toml").read_text()), "damper")
     assert damper.viscous == pytest.approx(1200.0, rel=0.02) and damper.coulomb_friction == pytest.approx(60.0, abs=3.0)
     assert damper.gas_force == pytest.approx(150.0, abs=2.0) and damper.friction_law == "coulomb"
@@ -91,7 +86,7 @@ def test_typed_conditions(tmp_path):
         {"current": current, "temperature": 20.0} for current in (0.0, 1.5)
     ]
     assert [each.curve_damping() for each in fits] == pytest.approx([800.0, 2400.0], rel=0.02)
-    with pytest.raises(ConfigurationError, match="found 3 values for 4 files; give a single value for all files"):
+    with pytest.raises(ConfigurationError, match="found 3 values for 4 files"):
         fit_damper(files, conditions={"current": "0,1,2"})
 
 

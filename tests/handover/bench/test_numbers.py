@@ -60,11 +60,9 @@ def test_frf_of_the_car_without_friction_is_that_of_its_matrices(car, sliding):
         validated(
             "FRF estimation and spectra",
             f"{name.replace('_', ' ')} of the car without friction, periodic inputs of the bench: RMS error over |H|",
-            np.linalg.norm(computed - expected) / np.linalg.norm(expected),
-            0.0,
-            abs=2e-5,
+            np.linalg.norm(computed - expected) / np.linalg.norm(expected), 0.0, abs=2e-5,
             source="second derivation: FRF of the matrices",
-        )
+        )  # fmt: skip
 
 
 @pytest.mark.parametrize("rate", [500.0, 2000.0])

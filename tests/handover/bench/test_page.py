@@ -11,12 +11,9 @@ from typing import Any
 import pytest
 
 from tests.patience import HANG
-from vehicle import read_signal
 from vehicle.errors import ConfigurationError
-from vehicle.handover.bench.drive import bench_drive
 from vehicle.handover.bench.guard import Guard
 from vehicle.handover.bench.state import BenchState
-from vehicle.signals.excitation.input_files import find_input
 
 viser = pytest.importorskip("viser", reason="viser is missing: pip install 'vehicle-on-shaker[bench]'")
 msgspec = pytest.importorskip("msgspec")
@@ -47,11 +44,11 @@ CAMERA = {
 class Bench:
     """A running bench."""
 
-    def __init__(self, car, folder):
+    def __init__(self, car, drive, folder):
         self.guard = Guard()
         self.server = open_server(self.guard, 8700)
         self.port, self.folder = self.server.get_port(), folder
-        state = BenchState(car, bench_drive(car, read_signal(find_input("high.csv"), wheel="fr"), seconds=5.0))
+        state = BenchState(car, drive)
         self.page = Page(self.server, state, folder)
 
     @property
@@ -88,8 +85,8 @@ class Bench:
 
 
 @pytest.fixture(scope="module")
-def bench(car, tmp_path_factory):
-    bench = Bench(car, tmp_path_factory.mktemp("bench") / "files")
+def bench(car, drive, tmp_path_factory):
+    bench = Bench(car, drive, tmp_path_factory.mktemp("bench") / "files")
     yield bench
     bench.page.close()
     close_server(bench.server)

@@ -8,21 +8,15 @@ import time
 import pytest
 
 from tests.patience import HANG
-from vehicle import read_signal, road
+from vehicle import road
 from vehicle.errors import ConfigurationError
 from vehicle.handover.bench.drive import bench_drive
 from vehicle.handover.bench.results import write_car, write_comparison, write_run
 from vehicle.handover.bench.setting import settings
 from vehicle.handover.bench.state import BenchState, LatestOnly
 from vehicle.runs.car import Car
-from vehicle.signals.excitation.input_files import find_input
 
 FRICTION = "front.damper.coulomb_friction"
-
-
-@pytest.fixture(scope="module")
-def drive(car):
-    return bench_drive(car, read_signal(find_input("high.csv"), wheel="fr"), seconds=5.0)
 
 
 @pytest.fixture(scope="module")

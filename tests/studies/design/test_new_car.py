@@ -57,14 +57,10 @@ def test_masses_and_lengths_are_met(compact):
     wheels = {wheel.name: wheel for wheel in compact.vehicle.composition.wheels}
     assert whole.mass == pytest.approx(1350.0, rel=1e-8)
     validated(
-        "Static equilibrium",
-        "new car of 1350 kg, 820 kg on its front axle: axle loads",
-        np.array([loads["fr"] + loads["fl"], loads["rr"] + loads["rl"]]) / 9.81,
-        np.array([820.0, 530.0]),
-        source="closed form: the scales under the axles, statement of the user",
-        rel=1e-3,
-        unit="kg",
-    )
+        "Static equilibrium", "new car of 1350 kg, 820 kg on its front axle: axle loads",
+        np.array([loads["fr"] + loads["fl"], loads["rr"] + loads["rl"]]) / 9.81, np.array([820.0, 530.0]),
+        source="closed form: the scales under the axles, statement of the user", rel=1e-3, unit="kg",
+    )  # fmt: skip
     behind = whole.cog[0] - wheels["fr"].center[0]
     assert behind == pytest.approx(2.6 * 530.0 / 1350.0, rel=1e-6)
     assert whole.cog[2] - wheels["fr"].patch[2] == pytest.approx(0.53, abs=1e-6)
@@ -77,14 +73,10 @@ def test_masses_and_lengths_are_met(compact):
 def test_frequencies_are_met(compact):
     front, rear = (axle_ride(compact.model, axle) for axle in ("front", "rear"))
     validated(
-        "Linear system",
-        "new car of ride frequencies 1.2 and 1.4 Hz: ride frequencies of its model",
-        np.array([front.ride_frequency, rear.ride_frequency]),
-        np.array([1.2, 1.4]),
-        source="closed form: statement of the user, sqrt(K_r / m_s) / 2 pi",
-        rel=1e-2,
-        unit="Hz",
-    )
+        "Linear system", "new car of ride frequencies 1.2 and 1.4 Hz: ride frequencies of its model",
+        np.array([front.ride_frequency, rear.ride_frequency]), np.array([1.2, 1.4]),
+        source="closed form: statement of the user, sqrt(K_r / m_s) / 2 pi", rel=1e-2, unit="Hz",
+    )  # fmt: skip
     assert front.damping_ratio == pytest.approx(0.3, rel=1e-3)
     # Not stated: the damping ratio of the template.
     assert rear.damping_ratio == pytest.approx(axle_ride(Car.load("sedan").model, "rear").damping_ratio, rel=1e-3)
@@ -113,14 +105,10 @@ def test_wheel_rate_and_unsprung_mass_follow_from_the_matrices_too(axle):
     rising = sum(matrices.body_masses[name][0, 0] * rows[2] @ motion for name, rows in matrices.body_rows.items())
     mass = float(rising) / 2.0
     validated(
-        "Suspension kinematics",
-        f"sedan, {axle} axle: wheel rate of the axle on rolling tyres",
-        ride.wheel.stiffness,
-        rate,
-        source="second derivation: K of the whole car with body and engine held, statically condensed",
-        rel=1e-4,
+        "Suspension kinematics", f"sedan, {axle} axle: wheel rate of the axle on rolling tyres", ride.wheel.stiffness,
+        rate, source="second derivation: K of the whole car with body and engine held, statically condensed", rel=1e-4,
         unit="N/m",
-    )
+    )  # fmt: skip
     assert ride.unsprung_mass == pytest.approx(mass, rel=1e-4)
 
 
@@ -132,14 +120,9 @@ def test_the_numbers_of_the_sedan_give_its_comfort(tmp_path, capsys):
     road = Road("B", speed=80, duration=3)
     same, sedan = (one.run(road, engine="reduced").comfort().unweighted.overall for one in (car, Car.load("sedan")))
     validated(
-        "Published cars",
-        "sedan's numbers stated to `new`: comfort on a class B road at 80 km/h",
-        same,
-        sedan,
-        source="second derivation: the shipped sedan",
-        rel=0.03,
-        unit="m/s2",
-    )
+        "Published cars", "sedan's numbers stated to `new`: comfort on a class B road at 80 km/h", same, sedan,
+        source="second derivation: the shipped sedan", rel=0.03, unit="m/s2",
+    )  # fmt: skip
 
 
 def test_every_value_says_where_it_comes_from(compact):
@@ -221,14 +204,11 @@ def test_estimates_are_inside_the_survey_for_a_measured_car():
     yaw = SURVEY["k_z^2 / a b"]
     expected = 1791.599
     validated(
-        "Published cars",
-        "BMW 320i: yaw inertia estimated by the mean of 73 measured cars",
-        geometry.inertia(1093.295, indices)[2],
-        expected,
+        "Published cars", "BMW 320i: yaw inertia estimated by the mean of 73 measured cars",
+        geometry.inertia(1093.295, indices)[2], expected,
         source="publication: CommonRoad vehicle models 2017, parameters of vehicle 2; tolerance: range of the 73 cars",
-        within=(expected * yaw.least / yaw.mean, expected * yaw.most / yaw.mean),
-        unit="kg m2",
-    )
+        within=(expected * yaw.least / yaw.mean, expected * yaw.most / yaw.mean), unit="kg m2",
+    )  # fmt: skip
     back = geometry.indices(1093.295, geometry.inertia(1093.295, indices))
     assert back == pytest.approx(indices, rel=1e-12)
 

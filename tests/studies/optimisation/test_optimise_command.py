@@ -1,7 +1,6 @@
 """`python -m vehicle optimise` as a user runs it."""
 
 import argparse
-import csv
 import json
 import shlex
 import shutil
@@ -13,6 +12,7 @@ import numpy as np
 import pytest
 
 from scenarios.signals.random_road import random_road
+from tests.studies.sweeps.sweep_samples import rows_of
 from vehicle.commands.optimise import main, parser, settings_of
 from vehicle.model.parameters.ranges import Range
 from vehicle.model.parameters.vehicle import load_vehicle
@@ -74,11 +74,6 @@ def searched(road, tmp_path_factory):
     folder = tmp_path_factory.mktemp("search") / "out"
     assert main(arguments(road, folder, *TRADE, "--cars", "40", "--limit", "travel<=0.05", "--quiet")) == 0
     return folder
-
-
-def rows_of(path):
-    with path.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
 
 
 DAMPING, COMFORT, LOAD = "damper.viscous [N s/m]", "unweighted [m/s2]", "tyre_load [-]"

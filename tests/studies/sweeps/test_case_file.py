@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from tests.studies.sweeps.sweep_samples import rows_of
 from vehicle import Car, road
 from vehicle.commands.sweep import main
 from vehicle.errors import ConfigurationError
@@ -70,7 +70,7 @@ def test_one_event_has_no_random_error(tmp_path, capsys, monkeypatch):
     )
     here = ["--engine", "reduced", "--executor", "tests.studies.sweeps.sweep_samples:threads"]
     assert main(["--cases", "cases.toml", *here, "--output", "out"]) == 0
-    tables = {name: read(tmp_path / "out" / f"{name}.csv") for name in ("cases", "differences", "table")}
+    tables = {name: rows_of(tmp_path / "out" / f"{name}.csv") for name in ("cases", "differences", "table")}
     road, cleat = (row for row in tables["cases"] if row["car"] == "soft")
     assert float(road["half_width_95 [%]"]) > 0.0 and cleat["half_width_95 [%]"] == ""
     mean, width = np.mean([float(row["change [%]"]) for row in (road, cleat)]), float(road["half_width_95 [%]"]) / 2.0
@@ -92,18 +92,13 @@ def test_one_event_has_no_random_error(tmp_path, capsys, monkeypatch):
     assert "no +-" in said and " -\n" in said
 
 
-def read(path):
-    with path.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
-
-
 def test_command(tmp_path, capsys, monkeypatch):
     """Four cars on two roads: the values of single runs, in table and report; a resumed sweep computes nothing new."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "cases.toml").write_text(FILE, encoding="utf-8")
     words = ["--cases", "cases.toml", "--engine", "reduced", "--output", "out"]
     assert main([*words, "--report"]) == 0
-    said, rows = capsys.readouterr().out, read(tmp_path / "out" / "cases.csv")
+    said, rows = capsys.readouterr().out, rows_of(tmp_path / "out" / "cases.csv")
     assert "8 runs, 0 failed" in said and "laden, soft" in said
     # A laden state is no choice: its variant is compared with the laden car, and no state is the smoothest.
     assert "as it is: over all inputs" in said and "laden: over all inputs" in said and "'laden" not in said
@@ -197,9 +192,9 @@ def test_cars_are_compared_by_one_figure(tmp_path, capsys, monkeypatch):
     words = ["--cases", "cases.toml", "--engine", "reduced", "--quiet", "--report", "--output"]
     for name in ("weighted", "travel"):
         assert main([*words, name, "--measure", name]) == 0
-    comfort, travel = (read(tmp_path / name / "cases.csv") for name in ("weighted", "travel"))
+    comfort, travel = (rows_of(tmp_path / name / "cases.csv") for name in ("weighted", "travel"))
     assert main([*words, "comfort"]) == 0
-    for row, ranked in zip(comfort, read(tmp_path / "comfort" / "cases.csv"), strict=True):
+    for row, ranked in zip(comfort, rows_of(tmp_path / "comfort" / "cases.csv"), strict=True):
         assert row.items() <= ranked.items()
     car = Car.load("sedan").with_({"body.mass": 1500, "rear.damper.viscous": 1200})
     expected = car.run(road("A", 60, duration=3), engine="reduced").figure("travel")

@@ -27,8 +27,10 @@ NAN = float("nan")
     ("name", "ride", "groups"),
     [
         ("sedan", road("B", 80, duration=2.5), ("rear.damper.viscous", "front.main_spring.stiffness")),
-        ("focus", bump(amplitude=7.5e-3, wheel="fr", duration=1.5, start=0.3), ("damper.coulomb_friction", "body.mass")),
-        ("focus_road_seated", road("A", 60, duration=2.5), ("driver.bushings.cushion.stiffness", "front.damper.viscous")),
+        ("focus", bump(amplitude=7.5e-3, wheel="fr", duration=1.5, start=0.3),
+         ("damper.coulomb_friction", "body.mass")),
+        ("focus_road_seated", road("A", 60, duration=2.5),
+         ("driver.bushings.cushion.stiffness", "front.damper.viscous")),
     ],
 )  # fmt: skip
 def test_changes_are_those_of_single_runs_and_ranked_by_brute_force(name, ride, groups):

@@ -1,6 +1,5 @@
 """Sobol indices of the comfort of a car: command and Python against the indices of the written table."""
 
-import csv
 from types import SimpleNamespace
 from typing import Any
 
@@ -8,6 +7,7 @@ import numpy as np
 import pytest
 
 from scenarios.signals.random_road import random_road
+from tests.studies.sweeps.sweep_samples import rows_of
 from vehicle import Car, DataError, sobol
 from vehicle.commands.sweep import main
 from vehicle.model.parameters.ranges import Range
@@ -27,11 +27,6 @@ def inputs(tmp_path_factory):
     for seed, path in enumerate(paths):
         write_signal(path, random_road(rms=(2 + 4 * seed) * 1e-4, seed=seed, wheel="fl", duration=1.5), plain=True)
     return [str(path) for path in paths]
-
-
-def rows_of(path):
-    with path.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
 
 
 def test_command_and_python_give_the_indices_of_the_table(inputs, tmp_path, capsys):

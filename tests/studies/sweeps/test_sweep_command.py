@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import csv
 import re
 from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
 
+from tests.studies.sweeps.sweep_samples import rows_of
 from vehicle import Car, Road
 from vehicle.commands.sweep import main, parser, settings_of
 from vehicle.runs.output.destination import Destination, ReportChoice
@@ -40,8 +40,7 @@ def signal(tmp_path):
 
 
 def table_of(folder):
-    with (folder / "table.csv").open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
+    return rows_of(folder / "table.csv")
 
 
 @pytest.mark.parametrize(
@@ -107,8 +106,7 @@ def test_variations_make_a_table(signal, tmp_path, capsys):
     assert {row["damper.viscous"] for row in rows} == {"2000"} and {row["input"] for row in rows} == {"road"}
     assert float(rows[0]["unweighted [m/s2]"]) != float(rows[1]["unweighted [m/s2]"]) > 0.0
     assert {row["engine"] for row in rows} == {"reduced"}
-    with (output / "differences.csv").open(encoding="utf-8", newline="") as file:
-        first, second = csv.DictReader(file)
+    first, second = rows_of(output / "differences.csv")
     assert (first["difference [m/s2]"], first["half_width_95 [m/s2]"]) == ("0", "0")
     comfort = [float(row["unweighted [m/s2]"]) for row in rows]
     assert float(second["difference [m/s2]"]) == pytest.approx(comfort[1] - comfort[0], rel=1e-4)

@@ -77,8 +77,8 @@ class CaseFile:
         plan = plan_sweep(car, list(self.cars.values()), self.inputs, settings, self._evaluation)
         names = figure_names(plan.measure.units) if plan.measure.units else ()
         if len(names) != 1:
-            found = ", ".join(names) or "a function without names"
-            raise ConfigurationError(f"--measure: the cars of a file are compared by one figure; found {found}")
+            figures = ", ".join(names) or "a function without names"
+            raise ConfigurationError(f"--measure: the cars of a file are compared by one figure; found {figures}")
         return plan
 
     def _evaluation(self, table: SweptCases, caption: str) -> Evaluation:

@@ -261,5 +261,5 @@ def _parts(effects: Effects, draw: Callable[[Path], object], notes: Sequence[str
         width = ", ".join(filter(None, (width, each.mark.replace("+-", "±"))))
         values = (number(value, 4) for value in (each.value, each.low, each.high))
         rows.append((parameter_words(each.path), each.path, each.unit, *values, *changes, width))
-    given = {"sentence": effect_sentence(effects), "notes": notes, "heads": heads, "rows": rows, "effects": effects}
-    return [Part("Result", "result", "effects", given, draw, "Changes by single parameters"), REPEAT]
+    contents = {"sentence": effect_sentence(effects), "notes": notes, "heads": heads, "rows": rows, "effects": effects}
+    return [Part("Result", "result", "effects", contents, draw, "Changes by single parameters"), REPEAT]

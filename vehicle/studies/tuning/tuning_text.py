@@ -45,7 +45,7 @@ def tuning_text(tuned: TunedCar) -> str:
     lines += value_lines(result, tuned.start.vehicle)
     lines += [settings or f"do not use this fit: {tuned.refusal}"]
     lines += [*delay_lines(tuned), *source_lines(result, tuned.start.vehicle)]
-    lines += [f"not determined: {text}" for text in what_data_leave_open(result)]
+    lines += [f"left open: {text}" for text in what_data_leave_open(result)]
     if tuned.determined:
         lines.append(
             "the data determine every parameter: all standard errors are below 10 %, all correlations below 0.9"
@@ -63,12 +63,12 @@ def delay_lines(tuned: TunedCar) -> list[str]:
         digits = min(max(1 - math.floor(math.log10(error)), 0), 4) if 0.0 < error < math.inf else 3
         spread = f"{abs(value):.{digits}f}" + (f" +- {error:.{digits}f}" if math.isfinite(error) else "") + " ms"
         large = abs(value) > max(SIGNIFICANT * error, 500.0 * SHARE_OF_STEP * 2.0 * target.half_sample)
-        said = f"the {delay.group} of {target.name} are {spread} {'early' if value < 0.0 else 'late'}"
+        sentence = f"the {delay.group} of {target.name} are {spread} {'early' if value < 0.0 else 'late'}"
         lines.append(
-            f"{said}: the sensors have a delay, or parameters that are not fitted are wrong; if you know the delay, "
-            f"set {delay.option(1e-3 * value)}"
+            f"{sentence}: the sensors have a delay, or parameters that are not fitted are wrong; if you know the "
+            f"delay, set {delay.option(1e-3 * value)}"
             if large
-            else f"{said}; the fit allows for it"
+            else f"{sentence}; the fit allows for it"
         )
     return lines
 
