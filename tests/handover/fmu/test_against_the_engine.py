@@ -23,7 +23,7 @@ from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.excitation.signal_file import read_signal
 
-SECONDS = 1.0
+SECONDS = 1.3
 EVERY = round(1e-3 / STEP)
 
 STRIBECK: dict[str, Any] = {"friction_law": "stribeck", "coulomb_friction": 60, "stribeck_friction": 95}

@@ -117,7 +117,7 @@ def test_the_numbers_of_the_sedan_give_its_comfort(tmp_path, capsys):
     checks = json.loads(capsys.readouterr().out)["checks"]
     assert {name for name, check in checks.items() if check["stated"]} == {name.replace("-", "_") for name in SEDAN}
     assert max(abs(check["deviation"]) for check in checks.values()) < 1e-4
-    road = Road("B", speed=80, duration=3)
+    road = Road("B", speed=80, duration=10)
     same, sedan = (one.run(road, engine="reduced").comfort().unweighted.overall for one in (car, Car.load("sedan")))
     validated(
         "Published cars", "sedan's numbers stated to `new`: comfort on a class B road at 80 km/h", same, sedan,

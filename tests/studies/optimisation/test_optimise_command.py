@@ -141,7 +141,7 @@ def test_tolerances_and_another_front_beside(road, searched, tmp_path, capsys):
     options = [*TRADE, *more, "--quantile", "1", "--cars", "8", "--beside", str(searched)]
     assert main(arguments(road, folder, *options)) == 0
     said = capsys.readouterr().out
-    assert "worst of 2 cars" in said and "of 64 new cars" in said
+    assert "worst of 2 cars" in said and "of 64 fresh cars" in said
     sample = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["made_cars"]
     assert sample["statistic"] == "worst of 2 cars" and sample["new_cars"] == 64
     # Two thirds to three quarters are expected to be no worse than the worst of two.
@@ -169,7 +169,7 @@ def test_tolerances_and_another_front_beside(road, searched, tmp_path, capsys):
         ("--tolerance body.mass=1% --quantile 2", 2, "--quantile 2: "),
         ("--tolerance body.mass=1% --quantile 0.99 --samples 8", 2, "--samples 128"),
         ("--beside nowhere", 3, "--beside nowhere: "),
-        ("--limit travel<=1e-9 --cars 8", 4, "0 of 8 cars"),
+        ("--limit travel<=1e-9 --cars 8", 4, "none of 8 cars"),
     ],
 )
 def test_bad_input_is_one_sentence(road, tmp_path, capsys, more, code, said):

@@ -54,5 +54,5 @@ def test_a_late_sensor_is_named_and_taken_out(tmp_path):
         RATE * second.delays[1].delay, 12.3, abs=0.1, source="closed form: shift of the spectrum of a run",
     )  # fmt: skip
     assert second.error < 0.2 * first.error
-    with pytest.raises(ConfigurationError, match="record"):
+    with pytest.raises(ConfigurationError, match="--delay seat_rail_acc_z="):
         replicate_drive(car, file, NAMES, delay={"record": 0.1}, **options)

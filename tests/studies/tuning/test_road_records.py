@@ -69,7 +69,7 @@ def folder(tmp_path_factory):
 
 def test_hidden_values_are_found_in_a_road_record(folder, tmp_path, capsys):
     words = ["focus_road", "--record", str(folder / "drive.mf4"), "--road", str(folder / "profile.csv")]
-    words += ["--speed", "72", *MAP, "--parameters", *BOUNDS, "--stretch", "14:16", "--engine", "reduced"]
+    words += ["--speed", "72", *MAP, "--parameters", *BOUNDS, "--stretch", "14:17", "--engine", "reduced"]
     assert main([*words, "--output", str(tmp_path / "tune")]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith("front.damper.coulomb_friction ") and lines[3].startswith("--set front.damper.coulomb")
