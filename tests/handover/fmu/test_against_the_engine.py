@@ -165,7 +165,12 @@ def test_an_acceleration_is_the_second_derivative_of_its_displacement(tmp_path):
         assert found[name][1:-1] == pytest.approx(second, abs=1e-3 * largest), name
 
 
-CONTROL = {"minimum_damping": 500, "maximum_damping": 4000, "skyhook_damping": 2500, "groundhook_damping": 1500}
+CONTROL: dict[str, float] = {
+    "minimum_damping": 500,
+    "maximum_damping": 4000,
+    "skyhook_damping": 2500,
+    "groundhook_damping": 1500,
+}
 CONTROL |= {"skyhook_share": 0.6, "control_period": 1e-3, "delay": 2e-3, "rate": 1e6}
 """Numbers of a controlled damper, with delay and rate."""
 

@@ -128,7 +128,7 @@ def test_message_without_a_front():
     limit = Criterion(number="x", input_name="road", limit=-1.0, unit="m")
     problem, points = box((0.0, 1.0), goals=1, limits=(limit,)), np.array([[0.5], [0.2]])
     cars = tried(points, points[:, 0], points[:, 0])
-    with pytest.raises(SimulationError, match=r"^none of 2 cars .*x@road<=-1.* 0\.2 m"):
+    with pytest.raises(SimulationError, match=r"^none of 2 cars .*x@road<=-1 .*0\.2 m"):
         outcome(problem, cars, [cars])
     with pytest.raises(SimulationError, match=r"all 2 cars .*: broken$"):
         outcome(problem, cars, [tried(points, points[:, 0], points[:, 0], reasons=["broken", "too"])])

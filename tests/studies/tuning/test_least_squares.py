@@ -1,5 +1,7 @@
 """Least squares, standard errors and identifiability on a system with closed-form FRFs."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -197,7 +199,8 @@ def test_progress_is_called():
 
 
 def test_invalid_parameters_and_targets_are_rejected():
-    colour, one = {"path": "colour", "low": 1.0, "high": 9.0}, [MeasuredMasses()]
+    colour: dict[str, Any] = {"path": "colour", "low": 1.0, "high": 9.0}
+    one = [MeasuredMasses()]
     for parameters, targets, message in (
         ([], one, "parameters"), (PARAMETERS, [], "targets: "), ((*PARAMETERS, PARAMETERS[0]), one, "lower: .*2"),
         ((*PARAMETERS, Range(**colour)), one, "colour: "),

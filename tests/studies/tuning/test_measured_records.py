@@ -1,6 +1,7 @@
 """Targets of a fit from a file of the user: another clock, another rate, other units, the noise that was put in."""
 
 import re
+from typing import Any
 
 import numpy as np
 import pytest
@@ -107,7 +108,8 @@ def test_a_record_contains_its_plate(tmp_path):
     # What is left of the start at rest: sticking is remembered longer than two seconds at single instants.
     assert isinstance(entry.target, RecordTarget)
     assert np.sqrt(np.mean(entry.target.residuals(Car.load()) ** 2)) < 0.02
-    for options, message in (({"lowpass": 0.0}, "--lowpass 0: "), ({"delay": 0.1}, "plate")):
+    wrong: list[tuple[dict[str, Any], str]] = [({"lowpass": 0.0}, "--lowpass 0: "), ({"delay": 0.1}, "plate")]
+    for options, message in wrong:
         with pytest.raises(ConfigurationError, match=message):
             measured_histories(Car.load(), file, None, names, **options)
     with pytest.raises(DataError, match=r"plate .* --signal FILE"):
