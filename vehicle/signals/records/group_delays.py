@@ -117,8 +117,8 @@ class GroupDelay:
         option = f"{self.group}={1e3 * self.delay:.5g}ms"
         text = (
             f"the {self.group} {'lag' if self.delay > 0.0 else 'lead'} the {self.against} by "
-            f"{1e3 * abs(self.delay):.3g} +- {number(1e3 * self.error, 1)} ms in {self.agreeing} of {self.channels} "
-            "channels"
+            f"{1e3 * abs(self.delay):.3g} ms (+- {number(1e3 * self.error, 1)} ms) in {self.agreeing} of "
+            f"{self.channels} channels"
         )
         if abs(remainder) >= LATE_SENSORS and self.agreeing == self.channels >= LEAST_ALIKE:
             cure = f": late sensors; set --delay {option}{after}"
