@@ -266,7 +266,7 @@ def test_a_damaged_surface_is_refused(tmp_path):
     for data, message in (
         (whole[:-100], "states 480"),
         (whole[:start] + whole[start + 1 :] + b"\0", r"height of 3.* m, .* 10000 m"),
-        (whole.replace(b"$KD_Def", b"$ROAD_CRG_MODS\nSCALE_Z_GRID = 2\n$KD_Def"), r"SCALE_Z_GRID = 2 .*ROAD_CRG_MODS"),
+        (whole.replace(b"$KD_Def", b"$ROAD_CRG_MODS\nSCALE_Z_GRID = 2\n$KD_Def"), r"scale_z_grid = 2 .*ROAD_CRG_MODS"),
         (crg(path, "LRFI", lost).read_bytes(), r" 66.* m between rows 20 and 21 .* 0.5 m apart"),
         (crg(path, "LRFI", grid).read_bytes().rsplit(b"\n", 3)[0], "truncated or damaged"),
     ):
