@@ -116,10 +116,9 @@ def test_a_run_whose_channel_rests_does_not_hide_a_miss(on_road):
     ride = ride_of(on_road)
     rest = replace(ride, channels={**ride.channels, "seat_rail_acc_y": 0.0 * ride["seat_rail_acc_y"]})
     ratio = figure("ratio", channels=("seat_rail_acc_z",), over=("seat_rail_acc_y",), unit="-", at_most=1e-3)
+    summary = SimpleNamespace(input=SimpleNamespace(file="", road=None))
     runs: list[Any] = [
-        SimpleNamespace(
-            name=name, label="sedan", summary={"input": {"file": ""}}, value_of=partial(value_of, ride=histories)
-        )
+        SimpleNamespace(name=name, label="sedan", summary=summary, value_of=partial(value_of, ride=histories))
         for name, histories in (("rest", rest), ("ride", ride))
     ]
     for order in (runs, runs[::-1]):
@@ -131,10 +130,10 @@ def test_figures_of_an_obstacle_are_those_of_its_summary(on_cleat):
     ride, summary = ride_of(on_cleat), obstacle_values(on_cleat)
     assert summary is not None
     peak, error = value_of(figure("peak_to_peak", channels=("seat rail z",)), ride)
-    assert peak == pytest.approx(summary["peak_to_peak"]["seat_rail"]["z"], rel=1e-12) and error is None
+    assert peak == pytest.approx(summary.peak_to_peak["seat_rail"]["z"], rel=1e-12) and error is None
     dose = value_of(figure("vdv", channels=RAIL, weighting="seat"), ride)[0]
-    assert dose == pytest.approx(summary["vdv"]["seat_rail"]["overall"], rel=1e-12)
-    assert value_of(figure("settling", channels=("seat rail z",)), ride)[0] == summary["settling_s"]["seat_rail"]
+    assert dose == pytest.approx(summary.vdv["seat_rail"]["overall"], rel=1e-12)
+    assert value_of(figure("settling", channels=("seat rail z",)), ride)[0] == summary.settling_s["seat_rail"]
     never = {name: np.ones((1, ride.time.size)) for name in on_cleat.channels}
     assert value_of(figure("settling", channels=("seat rail z",)), ride_of(on_cleat, channels=never))[0] == np.inf
 

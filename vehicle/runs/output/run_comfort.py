@@ -1,7 +1,6 @@
 """Comfort of a run at the seat rail, on the seat and at the steering wheel: values, SEAT value and notices."""
 
 from dataclasses import asdict
-from typing import TypedDict
 
 import numpy as np
 
@@ -10,8 +9,8 @@ from vehicle.runs.car import Run
 from vehicle.signals.analysis.comfort import COMFORT_BAND, settling
 from vehicle.signals.analysis.evaluation import application, evaluate
 from vehicle.signals.analysis.ride_comfort import ERROR, RIM, UNWEIGHTED, WEIGHTED
-from vehicle.signals.analysis.seat_value import seat_value
-from vehicle.signals.records.run_summary import ComfortSummary, RimSummary, SeatSummary
+from vehicle.signals.analysis.seat_value import SeatValue, seat_value
+from vehicle.signals.records.run_summary import ComfortSummary, RimSummary
 
 RAIL, SEAT = "seat_rail", "seat"
 
@@ -29,47 +28,38 @@ def comfort_values(run: Run) -> dict[str, ComfortSummary]:
     return {point: _at(run, point) for point in (RAIL, SEAT) if _recorded(run, point)}
 
 
-def seat_values(run: Run) -> SeatSummary | None:
+def seat_values(run: Run) -> SeatValue | None:
     """Return the SEAT value of a run, by RMS and by dose; None for a car without seat, or a rail at rest."""
     if not (run.car.vehicle.seated and _recorded(run, RAIL) and _recorded(run, SEAT)):
         return None
     seat, rail = (run[f"{point}_acc_z"] for point in (SEAT, RAIL))
     if not np.any(rail):
         return None
-    value = seat_value(run.recording.timestep, seat, rail, skip=run.skip)
-    return {"rms": value.rms, "vdv": value.vdv, "weighting": value.weighting}
+    return seat_value(run.recording.timestep, seat, rail, skip=run.skip)
 
 
-class RimValues(TypedDict, total=False):
-    """Entry of the steering wheel in the summary of a run."""
-
-    steering_wheel_rim: RimSummary
-
-
-def rim_values(run: Run) -> RimValues:
-    """Return the comfort values at the rim of the steering wheel; empty without the output."""
+def rim_values(run: Run) -> RimSummary | None:
+    """Return the comfort values at the rim of the steering wheel; None without the output."""
     if not _recorded(run, RIM):
-        return {}
+        return None
     value = run.comfort(RIM)
-    return {
-        "steering_wheel_rim": {
-            "rms": asdict(value.unweighted),
-            "band_hz": list(value.band),
-            "weighted_rms": asdict(value.weighted),
-            "weighting": application("steering_wheel").weightings[1],
-            "standard": value.standard,
-        }
-    }
+    return RimSummary(
+        rms=asdict(value.unweighted),
+        band_hz=list(value.band),
+        weighted_rms=asdict(value.weighted),
+        weighting=application("steering_wheel").weightings[1],
+        standard=value.standard,
+    )
 
 
 def comfort_notices(run: Run) -> list[str]:
     """Return a notice for each axis of the seat rail with a nonstationary level, and for a missing seat."""
     bare = [NO_SEAT] if _recorded(run, SEAT) and not run.car.vehicle.seated else []
     if run.road and run.car.static.support_load:
-        places = ", ".join(point_words(name) for name in run.car.static.support_load)
+        blocks = ", ".join(point_words(name) for name in run.car.static.support_load)
         bare.append(
             f"comfort: {run.car.vehicle.name} is on the road with {len(run.car.vehicle.wheels)} wheels alone; its "
-            f"blocks ({places}) do not move; for a ride take a car on four wheels, for example focus_road"
+            f"blocks ({blocks}) do not move; for a ride take a car on four wheels, for example focus_road"
         )
     # An obstacle is a single event.
     if not _recorded(run, RAIL) or "obstacle" in (run.road or {}):
@@ -93,15 +83,15 @@ def _recorded(run: Run, point: str) -> bool:
 def _at(run: Run, point: str) -> ComfortSummary:
     value = run.comfort(point)
     xyz = [run[f"{point}_acc_{axis}"] for axis in AXES]
-    rms: dict[str, float | None] = {**asdict(value.unweighted)}
-    iso = evaluate(run.recording.timestep, xyz, skip=run.skip, from_rest=True, highest=run.signal.highest)
-    entry: ComfortSummary = {"rms_2_50_hz": rms, "iso2631": iso}
-    if run.signal.highest is not None:
-        entry["rms_2_50_hz"] = dict.fromkeys(rms)
-        entry["rms_of_band"] = {"band_hz": list(value.band), **rms}
+    rms, slow, half = asdict(value.unweighted), run.signal.highest is not None, None
     if (run.road or {}).get("class"):
-        entry["half_interval"] = {
+        half = {
             name: NORMAL_95 * value.values[f"{name}{ERROR}"] * getattr(value, name).overall
             for name in (UNWEIGHTED, WEIGHTED)
         }
-    return entry
+    return ComfortSummary(
+        rms_2_50_hz=dict.fromkeys(rms) if slow else rms,
+        iso2631=evaluate(run.recording.timestep, xyz, skip=run.skip, from_rest=True, highest=run.signal.highest),
+        rms_of_band={"band_hz": list(value.band), **rms} if slow else None,
+        half_interval=half,
+    )
