@@ -115,13 +115,16 @@ def test_names_of_figures():
     [
         ("comfort", "figure 'comfort': focus has no figure 'comfort'; choose from unweighted[:AXIS], weighted[:AXIS]"),
         ("seat_weighted", "figure 'seat_weighted': focus has no figure 'seat_weighted'; choose from "),
-        ("peak", "figure 'peak': needed is peak:CHANNELS[:WEIGHTING]"),
-        ("travel:long", "figure 'travel:long': needed is travel[:WHEELS]"),
+        ("peak", "figure 'peak': must have the form peak:CHANNELS[:WEIGHTING]"),
+        ("travel:long", "figure 'travel:long': must have the form travel[:WHEELS]"),
         ("travel_rl", "figure 'travel_rl': wheels: found rl, must be among fr, fl"),
-        ("rms:seat rail z:5-25:Wk:Wk", "figure 'rms:seat rail z:5-25:Wk:Wk': needed is rms:CHANNELS[:LOW-HIGH]"),
-        ("rms:seat rail z:25-5", "figure 'rms:seat rail z:25-5': needed is rms:CHANNELS"),
+        (
+            "rms:seat rail z:5-25:Wk:Wk",
+            "figure 'rms:seat rail z:5-25:Wk:Wk': must have the form rms:CHANNELS",
+        ),
+        ("rms:seat rail z:25-5", "figure 'rms:seat rail z:25-5': must have the form rms:CHANNELS"),
         ("peak:seat rail q", "figure 'peak:seat rail q': channel 'seat rail q': no channel has these words"),
-        ("order:0:seat_rail_acc_z", "figure 'order:0:seat_rail_acc_z': needed is order:N:CHANNELS[:ANGLE]"),
+        ("order:0:seat_rail_acc_z", "figure 'order:0:seat_rail_acc_z': must have the form order:N:CHANNELS[:ANGLE]"),
     ],
 )
 def test_wrong_names(text, message):

@@ -194,10 +194,10 @@ def test_sentence():
     figures = {name: figure("peak", channels=("a",), words=name) for name in ("one", "two", "three", "four")}
     rated = dict(zip(figures, (Rated(state=state) for state in (MET, MISSED, MISSED, NOT_RUN)), strict=True))
     assert sentence(figures, "sedan", rated) == (
-        "sedan meets 1 of 3 targets and misses two and three; there is no run for four."
+        "sedan meets 1 of 3 targets and misses two and three; four had no run."
     )
     untried = sentence(figures, "sedan", dict.fromkeys(figures, Rated(state=NOT_RUN)))
-    assert untried == "No target was checked for sedan: the target file has none of the inputs of its runs."
+    assert untried == "No target was checked for sedan: none of its runs is on an input of the targets file."
 
 
 FAULTS = {

@@ -55,9 +55,7 @@ def test_a_signal_file_is_read_as_inspect_reads_it(files, run, tmp_path, capsys)
                  "knuckle_fl_acc_z=knuckle_fl_acc_z", "--engine", "reduced", "--quiet", "--json"]  # fmt: skip
     assert tune([*arguments, "--output", str(tmp_path / "unnamed")]) == 3
     said = capsys.readouterr().err
-    assert (
-        f"the names of the columns state no plate; set --map '{MAP[1]}' --map '{MAP[3]}' (columns: 'Stößel VR', "
-    ) in said
+    assert (f"no column is named after a plate; set --map '{MAP[1]}' --map '{MAP[3]}' (columns: 'Stößel VR', ") in said
     assert tune([*arguments, *MAP, "--output", str(tmp_path / "named")]) == 0
     (parameter,) = json.loads(capsys.readouterr().out)["parameters"]
     # The files have nine digits; the filter of the fit does the rest.

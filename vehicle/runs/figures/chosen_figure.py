@@ -189,7 +189,7 @@ def chosen_figure(text: str, vehicle: Vehicle, option: str = "figure") -> Chosen
     try:
         chosen = ChosenFigure(quantity=name, **_details(FIGURES[name], parts))
     except (ConfigurationError, ValueError):
-        raise ConfigurationError(f"{option} {text!r}: needed is {form_of(name)}") from None
+        raise ConfigurationError(f"{option} {text!r}: must have the form {form_of(name)}") from None
     try:
         channels = (*vehicle.channels, *vehicle.load_channels)
         chosen = chosen.recorded_in(channels)

@@ -18,8 +18,8 @@ NORMAL_95 = 1.96
 """Standard errors in half of a 95 % interval; its coverage is measured in `docs/theory/statistics.md`."""
 
 NO_SEAT = (
-    "comfort of the seat: the car has no seat, so 'seat' is a point of its body, and there is no SEAT value; "
-    'for a seat add a section [seat.driver] with template = "seat_occupant" to the vehicle file'
+    "comfort of the seat: the car has no seat, so 'seat' is a point on the body and there is no SEAT value; "
+    'add [seat.driver] with template = "seat_occupant" to the vehicle file'
 )
 
 
@@ -53,27 +53,30 @@ def rim_values(run: Run) -> RimSummary | None:
 
 
 def comfort_notices(run: Run) -> list[str]:
-    """Return a notice for each axis of the seat rail with a nonstationary level, and for a missing seat."""
+    """Return notices on a nonstationary level of the seat rail, and on a missing seat."""
     bare = [NO_SEAT] if _recorded(run, SEAT) and not run.car.vehicle.seated else []
     if run.road and run.car.static.support_load:
         blocks = ", ".join(point_words(name) for name in run.car.static.support_load)
         bare.append(
-            f"comfort: {run.car.vehicle.name} is on the road with {len(run.car.vehicle.wheels)} wheels alone; its "
-            f"blocks ({blocks}) do not move; for a ride take a car on four wheels, for example focus_road"
+            f"comfort: only {len(run.car.vehicle.wheels)} wheels of {run.car.vehicle.name} are on the road, and its "
+            f"blocks ({blocks}) stand still; take a car on four wheels, for example focus_road"
         )
     # An obstacle is a single event.
     if not _recorded(run, RAIL) or "obstacle" in (run.road or {}):
         return bare
     drifting = [
-        f"comfort of the seat rail, {axis}: the RMS values of both halves of the record differ by "
-        f"{100 * abs(part.drift):.0f} %, more than chance ({300 * part.standard_error:.0f} %), so the RMS "
-        "depends on the length of the record"
+        f"{100 * abs(part.drift):.0f} % along {axis} (chance: {300 * part.standard_error:.0f} %)"
         for axis, part in zip(
             AXES, settling(run.recording.timestep, run.at(RAIL), run.signal.band(COMFORT_BAND)), strict=True
         )
         if not part.settled
     ]
-    return drifting + bare
+    if not drifting:
+        return bare
+    return [
+        f"comfort of the seat rail: the halves of the record differ in RMS by {', '.join(drifting)}; record longer",
+        *bare,
+    ]
 
 
 def _recorded(run: Run, point: str) -> bool:

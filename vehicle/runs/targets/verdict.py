@@ -193,7 +193,7 @@ def missing_runs(figures: Mapping[str, Target], runs: Sequence[RatedRun]) -> str
                 without[name] = inputs[figure.where] = commands[_command_for(figure, car)] = None
     if not without:
         return ""
-    return (f"no run for {len(without)} of {len(figures)} targets; missing {'; '.join(inputs)}: "
+    return (f"{len(without)} of {len(figures)} targets have no run; run {'; '.join(inputs)}: "
             f"{' && '.join(commands)}")  # fmt: skip
 
 
@@ -225,14 +225,14 @@ def sentence(figures: Mapping[str, Target], car: str, rated: Mapping[str, Rated]
 
     met, missed, undecided, absent = (named(state) for state in (MET, MISSED, UNDECIDED, NOT_RUN))
     if len(absent) == len(rated):
-        return f"No target was checked for {car}: the target file has none of the inputs of its runs."
+        return f"No target was checked for {car}: none of its runs is on an input of the targets file."
     text = f"{car} meets {len(met)} of {len(rated) - len(absent)} targets"
     if missed:
         text += f" and misses {_enumeration(missed)}"
     if undecided:
         text += f"; the run is too short to decide on {_enumeration(undecided)}"
     if absent:
-        text += f"; there is no run for {_enumeration(absent)}"
+        text += f"; {_enumeration(absent)} had no run"
     return f"{text}."
 
 
