@@ -101,7 +101,7 @@ class ChosenFigure(Details):
 
     @property
     def title(self) -> str:
-        """Return the figure in words, as "travel of the dampers, fr"."""
+        """Return the figure in words, as "damper travel, fr"."""
         return ", ".join([self.figure.words, *(text.replace("_", " ") for text in self.details.values())])
 
     def unit_in(self, units: Mapping[str, str] | None = None) -> str:

@@ -188,7 +188,7 @@ def refuse_foreign(folder: Path, *, changes_only: bool = False) -> None:
     others = [] if changes_only else foreign(folder)
     faults = [f"files that are not results of a run: {_some(others)}"] if others else []
     if edited := changed(folder):
-        faults.append(f"edited results: {_some(edited)}")
+        faults.append(f"results that were edited afterwards: {_some(edited)}")
     if faults:
         raise ConfigurationError(
             f"--output {folder}: contains {'; and '.join(faults)}; --force replaces only unchanged results of a "
