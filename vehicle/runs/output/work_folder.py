@@ -114,8 +114,8 @@ def new_files(goals: Sequence[Path]) -> Iterator[list[Path]]:
                     raise
                 names = ", ".join(before.name for before, _ in written[:number])
                 raise OutputError(
-                    f"{path}: cannot be written: {error.strerror or error}; {names} is new already, the other files are "
-                    "earlier ones; repeat the command"
+                    f"{path}: cannot be written: {error.strerror or error}; {names} is new already, the other files "
+                    "are earlier ones; repeat the command"
                 ) from None
     with suppress(OSError):  # the results are in place
         synchronise(folder)
