@@ -89,8 +89,5 @@ def test_a_sweep_writes_a_reason_where_it_would_write_inf():
     road = random_road(rms=1e-4, seed=1, wheel="fr", duration=1.0, lower_band_edge=1.0)
     cases = [Case(source=road, engine="reduced"), Case(overrides=tuple(FALLING), source=road, engine="reduced")]
     result, other = evaluate(cases, Endless())
-    assert (
-        result.reason == "SimulationError: loud: infinite; the run overflowed: narrow the varied ranges"
-        and not result.values
-    )
+    assert result.reason.startswith("SimulationError: loud: infinite") and not result.values
     assert other.reason.startswith("ConfigurationError: the car is statically unstable")
