@@ -15,7 +15,7 @@ from vehicle.commands import OLDER
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "vehicle"
 
-EVERYWHERE = {"arrays", "digits", "errors", "leftovers", "names", "settings"}
+EVERYWHERE = {"arrays", "digits", "errors", "leftovers", "names", "settings", "stored"}
 """May be used by every room."""
 
 WINGS = {
@@ -47,6 +47,7 @@ ROOMS: dict[str, set[str]] = {
     "machine": set(),
     "replacement": set(),
     "settings": set(),
+    "stored": set(),
     "threads": set(),
     "version": set(),
     "core": {"replacement"},

@@ -103,7 +103,7 @@ def test_gravity_in_a_record_is_refused_until_it_is_removed(record):
     with pytest.raises(DataError, match=r"gravity is in the mean \(9\.8"):
         evaluate_comfort(record)
     found = evaluate_comfort(record, offset="remove")
-    assert found.summary["offset"]["mean"]["z"] == pytest.approx(9.81, abs=0.05)
+    assert found.offset.mean["z"] == pytest.approx(9.81, abs=0.05)
     assert found.overall == pytest.approx(np.sqrt(sum(value**2 for value in found.weighted_rms.values())))
     assert "weighted RMS" in repr(found) and found.seat_value is None
     with pytest.raises(ConfigurationError, match="offset: found 'drop'"):

@@ -34,8 +34,8 @@ def main() -> None:
                 car = Car.load(name, [*overrides, *drive.overrides])
                 run = car.run(drive.signal(), engine=options.engine)
                 rail = comfort_values(run)["seat_rail"]
-                x, y, z, total = rail["rms_2_50_hz"].values()
-                vector = rail["iso2631"]["vector_sum"]["weighted_rms"]
+                x, y, z, total = rail.rms_2_50_hz.values()
+                vector = rail.weighted
                 print(f"{name:<12} {road:<5} {words:<28} {x:7.3f} {y:7.3f} {z:7.3f} {total:7.3f} {vector:7.3f}")
 
 

@@ -76,7 +76,7 @@ def test_a_model_of_another_mass_is_named_in_every_run(capsys):
     assert len(said) == 1 and said[0].startswith("body model trimmed_body: 813.0 kg with the CoG at [2.157, 0.000, 1.0")
     signal = Signal(time=np.arange(0.0, 0.2, 1e-3), displacement={"fr": 1e-5 * np.sin(np.arange(200.0))})
     run = car.run(signal, engine="reduced")
-    assert said[0] in summarise(run, (), {})["notices"]
+    assert said[0] in summarise(run, (), {}).notices
     assert main(["show", "--set", STORED, "--set", IMPROVED, "--set", "body.cog.z=1.035"]) == 0
     printed = capsys.readouterr().out
     assert "and a CoG 24 mm away" in printed

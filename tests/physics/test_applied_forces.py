@@ -245,12 +245,12 @@ def test_a_run_lies_at_its_limits_where_dampers_stick_or_have_no_friction() -> N
     for changes, limit in (({}, "stuck"), (no_friction, "free")):
         run = Car.load("sedan", {**radius, **changes}).run(smooth, engine="reduced")
         (line,) = force_values(run)["orders"]
-        expected = line["stuck"] if limit == "stuck" else line["without_friction"]
+        expected = line.stuck if limit == "stuck" else line.without_friction
         validated(
             "Applied forces",
             f"order 1 of an imbalance of 2 g, dampers {'stick' if limit == 'stuck' else 'without friction'}: seat rail "
             "in the run against the linear car at one frequency",
-            line["amplitude"][name], expected[name],
+            line.amplitude[name], expected[name],
             source="second derivation: equations of second order, line by line", rel=1e-3, unit="m/s2",
         )  # fmt: skip
 

@@ -208,8 +208,8 @@ def test_a_run_up_tells_what_its_speed_does_to_a_peak():
     (notice,) = (text for text in run.recording.statistics.notices if text.startswith("the run-up passes the mode at"))
     assert "in order 2 with 3.8 Hz/s" in notice and "python -m vehicle orders --rpm A:B:STEP" in notice
     (_, second), values = run.order_cut("seat rail z", orders=[1, 2]).amplitude[0], force_values(run)
-    assert "orders" not in values and np.max(np.abs(second)) == pytest.approx(
-        next(line["peak"]["seat_rail_acc_z"] for line in values["run_up"] if line["order"] == 2)
+    assert values["orders"] is None and np.max(np.abs(second)) == pytest.approx(
+        next(line.peak["seat_rail_acc_z"] for line in values["run_up"] if line.order == 2)
     )
     with pytest.raises(VehicleError, match="the speed of crank changes in this run; use order_cut"):
         run.orders(orders=[2])

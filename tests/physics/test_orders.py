@@ -213,4 +213,4 @@ def test_a_sweep_measures_an_order(tmp_path, capsys):
     assert sorted(found) == pytest.approx(sorted(map(abs, points)), rel=1e-5)
     for wrong in ("order:0:seat_rail_acc_z", "order:1"):
         assert main([*command[:-4], "--measure", wrong, "--output", str(tmp_path / "b")]) == 2
-        assert f"--measure '{wrong}': needed is order:N:CHANNELS[:ANGLE]" in capsys.readouterr().err
+        assert f"--measure '{wrong}': must have the form order:N:CHANNELS[:ANGLE]" in capsys.readouterr().err

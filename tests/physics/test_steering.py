@@ -150,7 +150,7 @@ def test_comfort_at_the_rim_is_weighted_as_on_a_steering_wheel(tmp_path):
     assert value.standard == "Giacomin et al. 2004"
     run.save(tmp_path / "run")
     whole = read_summary(tmp_path / "run")
-    summary = whole["steering_wheel_rim"]
-    assert summary["weighted_rms"]["y"] == value.weighted.y
-    assert (summary["weighting"], summary["rms"]["y"]) == ("Ws", value.unweighted.y)
+    summary = whole.steering_wheel_rim
+    assert summary is not None and summary.weighted_rms["y"] == value.weighted.y
+    assert (summary.weighting, summary.rms["y"]) == ("Ws", value.unweighted.y)
     assert f"steering wheel rim {value.weighted.overall:.4f} m/s2 weighted RMS (Ws, Giacomin" in summary_text(whole)

@@ -12,6 +12,7 @@ from vehicle.model.parameters.force_elements import Tyre
 from vehicle.runs.output.run_forces import force_values
 from vehicle.signals.analysis.order_lines import order_lines
 from vehicle.signals.excitation.signal import Signal
+from vehicle.signals.records.run_summary import OrderSummary
 
 SPEED = 100.0
 FREE = {
@@ -153,15 +154,16 @@ def test_the_range_over_the_phases_contains_every_car_and_reaches_its_ends():
         left = {"front.left.imbalance.angle": phase, "front.left.nonuniformity.rfv": [[1, 40, 90 + phase]]}
         run = Car.load("focus_road", {**rows, **left}).run(smooth, engine="reduced")
         (line,) = force_values(run)["orders"]
-        assert line["stuck_range"][name][0] <= line["stuck"][name] <= line["stuck_range"][name][1]
-        limits.append([*line["stuck_range"][name], line["stuck"][name]])
+        assert line.stuck_range[name][0] <= line.stuck[name] <= line.stuck_range[name][1]
+        limits.append([*line.stuck_range[name], line.stuck[name]])
+        assert OrderSummary.from_json(line.to_json()) == line, "its ranges are read as they were written"
     ranges = np.array(limits)
     # Both sides of a car are alike, so that the right and the left alone shake the middle alike, the rail nearly.
     assert np.ptp(ranges[:, :2], axis=0) == pytest.approx(0.0, abs=1e-6 * ranges[0, 1])
     assert np.max(ranges[:, 2]) > 0.85 * ranges[0, 1] and np.min(ranges[:, 2]) < 0.5 * ranges[0, 1]
     one = Car.load("focus_road", {f"front.right.{key[6:]}": value for key, value in rows.items()})
     (line,) = force_values(one.run(smooth, engine="reduced"))["orders"]
-    assert "stuck_range" not in line
+    assert line.stuck_range is None and OrderSummary.from_json(line.to_json()) == line
 
 
 IMBALANCE = "front.right.imbalance"
@@ -211,8 +213,8 @@ def test_the_range_beside_a_run_up_of_the_engine_is_that_of_the_wheels():
     rows |= {"force.a.on": "engine", "force.a.force": [0, 0, 1], "force.a.angle": "crank", "crank.run_up_time": 5}
     car = Car.load("focus_road", {**rows, "force.a.harmonics": [[1, 20, 0]]})
     (line,) = force_values(car.run(road("level", 120, duration=6), engine="reduced"))["orders"]
-    low, high = line["stuck_range"]["seat_rail_acc_z"]
-    assert high > 0.0 and low <= line["stuck"]["seat_rail_acc_z"] <= high * (1.0 + 1e-9)
+    low, high = line.stuck_range["seat_rail_acc_z"]
+    assert high > 0.0 and low <= line.stuck["seat_rail_acc_z"] <= high * (1.0 + 1e-9)
 
 
 def test_order_2_of_a_brake_has_a_part_from_order_1_squared():

@@ -118,7 +118,7 @@ def evaluated(file: str, settings: ComfortSettings) -> RecordComfort:
         ConfigurationError: `rail` names another axis than z.
     """
     from vehicle.signals.analysis.evaluation import application
-    from vehicle.signals.records.record_comfort import RecordComfort, evaluate_comfort
+    from vehicle.signals.records.record_comfort import evaluate_comfort
 
     application(settings.place)
     point, choice = _picked(settings.record, settings.record.picks)
@@ -146,7 +146,7 @@ def evaluated(file: str, settings: ComfortSettings) -> RecordComfort:
     if settings.rail is None and "seat" not in settings.record.picks:
         return result
     more = _about_the_seat(Path(file))
-    return RecordComfort({**result.summary, "notices": [*result.summary["notices"], *more]})
+    return replace(result, remarks=(*result.remarks, *more))
 
 
 def _about_the_seat(file: Path) -> list[str]:
@@ -156,7 +156,7 @@ def _about_the_seat(file: Path) -> list[str]:
 
     summary = available_summary(file.parent)
     no_seat = NO_SEAT.partition(",")[0]  # equal in all versions
-    return [NO_SEAT] if summary and any(text.startswith(no_seat) for text in summary["notices"]) else []
+    return [NO_SEAT] if summary and any(text.startswith(no_seat) for text in summary.notices) else []
 
 
 def _overview(results: list[dict[str, Any]]) -> str:
@@ -181,7 +181,7 @@ def _job(settings: ComfortSettings, console: Console) -> None:
     """Evaluate the records of --input and print the results."""
 
     def one(name: str) -> dict[str, Any]:
-        return dict(evaluated(name, settings).summary)
+        return evaluated(name, settings).to_json()
 
     names, several = expanded(settings.inputs)
     if several:
@@ -192,7 +192,7 @@ def _job(settings: ComfortSettings, console: Console) -> None:
         return
     result = evaluated(names[0], settings)
     console.accept(result.notices)
-    console.result(result.summary, result.text())
+    console.result(result.to_json(), result.text())
     for remark in result.notices:
         console.notice(remark)
 

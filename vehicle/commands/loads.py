@@ -86,7 +86,7 @@ def _job(settings: LoadSettings, console: Console) -> None:
     counted = _counted(settings.runs[0], settings)
     loads = list(counted.loads.values())
     summary = available_summary(source.parent)
-    tyres = summary.get("tyre") if summary else None
+    tyres = summary.tyre if summary else None
     caption = (
         f"{source.name}, {counted.duration:g} s{f'; tyres {tyres}' if tyres else ''}; rainflow counts of ASTM E1049; "
         f"equivalent amplitude: one cycle a second with it does the same damage, S-N slope {settings.slope:g}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from vehicle.commands.command_line import command
@@ -128,11 +129,11 @@ def _job(settings: ShakerSettings | OrderSettings, console: Console) -> None:
         from vehicle.runs.report.general_notices import without_general
 
         if not console.quiet:
-            run_notices = without_general(summary["notices"], car.vehicle)
-            console.say(summary_text({**summary, "notices": run_notices}))
+            run_notices = without_general(summary.notices, car.vehicle)
+            console.say(summary_text(replace(summary, notices=run_notices)))
 
     shaken = shake(settings, console, tell=print_numbers, command=console.command("vehicle.shaker"))
-    console.say(f"files       {shaken.folder}: {', '.join(shaken.summary['files'].values())}")
+    console.say(f"files       {shaken.folder}: {', '.join(shaken.summary.files.values())}")
 
 
 main = command(parser, settings_of, _job)

@@ -9,7 +9,7 @@ from vehicle.digits import number
 from vehicle.names import side_of
 
 if TYPE_CHECKING:
-    from vehicle.signals.records.run_summary import ComfortSummary, Peaks, RunSummary, SolverSummary
+    from vehicle.signals.records.run_summary import Peaks, RunSummary, SolverSummary
 
 
 NAMED_SHARE = 1e-3
@@ -24,44 +24,43 @@ def _each(wheels: Collection[str], say: Callable[[str, str], str], last: str = "
 
 def summary_text(summary: RunSummary) -> str:
     """Return the printed numbers and notes of a run from the content of its `summary.json`."""
-    load = summary["static"]["tyre_load_n"]
-    plates = summary["input"]["plate_rms_m"]
+    load = summary.static.tyre_load_n
+    plates = summary.input.plate_rms_m
     moved = [f"{1e3 * rms:.4g} mm ({side_of(wheel, plates)})" for wheel, rms in plates.items() if rms > 0.0]
-    begin, end = summary["evaluated_s"]
+    begin, end = summary.evaluated_s
     span = f", evaluated from {begin:g} to {end:g} s" if begin > 0.0 else ""
     level = f"plate RMS {', '.join(moved)}" if moved else "plates at rest"
     lines = [
-        f"input       {summary['input']['file']}, {summary['input']['duration_s']:g} s{span}, {level}; tyres "
-        f"{summary['tyre']}",
+        f"input       {summary.input.file}, {summary.input.duration_s:g} s{span}, {level}; tyres {summary.tyre}",
     ]
     lines += _forces(summary)
     lines += _dampers(summary)
-    for wheel, plate, peaks in _peaks(summary) if summary["frf"] is not None else ():
+    for wheel, plate, peaks in _peaks(summary) if summary.frf is not None else ():
         for channel in (f"knuckle_{wheel}_acc_z", "seat_rail_acc_z", "engine_acc_z"):
             if channel not in peaks:
                 continue
-            strongest = sorted(peaks[channel], key=lambda peak: -peak["magnitude"])[:4]
-            by_frequency = sorted(strongest, key=lambda peak: peak["frequency_hz"])
-            text = ", ".join(f"{peak['frequency_hz']:.1f}" for peak in by_frequency)
+            strongest = sorted(peaks[channel], key=lambda peak: -peak.magnitude)[:4]
+            by_frequency = sorted(strongest, key=lambda peak: peak.frequency_hz)
+            text = ", ".join(f"{peak.frequency_hz:.1f}" for peak in by_frequency)
             lines.append(f"resonances  {channel}{plate}: {text + ' Hz' if text else 'none found'}")
     lines += _comfort(summary) + _obstacle(summary)
     lines += [
         f"static      tyre loads {_each(load, lambda w, side: f'{load[w]:.0f} N ({side})', ' and ')}",
-        f"solver      {summary['solver']['engine']}, step {1e3 * summary['solver']['timestep_s']:g} ms, "
-        f"{summary['solver']['realtime_factor']:.1f} times real time{_balance(summary['solver'])}",
+        f"solver      {summary.solver.engine}, step {1e3 * summary.solver.timestep_s:g} ms, "
+        f"{summary.solver.realtime_factor:.1f} times real time{_balance(summary.solver)}",
     ]
-    lines += [f"warning     {text}" for text in summary["solver"]["warnings"]]
-    lines += [f"note        {text}" for text in summary["notices"]]
+    lines += [f"warning     {text}" for text in summary.solver.warnings]
+    lines += [f"note        {text}" for text in summary.notices]
     return "\n".join(lines)
 
 
 def _dampers(summary: RunSummary) -> list[str]:
     """Return the line of sticking and slipping dampers, and that of slow sliding; none without a damper."""
-    share, first = summary["slip_share"], summary["first_slip_s"]
+    share, first = summary.slip_share, summary.first_slip_s
     if not first:
         return []
-    full = {wheel: summary["friction_saturated_share"][wheel] for wheel in first}
-    limit, fast = 1e3 * share["slip_velocity"], 1e3 * summary["saturated_velocity"]
+    full = {wheel: summary.friction_saturated_share[wheel] for wheel in first}
+    limit, fast = 1e3 * share["slip_velocity"], 1e3 * summary.saturated_velocity
     started = {wheel: time for wheel, time in first.items() if time is not None}
     slow = max(full.values()) >= NAMED_SHARE
     every, ending = {1: ("the damper", "s"), 2: ("both dampers", "")}.get(len(first), ("all dampers", ""))
@@ -92,54 +91,53 @@ def _forces(summary: RunSummary) -> list[str]:
 
 def _comfort(summary: RunSummary) -> list[str]:
     """Return the lines of comfort at the seat rail and, for a car with seats, on the seat."""
-    from vehicle.signals.records.run_summary import unweighted_rms
 
-    lines, points = [], summary["comfort"]
+    lines, points = [], summary.comfort
     if "seat_rail" in points:
-        rms, (low, high) = unweighted_rms(points["seat_rail"])
+        rms, (low, high) = points["seat_rail"].unweighted
         axes = ", ".join(f"{axis} {rms[axis]:.4f}" for axis in "xyz")
-        half = points["seat_rail"].get("half_interval", {})
+        half = points["seat_rail"].half_interval or {}
         plus = {name: f" ± {value:.4f}" for name, value in half.items()}
         lines.append(
             f"comfort     seat rail {rms['overall']:.4f}{plus.get('unweighted', '')} m/s2 unweighted RMS, {low:g} to "
-            f"{high:g} Hz ({axes}); {_weighted(points, 'seat_rail'):.4f}{plus.get('weighted', '')} m/s2 weighted RMS "
+            f"{high:g} Hz ({axes}); {points['seat_rail'].weighted:.4f}{plus.get('weighted', '')} m/s2 weighted RMS "
             f"(ISO 2631-1){'; ±: 95 % interval over roads of this class' if half else _event_words(summary)}"
         )
-    if (rim := summary.get("steering_wheel_rim")) is not None:
-        axes = ", ".join(f"{axis} {rim['weighted_rms'][axis]:.4f}" for axis in "xyz")
+    if (rim := summary.steering_wheel_rim) is not None:
+        axes = ", ".join(f"{axis} {rim.weighted_rms[axis]:.4f}" for axis in "xyz")
         lines.append(
-            f"            steering wheel rim {rim['weighted_rms']['overall']:.4f} m/s2 weighted RMS "
-            f"({rim['weighting']}, {rim['standard']}; {axes})"
+            f"            steering wheel rim {rim.weighted_rms['overall']:.4f} m/s2 weighted RMS "
+            f"({rim.weighting}, {rim.standard}; {axes})"
         )
-    if (ratio := summary["seat_value"]) is not None:
+    if (ratio := summary.seat_value) is not None:
         lines.append(
-            f"            seat {_weighted(points, 'seat'):.4f} m/s2 weighted RMS (ISO 2631-1; x, y by Wd, z by Wk); "
-            f"SEAT value {ratio['rms']:.3f} (z, {ratio['weighting']}; of doses {ratio['vdv']:.3f})"
+            f"            seat {points['seat'].weighted:.4f} m/s2 weighted RMS (ISO 2631-1; x, y by Wd, z by Wk); "
+            f"SEAT value {ratio.rms:.3f} (z, {ratio.weighting}; of doses {ratio.vdv:.3f})"
         )
     return lines
 
 
 def _event_words(summary: RunSummary) -> str:
     """Return the time over which the RMS of an obstacle is taken; empty without an obstacle."""
-    begin, end = summary["evaluated_s"]
-    return "" if summary.get("obstacle") is None else f"; over {end - begin:.3g} s: a longer --duration lowers both"
+    begin, end = summary.evaluated_s
+    return "" if summary.obstacle is None else f"; over {end - begin:.3g} s: a longer --duration lowers both"
 
 
 def _obstacle(summary: RunSummary) -> list[str]:
     """Return the lines of a run over an obstacle."""
-    values = summary.get("obstacle")
+    values = summary.obstacle
     if values is None:
         return []
-    lines = [f"obstacle    {values['obstacle']}, reached at {values['from_s']:.2f} s, left at {values['to_s']:.2f} s"]
-    for point, size in values["peak_to_peak"].items():
-        dose, settled = values["vdv"][point], values["settling_s"][point]
+    lines = [f"obstacle    {values.obstacle}, reached at {values.from_s:.2f} s, left at {values.to_s:.2f} s"]
+    for point, size in values.peak_to_peak.items():
+        dose, settled = values.vdv[point], values.settling_s[point]
         peaks = ", ".join(f"{axis} {size[axis]:.2f}" for axis in "xyz")
         lines.append(
             f"            {point.replace('_', ' ')} peak to peak {peaks} m/s2; "
             f"VDV {', '.join(f'{a} {dose[a]:.3f}' for a in 'xyz')}, sum {dose['overall']:.3f} m/s^1.75; z "
             + ("does not settle" if settled is None else f"settles in {settled:.2f} s")
         )
-    knuckle = values["knuckle_peak"]
+    knuckle = values.knuckle_peak
     if knuckle:
         lines.append(
             "            knuckle peak, z " + _each(knuckle, lambda w, side: f"{knuckle[w]:.1f} m/s2 ({side})", " and ")
@@ -147,18 +145,14 @@ def _obstacle(summary: RunSummary) -> list[str]:
     return lines
 
 
-def _weighted(comfort: dict[str, ComfortSummary], point: str) -> float:
-    return float(comfort[point]["iso2631"]["vector_sum"]["weighted_rms"])
-
-
 def _balance(solver: SolverSummary) -> str:
     """Return the energy residual; empty for an engine without an energy balance."""
-    return "" if solver["energy_residual"] is None else f", energy residual {solver['energy_residual']:.1e}"
+    return "" if solver.energy_residual is None else f", energy residual {solver.energy_residual:.1e}"
 
 
 def _peaks(summary: RunSummary) -> list[tuple[str, str, Peaks]]:
     """Return the resonances to each input: its first wheel, "/plate_fr" if there are several inputs, the resonances."""
-    inputs = summary["frf"].get("to", []) if summary["frf"] is not None else []
+    inputs = summary.frf.to if summary.frf is not None else []
     if len(inputs) < 2:
-        return [(summary["input"]["wheel"], "", summary["peaks"])]
-    return [(next(iter(each["plates"])), f"/{each['input']}", each["peaks"]) for each in inputs]
+        return [(summary.input.wheel, "", summary.peaks)]
+    return [(next(iter(each.plates)), f"/{each.input}", each.peaks or {}) for each in inputs]

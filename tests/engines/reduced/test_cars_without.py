@@ -18,7 +18,7 @@ from vehicle.model.parameters.vehicle import vehicle_of
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.rest import half_cosine
 from vehicle.signals.excitation.signal import Signal, uniform_time
-from vehicle.signals.records.run_summary import read_summary, slip_shares
+from vehicle.signals.records.run_summary import read_summary
 
 UNDAMPED = ("damping", "viscous", "coulomb_friction", "maxwell_damping")
 """Last keys of the numbers of damping."""
@@ -102,7 +102,7 @@ def test_sweeps_and_files_name_the_dampers_that_there_are(name: str, dampers: tu
     assert slips == [f"slip_share_{wheel}" for wheel in dampers] and np.ptp(table.column("weighted_z")) > 0.0
     folder = car.run(signal, engine="reduced").save(tmp_path / "run")
     summary = read_summary(folder)
-    assert tuple(slip_shares(summary)) == tuple(summary["first_slip_s"]) == dampers
+    assert tuple(summary.slip_shares) == tuple(summary.first_slip_s) == dampers
     assert ("\ndamper " in summary_text(summary)) == bool(dampers)
     assert (folder / "time.png").is_file()
 

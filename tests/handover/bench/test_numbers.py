@@ -151,10 +151,10 @@ def test_an_obstacle_has_the_values_of_its_run():
     assert run.skip == drive.skip and drive.record.duration == drive.skip + 5.0
     table, values = found.table, obstacle_values(run)
     assert values is not None
-    assert table["peak to peak seat rail z"][0] == pytest.approx(values["peak_to_peak"]["seat_rail"]["z"])
-    assert table["VDV seat rail"][0] == pytest.approx(values["vdv"]["seat_rail"]["overall"])
-    assert table["settling time seat rail z"][0] == pytest.approx(values["settling_s"]["seat_rail"], abs=2e-3)
-    assert table["peak knuckle rr z"][0] == pytest.approx(values["knuckle_peak"]["rr"])
+    assert table["peak to peak seat rail z"][0] == pytest.approx(values.peak_to_peak["seat_rail"]["z"])
+    assert table["VDV seat rail"][0] == pytest.approx(values.vdv["seat_rail"]["overall"])
+    assert table["settling time seat rail z"][0] == pytest.approx(values.settling_s["seat_rail"], abs=2e-3)
+    assert table["peak knuckle rr z"][0] == pytest.approx(values.knuckle_peak["rr"])
     longer = bench_drive(car, road("cobbles", 10))
     assert longer.road is not None
     times: Any = longer.road["obstacle_s"]

@@ -59,7 +59,7 @@ def test_a_saved_run_is_a_run_again(runs, name, time_format, tmp_path):
     assert loaded.channels == load_run(str(folder)).channels == runs[name].channels
     # It can be saved again, with the same notices.
     again = save_run(loaded, tmp_path / "again", figures=False)
-    assert sorted(read_summary(again)["notices"]) == sorted(read_summary(folder)["notices"])
+    assert sorted(read_summary(again).notices) == sorted(read_summary(folder).notices)
     # Its car is that of the folder, so that sweeps and variants start from it.
     assert Car.load(loaded.car.origin["file"]).vehicle == loaded.car.vehicle
     with pytest.raises(

@@ -53,7 +53,7 @@ def folder(tmp_path_factory):
     time = np.arange(signals["fr"].size) / 1000.0
     write_signal(folder / "two.csv", Signal(time=time, displacement=signals))
     arguments = ["--input", str(folder / "two.csv"), "--engine", "reduced", "--output", str(folder / "run"), "--quiet"]
-    assert shaker([*arguments, "--vehicle", "focus", "--any-level"]) == 0
+    assert shaker([*arguments, "--vehicle", "focus", "--any-level", "--no-figures"]) == 0
     return folder
 
 
@@ -143,23 +143,15 @@ def test_a_file_of_responses_is_paired_by_the_plates_that_it_names(folder, tmp_p
     assert {(item.channel, item.plate) for item in result.responses} == {
         (name, plate) for name in ACCELERATIONS for plate in plates
     }
-    exact = {
-        (name, plate): row
-        for plate in plates
-        for name, row in zip(
-            ACCELERATIONS, Car.load("focus").matrix_frf(ACCELERATIONS, np.arange(2.0, 48.0, 0.25), wheel=plate[-2:]),
-            strict=True,
-        )
-    }  # fmt: skip
     for item in result.responses:
-        inside = np.isin(np.arange(2.0, 48.0, 0.25), item.frequency)
-        np.testing.assert_allclose(item.measured, exact[item.channel, item.plate][inside], rtol=1e-5)
+        (exact,) = Car.load("focus").matrix_frf((item.channel,), item.frequency, wheel=item.plate[-2:])
+        np.testing.assert_allclose(item.measured, exact, rtol=1e-5)
 
 
 def test_a_response_without_a_plate_is_refused_or_named_by_the_option(folder, tmp_path):
     file = uff(tmp_path / "nameless.uff", ["plate_fl"], "", name="R {output}")
     roles = {name: f"R {name}"[:40] for name in ACCELERATIONS}
-    with pytest.raises(DataError, match=r"knuckle_fr_acc_z: .* 2 plates .*--map knuckle_fr_acc_z/plate_fr=NAME"):
+    with pytest.raises(DataError, match=r"knuckle_fr_acc_z: .*2 plates.*--map knuckle_fr_acc_z/plate_fr=NAME"):
         compare(folder / "run", file, roles)
     named = compare(folder / "run", file, {f"{name}/plate_fl": wanted for name, wanted in roles.items()})
     assert {item.plate for item in named.responses} == {"plate_fl"}
@@ -175,7 +167,7 @@ def test_a_fit_pairs_responses_of_two_plates_in_any_order(folder, columns, tmp_p
         file = record(tmp_path / f"{number}.csv", columns, order)
         arguments = ["focus", "--set", f"damper.viscous={1.3 * true}", "--parameters",
                      f"damper.viscous={0.4 * true}:{3.0 * true}", "--frf", str(file), *options(order), *more,
-                     "--engine", "reduced", "--spacing", "1", "--quiet"]  # fmt: skip
+                     "--engine", "reduced", "--spacing", "2", "--quiet"]  # fmt: skip
         assert tune([*arguments, "--output", str(tmp_path / f"fit{number}"), "--json"]) == 0
         found.append(json.loads(capsys.readouterr().out))
     one, other = ([entry["value"] for entry in each["parameters"]] for each in found)

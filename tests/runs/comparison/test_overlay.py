@@ -48,20 +48,15 @@ def measured(tmp_path_factory, car):
     noisy = clean * (1.0 + NOISE * (real + 1j * imaginary))
     channels = []
     for row, node in enumerate(PLACES.values()):
-        about: dict[str, Any] = {
-            "axis": frequency,
-            "kind": "frequency",
-            "place": f"p{node}",
-            "direction": "-Z",
-            "reference": "",
-        }
-        channels.append(
-            Channel(
-                name=f"Acc {node}", values=-noisy[row] / 9.80665, unit="(g)/(m)", function="frequency response", **about
-            )
-        )
+        about: dict[str, Any] = {"axis": frequency, "kind": "frequency", "place": f"p{node}", "direction": "-Z"}
         coherence = np.full(frequency.size, 1.0 / (1.0 + 2.0 * AVERAGES * NOISE**2))
-        channels.append(Channel(name=f"Coh {node}", values=coherence, function="coherence", **about))
+        channels += [
+            Channel(name=f"{name} {node}", values=values, unit=unit, function=function, reference="", **about)
+            for name, values, unit, function in (
+                ("Acc", -noisy[row] / 9.80665, "(g)/(m)", "frequency response"),
+                ("Coh", coherence, "", "coherence"),
+            )
+        ]
     path = tmp_path_factory.mktemp("measured") / "measured.uff"
     uff_writer.write(path, channels, "made")
     return path
@@ -74,18 +69,8 @@ def run(tmp_path_factory, measured):
     signal = read_signal(find_input("low.csv"), wheel="fr")
     table = [signal.time[:6001], signal.displacement["fr"][:6001]]
     write_table(folder / "short.csv", ["time [s]", "displacement [m]"], table, [])
-    arguments = [
-        "--input",
-        str(folder / "short.csv"),
-        "--wheel",
-        "front_right",
-        "--engine",
-        "reduced",
-        "--output",
-        str(folder / "run"),
-        "--quiet",
-    ]
-    assert shaker([*arguments, "--measured", str(measured), *MAP]) == 0
+    arguments = ["--input", str(folder / "short.csv"), "--wheel", "front_right", "--engine", "reduced", "--quiet"]
+    assert shaker([*arguments, "--measured", str(measured), *MAP, "--output", str(folder / "run")]) == 0
     return folder / "run"
 
 
@@ -124,21 +109,16 @@ def test_the_table_of_a_run_names_the_worst_channel_and_band(run, car):
     first = (run / "compare.csv").read_text().splitlines()[2].split(",")
     assert first[:4] == ["frf", worst[0], f"{worst[1]:g}", f"{rows[0]['high_hz']:g}"]
     said = " ".join(content["notices"])
-    assert (
-        "sign inverted, because it was measured along -Z with the plate along ?"
-    ) in said and "(g)/(m) converted to m/s2 per m" in said
+    assert "sign inverted" in said and "along -Z" in said and "(g)/(m) converted to m/s2 per m" in said
 
 
 def test_the_command_compares_the_files_of_a_run(run, measured, tmp_path, capsys):
-    arguments = [str(run), "--measured", str(measured), *MAP[:2], "--output", str(tmp_path / "found")]
+    arguments = [str(run), "--measured", str(measured), *MAP[:2], "--no-figures", "--output", str(tmp_path / "found")]
     assert compare([*arguments, "--bands", "5,20,40"]) == 0
     said = capsys.readouterr().out
     assert re.search(r"largest error of a response: knuckle_fr_acc_z, \d+ to \d+ Hz: [+-]\d", said)
     content = json.loads((tmp_path / "found" / "compare.json").read_text())
-    assert [(row["low_hz"], row["high_hz"]) for row in sorted(content["table"], key=lambda row: row["low_hz"])] == [
-        (5.0, 20.0),
-        (20.0, 40.0),
-    ]
+    assert sorted((row["low_hz"], row["high_hz"]) for row in content["table"]) == [(5.0, 20.0), (20.0, 40.0)]
     assert content["signatures"] is None  # of one response alone
     # Turned once more, the phase is off by 180 degrees.
     again = [*arguments[:-1], str(tmp_path / "turned"), "--turn", "knuckle_fr_acc_z", "--json"]
@@ -149,9 +129,8 @@ def test_the_command_compares_the_files_of_a_run(run, measured, tmp_path, capsys
 def test_a_run_beside_itself_agrees(run, tmp_path, capsys):
     names = ("knuckle_fr_acc_z", "damper_fr_velocity", "plate_fr_displacement")
     pairs = [word for name in names for word in ("--map", f"{name}={name}")]
-    assert (
-        compare([str(run), "--measured", str(run / "time.npz"), *pairs, "--output", str(tmp_path / "x"), "--json"]) == 0
-    )
+    words = [str(run), "--measured", str(run / "time.npz"), *pairs, "--output", str(tmp_path / "x"), "--no-figures"]
+    assert compare([*words, "--json"]) == 0
     content = json.loads(capsys.readouterr().out)
     assert [one["channel"] for one in content["records"]] == list(names)
     for one in content["records"]:
@@ -159,9 +138,8 @@ def test_a_run_beside_itself_agrees(run, tmp_path, capsys):
         assert one["iso18571"]["overall"] == pytest.approx(1.0) and one["lag_s"] == 0.0
     # Response and plate as time histories: the responses are estimated as those of the run are.
     (response,) = content["responses"]
-    assert response["frac"] == pytest.approx(1.0, abs=1e-6) and any(
-        "local rational" in text for text in content["notices"]
-    )
+    assert response["frac"] == pytest.approx(1.0, abs=1e-6)
+    assert any("local rational" in text for text in content["notices"])
 
 
 def test_several_measurements_give_one_table(run, tmp_path, capsys):
@@ -181,14 +159,9 @@ def test_a_record_that_began_later_names_its_delay(run, tmp_path):
     """The run itself without its first 50 ms, at times from 0 on, and without its plate."""
     truth = of_folder(run).record
     path = tmp_path / "late.csv"
-    write_table(
-        path,
-        ["time [s]", "knuckle_fr_acc_z [m/s2]", "seat_rail_acc_z [m/s2]"],
-        [
-            truth.time[50:] - truth.time[50],
-            *(truth.channels[f"{place}_acc_z"][50:] for place in ("knuckle_fr", "seat_rail")),
-        ],
-    )
+    names = ("knuckle_fr_acc_z", "seat_rail_acc_z")
+    columns = [truth.time[50:] - truth.time[50], *(truth.channels[name][50:] for name in names)]
+    write_table(path, ["time [s]", *(f"{name} [m/s2]" for name in names)], columns)
     measured = read_measured(path, tuple(truth.channels))
     notices = comparison_of(measured, of_folder(run)).notices
     assert notices[0].startswith("no FRFs") and "--map plate_fl_disp" in notices[0]
@@ -233,9 +206,7 @@ def test_a_unit_is_of_the_input_or_of_what_was_measured(tmp_path):
     with pytest.raises(ConfigurationError, match="--unit: belongs to --input"):
         shaker_options().parse_args(road[:4])
     options = shaker_options().parse_args([*words, "--unit", "knuckle_fr=g"])
-    with pytest.raises(
-        ConfigurationError, match=r"--unit knuckle_fr=\.\.\.: must be one of the compared channels: knuckle_fr"
-    ):
+    with pytest.raises(ConfigurationError, match=r"--unit knuckle_fr=.*: knuckle_fr"):
         asked.read(known, asked.choice(read(options, RecordSettings), {"fr"}))
 
 

@@ -8,8 +8,9 @@ import pytest
 
 from tests.delayed_records import RATE, shaken, write_record
 from tests.validation import validated
+from vehicle import save_run
 from vehicle.commands.compare import main
-from vehicle.errors import ConfigurationError
+from vehicle.errors import VehicleError
 from vehicle.runs.car import Car
 from vehicle.runs.comparison.compared_run import compare
 from vehicle.signals.formats.channel import Channel
@@ -65,18 +66,6 @@ def test_delay_of_the_accelerations_is_found_and_taken_out(run, tmp_path, delay,
     assert again.signatures is not None
     inside = again.signatures.frequency >= 3.0
     assert np.mean(again.signatures.csac[inside]) > 0.99
-    if not noise:
-        # Of responses to the other plate, which are weak, friction leaves more.
-        before, after = (
-            [
-                band.phase_deg
-                for item in each.responses
-                for band in item.bands
-                if band.low >= 8.0 and (item.channel, item.plate) == ("knuckle_fr_acc_z", "plate_fr")
-            ]
-            for each in (comparison, again)
-        )
-        assert before and max(after) < 0.1 * min(before)
 
 
 def test_one_sensor_alone_and_a_pattern(run, tmp_path):
@@ -117,8 +106,7 @@ def test_frfs_of_a_file_have_the_delay_in_their_phase(run, tmp_path):
 
 def test_command_says_it_and_takes_it_out(run, tmp_path, capsys):
     """A record that began 0.05 s after the run as well: both options at once."""
-    whole = run.car.run(run.signal, engine="reduced")
-    whole.save(tmp_path / "run")
+    save_run(run.car.run(run.signal, engine="reduced"), tmp_path / "run", figures=False)
     file = write_record(tmp_path / "all.csv", run, delays(12.3e-3))
     rows = file.read_text().splitlines()
     head = next(number for number, row in enumerate(rows) if row.startswith("time"))
@@ -126,7 +114,7 @@ def test_command_says_it_and_takes_it_out(run, tmp_path, capsys):
     begin = float(kept[0][0])
     table = [",".join([f"{float(first) - begin:.9g}", *rest]) for first, *rest in kept]
     (tmp_path / "record.csv").write_text("\n".join([rows[head], *table, ""]))
-    words = [str(tmp_path / "run"), "--measured", str(tmp_path / "record.csv")]
+    words = [str(tmp_path / "run"), "--measured", str(tmp_path / "record.csv"), "--no-figures"]
     assert main([*words, "--output", str(tmp_path / "first")]) == 0
     said = capsys.readouterr().out
     options = [text.rstrip(",") for text in re.findall(r"--delay (\S+)", said)]
@@ -152,9 +140,7 @@ def test_command_says_it_and_takes_it_out(run, tmp_path, capsys):
     ],
 )
 def test_what_is_no_delay_is_refused(run, tmp_path, option, message):
-    if message is None:
-        assert parsed_delays([option, "0.2"]) == {"accelerations": 12.3, "record": 0.2}
-        return
+    assert parsed_delays(["accelerations=12.3", "0.2"]) == {"accelerations": 12.3, "record": 0.2}
     file = write_record(tmp_path / "record.csv", run, delays(0.0))
-    with pytest.raises((ConfigurationError, Exception), match=message):
+    with pytest.raises(VehicleError, match=message):
         compare(run, file, delay=parsed_delays([option]))

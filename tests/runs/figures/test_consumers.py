@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from tests.documentation.test_figures_page import PAGE, rows, table_of
-from vehicle import Car, road, sweep
+from vehicle import Car, road, save_run, sweep
 from vehicle.commands.bench import main as bench
 from vehicle.commands.optimise import main as optimise
 from vehicle.commands.report import main as report
@@ -31,6 +31,13 @@ def car():
 @pytest.fixture(scope="module")
 def run(car):
     return car.run(road("C", 80, duration=8), engine="reduced")
+
+
+@pytest.fixture(scope="module")
+def saved(run, tmp_path_factory):
+    """Two folders of the run."""
+    folder = tmp_path_factory.mktemp("runs")
+    return [str(save_run(run, folder / name, figures=False)) for name in ("run", "other")]
 
 
 @pytest.fixture
@@ -59,13 +66,14 @@ def test_python_and_bench(car, run):
 @pytest.mark.usefixtures("added")
 def test_sweep_and_search(tmp_path, capsys):
     both = ["--measure", NAME, "--measure", f"{NAME}_fr"]
-    command = [*ROAD, "--vary", "rear.damper.viscous=1500,2500", *both, "--output", str(tmp_path / "a")]
-    assert sweep_command([each for each in command if each != "--quiet"]) == 0
+    loud = [word for word in ROAD if word != "--quiet"]
+    vary = ["--vary", "rear.damper.viscous=1500,2500"]
+    assert sweep_command([*loud, *vary, *both, "--output", str(tmp_path / "a")]) == 0
     table = rows_of(tmp_path / "a" / "table.csv")
     assert float(table[0][f"{NAME} [-]"]) >= float(table[0][f"{NAME}_fr [-]"])
     assert f"{NAME}_fr [-]" in capsys.readouterr().out
     each = ["--each", "20%", "--vary", "rear.damper.viscous", "--measure", NAME, "--output", str(tmp_path / "b")]
-    assert sweep_command([word for word in [*ROAD, *each] if word != "--quiet"]) == 0
+    assert sweep_command([*loud, *each]) == 0
     said = capsys.readouterr().out
     assert f"change in '{NAME}'" in said and "no +-" in said
     assert re.search(rf"-20 % (raises|lowers) {NAME} by", said)
@@ -78,16 +86,15 @@ def test_sweep_and_search(tmp_path, capsys):
 
 
 @pytest.mark.usefixtures("added")
-def test_targets_report_and_page(run, tmp_path, monkeypatch):
+def test_targets_report_and_page(run, saved, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     file = tmp_path / "targets.toml"
     file.write_text(f'[crest]\nquantity = "{NAME}"\nroad = "C"\nspeed = 80\nunit = "-"\n', encoding="utf-8")
     with pytest.raises(ConfigurationError, match="set exactly one of at_most and at_least"):
         read_targets(file)
     file.write_text(f"{file.read_text(encoding='utf-8')}at_most = 1\n", encoding="utf-8")
-    run.save("run")
     asked = ["--measure", NAME, "--measure", "peak_to_peak:seat rail z"]
-    assert report(["run", "--targets", str(file), *asked, "--quiet", "--output", "a.html"]) == 0
+    assert report([saved[0], "--targets", str(file), *asked, "--quiet", "--output", "a.html"]) == 0
     page = (tmp_path / "a.html").read_text(encoding="utf-8")
     value = f"{run.figure(NAME):.3g}"
     assert "<td>crest</td>" in page and page.count(f'<td class="number">{value}</td>') == 2
@@ -96,17 +103,14 @@ def test_targets_report_and_page(run, tmp_path, monkeypatch):
     assert found is not None
     data = json.loads(found[1])
     assert [each["words"] for each in data["figures"]] == [WORDS, "peak to peak, seat rail acc z"]
-    run.save("other")
-    assert report(["run", "other", *asked, "--quiet", "--output", "b.html"]) == 0
+    assert report([*saved, *asked, "--quiet", "--output", "b.html"]) == 0
     assert f"<td>{WORDS}</td>" in (tmp_path / "b.html").read_text(encoding="utf-8")
 
 
-def test_an_unknown_name_ends_report_and_bench_at_once(run, tmp_path, monkeypatch, capsys):
+def test_an_unknown_name_ends_report_and_bench_at_once(saved, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    for folder in ("first", "second"):
-        run.save(folder)
     monkeypatch.setattr("vehicle.commands.report._film", lambda *_: pytest.fail("the film was rendered"))
-    assert report(["first", "second", "--video", "--measure", "foo", "--quiet"]) == 2
+    assert report([*saved, "--video", "--measure", "foo", "--quiet"]) == 2
     monkeypatch.setattr("vehicle.handover.bench.server.open_server", lambda *_: pytest.fail("the bench was opened"))
     assert bench(["sedan", "--road", "C", "--speed", "80", "--measure", "foo"]) == 2
     assert capsys.readouterr().err.count("--measure 'foo': sedan has no figure 'foo'") == 2

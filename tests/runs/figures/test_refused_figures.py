@@ -6,6 +6,7 @@ import pytest
 from vehicle import Car, optimise, road, sweep
 from vehicle.errors import ConfigurationError
 from vehicle.handover.page.live_figures import figure_data, page_figures
+from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.figures.chosen_figure import chosen_figure
 from vehicle.runs.figures.figure import Values
 from vehicle.runs.targets.target import Target
@@ -23,21 +24,31 @@ def car():
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (
-            f"peak:{Z}+damper_fr_velocity",
-            "channels: found seat_rail_acc_z [m/s2], damper_fr_velocity [m/s]; peak needs",
-        ),
+        ("comfort", "no figure 'comfort'; choose from unweighted[:AXIS], weighted[:AXIS]"),
+        ("seat_weighted", "focus has no figure 'seat_weighted'"),
+        ("peak", "peak:CHANNELS[:WEIGHTING]"),
+        ("travel:long", "travel[:WHEELS]"),
+        ("travel_rl", "wheels: found rl, must be among fr, fl"),
+        ("rms:seat rail z:5-25:Wk:Wk", "rms:CHANNELS[:LOW-HIGH]"),
+        ("rms:seat rail z:25-5", "rms:CHANNELS"),
+        ("peak:seat rail q", "channel 'seat rail q'"),
+        (f"order:0:{Z}", "order:N:CHANNELS[:ANGLE]"),
+        (f"peak:{Z}+damper_fr_velocity", "seat_rail_acc_z [m/s2], damper_fr_velocity [m/s]; peak needs"),
         (f"ratio:{Z}:{Z}+damper_fr_velocity", "ratio needs channels in one unit"),
-        ("vdv:damper_fr_velocity:Wk", "channels: found damper_fr_velocity [m/s]; vdv needs channels in m/s2"),
-        ("frequency:foo", "motion 'foo': must be one of heave, pitch, roll, front wheel hop, rear wheel hop"),
+        ("vdv:damper_fr_velocity:Wk", "damper_fr_velocity [m/s]; vdv needs channels in m/s2"),
+        ("frequency:yaw", "motion 'yaw': must be one of heave, pitch, roll, front wheel hop"),
         ("rms:damper_fr_force:seat", "weighting 'seat': damper_fr_force has no axis x, y or z"),
-        (f"order:1:{Z}:foo", "angle 'foo': must be one of crank, wheel_fr"),
     ],
 )
-def test_a_name_is_refused(car, text, message):
+def test_a_name_is_refused(text, message):
     with pytest.raises(ConfigurationError) as refusal:
-        chosen_figure(text, car.vehicle)
-    assert message in str(refusal.value)
+        chosen_figure(text, load_vehicle())
+    assert str(refusal.value).startswith(f"figure {text!r}: ") and message in str(refusal.value)
+
+
+def test_an_angle_is_refused(car):
+    with pytest.raises(ConfigurationError, match="angle 'foo': must be one of crank, wheel_fr"):
+        chosen_figure(f"order:1:{Z}:foo", car.vehicle)
 
 
 def test_a_dimensionless_figure_takes_several_units(car):
@@ -62,7 +73,7 @@ def test_an_input_without_the_figure_is_refused(car):
     damper, ride = {"rear.damper.viscous": [1500.0, 2000.0]}, road("C", 80, duration=3)
     with pytest.raises(ConfigurationError, match=r"settling time, seat rail acc z on .*: settling: the run has no"):
         sweep(car, damper, ride, measure=f"settling:{Z}")
-    with pytest.raises(ConfigurationError, match=r"amplitude at an order, 1, .* nothing turns"):
+    with pytest.raises(ConfigurationError, match=r"order amplitude, 1, .* nothing turns"):
         sweep(car, damper, "low.csv", measure=f"order:1:{Z}")
     with pytest.raises(ConfigurationError, match="the run has no obstacle"):
         optimise(car, {"rear.damper.viscous": (1500.0, 2000.0)}, ride, [f"settling:{Z}"])

@@ -4,7 +4,6 @@ import base64
 import dataclasses
 import re
 import subprocess
-from typing import Any
 
 import numpy as np
 import pytest
@@ -64,7 +63,7 @@ def test_a_large_film_is_encoded_again_with_all_frames_and_the_same_bytes(large_
 
 def test_the_report_has_the_film_a_picture_for_paper_or_a_sentence(reported, large_film, monkeypatch):
     run = read_run(reported.folder)
-    summary: Any = {**run.summary, "files": {**run.summary["files"], "video": str(large_film)}}
+    summary = dataclasses.replace(run.summary, files={**run.summary.files, "video": str(large_film)})
     run = dataclasses.replace(run, summary=summary)
     section = film(run)
     assert section is not None

@@ -1,6 +1,7 @@
 """Findings of a report against the tables of its run."""
 
 import re
+from dataclasses import replace
 from html import unescape
 from types import SimpleNamespace
 
@@ -50,9 +51,13 @@ def test_mode_and_path_are_explained_only_where_one_is_named(reported):
 )
 def test_one_two_and_four_dampers_stick(reported, wheels, words):
     summary = read_summary(reported.folder)
-    summary["slip_share"] |= dict.fromkeys(wheels, 0.0)
-    summary["first_slip_s"] = dict.fromkeys(wheels)
-    summary["friction_saturated_share"] = dict.fromkeys(wheels, 0.0)
+    shares = dict.fromkeys(wheels, 0.0)
+    summary = replace(
+        summary,
+        slip_share=summary.slip_share | shares,
+        first_slip_s=dict.fromkeys(wheels),
+        friction_saturated_share=shares,
+    )
     assert f"\ndamper      {words} all the time (|v| < 6 mm/s)\nresonances" in summary_text(summary)
 
 
@@ -72,9 +77,12 @@ def test_one_two_and_four_dampers_stick(reported, wheels, words):
 )
 def test_console_and_report_give_dampers_without_slip_one_state(reported, full, console, page):
     summary = read_summary(reported.folder)
-    summary["slip_share"] |= {"fr": 0.0, "fl": 0.0}
-    summary["first_slip_s"] = {"fr": None, "fl": None}
-    summary["friction_saturated_share"] = {"fr": full, "fl": full}
+    summary = replace(
+        summary,
+        slip_share=summary.slip_share | {"fr": 0.0, "fl": 0.0},
+        first_slip_s={"fr": None, "fl": None},
+        friction_saturated_share={"fr": full, "fl": full},
+    )
     lines = summary_text(summary).splitlines()
     first = next(k for k, line in enumerate(lines) if line.startswith("damper "))
     ending = next(k for k, line in enumerate(lines) if line.startswith("resonances "))
@@ -86,7 +94,7 @@ def test_a_warning_of_the_solver_stands_at_the_verdict():
     """In a report of several runs the findings of each run are folded."""
 
     def run(name, *warnings):
-        return SimpleNamespace(name=name, summary={"solver": {"warnings": list(warnings)}})
+        return SimpleNamespace(name=name, summary=SimpleNamespace(solver=SimpleNamespace(warnings=warnings)))
 
     runs = [run("a"), run("b", "rotates", "wrong <by> 35 %"), run("c", "rotates")]
     assert warned(runs) == "<p>Warning (b and 1 more run): wrong &lt;by&gt; 35 %.</p>"
@@ -99,7 +107,7 @@ def test_the_wheelbase_filter_of_runs_is_named_where_it_differs():
 
     def run(name, speed, road="B"):
         car = sedan.with_({"driving.speed": speed / 3.6})
-        return SimpleNamespace(name=name, car=car, summary={"input": {"road": road}})
+        return SimpleNamespace(name=name, car=car, summary=SimpleNamespace(input=SimpleNamespace(road=road)))
 
     (text,) = wheelbase_words([run("a", 80.0), run("b", 60.0)])
     assert "(a 4.03, b 3.02 Hz)" in text

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import dataclasses
 import re
 from pathlib import Path
@@ -12,6 +11,7 @@ from markupsafe import Markup
 from tests.runs.report.test_page import Outline, empty_figure
 from vehicle.runs.report.finished_run import read_run
 from vehicle.runs.report.page import Trial, report_page
+from vehicle.signals.records.run_summary import RunSummary
 
 
 def test_of_many_runs_the_first_the_calmest_and_the_loudest_have_pictures(reported, monkeypatch):
@@ -21,8 +21,9 @@ def test_of_many_runs_the_first_the_calmest_and_the_loudest_have_pictures(report
     monkeypatch.setattr("vehicle.runs.report.page.curves_over_each_other", lambda runs: Markup(len(runs)))
     run, runs = read_run(reported.folder), []
     for name, factor in zip("abcdefg", (1.0, 1.1, 0.9, 1.2, 1.3, 1.0, 1.05), strict=True):
-        summary = copy.deepcopy(run.summary)
-        summary["comfort"]["seat_rail"]["iso2631"]["vector_sum"]["weighted_rms"] *= factor
+        content = run.summary.to_json()
+        content["comfort"]["seat_rail"]["iso2631"]["vector_sum"]["weighted_rms"] *= factor
+        summary = RunSummary.from_json(content)
         runs.append(dataclasses.replace(run, name=name, place=Path("runs") / name, summary=summary))
     found = Outline()
     page = report_page(runs, trial=lambda run: Trial(content=Markup()))

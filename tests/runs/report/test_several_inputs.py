@@ -2,7 +2,6 @@
 
 import dataclasses
 import re
-from typing import Any
 
 import numpy as np
 import pytest
@@ -21,7 +20,7 @@ from vehicle.studies.sweeps.change_error import change_errors, half_width
 
 def on_input(run: FinishedRun, name: str, file: str) -> FinishedRun:
     """The run as on another file."""
-    summary: Any = {**run.summary, "input": {**run.summary["input"], "file": file}}
+    summary = dataclasses.replace(run.summary, input=dataclasses.replace(run.summary.input, file=file))
     return dataclasses.replace(run, name=name, summary=summary)
 
 

@@ -335,7 +335,7 @@ def test_the_section_says_what_the_slider_did(browser, reported):
     """The sentence, the table and the values of the run; many moves end with the last one."""
     run = read_run(reported.folder)
     words = browser.find_element("id", "trial-words").text
-    total = run.summary["comfort"]["seat_rail"]["iso2631"]["vector_sum"]["weighted_rms"]
+    total = run.summary.comfort["seat_rail"].weighted
     assert words.startswith("Move a slider.") and f"{total:.3g} m/s²" in words
     assert len(trial_data(run.car, recorded_signal(run.summary, run.recording), wheel="fl")) < 600_000
     browser.execute_script(

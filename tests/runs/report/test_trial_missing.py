@@ -2,7 +2,6 @@
 
 import dataclasses
 import json
-from typing import Any
 
 import pytest
 
@@ -16,9 +15,8 @@ from vehicle.runs.report.page import report_page
 
 def test_a_report_without_sliders_says_why(reported):
     run = read_run(reported.folder)
-    summary: Any = run.summary
-    cams: Any = {**summary, "input": {**summary["input"], "road": {"tyre_contact": "cams"}}}
-    over_obstacles = dataclasses.replace(run, summary=cams)
+    of_cams = dataclasses.replace(run.summary.input, road={"tyre_contact": "cams"})
+    over_obstacles = dataclasses.replace(run, summary=dataclasses.replace(run.summary, input=of_cams))
     assert "with cams" in trial(over_obstacles).content
     assert "This report has no sliders for this car or input" in report_page([over_obstacles], trial=trial)
     silent = {name: history for name, history in run.recording.channels.items() if not name.startswith("plate")}

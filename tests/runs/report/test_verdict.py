@@ -19,11 +19,11 @@ def test_targets_come_first(reported, tmp_path, monkeypatch, capsys):
     )
     assert main([str(reported.folder), "--targets", "targets.toml", "--output", "verdict.html"]) == 0
     noted = capsys.readouterr().out
-    assert "note        no run for 1 of 2 targets; missing class C: python -m vehicle shaker --vehicle " in noted
+    assert "note        1 of 2 targets have no run; run class C: python -m vehicle shaker --vehicle " in noted
     assert " --road C --set damper.coulomb_friction=100\n" in noted
     page = Path("verdict.html").read_text(encoding="utf-8")
     first = page[page.index('<section id="targets">') : page.index('<section id="result">')]
-    assert "meets 0 of 1 targets and misses loud; there is no run for rough." in first
+    assert "meets 0 of 1 targets and misses loud; rough had no run." in first
     comfort = json.loads((reported.folder / "summary.json").read_text(encoding="utf-8"))["comfort"]["seat_rail"]
     value = number(comfort["iso2631"]["vector_sum"]["weighted_rms"])
     assert f'≤ 0.001</td><td>m/s2</td><td class="number">{value}</td><td class="missed">missed</td>' in first

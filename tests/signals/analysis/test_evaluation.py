@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from vehicle.errors import ConfigurationError, DataError
+from vehicle.signals.analysis import evaluation
+from vehicle.signals.analysis.contact_vibration import ContactVibration
 from vehicle.signals.analysis.evaluation import (
     APPLICATIONS,
     application,
-    evaluate,
     offset_effect,
     offset_line,
     without_offset,
@@ -16,6 +17,13 @@ from vehicle.signals.analysis.weighting import weighted_record, weighting
 
 STEP = 1e-3
 TIME = np.arange(60_000) * STEP
+
+
+def evaluate(*arguments, **options):
+    """The values as in a file."""
+    values = evaluation.evaluate(*arguments, **options)
+    assert ContactVibration.from_json(values.to_json()) == values
+    return values.to_json()
 
 
 def sine(frequency, amplitude=1.0):

@@ -1,6 +1,7 @@
 """Hand-arm vibration, daily exposure and rail comfort: printed factors, closed forms, and what is refused."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -54,10 +55,11 @@ def test_hand_holds_a_tone():
     values = evaluate(1.0 / rate, xyz, contact="hand", from_rest=False)
     expected = float(weighting("Wh").spectrum_factor(80.0)) * np.sqrt(np.sum(np.square(amplitudes)) / 2.0)
     # The filter starts at rest: 0.05 s of 20 s.
-    assert values["vector_sum"]["weighted_rms"] == pytest.approx(expected, rel=2e-3)
-    assert values["vector_sum"]["vdv"] is None and values["z"]["msdv"] is None and values["z"]["vdv"] is None
-    assert not any("msdv" in reason for reason in values["reasons"])
-    limited = evaluate(1e-3, xyz[:, ::4], contact="hand")["reasons"]
+    assert values.overall == pytest.approx(expected, rel=2e-3)
+    assert values.vector_sum is not None and values.vector_sum.vdv is None
+    assert values.z is not None and values.z.msdv is None and values.z.vdv is None
+    assert not any("msdv" in reason for reason in values.reasons)
+    limited = evaluate(1e-3, xyz[:, ::4], contact="hand").reasons
     assert any("400 Hz" in reason and "1000 Hz of ISO 5349-1" in reason for reason in limited)
 
 
@@ -65,21 +67,22 @@ def test_daily_exposure():
     """A(8) of 5 m/s2 for 2 h is 2.5 m/s2; of a body the largest of 1.4 x, 1.4 y and z decides."""
     assert daily_exposure(5.0, 2.0) == pytest.approx(2.5, rel=1e-12)
     assert daily_exposure(1.0, 8.0) == 1.0
-    values = {
-        "place": "seat", "x": {"weighted_rms": 0.6}, "y": {"weighted_rms": 0.2}, "z": {"weighted_rms": 0.8},
-        "vector_sum": {"weighted_rms": 1.0},
-    }  # fmt: skip
+    hand = evaluate(1e-3, np.random.default_rng(1).standard_normal((3, 4000)), contact="hand")
+    x, y, z = (replace(axis, weighted_rms=rms) for axis, rms in zip(hand.axes.values(), (0.6, 0.2, 0.8), strict=True))
+    assert hand.vector_sum is not None
+    hand = replace(hand, x=x, y=y, z=z, vector_sum=replace(hand.vector_sum, weighted_rms=1.0))
+    values = replace(hand, place="seat")
     found = exposure(values, 4.0)
-    assert found["a8"] == pytest.approx(1.4 * 0.6 / np.sqrt(2.0), rel=1e-12) and found["axis"] == "x"
-    assert (found["hours"], found["action_value"], found["limit_value"]) == (4.0, 0.5, 1.15)
-    assert exposure({**values, "place": "hand"}, 8.0)["a8"] == 1.0
+    assert found.a8 == pytest.approx(1.4 * 0.6 / np.sqrt(2.0), rel=1e-12) and found.axis == "x"
+    assert (found.hours, found.action_value, found.limit_value) == (4.0, 0.5, 1.15)
+    assert exposure(hand, 8.0).a8 == 1.0
     for hours in (0.0, -1.0, 25.0, np.nan):
         with pytest.raises(ConfigurationError, match=f"{hours:g} h in a day"):
             exposure(values, hours)
     with pytest.raises(ConfigurationError, match=r"feet; .* hand, seat"):
-        exposure({**values, "place": "feet"}, 8.0)
+        exposure(replace(values, place="feet"), 8.0)
     with pytest.raises(DataError, match="y missing"):
-        exposure({**values, "y": None}, 8.0)
+        exposure(replace(values, y=None), 8.0)
 
 
 def test_mean_comfort_of_a_train():

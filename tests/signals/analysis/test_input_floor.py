@@ -6,7 +6,7 @@ import pytest
 from tests.benchmarks.frf_accuracy import banded_input
 from tests.signals.analysis.single_input import local_rational_response
 from tests.validation import validated
-from vehicle.signals.analysis.input_floor import cause_messages, rounding_step, tapered_power
+from vehicle.signals.analysis.input_floor import CAUSES, cause_messages, rounding_step, tapered_power
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal_file import read_signal
 
@@ -87,7 +87,19 @@ def test_a_few_lines_without_input_are_said_as_few():
     silent = np.zeros(100, dtype=int)
     silent[41] = 5
     (text,) = cause_messages(frequency, silent)
-    assert "42 Hz (1 of 100 lines)" in text and "other lines" in text
+    assert text.startswith("no FRF at 42 Hz (1 of 100 lines): ") and text.endswith("; the other lines are good")
     silent[10:60] = 1
     text, *_ = cause_messages(frequency, silent)
-    assert "11 to 60 Hz (50 of 100 lines)" in text and "more power" in text
+    assert text.startswith("no FRF at 11 to 60 Hz (50 of 100 lines): ") and text.endswith(
+        "; give the input more power there"
+    )
+
+
+def test_several_causes_of_weak_lines_are_one_message():
+    frequency, silent = np.linspace(1.0, 100.0, 100), np.zeros(100, dtype=int)
+    silent[60:], silent[61::20] = 2 + 2 * (np.arange(40) % 3 == 0), 0
+    (text,) = cause_messages(frequency, silent)
+    assert text.startswith(f"no FRF above 61 Hz (38 of 100 lines): {CAUSES[1]}; ")
+    silent[10:40] = 1
+    (text,) = cause_messages(frequency, silent)
+    assert text.startswith(f"no FRF at 11 to 100 Hz (68 of 100 lines): {CAUSES[0]}; ")

@@ -89,8 +89,8 @@ def test_a_vibration_of_a_steering_wheel_has_its_weighted_rms():
         record = np.sin(2.0 * np.pi * frequency * np.arange(int(60 * rate)) / rate)
         found = evaluate(1.0 / rate, np.array([record, record, 0.0 * record]), contact="steering_wheel", skip=5.0)
         # Within 0.53 dB of the lines, and no dose values.
-        assert found["y"]["weighted_rms"] * np.sqrt(2.0) == pytest.approx(10.0 ** (level / 20.0), rel=0.065)
-        assert (found["y"]["weighting"], found["y"]["vdv"]) == ("Ws", None)
+        assert found.axes["y"].weighted_rms * np.sqrt(2.0) == pytest.approx(10.0 ** (level / 20.0), rel=0.065)
+        assert (found.axes["y"].weighting, found.axes["y"].vdv) == ("Ws", None)
 
 
 NONE = np.inf

@@ -29,7 +29,7 @@ def trial(run: FinishedRun, measure: Sequence[str] = ()) -> Trial:
     except VehicleError as error:
         reason = str(error)
     else:
-        return trial_of(numbers, min(float(run.recording.time[-1]), LONGEST), run.summary["solver"]["engine"])
+        return trial_of(numbers, min(float(run.recording.time[-1]), LONGEST), run.summary.solver.engine)
     return Trial(content=fill("trial", reason=reason.rstrip(".")))
 
 
@@ -55,7 +55,7 @@ def _numbers(run: FinishedRun, measure: Sequence[str]) -> str:
     """
     if run.car.vehicle.composition.forces:
         raise ConfigurationError("the car in the browser has no forces of powertrain and wheels")
-    road = run.summary["input"].get("road") or {}
+    road = run.summary.input.road or {}
     if road.get("tyre_contact"):
         raise ConfigurationError(
             "the tyres roll over the obstacle with cams, and the record does not contain the slopes of the cams"

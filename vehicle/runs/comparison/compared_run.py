@@ -224,12 +224,11 @@ def _settled_part(measured: Measured, simulated: Simulated, times: Vector) -> tu
         return -math.inf, []
     if end - begin < settled:
         return -math.inf, [
-            f"time histories: the run begins at rest and settles for about {settled:g} s, most of the record: the "
-            "comparison contains the settling; use a longer record"
+            f"the run takes about {settled:g} s to settle from rest, most of this record; use a longer record"
         ]
     return begin, [
-        f"time histories are compared from {settled:g} s of the run on, since it begins at rest; with stuck dampers it "
-        "settles for longer: --from S compares from S of the file on"
+        f"time histories are compared from {settled:g} s of the run on, when it has settled from rest; stuck dampers "
+        "take longer: set --from S to begin later"
     ]
 
 

@@ -90,14 +90,13 @@ def other_plates(measured: FrfData, simulated: FrfData) -> list[str]:
     notices = []
     if left_out := list(dict.fromkeys(unpaired)):
         notices.append(
-            f"measured FRFs to {', '.join(left_out)} are left out, because the run moves "
+            f"measured FRFs to {', '.join(left_out)} are left out: the run moves "
             f"{', '.join(simulated.inputs) or 'no plate'}; drive the same plates"
         )
     if driven := [plate for plate in dict.fromkeys(driven) if plate not in measured.inputs]:
         notices.append(
-            f"the run also drives {', '.join(driven)}, which the measured FRFs do not contain; if this plate "
-            "moved in the measurement, its effect counts there as noise or as part of another response: map its "
-            "displacement too"
+            f"the run also drives {', '.join(driven)}, to which there is no measured FRF; if it moved in the "
+            "measurement, map its displacement too: otherwise it counts as noise"
         )
     return notices
 
@@ -124,7 +123,7 @@ def compare_responses(
     if not frequency.size:
         raise DataError(
             f"measured from {measured.frequency[0]:g} to {measured.frequency[-1]:g} Hz, simulated from "
-            f"{simulated.frequency[0]:g} to {simulated.frequency[-1]:g} Hz: they have no frequency in common; "
+            f"{simulated.frequency[0]:g} to {simulated.frequency[-1]:g} Hz: no common frequency; "
             "measure FRFs in the band of the run"
         )
     bands = list(pairwise(edges))

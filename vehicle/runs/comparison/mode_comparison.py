@@ -99,11 +99,11 @@ class ModeComparison:
         unpaired = sorted(set(range(1, len(self.measured) + 1)) - {pair.measured for pair in self.pairs})
         if unpaired:
             shown = ", ".join(f"{self.measured[number - 1].frequency:.4g} Hz" for number in unpaired[:10])
-            lines.append(f"no simulated mode with a MAC of {LEAST_MAC:g} or more: {shown}")
+            lines.append(f"no simulated mode matches (MAC below {LEAST_MAC:g}): {shown}")
         alike = np.argwhere(np.triu(self.measured_auto, 1) > 0.9)
         if alike.size:
             shown = ", ".join(f"{first + 1} and {second + 1}" for first, second in alike[:6])
-            lines.append(f"measured modes that these points cannot tell apart (AutoMAC above 0.9): {shown}")
+            lines.append(f"measured modes that look alike at these points (AutoMAC above 0.9): {shown}")
         return "\n".join(lines)
 
 
@@ -176,8 +176,8 @@ def compare_modes(
         )
     if len(nodes) < 3:
         raise DataError(
-            f"{measurement.path}: {len(nodes)} of its nodes lie at output points of the car, must be at least "
-            f"three; set --map POINT=NODE for others, with the output points {', '.join(geometry.points)}"
+            f"{measurement.path}: {len(nodes)} nodes lie at output points of the car, must be at least three; set "
+            f"--map POINT=NODE for the others (points: {', '.join(geometry.points)})"
         )
     measured = [shape for shape in measurement.shapes if set(nodes.values()) <= set(shape.points)]
     if not measured:

@@ -79,7 +79,7 @@ def plate_signal(
             options = map_options(named) or "--map plate_fl_displacement=NAME"
             listed = ", ".join(repr(channel.name) for channel in channels[:20])
             raise DataError(
-                f"--signal {source}: the names of the columns state no plate; set {options} (columns: {listed})"
+                f"--signal {source}: no column is named after a plate; set {options} (columns: {listed})"
             ) from None
         return _turned(signal, inverted) if chosen is not None else signal
     plates = {} if measured.record is None else measured.record.channels
@@ -87,8 +87,8 @@ def plate_signal(
     names = {wheel: name for wheel, name in names.items() if name in plates and np.ptp(plates[name]) > 0.0}
     if not names:
         raise DataError(
-            f"{path}: contains no moving plate as input. Set --map plate_fl_displacement=NAME for the channel of "
-            "the plate, or --signal FILE after it for the plate displacement of another file"
+            f"{path}: contains no moving plate; set --map plate_fl_displacement=NAME for its channel, or "
+            "--signal FILE if the plate was recorded in another file"
         )
     units = {wheel: asked.units[name] for wheel, name in names.items() if name in asked.units}
     units |= {role: unit for role, unit in asked.units.items() if role in ("", "time")}

@@ -70,7 +70,7 @@ def compare_records(
     if end <= start or count < LEAST_SAMPLES:
         raise DataError(
             f"measured from {times[0]:.6g} to {times[-1]:.6g} s of the run, simulated from "
-            f"{simulated.time[0]:.6g} to {simulated.time[-1]:.6g} s: they overlap too little; set --delay S, "
+            f"{simulated.time[0]:.6g} to {simulated.time[-1]:.6g} s: too little in common; set --delay S, "
             "which is added to the measured times"
         )
     grid = start + step * np.arange(count)

@@ -10,7 +10,6 @@ from vehicle.signals.formats.frf_file import FrfData, frf_data
 from vehicle.signals.formats.reader import read_columns
 from vehicle.signals.formats.table import Record
 from vehicle.signals.records.measured import estimated_frf
-from vehicle.signals.records.record_spectra import evaluated_from
 from vehicle.signals.records.run_frf import run_frf
 from vehicle.signals.records.run_summary import available_summary
 from vehicle.signals.records.settling import settling_time
@@ -66,8 +65,7 @@ def of_folder(folder: Path) -> Simulated:
             return None if estimate is None else estimate[0]
         return run_frf(folder / "frf.csv", summary) if (folder / "frf.csv").is_file() else None
 
-    tyres = summary.get("tyre", "") if summary else ""
-    settled = 0.0
-    if summary:
-        settled = evaluated_from(summary) or settling_time(summary.get("notices", []))
+    tyres, settled = "", 0.0
+    if summary is not None:
+        tyres, settled = summary.tyre, summary.evaluated_from or settling_time(summary.notices)
     return Simulated(name=folder.name, record=record, responses=responses, tyres=tyres, settled=settled)

@@ -60,11 +60,11 @@ FIGURES: dict[str, Figure] = COMFORT_FIGURES | {
         unit="s", reads=CHANNELS, reduces=SETTLING, needs=("channels",), on_input=require_obstacle,
     ),
     "ratio": Figure(
-        words="ratio of RMS values", meaning="RMS of the channels divided by that of the channels in `over` [-]",
+        words="RMS ratio", meaning="RMS of the channels over the RMS of the channels in `over` [-]",
         unit="-", reads=CHANNELS, reduces=RATIO, better="", needs=("channels", "over"), takes=("band", "weighting"),
     ),
     "tyre_load": Figure(
-        words="variation of the tyre load",
+        words="tyre load variation",
         meaning="RMS of the dynamic tyre load divided by the static load (dynamic load coefficient), all wheels "
         "together [-]",
         unit="-", reads=LOAD_VARIATIONS, reduces=WHEEL_RMS, takes=("wheels",),
@@ -74,7 +74,7 @@ FIGURES: dict[str, Figure] = COMFORT_FIGURES | {
         unit="N", reads=LOAD_FORCES, reduces=WHEEL_RMS, takes=("wheels",),
     ),
     "tyre_load_crest": Figure(
-        words="crest factor of the tyre load",
+        words="tyre load crest factor",
         meaning="maximum of the dynamic tyre load over its RMS, largest of all wheels [-]",
         unit="-", reads=LOAD_VARIATIONS, reduces=LARGEST_CREST, takes=("wheels",),
     ),
@@ -83,11 +83,11 @@ FIGURES: dict[str, Figure] = COMFORT_FIGURES | {
         unit="-", reads=LOADS, reduces=LOWEST, better="more", takes=("wheels",),
     ),
     "travel": Figure(
-        words="travel of the dampers", meaning="maximum travel of a damper from rest, largest of all wheels [m]",
+        words="damper travel", meaning="maximum travel of a damper from rest, largest of all wheels [m]",
         unit="m", reads=TRAVELS, reduces=PEAK, takes=("wheels",), of_car="damper",
     ),
     "stick_share": Figure(
-        words="time in stick", meaning="share of the time in which a damper sticks, largest of all wheels [-]",
+        words="time stuck", meaning="share of the time in which a damper sticks, largest of all wheels [-]",
         unit="-", reads=VELOCITIES, reduces=STICK, takes=("wheels",), of_car="damper",
     ),
     "slip_share": Figure(
@@ -95,7 +95,7 @@ FIGURES: dict[str, Figure] = COMFORT_FIGURES | {
         unit="-", reads=VELOCITIES, reduces=SLIP, better="", takes=("wheels",), of_car="damper",
     ),
     "saturated_share": Figure(
-        words="time in saturated friction",
+        words="time at full friction",
         meaning="share of the time in which a damper moves faster than 1 mm/s, mean of all dampers [-]",
         unit="-", reads=VELOCITIES, reduces=SATURATED, better="", takes=("wheels",), of_car="damper",
     ),

@@ -101,7 +101,7 @@ class ChosenFigure(Details):
 
     @property
     def title(self) -> str:
-        """Return the figure in words, as "travel of the dampers, fr"."""
+        """Return the figure in words, as "damper travel, fr"."""
         return ", ".join([self.figure.words, *(text.replace("_", " ") for text in self.details.values())])
 
     def unit_in(self, units: Mapping[str, str] | None = None) -> str:
@@ -189,7 +189,7 @@ def chosen_figure(text: str, vehicle: Vehicle, option: str = "figure") -> Chosen
     try:
         chosen = ChosenFigure(quantity=name, **_details(FIGURES[name], parts))
     except (ConfigurationError, ValueError):
-        raise ConfigurationError(f"{option} {text!r}: needed is {form_of(name)}") from None
+        raise ConfigurationError(f"{option} {text!r}: must have the form {form_of(name)}") from None
     try:
         channels = (*vehicle.channels, *vehicle.load_channels)
         chosen = chosen.recorded_in(channels)

@@ -62,7 +62,7 @@ def _figure(prefix: str, name: str, meaning: str) -> Figure:
         return _channels("seat_rail", "seat") if prefix else _channels("seat_rail")
 
     return Figure(
-        words=f"{name} acceleration of the {'cushion' if prefix else 'seat rail'}",
+        words=f"{name} acceleration {'on the cushion' if prefix else 'at the seat rail'}",
         meaning=meaning,
         unit="m/s2",
         reads=unread(channels),

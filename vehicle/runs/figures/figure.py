@@ -95,7 +95,7 @@ class Figure:
     """Figure of a ride.
 
     Attributes:
-        words: name on pages, as "variation of the tyre load".
+        words: name on pages, as "tyre load variation".
         meaning: definition with the unit; U is that of the channels.
         unit: unit; empty for that of the channels.
         reads: histories that it reads.

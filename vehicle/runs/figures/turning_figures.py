@@ -94,12 +94,12 @@ def _channels(details: Details, _: object) -> tuple[str, ...]:
 
 ORDER_FIGURES = {
     "order": Figure(
-        words="amplitude at an order", meaning="amplitude of a channel at an order of crank or wheel [U]",
+        words="order amplitude", meaning="amplitude of a channel at an order of crank or wheel [U]",
         reads=unread(_channels), reduces=Reduction(of=_order), needs=("order", "channels"), takes=("angle",),
         companion=ORDER_FREQUENCY, alone=True, certain=True, require=_require_angle, on_input=_constant_speed,
     ),
     ORDER_FREQUENCY: Figure(
-        words="frequency of the order", meaning="frequency of an order of crank or wheel [Hz]",
+        words="order frequency", meaning="frequency of an order of crank or wheel [Hz]",
         unit="Hz", reads=unread(_channels), reduces=Reduction(of=_order_frequency), better="",
         needs=("order", "channels"), takes=("angle",), alone=True, exact=True, require=_require_angle,
         on_input=_constant_speed,
@@ -109,12 +109,13 @@ ORDER_FIGURES = {
 
 MOTION_FIGURES = {
     "frequency": Figure(
-        words="natural frequency", meaning="undamped natural frequency of a motion of the car, as heave [Hz]",
+        words="natural frequency", meaning="undamped natural frequency of a motion of the car, for example heave [Hz]",
         unit="Hz", reads=unread(lambda *_: ()), reduces=_of_motion(lambda each: each.frequency_hz), better="",
         needs=("motion",), exact=True, require=_require_motion,
     ),
     "damping_ratio": Figure(
-        words="damping ratio", meaning="damping ratio of a motion of the car, as heave, dampers at 0.1 m/s [-]",
+        words="damping ratio",
+        meaning="damping ratio of a motion of the car, for example heave, dampers at 0.1 m/s [-]",
         unit="-", reads=unread(lambda *_: ()), reduces=_of_motion(lambda each: each.damping_ratio), better="",
         needs=("motion",), exact=True, require=_require_motion,
     ),

@@ -41,9 +41,8 @@ def require_unit(chosen: ChosenFigure, unit: str, units: Mapping[str, str]) -> N
     """
     needed = chosen.unit_in(units)
     if unit != needed:
-        raise ConfigurationError(
-            f"unit: found {unit!r}, must be {needed!r} for {chosen.quantity} of {chosen.channels or 'the car'}"
-        )
+        where = ", ".join(chosen.channels) or "the car"
+        raise ConfigurationError(f"unit: found {unit!r}, must be {needed!r} for {chosen.quantity} of {where}")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -73,4 +73,4 @@ def write_beside(
     comparison = comparison_of(measured, of_run(run), command="python -m vehicle compare, after the run")
     files |= write_comparison(folder, comparison, figures=figures)
     content = comparison.summary()
-    return {"file": comparison.measured, "table": content["table"], "notices": content["notices"]}
+    return MeasuredSummary(file=comparison.measured, table=content["table"], notices=content["notices"])

@@ -135,8 +135,8 @@ def check_output(path: Path, *, force: bool, protect: tuple[Path, ...] = (), cha
         raise ConfigurationError(f"--output {path}: exists; give --force to replace it, or another folder")
     if not force and unfinished(folder):
         raise ConfigurationError(
-            f"--output {path}: a killed command left finished rows there; continue it with --resume, give --force to "
-            "delete them, or another folder"
+            f"--output {path}: a killed command left finished rows there; continue with --resume, delete them with "
+            "--force, or give another folder"
         )
     if os.path.ismount(folder):
         raise ConfigurationError(f"--output {path}: is the root of a file system; give a folder in it")

@@ -1,7 +1,6 @@
 """Comfort of a run at the seat rail, on the seat and at the steering wheel: values, SEAT value and notices."""
 
 from dataclasses import asdict
-from typing import TypedDict
 
 import numpy as np
 
@@ -10,8 +9,8 @@ from vehicle.runs.car import Run
 from vehicle.signals.analysis.comfort import COMFORT_BAND, settling
 from vehicle.signals.analysis.evaluation import application, evaluate
 from vehicle.signals.analysis.ride_comfort import ERROR, RIM, UNWEIGHTED, WEIGHTED
-from vehicle.signals.analysis.seat_value import seat_value
-from vehicle.signals.records.run_summary import ComfortSummary, RimSummary, SeatSummary
+from vehicle.signals.analysis.seat_value import SeatValue, seat_value
+from vehicle.signals.records.run_summary import ComfortSummary, RimSummary
 
 RAIL, SEAT = "seat_rail", "seat"
 
@@ -19,8 +18,8 @@ NORMAL_95 = 1.96
 """Standard errors in half of a 95 % interval; its coverage is measured in `docs/theory/statistics.md`."""
 
 NO_SEAT = (
-    "comfort of the seat: the car has no seat, so 'seat' is a point of its body, and there is no SEAT value; "
-    'for a seat add a section [seat.driver] with template = "seat_occupant" to the vehicle file'
+    "comfort of the seat: the car has no seat, so 'seat' is a point on the body and there is no SEAT value; "
+    'add [seat.driver] with template = "seat_occupant" to the vehicle file'
 )
 
 
@@ -29,61 +28,55 @@ def comfort_values(run: Run) -> dict[str, ComfortSummary]:
     return {point: _at(run, point) for point in (RAIL, SEAT) if _recorded(run, point)}
 
 
-def seat_values(run: Run) -> SeatSummary | None:
+def seat_values(run: Run) -> SeatValue | None:
     """Return the SEAT value of a run, by RMS and by dose; None for a car without seat, or a rail at rest."""
     if not (run.car.vehicle.seated and _recorded(run, RAIL) and _recorded(run, SEAT)):
         return None
     seat, rail = (run[f"{point}_acc_z"] for point in (SEAT, RAIL))
     if not np.any(rail):
         return None
-    value = seat_value(run.recording.timestep, seat, rail, skip=run.skip)
-    return {"rms": value.rms, "vdv": value.vdv, "weighting": value.weighting}
+    return seat_value(run.recording.timestep, seat, rail, skip=run.skip)
 
 
-class RimValues(TypedDict, total=False):
-    """Entry of the steering wheel in the summary of a run."""
-
-    steering_wheel_rim: RimSummary
-
-
-def rim_values(run: Run) -> RimValues:
-    """Return the comfort values at the rim of the steering wheel; empty without the output."""
+def rim_values(run: Run) -> RimSummary | None:
+    """Return the comfort values at the rim of the steering wheel; None without the output."""
     if not _recorded(run, RIM):
-        return {}
+        return None
     value = run.comfort(RIM)
-    return {
-        "steering_wheel_rim": {
-            "rms": asdict(value.unweighted),
-            "band_hz": list(value.band),
-            "weighted_rms": asdict(value.weighted),
-            "weighting": application("steering_wheel").weightings[1],
-            "standard": value.standard,
-        }
-    }
+    return RimSummary(
+        rms=asdict(value.unweighted),
+        band_hz=list(value.band),
+        weighted_rms=asdict(value.weighted),
+        weighting=application("steering_wheel").weightings[1],
+        standard=value.standard,
+    )
 
 
 def comfort_notices(run: Run) -> list[str]:
-    """Return a notice for each axis of the seat rail with a nonstationary level, and for a missing seat."""
+    """Return notices on a nonstationary level of the seat rail, and on a missing seat."""
     bare = [NO_SEAT] if _recorded(run, SEAT) and not run.car.vehicle.seated else []
     if run.road and run.car.static.support_load:
-        places = ", ".join(point_words(name) for name in run.car.static.support_load)
+        blocks = ", ".join(point_words(name) for name in run.car.static.support_load)
         bare.append(
-            f"comfort: {run.car.vehicle.name} is on the road with {len(run.car.vehicle.wheels)} wheels alone; its "
-            f"blocks ({places}) do not move; for a ride take a car on four wheels, for example focus_road"
+            f"comfort: only {len(run.car.vehicle.wheels)} wheels of {run.car.vehicle.name} are on the road, and its "
+            f"blocks ({blocks}) stand still; take a car on four wheels, for example focus_road"
         )
     # An obstacle is a single event.
     if not _recorded(run, RAIL) or "obstacle" in (run.road or {}):
         return bare
     drifting = [
-        f"comfort of the seat rail, {axis}: the RMS values of both halves of the record differ by "
-        f"{100 * abs(part.drift):.0f} %, more than chance ({300 * part.standard_error:.0f} %), so the RMS "
-        "depends on the length of the record"
+        f"{100 * abs(part.drift):.0f} % along {axis} (chance: {300 * part.standard_error:.0f} %)"
         for axis, part in zip(
             AXES, settling(run.recording.timestep, run.at(RAIL), run.signal.band(COMFORT_BAND)), strict=True
         )
         if not part.settled
     ]
-    return drifting + bare
+    if not drifting:
+        return bare
+    return [
+        f"comfort of the seat rail: the halves of the record differ in RMS by {', '.join(drifting)}; record longer",
+        *bare,
+    ]
 
 
 def _recorded(run: Run, point: str) -> bool:
@@ -93,15 +86,15 @@ def _recorded(run: Run, point: str) -> bool:
 def _at(run: Run, point: str) -> ComfortSummary:
     value = run.comfort(point)
     xyz = [run[f"{point}_acc_{axis}"] for axis in AXES]
-    rms: dict[str, float | None] = {**asdict(value.unweighted)}
-    iso = evaluate(run.recording.timestep, xyz, skip=run.skip, from_rest=True, highest=run.signal.highest)
-    entry: ComfortSummary = {"rms_2_50_hz": rms, "iso2631": iso}
-    if run.signal.highest is not None:
-        entry["rms_2_50_hz"] = dict.fromkeys(rms)
-        entry["rms_of_band"] = {"band_hz": list(value.band), **rms}
+    rms, slow, half = asdict(value.unweighted), run.signal.highest is not None, None
     if (run.road or {}).get("class"):
-        entry["half_interval"] = {
+        half = {
             name: NORMAL_95 * value.values[f"{name}{ERROR}"] * getattr(value, name).overall
             for name in (UNWEIGHTED, WEIGHTED)
         }
-    return entry
+    return ComfortSummary(
+        rms_2_50_hz=dict.fromkeys(rms) if slow else rms,
+        iso2631=evaluate(run.recording.timestep, xyz, skip=run.skip, from_rest=True, highest=run.signal.highest),
+        rms_of_band={"band_hz": list(value.band), **rms} if slow else None,
+        half_interval=half,
+    )

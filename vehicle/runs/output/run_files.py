@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TypedDict
 
 import numpy as np
 
@@ -38,11 +37,16 @@ from vehicle.signals.records.run_frf import CHANNEL
 from vehicle.signals.records.run_summary import (
     SUMMARY_FILE,
     FrfSummary,
+    InputSummary,
     MeasuredSummary,
     MotionSummary,
     Peaks,
+    PeakSummary,
     PlacedLoad,
     RunSummary,
+    SolverSummary,
+    StaticSummary,
+    VehicleSummary,
 )
 
 FRAME = "x to the rear, y to the driver's right, z up; SI units"
@@ -165,7 +169,7 @@ def write_run(
         notices=missing,
         command=command,
     )
-    write_json(folder / SUMMARY_FILE, summary)
+    write_json(folder / SUMMARY_FILE, summary.to_json())
     if tell is not None:
         tell(summary)
     for name, make in filter(None, (video, report)):
@@ -225,64 +229,69 @@ def summarise(
     channels, dampers = vehicle.acceleration_channels, vehicle.damped_wheels
     motion_notice = what_moves([motion.motion for motion in responses]) if responses else ""
     body = rigid_body(vehicle.body)
-    return {
-        "frame": FRAME,
-        "vehicle": {
-            "name": vehicle.name,
-            **run.car.origin,
-            "inertia_about": vehicle.body.inertia.about,
-            "inertia": body.report,
-            **_loads(run),
-            "superelement": run.car.model.superelement.provenance,
-        },
-        "input": {
-            "file": Path(run.signal.source).name,
-            "sha256": run.signal.sha256,
-            "rms_m": run.signal.rms(run.wheel),
-            "plate_rms_m": {wheel: run.signal.rms(wheel) for wheel in wheels},
-            "duration_s": run.signal.duration,
-            "highest_hz": run.signal.highest,
-            "wheel": run.wheel,
-            "wheel_text": vehicle.wheel_text(run.wheel),
-            "road": None if run.road is None else dict(run.road),
-        },
-        "evaluated_s": [run.skip, run.signal.duration],
-        "slip_share": {wheel: run.slip_share(wheel) for wheel in dampers}
+    loads = {
+        load.path.partition(".")[2]: PlacedLoad(mass_kg=load.numbers.mass, at_m=list(load.cog), on=load.parent)
+        for load in vehicle.composition.loads
+    }
+    return RunSummary(
+        frame=FRAME,
+        vehicle=VehicleSummary(
+            name=vehicle.name,
+            file=run.car.origin["file"],
+            overrides=run.car.origin["overrides"],
+            inertia_about=vehicle.body.inertia.about,
+            inertia=body.report,
+            loads=loads or None,
+            superelement=run.car.model.superelement.provenance,
+        ),
+        input=InputSummary(
+            file=Path(run.signal.source).name,
+            sha256=run.signal.sha256,
+            rms_m=run.signal.rms(run.wheel),
+            plate_rms_m={wheel: run.signal.rms(wheel) for wheel in wheels},
+            duration_s=run.signal.duration,
+            highest_hz=run.signal.highest,
+            wheel=run.wheel,
+            wheel_text=vehicle.wheel_text(run.wheel),
+            road=None if run.road is None else dict(run.road),
+        ),
+        evaluated_s=[run.skip, run.signal.duration],
+        slip_share={wheel: run.slip_share(wheel) for wheel in dampers}
         | ({"slip_velocity": vehicle.damper.slip_velocity} if dampers else {}),
-        "first_slip_s": {wheel: run.first_slip(wheel) for wheel in dampers},
-        "friction_saturated_share": {wheel: run.slip_share(wheel, SATURATED_VELOCITY) for wheel in dampers},
-        "first_friction_saturated_s": {wheel: run.first_slip(wheel, SATURATED_VELOCITY) for wheel in dampers},
-        "saturated_velocity": SATURATED_VELOCITY,
-        "peaks": _peaks(responses[0].response if responses else None, channels),
-        "comfort": comfort_values(run),
-        "seat_value": seat_values(run),
-        **rim_values(run),
-        "obstacle": obstacle_values(run),
+        first_slip_s={wheel: run.first_slip(wheel) for wheel in dampers},
+        friction_saturated_share={wheel: run.slip_share(wheel, SATURATED_VELOCITY) for wheel in dampers},
+        first_friction_saturated_s={wheel: run.first_slip(wheel, SATURATED_VELOCITY) for wheel in dampers},
+        saturated_velocity=SATURATED_VELOCITY,
+        peaks=_peaks(responses[0].response if responses else None, channels),
+        comfort=comfort_values(run),
+        seat_value=seat_values(run),
+        steering_wheel_rim=rim_values(run),
+        obstacle=obstacle_values(run),
         **force_values(run),
-        "static": {
-            "tyre_load_n": static.tyre_load,
-            "rear_support_load_n": {
+        static=StaticSummary(
+            tyre_load_n=static.tyre_load,
+            rear_support_load_n={
                 name.removeprefix("rear_support_"): load for name, load in static.support_load.items()
             },
-            "residual_m": static.residual,
-        },
-        "solver": {
-            "engine": statistics.engine,
-            "callback": statistics.callback,
-            "timestep_s": statistics.timestep,
-            "steps": statistics.steps,
-            "wall_s": statistics.wall_time,
-            "realtime_factor": statistics.realtime_factor,
-            "warnings": list(statistics.warnings),
-            "energy_residual": energies.residual if energies else None,
-            "work_in_j": energies.work_in if energies else None,
-            "dissipated_j": energies.dissipated if energies else None,
-            "stored_j": energies.stored if energies else None,
-            "engine_reason": engine_reason,
-        },
-        "frf": _frf_summary(responses, channels) if responses else None,
+            residual_m=static.residual,
+        ),
+        solver=SolverSummary(
+            engine=statistics.engine,
+            callback=statistics.callback,
+            timestep_s=statistics.timestep,
+            steps=statistics.steps,
+            wall_s=statistics.wall_time,
+            realtime_factor=statistics.realtime_factor,
+            warnings=list(statistics.warnings),
+            energy_residual=energies.residual if energies else None,
+            work_in_j=energies.work_in if energies else None,
+            dissipated_j=energies.dissipated if energies else None,
+            stored_j=energies.stored if energies else None,
+            engine_reason=engine_reason,
+        ),
+        frf=_frf_summary(responses, channels) if responses else None,
         # A loaded run contains all notices of the saved run, and most of them are generated again.
-        "notices": list(
+        notices=list(
             dict.fromkeys(
                 [
                     *([body.report] if body.repaired else []),
@@ -294,16 +303,16 @@ def summarise(
                     *dict.fromkeys(reason for motion in responses for reason in motion.response.reasons),
                     *comfort_notices(run),
                     *statistics.notices,
-                    *([f"{measured['file']}: {text}" for text in measured["notices"]] if measured else []),
+                    *([f"{measured.file}: {text}" for text in measured.notices] if measured else []),
                     *notices,
                 ]
             )
         ),
-        "files": files,
-        "measured": measured,
-        "tyre": vehicle.driving.words,
-        "command": command or None,
-    }
+        files=files,
+        measured=measured,
+        tyre=vehicle.driving.words,
+        command=command or None,
+    )
 
 
 def _frf_summary(responses: Sequence[MotionResponse], channels: Sequence[str]) -> FrfSummary:
@@ -311,54 +320,36 @@ def _frf_summary(responses: Sequence[MotionResponse], channels: Sequence[str]) -
 
     Degrees of freedom: averages that would give the random errors by H1, median and range over lines and channels.
     """
-    response = responses[0].response
+    response, several = responses[0].response, len(responses) > 1
     averages = response.averages[np.isfinite(response.averages)]
-    motions: list[MotionSummary] = []
-    for independent in responses:
-        motion: MotionSummary = {
-            "plates": dict(independent.motion),
-            "input": independent.input,
-            "columns": CHANNEL,
-        }
-        if len(responses) > 1:
-            motion |= {
-                "columns": f"{CHANNEL}/{independent.input}",
-                "peaks": _peaks(independent.response, channels),
-            }
-        motions.append(motion)
-    return {
-        "estimator": response.estimator,
-        "window": response.window,
-        "resolution_hz": response.resolution_hz,
-        "degrees_of_freedom": float(np.median(averages)) if averages.size else None,
-        "degrees_of_freedom_range": [float(averages.min()), float(averages.max())] if averages.size else None,
-        "to": motions,
-    }
-
-
-class _Loads(TypedDict, total=False):
-    loads: dict[str, PlacedLoad]
-
-
-def _loads(run: Run) -> _Loads:
-    """Return the loads on the parts of the car as an entry of the summary; empty for a car without loads."""
-    loads: dict[str, PlacedLoad] = {
-        load.path.partition(".")[2]: {"mass_kg": load.numbers.mass, "at_m": list(load.cog), "on": load.parent}
-        for load in run.car.vehicle.composition.loads
-    }
-    return {"loads": loads} if loads else {}
+    return FrfSummary(
+        estimator=response.estimator,
+        window=response.window,
+        resolution_hz=response.resolution_hz,
+        degrees_of_freedom=float(np.median(averages)) if averages.size else None,
+        degrees_of_freedom_range=[float(averages.min()), float(averages.max())] if averages.size else None,
+        to=[
+            MotionSummary(
+                plates=dict(motion.motion),
+                input=motion.input,
+                columns=f"{CHANNEL}/{motion.input}" if several else CHANNEL,
+                peaks=_peaks(motion.response, channels) if several else None,
+            )
+            for motion in responses
+        ],
+    )
 
 
 def _peaks(response: FrequencyResponse | None, channels: Sequence[str]) -> Peaks:
     """Return the resonances of every acceleration channel; empty lists without FRFs."""
     return {
         channel: [
-            {
-                "frequency_hz": peak.frequency_hz,
-                "magnitude": peak.magnitude,
-                "coherence": peak.coherence,
-                "random_error": peak.random_error,
-            }
+            PeakSummary(
+                frequency_hz=peak.frequency_hz,
+                magnitude=peak.magnitude,
+                coherence=peak.coherence,
+                random_error=peak.random_error,
+            )
             for peak in (resonances(response, row) if response else ())
         ]
         for row, channel in enumerate(channels)

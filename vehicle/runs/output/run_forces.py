@@ -1,7 +1,7 @@
 """Applied forces of a run, and what the car does at their frequencies, for its summary."""
 
-from collections.abc import Sequence
-from typing import TypedDict
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from vehicle.names import AXES
 from vehicle.runs.car import Run
 from vehicle.runs.car.order_points import ACCURACY
 from vehicle.signals.analysis.order_lines import order_lines
-from vehicle.signals.records.run_summary import ForceSummary, OrderSummary, RunUpSummary
+from vehicle.signals.records.run_summary import ForceSummary, LineSummary, OrderSummary, RunUpSummary
 
 POINTS = ("seat", "seat_rail")
 """Points of the car whose amplitudes are in the summary, and the knuckles with z alone."""
@@ -23,48 +23,39 @@ WHEELS = "wheels"
 """Angle of an order of any wheel."""
 
 
-class ForceValues(TypedDict, total=False):
-    """Entries of the summary of a run with applied forces."""
-
-    forces: dict[str, ForceSummary]
-    orders: list[OrderSummary]
-    run_up: list[RunUpSummary]
-
-
-def force_values(run: Run) -> ForceValues:
-    """Return the entries of a run with applied forces; empty without them."""
+def force_values(run: Run) -> dict[str, Any]:
+    """Return the entries `forces`, `orders` and `run_up` of a run with applied forces; empty without them."""
     acting = [force for force in run.car.vehicle.composition.forces if force.acts]
     if not acting:
         return {}
-    forces: dict[str, ForceSummary] = {
-        force.name: {
-            "on": force.on or force.joint or f"tyre_{force.tyre}",
-            "unit": force.unit,
-            "against": force.against,
-            "at_m": list(force.at),
-            "force": list(force.force),
-            "moment": list(force.moment),
-            "angle": force.law.angle,
-            "mean": force.mean,
-            "recorded": force.recorded,
-            "lines": [
-                {
-                    "order": frequency / force.speed,
-                    "frequency_hz": frequency / (2.0 * np.pi),
-                    "amplitude": abs(amplitude),
-                    "phase_deg": float(np.degrees(np.angle(amplitude))),
-                }
+    forces = {
+        force.name: ForceSummary(
+            on=force.on or force.joint or f"tyre_{force.tyre}",
+            unit=force.unit,
+            against=force.against,
+            at_m=list(force.at),
+            force=list(force.force),
+            moment=list(force.moment),
+            angle=force.law.angle,
+            mean=force.mean,
+            recorded=force.recorded,
+            lines=[
+                LineSummary(
+                    order=frequency / force.speed,
+                    frequency_hz=frequency / (2.0 * np.pi),
+                    amplitude=abs(amplitude),
+                    phase_deg=float(np.degrees(np.angle(amplitude))),
+                )
                 for frequency, amplitude in force.harmonics.items()
             ],
-        }
+        )
         for force in acting
     }
-    values: ForceValues = {"forces": forces}
-    if any(force.harmonics and force.run_up is None for force in acting):
-        values["orders"] = _orders(run)
-    if any(force.harmonics and force.run_up for force in acting):
-        values["run_up"] = _run_up(run)
-    return values
+    return {
+        "forces": forces,
+        "orders": _orders(run) if any(force.harmonics and force.run_up is None for force in acting) else None,
+        "run_up": _run_up(run) if any(force.harmonics and force.run_up for force in acting) else None,
+    }
 
 
 def _channels(run: Run) -> list[str]:
@@ -85,14 +76,14 @@ def _run_up(run: Run) -> list[RunUpSummary]:
     tops, rpm = np.argmax(np.abs(cut.amplitude), axis=2), 60.0 * cut.turns
     floor = ACCURACY * float(np.max(np.abs(cut.amplitude), initial=0.0))
     return [
-        {
-            "order": order,
-            "peak": {
+        RunUpSummary(
+            order=order,
+            peak={
                 name: float(np.abs(cut.amplitude[row, column, tops[row, column]])) for row, name in enumerate(channels)
             },
-            "rpm": {name: float(rpm[tops[row, column]]) for row, name in enumerate(channels)},
-            "floor": floor,
-        }
+            rpm={name: float(rpm[tops[row, column]]) for row, name in enumerate(channels)},
+            floor=floor,
+        )
         for column, order in enumerate(orders)
     ]
 
@@ -116,6 +107,10 @@ def _orders(run: Run) -> list[OrderSummary]:
     floor = ACCURACY * max(float(np.max(np.abs(each.sum(axis=0)), initial=0.0)) for each in limits.values())
     frictions = "dampers and bushings" if any(law.friction for law in matrices.laws) else "dampers"
     orders: list[OrderSummary] = []
+
+    def by_channel(values: Iterable[Any]) -> dict[str, Any]:
+        return dict(zip(channels, values, strict=True))
+
     for frequency, (order, of) in sorted(angles.items()):
         turns = frequency / (2.0 * np.pi * order)
         try:
@@ -123,25 +118,24 @@ def _orders(run: Run) -> list[OrderSummary]:
         except DataError:  # too short
             continue
         column = matrices.lines.frequencies.index(frequency)
-        sums = {name: np.abs(np.sum(by_force[:, :, column], axis=0)).tolist() for name, by_force in limits.items()}
-        summary: OrderSummary = {
-            "order": order,
-            "of": of,
-            "frequency_hz": frequency / (2.0 * np.pi),
-            "amplitude": dict(zip(channels, np.abs(lines.amplitude[:, 0]).tolist(), strict=True)),
-            "standard_error": dict(zip(channels, np.nan_to_num(lines.error[:, 0]).tolist(), strict=True)),
-            "stuck": dict(zip(channels, sums["stuck"], strict=True)),
-            "without_friction": dict(zip(channels, sums["without_friction"], strict=True)),
-            "frictions": frictions,
-            "floor": floor,
-        }
-        ranges = {
-            name: phase_ranges(acting, by_force, matrices.lines.frequencies, order) for name, by_force in limits.items()
-        }
-        if of == WHEELS and ranges["stuck"]:
-            summary["stuck_range"] = dict(zip(channels, ranges["stuck"], strict=True))
-            summary["without_friction_range"] = dict(zip(channels, ranges["without_friction"], strict=True))
-        orders.append(summary)
+        stuck, free = (np.abs(np.sum(each[:, :, column], axis=0)).tolist() for each in limits.values())
+        ranges = [phase_ranges(acting, each, matrices.lines.frequencies, order) for each in limits.values()]
+        stuck_range, free_range = map(by_channel, ranges) if of == WHEELS and ranges[0] else (None, None)
+        orders.append(
+            OrderSummary(
+                order=order,
+                of=of,
+                frequency_hz=frequency / (2.0 * np.pi),
+                amplitude=by_channel(np.abs(lines.amplitude[:, 0]).tolist()),
+                standard_error=by_channel(np.nan_to_num(lines.error[:, 0]).tolist()),
+                stuck=by_channel(stuck),
+                without_friction=by_channel(free),
+                frictions=frictions,
+                floor=floor,
+                stuck_range=stuck_range,
+                without_friction_range=free_range,
+            )
+        )
     return orders
 
 

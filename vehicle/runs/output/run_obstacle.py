@@ -38,16 +38,16 @@ def obstacle_values(run: Run) -> ObstacleSummary | None:
         each = {axis: value(f"vdv:{name}:seat") for axis, name in zip(AXES, names, strict=True)}
         return each | {"overall": value(f"vdv:{'+'.join(names)}:seat")}
 
-    return {
-        "obstacle": str(road["obstacle"]),
-        "from_s": float(times[0]),
-        "to_s": float(times[1]),
-        "peak_to_peak": {point: {axis: value(f"peak_to_peak:{point}_acc_{axis}") for axis in AXES} for point in points},
-        "vdv": {point: doses(point) for point in points},
-        "settling_s": {point: settling(point) for point in points},
-        "knuckle_peak": {
+    return ObstacleSummary(
+        obstacle=str(road["obstacle"]),
+        from_s=float(times[0]),
+        to_s=float(times[1]),
+        peak_to_peak={point: {axis: value(f"peak_to_peak:{point}_acc_{axis}") for axis in AXES} for point in points},
+        vdv={point: doses(point) for point in points},
+        settling_s={point: settling(point) for point in points},
+        knuckle_peak={
             wheel: value(f"peak:{knuckle}")
             for wheel in run.car.vehicle.wheels
             if (knuckle := f"knuckle_{wheel}_acc_z") in channels
         },
-    }
+    )

@@ -16,7 +16,6 @@ from vehicle.runs.output.folder import output_folder
 from vehicle.runs.output.run_files import write_run
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.formats.reader import read_columns
-from vehicle.signals.records.record_spectra import evaluated_from
 from vehicle.signals.records.run_summary import SUMMARY_FILE, RunSummary, read_summary
 
 
@@ -84,9 +83,9 @@ def load_run(folder: Path | str) -> Run:
         car=car,
         signal=recorded_signal(summary, recording),
         recording=recording,
-        engine_reason=summary["solver"]["engine_reason"],
-        skip=evaluated_from(summary),
-        road=summary["input"]["road"],
+        engine_reason=summary.solver.engine_reason,
+        skip=summary.evaluated_from,
+        road=summary.input.road,
     )
 
 
@@ -96,14 +95,14 @@ def recorded_signal(summary: RunSummary, recording: Recording) -> Signal:
     Raises:
         ConfigurationError: the run records no displacement of a moving plate.
     """
-    excitation = summary["input"]
-    moving = recording.excited or (excitation["wheel"],)
+    excitation = summary.input
+    moving = recording.excited or (excitation.wheel,)
     return Signal(
         time=recording.time,
         displacement={wheel: recording[f"plate_{wheel}_displacement"] for wheel in moving},
-        source=excitation["file"],
-        sha256=excitation["sha256"],
-        highest=excitation["highest_hz"],
+        source=excitation.file,
+        sha256=excitation.sha256,
+        highest=excitation.highest_hz,
     )
 
 
@@ -116,9 +115,9 @@ def file_of_run(folder: Path, summary: RunSummary, purpose: str) -> Path:
     Raises:
         DataError: the summary does not name the file, or it is missing.
     """
-    if purpose not in summary["files"]:
+    if purpose not in summary.files:
         raise DataError(f"{folder / SUMMARY_FILE}: is damaged (files.{purpose} is missing); run the simulation again")
-    path = folder / summary["files"][purpose]
+    path = folder / summary.files[purpose]
     if not path.is_file():
         raise DataError(f"{path}: is missing, although summary.json lists it as {purpose}; run the simulation again")
     return path
@@ -130,25 +129,25 @@ def read_recording(folder: Path, summary: RunSummary) -> Recording:
     Raises:
         DataError: the file is missing or damaged.
     """
-    record, solver = read_columns(file_of_run(folder, summary, "time")), summary["solver"]
-    work, lost, stored = solver["work_in_j"], solver["dissipated_j"], solver["stored_j"]
+    record, solver = read_columns(file_of_run(folder, summary, "time")), summary.solver
+    work, lost, stored = solver.work_in_j, solver.dissipated_j, solver.stored_j
     return Recording(
         time=record.time,
         channels=record.channels,
         units=record.units,
-        excited=in_order(wheel for wheel, rms in summary["input"]["plate_rms_m"].items() if rms > 0.0),
+        excited=in_order(wheel for wheel, rms in summary.input.plate_rms_m.items() if rms > 0.0),
         pose_time=np.empty(0),
         poses=np.empty((0, 0)),
         statistics=Statistics(
-            engine=solver["engine"],
-            callback=solver["callback"],
-            timestep=solver["timestep_s"],
-            steps=solver["steps"],
-            wall_time=solver["wall_s"],
-            warnings=tuple(solver["warnings"]),
+            engine=solver.engine,
+            callback=solver.callback,
+            timestep=solver.timestep_s,
+            steps=solver.steps,
+            wall_time=solver.wall_s,
+            warnings=tuple(solver.warnings),
             energies=None
             if work is None or lost is None or stored is None
             else Energies(work_in=work, dissipated=lost, stored=stored),
-            notices=tuple(summary["notices"]),
+            notices=tuple(summary.notices),
         ),
     )

@@ -89,7 +89,7 @@ def new_files(goals: Sequence[Path]) -> Iterator[list[Path]]:
     goal, folder = goals[0], goals[0].parent
     with _failures_told(goal, folder):
         if linked := [path.parent for path in goals if path.parent != folder and path.parent.is_symlink()]:
-            raise ConfigurationError(f"{linked[0]}: is a link, and files are not written through it; remove it")
+            raise ConfigurationError(f"{linked[0]}: is a link, which is never written through; remove it")
         folder.mkdir(parents=True, exist_ok=True)
         work, _ = _begin(goal)
         new = [work / path.relative_to(folder) for path in goals]
@@ -114,8 +114,8 @@ def new_files(goals: Sequence[Path]) -> Iterator[list[Path]]:
                     raise
                 names = ", ".join(before.name for before, _ in written[:number])
                 raise OutputError(
-                    f"{path}: cannot be written: {error.strerror or error}; {names} is new already, the remaining "
-                    "files are earlier ones: type the command again"
+                    f"{path}: cannot be written: {error.strerror or error}; {names} is new already, the other files "
+                    "are earlier ones; repeat the command"
                 ) from None
     with suppress(OSError):  # the results are in place
         synchronise(folder)
@@ -175,7 +175,7 @@ def _retire(replaced: Path, goal: Path, *, say_rows: bool = False) -> None:
         if os.path.lexists(replaced):
             say(f"{goal}: {_set_aside(replaced, goal)}")
     except OSError:
-        say(f"{goal}: is complete; {replaced.name} remains, until the next command that writes there removes it")
+        say(f"{goal}: is complete; the next command that writes there removes {replaced.name}")
 
 
 @contextmanager

@@ -23,7 +23,6 @@ from vehicle.runs.report.markup import templates
 from vehicle.runs.report.run_input import change_half_width, input_text, references
 from vehicle.runs.report.svg_figure import drawing
 from vehicle.signals.analysis.modal_assurance import mac
-from vehicle.signals.records.run_summary import slip_shares
 
 fill = templates(__file__)
 
@@ -91,10 +90,10 @@ def explained(statements: Markup) -> Markup:
 
 def _of_one(run: FinishedRun, modes: Modes) -> Markup:
     spectra = weighted_bands(run)
-    comfort = run.summary["comfort"].get("seat_rail")
+    comfort = run.summary.comfort.get("seat_rail")
     if comfort is None or not spectra:
         return fill("no_comfort")
-    total = comfort["iso2631"]["vector_sum"]["weighted_rms"]
+    total = comfort.weighted
     texts = [
         f"On {input_text(run)} the weighted acceleration at the seat rail of {run.car.vehicle.name} is "
         f"{number(total)} m/s²: {' to '.join(reactions(total))} (ISO 2631-1; lower is better)."
@@ -139,11 +138,11 @@ def _is_within(band: MainBand) -> str:
 
 def _damper_words(run: FinishedRun) -> str:
     """Return the text on the slip of the dampers; empty without dampers."""
-    shares = slip_shares(run.summary)
+    shares = run.summary.slip_shares
     if not shares:
         return ""
     low, high = (100.0 * limit(shares.values()) for limit in (min, max))
-    if high < 1.0 <= 100.0 * max(run.summary["friction_saturated_share"].values()):
+    if high < 1.0 <= 100.0 * max(run.summary.friction_saturated_share.values()):
         return "; the dampers slide slowly at times"
     if high < 1.0:
         return "; the dampers stick, so they dissipate almost no energy"
@@ -189,8 +188,8 @@ def _effect(first: FinishedRun, run: FinishedRun) -> str:
 
 def _weighted(run: FinishedRun) -> float | None:
     """Return the weighted acceleration at the seat rail [m/s2]; None if it is not recorded."""
-    value = run.summary["comfort"].get("seat_rail")
-    return None if value is None else value["iso2631"]["vector_sum"]["weighted_rms"]
+    value = run.summary.comfort.get("seat_rail")
+    return None if value is None else value.weighted
 
 
 def _percent(first: FinishedRun, run: FinishedRun) -> float | None:
@@ -217,7 +216,7 @@ def what_changed(first: FinishedRun, run: FinishedRun) -> str:
         parts += [_change_words(path, unit, old, new) for path, unit, (old, new) in changed]
     if inputs[0] != inputs[1]:
         parts.append(f"{inputs[1]} instead of {inputs[0]}")
-    engines = [each.summary["solver"]["engine"] for each in (first, run)]
+    engines = [each.summary.solver.engine for each in (first, run)]
     if engines[0] != engines[1]:
         parts.append(f"engine {engines[1]} instead of {engines[0]}")
     text = ", ".join(parts) or "equal car, input and engine"
@@ -229,14 +228,14 @@ def _without_followers(first: FinishedRun, run: FinishedRun, changed: Sequence[C
 
     Others follow them, as the inertia of the body follows its mass.
     """
-    origins = [each.summary["vehicle"] for each in (first, run)]
-    old, new = (origin["overrides"] for origin in origins)
+    origins = [each.summary.vehicle for each in (first, run)]
+    old, new = (origin.overrides for origin in origins)
     texts = [text for text in [*new, *old] if text not in new or text not in old]
     paths = list(dict.fromkeys(text.partition("=")[0].strip() for text in texts))
     # A component of a vector, as stiffness.z, is a part of the parameter.
     paths = [path[:-2] if path[-2:] in (".x", ".y", ".z") else path for path in paths]
     rows_of = [[row for row in changed if f".{row[0]}".endswith(f".{path}")] for path in paths]
-    if not rows_of or not all(rows_of) or origins[0]["file"] != origins[1]["file"]:
+    if not rows_of or not all(rows_of) or origins[0].file != origins[1].file:
         return list(changed)
     return [row for row in changed if any(row in rows for rows in rows_of)]
 
@@ -274,7 +273,7 @@ def _reason(first: FinishedRun, run: FinishedRun, modes: Modes, run_modes: Modes
             else f"of {mode_words(mode)} with {states[0]} dampers, which are {states[1]} now"
         )
         parts += [f"{BY_MODE} {moved}", *_path_words(first, band, mode)]
-    slips = [slip_shares(each.summary) for each in (first, run)]
+    slips = [each.summary.slip_shares for each in (first, run)]
     if list(slips[0]) == list(slips[1]) and slips[0]:
         wheel = max(slips[0], key=lambda name: abs(slips[1][name] - slips[0][name]))
         before, after = (100.0 * slip[wheel] for slip in slips)
@@ -332,15 +331,16 @@ def _numbers(run: FinishedRun) -> dict[str, tuple[float, str, bool]]:
     """Return label to value, unit, and whether a smaller value is better."""
     numbers: dict[str, tuple[float, str, bool]] = {}
     for point, value in run.comfort.items():
-        iso, label = value["iso2631"], point_words(point)
-        numbers[f"{label}, weighted"] = iso["vector_sum"]["weighted_rms"], "m/s²", True
-        numbers |= {f"{label}, weighted, {axis}": (iso[axis]["weighted_rms"], "m/s²", True) for axis in "xyz"}
-        numbers[f"{label}, VDV"] = iso["vector_sum"]["vdv"], "m/s¹·⁷⁵", True
-        if value["rms_2_50_hz"]["overall"] is not None:
-            numbers[f"{label}, unweighted, 2 to 50 Hz"] = value["rms_2_50_hz"]["overall"], "m/s²", True
-    seat = run.summary.get("seat_value")
+        iso, label = value.iso2631, point_words(point)
+        numbers[f"{label}, weighted"] = iso.overall, "m/s²", True
+        numbers |= {f"{label}, weighted, {axis}": (each.weighted_rms, "m/s²", True) for axis, each in iso.axes.items()}
+        if iso.vector_sum is not None and iso.vector_sum.vdv is not None:
+            numbers[f"{label}, VDV"] = iso.vector_sum.vdv, "m/s¹·⁷⁵", True
+        if value.rms_2_50_hz["overall"] is not None:
+            numbers[f"{label}, unweighted, 2 to 50 Hz"] = value.rms_2_50_hz["overall"], "m/s²", True
+    seat = run.summary.seat_value
     if seat is not None:
-        numbers["SEAT value"] = seat["rms"], "", True
+        numbers["SEAT value"] = seat.rms, "", True
     first = round(run.skip / run.recording.timestep)
     wheels = run.car.vehicle.wheels
     for wheel in wheels:
@@ -348,7 +348,7 @@ def _numbers(run: FinishedRun) -> dict[str, tuple[float, str, bool]]:
         if force is not None:
             variation = float(np.std(force[first:]))
             numbers[f"tyre load {side_of(wheel, wheels)}, RMS of its variation"] = variation, "N", True
-    for wheel in slip_shares(run.summary):
+    for wheel in run.summary.slip_shares:
         force = run.recording.channels.get(f"damper_{wheel}_force")
         if force is not None:
             numbers[f"damper force {side_of(wheel, wheels)}, largest"] = float(np.abs(force[first:]).max()), "N", True

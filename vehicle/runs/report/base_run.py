@@ -29,8 +29,8 @@ def base_run(run: FinishedRun) -> FinishedRun | None:
         The run, without FRFs; None if the car is not changed, the engine is another one, the record is longer than
         `LONGEST`, or the unchanged car cannot stand on these plates.
     """
-    excitation, solver = run.summary["input"], run.summary["solver"]
-    if solver["engine"] != "reduced" or excitation["duration_s"] > LONGEST:
+    excitation, solver = run.summary.input, run.summary.solver
+    if solver.engine != "reduced" or excitation.duration_s > LONGEST:
         return None
     try:
         car = _unchanged(run)
@@ -39,7 +39,7 @@ def base_run(run: FinishedRun) -> FinishedRun | None:
         simulated = car.run(recorded_signal(run.summary, run.recording), engine="reduced", skip=run.skip)
     except VehicleError:
         return None
-    simulated = dataclasses.replace(simulated, road=excitation["road"])
+    simulated = dataclasses.replace(simulated, road=excitation.road)
     return FinishedRun(
         name=f"the unchanged {car.vehicle.name}",
         folder=run.folder,
@@ -53,16 +53,16 @@ def base_run(run: FinishedRun) -> FinishedRun | None:
 
 def _unchanged(run: FinishedRun) -> Car | None:
     """Return the unchanged car with the driving state and the solver of the run; None if nothing is changed."""
-    origin = run.summary["vehicle"]
-    road = run.summary["input"].get("road") or {}
+    origin = run.summary.vehicle
+    road = run.summary.input.road or {}
     # An obstacle sets tyres that lift off: they belong to the run.
     kept = [
         text
-        for text in origin["overrides"]
+        for text in origin.overrides
         if text.startswith(OF_THE_RUN) or (road.get("obstacle") and ".one_sided=" in text)
     ]
-    file = None if origin["file"] is None else Path(origin["file"])
-    if len(kept) < len(origin["overrides"]):
+    file = None if origin.file is None else Path(origin.file)
+    if len(kept) < len(origin.overrides):
         car = Car.load(file, kept)
     elif file is not None and (base := base_file(file)) is not None:
         car = Car.load(base, kept)
@@ -82,4 +82,4 @@ def _same_plates(run: FinishedRun, car: Car) -> bool:
     if set(wheels) != set(unchanged):
         return False
     moved = max(abs(a - b) for name in wheels for a, b in zip(wheels[name], unchanged[name], strict=True))
-    return run.summary["input"]["road"] is None or moved < 1e-6
+    return run.summary.input.road is None or moved < 1e-6

@@ -19,13 +19,13 @@ def body_modes(run: FinishedRun, state: str) -> list[str]:
         run: the run, with FRFs to one plate.
         state: state of the dampers, "stuck" or "sliding".
     """
-    car, peaks = run.car, run.summary["peaks"].get(PLACE)
+    car, peaks = run.car, run.summary.peaks.get(PLACE)
     on_body = any(output.name == "seat_rail" and output.on == "body" for output in car.vehicle.composition.outputs)
     single = len(run.responses) == 1 and len(run.responses[0].motion) == 1
     if not (peaks and single and on_body and car.vehicle.body.flexible and len(car.model.superelement.frequencies)):
         return []
-    highest = sorted(peaks, key=lambda peak: -peak["magnitude"])[:MOST_PEAKS]
-    lines = sorted(float(peak["frequency_hz"]) for peak in highest)
+    highest = sorted(peaks, key=lambda peak: -peak.magnitude)[:MOST_PEAKS]
+    lines = sorted(float(peak.frequency_hz) for peak in highest)
     stuck = state == "stuck"
     result = participation(car.model, car.matrices, car.load_rows, PLACE, lines, stuck=stuck, wheel=run.wheel)
     sentences = []

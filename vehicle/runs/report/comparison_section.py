@@ -52,9 +52,9 @@ def numbers_beside(runs: Sequence[FinishedRun]) -> Markup:
             run.name,
             run.car.vehicle.name,
             Path(run.signal.source).name,
-            f"{1e3 * run.summary['input']['rms_m']:.3g}",
-            f"{run.summary['input']['duration_s']:g}",
-            run.summary["solver"]["engine"],
+            f"{1e3 * run.summary.input.rms_m:.3g}",
+            f"{run.summary.input.duration_s:g}",
+            run.summary.solver.engine,
         )
         for run in runs
     ]
@@ -68,7 +68,7 @@ def numbers_beside(runs: Sequence[FinishedRun]) -> Markup:
         figures=figures,
         count=len(changed),
         parameters=parameters,
-        other_signals=len({run.summary["input"]["sha256"] or run.signal.source for run in runs}) > 1,
+        other_signals=len({run.summary.input.sha256 or run.signal.source for run in runs}) > 1,
         noted=_notices(runs),
     )
 
@@ -106,7 +106,7 @@ def _figures_of_many(runs: Sequence[FinishedRun]) -> Table:
 
 def _notices(runs: Sequence[FinishedRun]) -> list[str]:
     """Return the notices of all runs; those that are not of all runs name theirs."""
-    of_runs = {run.name: without_general(run.summary["notices"], run.car.vehicle) for run in runs}
+    of_runs = {run.name: without_general(run.summary.notices, run.car.vehicle) for run in runs}
     texts = dict.fromkeys(text for notices in of_runs.values() for text in notices)
     items = []
     for text in texts:
@@ -125,7 +125,7 @@ def wheelbase_words(runs: Sequence[FinishedRun]) -> list[str]:
     rates = {}
     for run in runs:
         speed, places = run.car.vehicle.driving.speed, [wheel.patch[0] for wheel in run.car.vehicle.composition.wheels]
-        if run.summary["input"].get("road") and speed > 0.0 and np.ptp(places) > 0.0:
+        if run.summary.input.road and speed > 0.0 and np.ptp(places) > 0.0:
             rates[run.name] = speed / float(np.ptp(places))
     if not rates or max(rates.values()) - min(rates.values()) <= LEAST_SHIFT * max(rates.values()):
         return []

@@ -9,7 +9,6 @@ from vehicle.model.parameters.shipped import CARS, vehicle_file
 from vehicle.model.parameters.vehicle import Vehicle, load_vehicle
 from vehicle.names import point_words, side_of
 from vehicle.runs.report.finished_run import FinishedRun
-from vehicle.signals.records.run_summary import slip_shares
 
 MISSING = "–"
 """Text of a parameter or value that a car or run does not have."""
@@ -76,25 +75,23 @@ def key_figures(run: FinishedRun) -> dict[tuple[str, str], float | None]:
     figures: dict[tuple[str, str], float | None] = {}
     for point, value in run.comfort.items():
         label = point_words(point)
-        figures[f"{label}: weighted RMS (ISO 2631-1), all axes", "m/s²"] = value["iso2631"]["vector_sum"][
-            "weighted_rms"
-        ]
+        figures[f"{label}: weighted RMS (ISO 2631-1), all axes", "m/s²"] = value.weighted
         figures |= {
-            (f"{label}: unweighted RMS, 2 to 50 Hz, {axis}", "m/s²"): rms for axis, rms in value["rms_2_50_hz"].items()
+            (f"{label}: unweighted RMS, 2 to 50 Hz, {axis}", "m/s²"): rms for axis, rms in value.rms_2_50_hz.items()
         }
-    shares = slip_shares(summary)
+    shares = summary.slip_shares
     for wheel, share in shares.items():
         figures[f"{side_of(wheel, shares)} damper: time in slip", "%"] = 100.0 * share
-        figures[f"{side_of(wheel, shares)} damper: first slip", "s"] = summary["first_slip_s"][wheel]
+        figures[f"{side_of(wheel, shares)} damper: first slip", "s"] = summary.first_slip_s[wheel]
     for wheel, plate, resonances in run.peaks:
         for channel in (f"knuckle_{wheel}_acc_z", "seat_rail_acc_z"):
             peaks = resonances.get(channel)
             if not peaks:
                 continue
-            top = max(peaks, key=lambda peak: peak["magnitude"])
+            top = max(peaks, key=lambda peak: peak.magnitude)
             point = point_words(channel.removesuffix("_acc_z")) + (f" to the {plate}" if plate else "")
-            figures[f"{point}, z: frequency of the highest resonance", "Hz"] = top["frequency_hz"]
-            figures[f"{point}, z: its height", "m/s² per m"] = top["magnitude"]
+            figures[f"{point}, z: frequency of the highest resonance", "Hz"] = top.frequency_hz
+            figures[f"{point}, z: its height", "m/s² per m"] = top.magnitude
     return figures
 
 

@@ -33,7 +33,7 @@ def film(run: FinishedRun, share: float = 1.0) -> Markup | None:
     Args:
         share: share of `BUDGET` for this film.
     """
-    name = run.summary["files"].get("video")
+    name = run.summary.files.get("video")
     candidates = [] if name is None else [run.folder / name, Path(name)]
     path = next((candidate for candidate in candidates if candidate.is_file()), None)
     return None if path is None else film_part(path, share)

@@ -13,7 +13,7 @@ from vehicle.runs.report.body_modes import body_modes
 from vehicle.runs.report.comfort_class import CREST_FACTOR_LIMIT
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.order_words import order_sentences
-from vehicle.signals.records.run_summary import RunSummary, slip_shares
+from vehicle.signals.records.run_summary import RunSummary
 
 STICKS = 0.01
 """Maximum share of the time in slip of a sticking damper."""
@@ -47,7 +47,7 @@ def findings(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[Find
     sentences += [Finding("Body", text) for text in body_modes(run, damper_state(run))]
     sentences += [Finding("Comfort", text) for text in _comfort(run)]
     sentences += [Finding("Linearity", text) for text in _linearity(run)]
-    return [*sentences, *(Finding("Computation", f"Warning: {text}") for text in summary["solver"]["warnings"])]
+    return [*sentences, *(Finding("Computation", f"Warning: {text}") for text in summary.solver.warnings)]
 
 
 def damper_sentences(summary: RunSummary) -> list[str]:
@@ -56,12 +56,12 @@ def damper_sentences(summary: RunSummary) -> list[str]:
     Args:
         summary: content of the `summary.json` of the run.
     """
-    shares, limit = slip_shares(summary), 1e3 * summary["slip_share"].get("slip_velocity", 0.0)
+    shares, limit = summary.slip_shares, 1e3 * summary.slip_share.get("slip_velocity", 0.0)
     by_state: dict[str, list[str]] = {}
     for wheel, share in shares.items():
-        if share <= STICKS < summary["friction_saturated_share"][wheel]:
+        if share <= STICKS < summary.friction_saturated_share[wheel]:
             state = f"at times sliding slowly, seldom or never faster than {limit:g} mm/s"
-        elif summary["first_slip_s"][wheel] is None:
+        elif summary.first_slip_s[wheel] is None:
             state = "stuck all the time: almost no energy is dissipated, and the strut acts as a rigid link"
         elif share <= STICKS:
             state = "almost always stuck: almost no energy is dissipated, and the strut acts as a rigid link"
@@ -73,7 +73,7 @@ def damper_sentences(summary: RunSummary) -> list[str]:
     sentences = []
     for state, wheels in by_state.items():
         text = f"{_names([side_of(wheel, shares) for wheel in wheels], len(shares))} {state}."
-        if any(summary["first_slip_s"][wheel] is not None for wheel in wheels):
+        if any(summary.first_slip_s[wheel] is not None for wheel in wheels):
             each = [f"{number(100 * shares[wheel], 2)} % ({side_of(wheel, shares)})" for wheel in wheels]
             text += f" Slip, faster than {limit:g} mm/s: {' and '.join(each)} of the time."
         sentences.append(text)
@@ -96,18 +96,18 @@ def _resonances(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[s
             peaks = resonances.get(channel)
             if not peaks:
                 continue
-            top = max(peaks, key=lambda peak: peak["magnitude"])
-            state, nearest = nearest_mode(run, top["frequency_hz"], modes)
+            top = max(peaks, key=lambda peak: peak.magnitude)
+            state, nearest = nearest_mode(run, top.frequency_hz, modes)
             mode = (
                 ""
                 if nearest is None
                 else f", near the mode of {nearest.frequency:.1f} Hz ({nearest.description}; {state})"
             )
             sentences.append(
-                f"The highest vertical resonance at the {point} is at {top['frequency_hz']:.1f} Hz{mode}: "
-                f"{number(top['magnitude'])} m/s² per m{f' of the {plate}' if plate else ''}."
+                f"The highest vertical resonance at the {point} is at {top.frequency_hz:.1f} Hz{mode}: "
+                f"{number(top.magnitude)} m/s² per m{f' of the {plate}' if plate else ''}."
             )
-    if not sentences and not run.summary["input"]["rms_m"]:
+    if not sentences and not run.summary.input.rms_m:
         return ["No plate moves, so there are no FRFs and no resonances."]
     if not sentences and not run.responses:
         return ["This run has no FRFs, so it shows no resonances; the modes of the car are listed below."]
@@ -145,14 +145,14 @@ def nearest_mode(run: FinishedRun, frequency: float, modes: Mapping[str, Sequenc
 
 def damper_state(run: FinishedRun) -> str:
     """Return the state of the dampers during most of the run, "stuck" or "sliding"."""
-    return "sliding" if max(slip_shares(run.summary).values(), default=0.0) > WORKS else "stuck"
+    return "sliding" if max(run.summary.slip_shares.values(), default=0.0) > WORKS else "stuck"
 
 
 def _comfort(run: FinishedRun) -> list[str]:
     """Return a sentence for each point whose crest factor asks for other measures than the RMS of the table."""
     sentences = []
     for point, value in run.comfort.items():
-        factor = max((value["iso2631"][direction]["crest_factor"] or 0.0) for direction in "xyz")
+        factor = max(axis.crest_factor or 0.0 for axis in value.iso2631.axes.values())
         if factor > CREST_FACTOR_LIMIT:
             sentences.append(
                 f"At the {point_words(point)} the crest factor is {factor:.3g}, above {CREST_FACTOR_LIMIT:g}: the "
@@ -163,15 +163,15 @@ def _comfort(run: FinishedRun) -> list[str]:
 
 def _linearity(run: FinishedRun) -> list[str]:
     sentences: list[str] = []
-    if not run.responses and not run.summary["input"]["rms_m"]:
+    if not run.responses and not run.summary.input.rms_m:
         return sentences
     if not run.responses:
-        if run.summary["input"].get("road"):
+        if run.summary.input.road:
             return [
                 "There are no FRFs: on a road the rear wheels follow the front wheels over the same heights, and the "
                 "responses to the plates cannot be separated."
             ]
-        reason = next((text.removeprefix("no FRFs: ") for text in run.summary["notices"] if "no FRFs" in text), "")
+        reason = next((text.removeprefix("no FRFs: ") for text in run.summary.notices if "no FRFs" in text), "")
         return [f"There are no FRFs: {reason}." if reason else "There are no FRFs."]
     rows = {name: row for row, name in enumerate(run.car.vehicle.acceleration_channels)}
     multiple = "multiple coherence, with all plates," if len(run.responses) > 1 else "coherence"

@@ -48,10 +48,10 @@ class FinishedRun(RatedRun):
 
         The words are empty for a single motion.
         """
-        estimate, wheels = self.summary["frf"], self.car.vehicle.wheels
+        estimate, wheels = self.summary.frf, self.car.vehicle.wheels
         if len(self.responses) < 2 or estimate is None:
-            return [(self.wheel, "", self.summary["peaks"])]
-        each = [motion.get("peaks", self.summary["peaks"]) for motion in estimate.get("to", ())]
+            return [(self.wheel, "", self.summary.peaks)]
+        each = [self.summary.peaks if motion.peaks is None else motion.peaks for motion in estimate.to]
         return [
             (motion.first, " and ".join(f"plate {side_of(wheel, wheels)}" for wheel in motion.motion), peaks)
             for motion, peaks in zip(self.responses, each, strict=True)
@@ -61,34 +61,34 @@ class FinishedRun(RatedRun):
     def comfort(self) -> dict[str, ComfortSummary]:
         """Comfort by point; "seat" only if the car has a seat, otherwise it is a point of the body."""
         seated = self.car.vehicle.seated
-        return {point: value for point, value in self.summary["comfort"].items() if point != "seat" or seated}
+        return {point: value for point, value in self.summary.comfort.items() if point != "seat" or seated}
 
     @property
     def wheel(self) -> str:
         """The excited wheel."""
-        return self.summary["input"]["wheel"]
+        return self.summary.input.wheel
 
     @property
     def span(self) -> str:
         """Evaluated span in words; empty for the whole record."""
-        return f"{self.skip:g} to {self.summary['evaluated_s'][1]:g} s" if self.skip > 0.0 else ""
+        return f"{self.skip:g} to {self.summary.evaluated_s[1]:g} s" if self.skip > 0.0 else ""
 
     @cached_property
     def signal(self) -> PlateSignal:
         """Excitation of the run."""
-        return PlateSignal(source=self.summary["input"]["file"], plate_rms=self.summary["input"]["plate_rms_m"])
+        return PlateSignal(source=self.summary.input.file, plate_rms=self.summary.input.plate_rms_m)
 
     @property
     def caption(self) -> str:
         """Caption of a plot: input, level, tyres and engine."""
-        excitation, solver = self.summary["input"], self.summary["solver"]
+        excitation, solver = self.summary.input, self.summary.solver
         estimator = f"; estimator: {self.responses[0].response.estimator}" if self.responses else ""
-        wheel = wheel_words(excitation["wheel"], self.car.vehicle.wheels)
-        level = f"RMS {1e3 * excitation['rms_m']:.3g} mm at the {wheel}" if excitation["rms_m"] else "plates at rest"
+        wheel = wheel_words(excitation.wheel, self.car.vehicle.wheels)
+        level = f"RMS {1e3 * excitation.rms_m:.3g} mm at the {wheel}" if excitation.rms_m else "plates at rest"
         return (
-            f"{Path(excitation['file']).name}, {level}, "
-            f"{excitation['duration_s']:g} s{estimator}; tyres {self.car.vehicle.driving.words}; engine: "
-            f"{solver['engine']}"
+            f"{Path(excitation.file).name}, {level}, "
+            f"{excitation.duration_s:g} s{estimator}; tyres {self.car.vehicle.driving.words}; engine: "
+            f"{solver.engine}"
         )
 
 
@@ -110,9 +110,9 @@ def read_run(
     summary = read_summary(folder)
     vehicle_file, recording = file_of_run(folder, summary, "vehicle"), recording or read_recording(folder, summary)
     run_car = car or _car(vehicle_file, summary)
-    estimate = summary["frf"]
+    estimate = summary.frf
     frfs: tuple[MotionResponse, ...] = ()
-    if estimate is not None and "frf" in summary["files"]:
+    if estimate is not None and "frf" in summary.files:
         table = file_of_run(folder, summary, "frf")
         frfs = _responses(table, run_car.vehicle.acceleration_channels, estimate, summary)
     return FinishedRun(
@@ -128,9 +128,9 @@ def read_run(
 
 def _car(path: Path, summary: RunSummary) -> Car:
     """Return the car of a run; files that `vehicle.toml` names are searched in the folder of the original file."""
-    origin = summary["vehicle"]["file"]
+    origin = summary.vehicle.file
     car = Car(load_vehicle(path), folder=path.parent if origin is None else Path(origin).parent)
-    car.origin = {"file": origin, "overrides": summary["vehicle"]["overrides"]}
+    car.origin = {"file": origin, "overrides": summary.vehicle.overrides}
     return car
 
 
@@ -153,9 +153,9 @@ def _responses(
             random_error=table.random_error[rows],
             averages=np.full((len(rows), table.frequency.size), np.nan),
             segments=0,
-            window=estimate["window"],
-            estimator=estimate["estimator"],
-            resolution_hz=estimate["resolution_hz"],
+            window=estimate.window,
+            estimator=estimate.estimator,
+            resolution_hz=estimate.resolution_hz,
             reasons=(),
         )
         plates = {plate.removeprefix(PLATE): factor for plate, factor in motion}

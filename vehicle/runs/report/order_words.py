@@ -11,29 +11,27 @@ POINTS = ("seat_rail", "seat")
 def force_rows(summary: RunSummary) -> list[tuple[str, str]]:
     """Return name and harmonics of each applied force, for a table."""
     rows = []
-    for name, force in summary.get("forces", {}).items():
-        unit = force["unit"]
-        at = "at the highest speed," if force["angle"] == "crank" and "run_up" in summary else "at"
-        parts = [
-            f"{number(line['amplitude'])} {unit} {at} {number(line['frequency_hz'])} Hz" for line in force["lines"]
-        ]
-        parts += ["recorded history"] if force.get("recorded", not parts and not force["mean"]) else []
-        parts += [f"mean {number(force['mean'])} {unit}"] if force["mean"] else []
-        rows.append((f"force {name} on {force['on']}", ", ".join(parts)))
+    for name, force in (summary.forces or {}).items():
+        unit = force.unit
+        at = "at the highest speed," if force.angle == "crank" and summary.run_up is not None else "at"
+        parts = [f"{number(line.amplitude)} {unit} {at} {number(line.frequency_hz)} Hz" for line in force.lines]
+        parts += ["recorded history"] if force.recorded else []
+        parts += [f"mean {number(force.mean)} {unit}"] if force.mean else []
+        rows.append((f"force {name} on {force.on}", ", ".join(parts)))
     return rows
 
 
 def order_sentences(summary: RunSummary) -> list[str]:
     """Return text on each frequency of the applied forces: amplitudes at seat or seat rail."""
-    sentences = [*filter(None, (_run_up_sentence(line) for line in summary.get("run_up", [])))]
-    for line in summary.get("orders", []):
-        point = next((name for name in POINTS if f"{name}_acc_z" in line["amplitude"]), None)
+    sentences = [*filter(None, (_run_up_sentence(line) for line in summary.run_up or ()))]
+    for line in summary.orders or ():
+        point = next((name for name in POINTS if f"{name}_acc_z" in line.amplitude), None)
         if point is not None:
             axis = _axes(line, point)[0]
-            name, frictions = f"{point}_acc_{axis}", line.get("frictions", "dampers")
-            if line["amplitude"][name] <= line.get("floor", 0.0):
+            name, frictions = f"{point}_acc_{axis}", line.frictions
+            if line.amplitude[name] <= line.floor:
                 continue
-            stuck, free = (number(line[limit][name]) for limit in ("stuck", "without_friction"))
+            stuck, free = (number(limit[name]) for limit in (line.stuck, line.without_friction))
             sentences.append(
                 f"Forces at {line_words(line)} shake the {point_words(point)} by {amplitude_words(line, point)} "
                 f"(amplitudes). Along {axis} {frictions} that stick would give {stuck} m/s², {frictions} without "
@@ -47,32 +45,32 @@ def _run_up_sentence(line: RunUpSummary) -> str:
 
     It is empty for a peak below the accuracy of the engine.
     """
-    names = [name for point in POINTS if (name := f"{point}_acc_z") in line["peak"]] or [*line["peak"]]
-    if line["peak"][names[0]] <= line.get("floor", 0.0):
+    names = [name for point in POINTS if (name := f"{point}_acc_z") in line.peak] or [*line.peak]
+    if line.peak[names[0]] <= line.floor:
         return ""
-    rpm = line["rpm"][names[0]]
-    frequency = number(line["order"] * rpm / 60.0)
+    rpm = line.rpm[names[0]]
+    frequency = number(line.order * rpm / 60.0)
     return (
-        f"Order {line['order']:g} of the crankshaft is largest at {number(rpm)}/min ({frequency} Hz): "
-        f"{channel_words(names[0])} {number(line['peak'][names[0]])} m/s² (amplitude, over 8 turns)."
+        f"Order {line.order:g} of the crankshaft is largest at {number(rpm)}/min ({frequency} Hz): "
+        f"{channel_words(names[0])} {number(line.peak[names[0]])} m/s² (amplitude, over 8 turns)."
     )
 
 
 def _chance(line: OrderSummary, name: str) -> str:
     """Return text with the ranges of a channel over the phases of the wheels; empty for a single wheel."""
-    if "stuck_range" not in line or "without_friction_range" not in line:
+    if line.stuck_range is None or line.without_friction_range is None:
         return ""
     stuck, free = (
         f"{number(low)} to {number(high)} m/s²"
-        for low, high in (line["stuck_range"][name], line["without_friction_range"][name])
+        for low, high in (line.stuck_range[name], line.without_friction_range[name])
     )
     return f" These values depend on the phase between the wheels: over all phases {stuck} and {free}."
 
 
 def line_words(line: OrderSummary) -> str:
     """Return frequency and order of a line, as "15.9 Hz (order 1 of the wheels)"."""
-    of = {"wheels": "the wheels", "crank": "the crankshaft"}.get(line["of"])
-    return f"{number(line['frequency_hz'])} Hz" + (f" (order {line['order']:g} of {of})" if of else "")
+    of = {"wheels": "the wheels", "crank": "the crankshaft"}.get(line.of)
+    return f"{number(line.frequency_hz)} Hz" + (f" (order {line.order:g} of {of})" if of else "")
 
 
 def amplitude_words(line: OrderSummary, point: str) -> str:
@@ -82,13 +80,13 @@ def amplitude_words(line: OrderSummary, point: str) -> str:
     """
     texts = []
     for axis in _axes(line, point):
-        size, error = (line[key].get(f"{point}_acc_{axis}", 0.0) for key in ("amplitude", "standard_error"))
+        size, error = (each.get(f"{point}_acc_{axis}", 0.0) for each in (line.amplitude, line.standard_error))
         doubt = f" ± {number(error, 2)}" if error > 0.01 * size else ""
-        if size > line.get("floor", 0.0):
+        if size > line.floor:
             texts.append(f"{number(size)}{doubt} m/s² along {axis}")
     return ", ".join(texts)
 
 
 def _axes(line: OrderSummary, point: str) -> list[str]:
     """Return the axes of a point, that with the largest amplitude first."""
-    return sorted(AXES, key=lambda axis: -line["amplitude"].get(f"{point}_acc_{axis}", 0.0))
+    return sorted(AXES, key=lambda axis: -line.amplitude.get(f"{point}_acc_{axis}", 0.0))

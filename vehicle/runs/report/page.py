@@ -154,7 +154,7 @@ def _of_one(run: FinishedRun, modes: Modes, trial_part: Markup) -> list[Part]:
 
 def warned(runs: Sequence[FinishedRun]) -> Markup:
     """Return a line with the last warning of the solver, as on the error outside the valid range of the engine."""
-    texts = {run.name: run.summary["solver"]["warnings"][-1] for run in runs if run.summary["solver"]["warnings"]}
+    texts = {run.name: run.summary.solver.warnings[-1] for run in runs if run.summary.solver.warnings}
     if not texts:
         return Markup()
     name, others = next(iter(texts)), len(texts) - 1
@@ -165,9 +165,7 @@ def warned(runs: Sequence[FinishedRun]) -> Markup:
 
 def _drawn(runs: Sequence[FinishedRun]) -> list[int]:
     """Return the indices of runs with pictures of their own: all; above `MANY` the first, the calmest, the loudest."""
-    totals = [
-        value["iso2631"]["vector_sum"]["weighted_rms"] for run in runs for value in list(run.comfort.values())[:1]
-    ]
+    totals = [value.weighted for run in runs for value in list(run.comfort.values())[:1]]
     if len(runs) <= MANY:
         return list(range(len(runs)))
     ends = (totals.index(min(totals)), totals.index(max(totals))) if len(totals) == len(runs) else (1, len(runs) - 1)

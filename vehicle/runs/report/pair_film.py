@@ -86,7 +86,7 @@ def _simulated(run: FinishedRun) -> Run:
         raise DataError(
             f"{run.place}: cannot be simulated again for a film ({error}); run it with all default channels"
         ) from None
-    return replace(run.car.run(signal, engine="mujoco"), road=run.summary["input"]["road"])
+    return replace(run.car.run(signal, engine="mujoco"), road=run.summary.input.road)
 
 
 def deviation(saved: FinishedRun, again: Run) -> float:

@@ -15,15 +15,15 @@ from vehicle.signals.analysis.ride_comfort import WEIGHTED, comfort_columns, wav
 
 def input_text(run: FinishedRun) -> str:
     """Return the input in words: the road with its speed, or the file with its level."""
-    road, excitation = run.summary["input"].get("road") or {}, run.summary["input"]
+    road, excitation = run.summary.input.road or {}, run.summary.input
     if road.get("level"):
         return f"a level road at {road['speed_kmh']:g} km/h"
     if road.get("class"):
         return f"a road of class {road['class']} at {road['speed_kmh']:g} km/h"
     if road.get("speed_kmh"):
-        named = road.get("obstacle") or road.get("profile") or Path(excitation["file"]).name
+        named = road.get("obstacle") or road.get("profile") or Path(excitation.file).name
         return f"{named} at {road['speed_kmh']:g} km/h"
-    return f"{Path(excitation['file']).name} (RMS {1e3 * excitation['rms_m']:.3g} mm)"
+    return f"{Path(excitation.file).name} (RMS {1e3 * excitation.rms_m:.3g} mm)"
 
 
 def references(runs: Sequence[FinishedRun]) -> list[int | None]:
@@ -34,7 +34,7 @@ def references(runs: Sequence[FinishedRun]) -> list[int | None]:
         compared: the first run is the reference of all others. Roads and speeds are nobody's choice.
     """
     inputs = [input_text(run) for run in runs]
-    if len(set(inputs)) == len(inputs) and not any(run.summary["input"].get("road") for run in runs):
+    if len(set(inputs)) == len(inputs) and not any(run.summary.input.road for run in runs):
         return [None, *[0] * (len(runs) - 1)]
     return [None if inputs.index(text) == number else inputs.index(text) for number, text in enumerate(inputs)]
 
@@ -51,7 +51,7 @@ def change_half_width(first: FinishedRun, run: FinishedRun) -> float | None:
     Returns:
         The half width; None unless both drive on the same random road, with the same seed and the same evaluated span.
     """
-    road, names = first.summary["input"].get("road") or {}, [f"{POINT}_acc_{axis}" for axis in AXES]
+    road, names = first.summary.input.road or {}, [f"{POINT}_acc_{axis}" for axis in AXES]
     roads = [_same_for_both(each) for each in (first, run)]
     recorded = all(name in each.recording.channels for each in (first, run) for name in names)
     if not (road.get("class") or road.get("profile")) or roads[0] != roads[1] or not recorded:
@@ -67,6 +67,6 @@ def change_half_width(first: FinishedRun, run: FinishedRun) -> float | None:
 
 def _same_for_both(run: FinishedRun) -> tuple[object, ...]:
     """Return what two runs on one road have in common: road, level, and evaluated span."""
-    road = run.summary["input"].get("road") or {}
+    road = run.summary.input.road or {}
     parts = (road.get(key) for key in ("class", "profile", "speed_kmh", "seed", "coherence"))
-    return *parts, run.summary["input"]["rms_m"], run.summary["input"]["duration_s"], run.skip
+    return *parts, run.summary.input.rms_m, run.summary.input.duration_s, run.skip

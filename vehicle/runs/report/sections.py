@@ -23,7 +23,6 @@ from vehicle.runs.report.general_notices import without_general
 from vehicle.runs.report.markup import templates
 from vehicle.runs.report.order_words import force_rows
 from vehicle.runs.report.svg_figure import drawing
-from vehicle.signals.records.run_summary import slip_shares, unweighted_rms
 
 fill = templates(__file__)
 
@@ -60,10 +59,10 @@ NO_FIGURE = Markup()
 def tiles(run: FinishedRun) -> Markup:
     """Return the key figures of a run as tiles."""
     summary = run.summary
-    shares = slip_shares(summary)
+    shares = summary.slip_shares
     values = []
     for point, value in list(run.comfort.items())[:1]:
-        total = value["iso2631"]["vector_sum"]["weighted_rms"]
+        total = value.weighted
         label = f"weighted acceleration at the {point.replace('_', ' ')}, {' to '.join(reactions(total))}"
         values.append((f"{number(total)} m/s²", label))
     values += [
@@ -72,13 +71,13 @@ def tiles(run: FinishedRun) -> Markup:
     ]
     for wheel, plate, resonances in run.peaks[:1]:
         if peaks := resonances.get(f"knuckle_{wheel}_acc_z"):
-            top = max(peaks, key=lambda peak: peak["magnitude"])
+            top = max(peaks, key=lambda peak: peak.magnitude)
             to_plate = f", FRF to the {plate}" if plate else ""
             label = f"highest resonance of the vertical motion of the knuckle{to_plate}"
-            values.append((f"{top['frequency_hz']:.1f} Hz", label))
-    if summary["input"]["rms_m"]:
+            values.append((f"{top.frequency_hz:.1f} Hz", label))
+    if summary.input.rms_m:
         plate = side_of(run.wheel, run.car.vehicle.wheels)
-        values.append((f"{1e3 * summary['input']['rms_m']:.3g} mm", f"RMS displacement of the {plate} plate"))
+        values.append((f"{1e3 * summary.input.rms_m:.3g} mm", f"RMS displacement of the {plate} plate"))
     return fill("tiles", values=values)
 
 
@@ -92,33 +91,33 @@ def what_was_found(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> Mar
 
 def notices(run: FinishedRun) -> Markup | None:
     """Return the notices on this run; None without notices."""
-    texts = without_general(run.summary["notices"], run.car.vehicle)
+    texts = without_general(run.summary.notices, run.car.vehicle)
     return fill("notices", texts=texts) if texts else None
 
 
 def what_was_run(run: FinishedRun) -> Markup:
     """Return tables of car, signal and engine, and of parameters that differ from the shipped car."""
-    excitation, solver, vehicle = run.summary["input"], run.summary["solver"], run.car.vehicle
+    excitation, solver, vehicle = run.summary.input, run.summary.solver, run.car.vehicle
     signal = [
-        ("file", excitation["file"]),
-        ("SHA-256", (excitation["sha256"] or "–")[:16]),
-        ("length", f"{excitation['duration_s']:g} s"),
+        ("file", excitation.file),
+        ("SHA-256", (excitation.sha256 or "–")[:16]),
+        ("length", f"{excitation.duration_s:g} s"),
     ]
     signal += [
         (f"plate {side_of(wheel, vehicle.wheels)}", f"RMS {1e3 * rms:.4g} mm" if rms else "at rest")
-        for wheel, rms in excitation["plate_rms_m"].items()
+        for wheel, rms in excitation.plate_rms_m.items()
     ]
     if run.span:
         signal.append(("comfort, slip shares, densities of", run.span))
     signal += force_rows(run.summary)
-    road = excitation.get("road") or {}
+    road = excitation.road or {}
     signal += [(word, str(road[key])) for key, word in ROAD_WORDS.items() if road.get(key) is not None]
     engine = [
-        ("engine", f"{solver['engine']} ({solver['engine_reason']})"),
-        ("step", f"{1e3 * solver['timestep_s']:g} ms, {solver['steps']} steps"),
-        ("computing time", f"{solver['wall_s']:.3g} s, {number(solver['realtime_factor'])} times real time"),
+        ("engine", f"{solver.engine} ({solver.engine_reason})"),
+        ("step", f"{1e3 * solver.timestep_s:g} ms, {solver.steps} steps"),
+        ("computing time", f"{solver.wall_s:.3g} s, {number(solver.realtime_factor)} times real time"),
     ]
-    if (residual := solver["energy_residual"]) is not None:
+    if (residual := solver.energy_residual) is not None:
         engine.append(("energy error", f"{residual:.1e} of the input work"))
     car = [
         ("name", vehicle.name),
@@ -140,7 +139,7 @@ def what_was_run(run: FinishedRun) -> Markup:
 
 def _origin(run: FinishedRun) -> str:
     """Return the vehicle file; no path for a shipped car, since it depends on the machine."""
-    file = run.summary["vehicle"]["file"]
+    file = run.summary.vehicle.file
     if file is None or Path(file).resolve().parent.parent == VEHICLES.resolve():
         return "shipped with the program"
     return str(file)
@@ -159,10 +158,10 @@ def time_figure(run: FinishedRun, runs: Sequence[FinishedRun] = ()) -> Markup:
 def dampers(run: FinishedRun) -> Markup | None:
     """Return the table of slip, maximum velocity and maximum force of each damper; None without dampers."""
     summary = run.summary
-    share, first = summary["slip_share"], summary["first_slip_s"]
+    share, first = summary.slip_share, summary.first_slip_s
     if not first:
         return None
-    saturated, ended = summary["friction_saturated_share"], summary["first_friction_saturated_s"]
+    saturated, ended = summary.friction_saturated_share, summary.first_friction_saturated_s
     rows = []
     for wheel in first:
         velocity, force = (
@@ -179,7 +178,7 @@ def dampers(run: FinishedRun) -> Markup | None:
                 f"{number(force)} N",
             )
         )
-    return fill("dampers", slip=1e3 * share["slip_velocity"], limit=1e3 * summary["saturated_velocity"], rows=rows)
+    return fill("dampers", slip=1e3 * share["slip_velocity"], limit=1e3 * summary.saturated_velocity, rows=rows)
 
 
 def _when(value: float | None) -> str:
@@ -205,12 +204,12 @@ def _resonances(
         for channel, point in main_points(run, wheel).items()
     ]
     for plate, point, all_peaks in main:
-        peaks = sorted(all_peaks, key=lambda peak: -peak["magnitude"])[:STRONGEST]
+        peaks = sorted(all_peaks, key=lambda peak: -peak.magnitude)[:STRONGEST]
         rows = []
-        for peak in sorted(peaks, key=lambda peak: peak["frequency_hz"]):
-            state, mode = nearest_mode(run, peak["frequency_hz"], modes)
+        for peak in sorted(peaks, key=lambda peak: peak.frequency_hz):
+            state, mode = nearest_mode(run, peak.frequency_hz, modes)
             near = "" if mode is None else f"{mode.frequency:.2f} Hz, {mode.description}"
-            rows.append((near, f"{peak['frequency_hz']:.2f}", number(peak["magnitude"]), number(peak["coherence"])))
+            rows.append((near, f"{peak.frequency_hz:.2f}", number(peak.magnitude), number(peak.coherence)))
         if rows:
             count = f"the {len(rows)} highest" if len(rows) > 1 else "one found"
             caption = f"Vertical resonances at the {point}{plate}: {count}; modes with {state}"
@@ -226,31 +225,41 @@ def comfort(run: FinishedRun, bands: Markup = NO_FIGURE) -> Markup:
     """
     points, totals = [], {}
     for point, value in run.comfort.items():
-        iso, (raw, (low, high)) = value["iso2631"], unweighted_rms(value)
-        totals[point_words(point)] = iso["vector_sum"]["weighted_rms"]
+        iso, (raw, (low, high)) = value.iso2631, value.unweighted
+        totals[point_words(point)] = iso.overall
         rows = [
             (
                 axis,
-                iso[axis]["weighting"],
-                *(number(iso[axis][key]) for key in ("weighted_rms", "mtvv", "crest_factor", "vdv", "msdv")),
+                values.weighting,
+                *map(number, (values.weighted_rms, values.mtvv, values.crest_factor, values.vdv, values.msdv)),
                 number(raw[axis]),
             )
-            for axis in "xyz"
+            for axis, values in iso.axes.items()
         ]
-        whole = iso["vector_sum"]
-        half = {name: f" ± {number(width, 2)}" for name, width in value.get("half_interval", {}).items()}
-        weighted = number(whole["weighted_rms"]) + half.get("weighted", "")
+        half = {name: f" ± {number(width, 2)}" for name, width in (value.half_interval or {}).items()}
+        weighted = number(iso.overall) + half.get("weighted", "")
         unweighted = number(raw["overall"]) + half.get("unweighted", "")
-        rows.append(("all", "", weighted, "", "", number(whole["vdv"]), "", unweighted))
-        reasons = [*iso["reasons"], *(["±: 95 % interval over roads of this class"] if half else [])]
+        rows.append(
+            (
+                "all",
+                "",
+                weighted,
+                "",
+                "",
+                number(None if iso.vector_sum is None else iso.vector_sum.vdv),
+                "",
+                unweighted,
+            )
+        )
+        reasons = [*iso.reasons, *(["±: 95 % interval over roads of this class"] if half else [])]
         span = f", {run.span} of the run" if run.span else ""
-        caption = f"{point_words(point).capitalize()}, {iso['standard']}{span}"
+        caption = f"{point_words(point).capitalize()}, {iso.standard}{span}"
         points.append((caption, low, high, rows, reasons))
     matches = [
         (_range(low, high), word, [point for point, total in totals.items() if word in reactions(total)])
         for word, low, high in REACTIONS
     ]
-    return fill("comfort", bands=bands, points=points, reactions=matches, seat=run.summary.get("seat_value"))
+    return fill("comfort", bands=bands, points=points, reactions=matches, seat=run.summary.seat_value)
 
 
 def _range(low: float, high: float) -> str:
@@ -261,18 +270,18 @@ def _range(low: float, high: float) -> str:
 
 def measured(run: FinishedRun) -> Markup | None:
     """Return the table of differences, largest first, and the pictures; None without a measurement."""
-    comparison = run.summary.get("measured")
+    comparison = run.summary.measured
     if not comparison:
         return None
-    heads = list(dict.fromkeys(key for row in comparison["table"] for key in row))
-    rows = [[_cell(row.get(key)) for key in heads] for row in comparison["table"]]
+    heads = list(dict.fromkeys(key for row in comparison.table for key in row))
+    rows = [[_cell(row.get(key)) for key in heads] for row in comparison.table]
     titles = [UNITS.get(head, head.replace("_", " ")) for head in heads]
     pictures = [
         (base64.b64encode(path.read_bytes()).decode("ascii"), purpose.replace("_", " "))
-        for purpose, name in run.summary["files"].items()
+        for purpose, name in run.summary.files.items()
         if purpose.startswith("compare_") and (path := run.folder / name).suffix == ".png" and path.is_file()
     ]
-    return fill("measured", file=comparison["file"], heads=titles, rows=rows, pictures=pictures)
+    return fill("measured", file=comparison.file, heads=titles, rows=rows, pictures=pictures)
 
 
 def _cell(value: object) -> str:
@@ -291,31 +300,31 @@ def tables(run: FinishedRun) -> Markup:
     peaks = [
         (
             channel + (f" to the {plate}" if plate else ""),
-            ", ".join(f"{peak['frequency_hz']:.2f} ({number(peak['magnitude'])})" for peak in peaks),
+            ", ".join(f"{peak.frequency_hz:.2f} ({number(peak.magnitude)})" for peak in peaks),
         )
         for _, plate, resonances in run.peaks
         for channel, peaks in resonances.items()
         if peaks
     ]
-    static = summary["static"]
+    static = summary.static
     wheels = run.car.vehicle.wheels
-    loads = [(f"tyre {side_of(wheel, wheels)}", f"{load:.0f}") for wheel, load in static["tyre_load_n"].items()]
-    loads += [(f"rear support {name}", f"{load:.0f}") for name, load in static["rear_support_load_n"].items()]
+    loads = [(f"tyre {side_of(wheel, wheels)}", f"{load:.0f}") for wheel, load in static.tyre_load_n.items()]
+    loads += [(f"rear support {name}", f"{load:.0f}") for name, load in static.rear_support_load_n.items()]
     return fill("values", levels=levels, peaks=peaks, loads=loads)
 
 
 def repeating(run: FinishedRun) -> Markup:
     """Return the command of the run, and a command that repeats the run from its folder."""
     again = ["python", "-m", "vehicle.shaker", "--vehicle", f"{run.place}/vehicle.toml", *_signal_again(run)]
-    again += ["--engine", run.summary["solver"]["engine"]]
-    files = ", ".join(run.summary["files"].values())
-    return fill("repeat", command=run.summary.get("command"), again=shlex.join(again), files=files)
+    again += ["--engine", run.summary.solver.engine]
+    files = ", ".join(run.summary.files.values())
+    return fill("repeat", command=run.summary.command, again=shlex.join(again), files=files)
 
 
 def _signal_again(run: FinishedRun) -> list[str]:
     """Return options for the same plate displacements; for a road the recorded displacements."""
-    if run.summary["input"].get("road"):
-        again = ["--input", f"{run.place}/{run.summary['files']['time']}", "--any-level"]
+    if run.summary.input.road:
+        again = ["--input", f"{run.place}/{run.summary.files['time']}", "--any-level"]
     else:
-        again = ["--input", run.summary["input"]["file"]]
-    return [*again, "--skip", f"{run.summary['evaluated_s'][0]:g}"] if run.span else again
+        again = ["--input", run.summary.input.file]
+    return [*again, "--skip", f"{run.summary.evaluated_s[0]:g}"] if run.span else again

@@ -53,10 +53,10 @@ def _spectra(run: FinishedRun) -> RecordSpectra:
         run.caption,
         recorded,
         begin=run.skip,
-        road=run.summary["input"].get("road"),
+        road=run.summary.input.road,
     )
 
 
 def _points(run: FinishedRun) -> tuple[str, ...]:
     """Return the points of the figures: the seat only if the car has one."""
-    return ("seat_rail", "seat") if run.summary.get("seat_value") is not None else ("seat_rail",)
+    return ("seat_rail", "seat") if run.summary.seat_value is not None else ("seat_rail",)

@@ -17,8 +17,7 @@ from vehicle.runs.car import Car
 from vehicle.runs.figures.run_batch import Runs
 from vehicle.runs.figures.value import require_unit, values_of
 from vehicle.runs.targets.target import Target
-from vehicle.signals.records.record_spectra import evaluated_from
-from vehicle.signals.records.run_summary import RunSummary, comfort_band
+from vehicle.signals.records.run_summary import RunSummary
 
 MET, MISSED, UNDECIDED, NOT_RUN = "met", "missed", "undecided", "no run"
 """States of a figure."""
@@ -68,34 +67,34 @@ class RatedRun:
     @property
     def skip(self) -> float:
         """Begin of the evaluated span [s]."""
-        return evaluated_from(self.summary)
+        return self.summary.evaluated_from
 
     @property
     def label(self) -> str:
         """Name of the car and its changed parameters, except those set by the road."""
-        return ", ".join([self.summary["vehicle"]["name"], *self.changes])
+        return ", ".join([self.summary.vehicle.name, *self.changes])
 
     @property
     def changes(self) -> list[str]:
         """Changed parameters of the car, "path=value", except those set by the road."""
-        overrides = self.summary["vehicle"]["overrides"]
+        overrides = self.summary.vehicle.overrides
         return [text for text in overrides if not text.startswith("driving.speed=") and "one_sided=" not in text]
 
     @property
     def runs(self) -> Runs:
         """Time histories and static data for the figures."""
         recording = self.recording
-        road, obstacle = self.summary["input"].get("road") or {}, self.summary.get("obstacle")
+        road, obstacle = self.summary.input.road or {}, self.summary.obstacle
         return Runs(
             time=recording.time,
             channels={name: history[None] for name, history in recording.channels.items()},
             vehicles=(self.car.vehicle,),
-            tyre_load={wheel: np.array([load]) for wheel, load in self.summary["static"]["tyre_load_n"].items()},
+            tyre_load={wheel: np.array([load]) for wheel, load in self.summary.static.tyre_load_n.items()},
             random=road.get("class") is not None or road.get("profile") is not None,
-            left_obstacle=None if obstacle is None else obstacle["to_s"],
+            left_obstacle=None if obstacle is None else obstacle.to_s,
             cars=(self.car,),
             skip=self.skip,
-            band=comfort_band(self.summary),
+            band=self.summary.comfort_band,
         )
 
     def value_of(self, target: Target) -> tuple[float, float | None]:
@@ -194,19 +193,19 @@ def missing_runs(figures: Mapping[str, Target], runs: Sequence[RatedRun]) -> str
                 without[name] = inputs[figure.where] = commands[_command_for(figure, car)] = None
     if not without:
         return ""
-    return (f"no run for {len(without)} of {len(figures)} targets; missing {'; '.join(inputs)}: "
+    return (f"{len(without)} of {len(figures)} targets have no run; run {'; '.join(inputs)}: "
             f"{' && '.join(commands)}")  # fmt: skip
 
 
 def _is_on(run: RatedRun, figure: Target) -> bool:
     """Return True if a run is on the input of a figure."""
-    excitation = run.summary["input"]
-    return figure.on(run.name, excitation["file"], excitation.get("road"))
+    excitation = run.summary.input
+    return figure.on(run.name, excitation.file, excitation.road)
 
 
 def _command_for(figure: Target, run: RatedRun) -> str:
     """Return the command that runs the car of a run on the input of a figure."""
-    name, file = run.summary["vehicle"]["name"], run.summary["vehicle"]["file"]
+    name, file = run.summary.vehicle.name, run.summary.vehicle.file
     shipped = name in CARS and (file is None or Path(file) == vehicle_file(name))
     parts = ["python", "-m", "vehicle", "shaker", "--vehicle", name if shipped else str(file)]
     if road := figure.road or figure.obstacle:
@@ -226,14 +225,14 @@ def sentence(figures: Mapping[str, Target], car: str, rated: Mapping[str, Rated]
 
     met, missed, undecided, absent = (named(state) for state in (MET, MISSED, UNDECIDED, NOT_RUN))
     if len(absent) == len(rated):
-        return f"No target was checked for {car}: the target file has none of the inputs of its runs."
+        return f"No target was checked for {car}: none of its runs is on an input of the targets file."
     text = f"{car} meets {len(met)} of {len(rated) - len(absent)} targets"
     if missed:
         text += f" and misses {_enumeration(missed)}"
     if undecided:
         text += f"; the run is too short to decide on {_enumeration(undecided)}"
     if absent:
-        text += f"; there is no run for {_enumeration(absent)}"
+        text += f"; {_enumeration(absent)} had no run"
     return f"{text}."
 
 

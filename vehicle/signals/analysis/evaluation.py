@@ -3,13 +3,13 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis import rail_comfort
+from vehicle.signals.analysis.contact_vibration import AxisVibration, ContactVibration, VibrationSums
 from vehicle.signals.analysis.exposure import (
     RunningAverage,
     crest_factor,
@@ -42,8 +42,6 @@ START_UP_EFFECT = 0.01
 """Minimum relative excess of the maximum during the settling of a filter over the later maximum, for a notice [-]."""
 CLOCK_TOLERANCE = 1e-3
 """Maximum relative error of a sampling rate computed from times with jitter [-]."""
-DOSES = ("vdv", "estimated_vdv", "msdv", "msdv_weighting", "vdv_ratio")
-"""Values of an axis that are None for a standard without dose values."""
 OFFSET_EFFECT = 0.01
 """Maximum relative change of a weighted RMS or VDV by the offset; above it the user must choose a treatment [-]."""
 LARGEST_MEAN = 1.0
@@ -120,10 +118,10 @@ class _Span:
 
 
 def _axis(
-    span: _Span, record: Vector, name: str, factor: float, average: RunningAverage
-) -> tuple[dict[str, Any], list[str]]:
-    """Return the measures of an axis (n,) and the notices on them."""
-    step, sickness = span.time_step, _motion_sickness(span, record)
+    span: _Span, record: Vector, name: str, factor: float, average: RunningAverage, *, doses: bool
+) -> tuple[AxisVibration, list[str]]:
+    """Return the measures of an axis (n,) and the notices on them; `doses`: see `Application`."""
+    step = span.time_step
     response = weighted_record(step, record, name)
     weighted, settled = span.whole(response), span.settled(response, name)
     if not settled.size:
@@ -153,19 +151,19 @@ def _axis(
             f"with them MTVV is {mtvv(step, weighted, average=average):.3g} instead of {transient:.3g} m/s2, the peak "
             f"{with_it:.3g} instead of {peak:.3g} m/s2; if the record starts at rest, set --offset keep"
         )
-    values = {
-        "weighting": name,
-        "multiplying_factor": factor,
-        "weighted_rms": rms,
-        "mtvv": transient,
-        "crest_factor": crest_factor(settled),
-        "vdv": dose,
-        "estimated_vdv": estimated_vibration_dose_value(rms, duration),
-        "msdv": sickness,
-        "msdv_weighting": MOTION_SICKNESS,
-        "mtvv_ratio": transient / settled_rms if settled_rms > 0.0 else None,
-        "vdv_ratio": dose / (rms * duration**0.25) if rms > 0.0 else None,
-    }
+    values = AxisVibration(
+        weighting=name,
+        multiplying_factor=factor,
+        weighted_rms=rms,
+        mtvv=transient,
+        crest_factor=crest_factor(settled),
+        vdv=dose if doses else None,
+        estimated_vdv=estimated_vibration_dose_value(rms, duration) if doses else None,
+        msdv=_motion_sickness(span, record) if doses else None,
+        msdv_weighting=MOTION_SICKNESS if doses else None,
+        mtvv_ratio=transient / settled_rms if settled_rms > 0.0 else None,
+        vdv_ratio=dose / (rms * duration**0.25) if doses and rms > 0.0 else None,
+    )
     return values, remarks
 
 
@@ -209,7 +207,7 @@ def evaluate(
     from_rest: bool = False,
     axes: Sequence[str] = AXES,
     highest: float | None = None,
-) -> dict[str, Any]:
+) -> ContactVibration:
     """Evaluate the acceleration of a point: weighted RMS, MTVV, crest factor, VDV, MSDV and vector sums.
 
     The filters are at rest before the record. For a simulated record that starts at rest this is exact. For a record
@@ -230,15 +228,8 @@ def evaluate(
         highest: maximum frequency in the record [Hz]; 0.4 of its sampling rate by default.
 
     Returns:
-        {"place", "standard", "duration_s", "sampling_rate_hz", "highest_hz", "running_average",
-         "x" | "y" | "z": {"weighting", "multiplying_factor", "weighted_rms", "mtvv", "crest_factor", "vdv",
-                           "estimated_vdv", "msdv", "msdv_weighting", "mtvv_ratio", "vdv_ratio"},
-         "vector_sum": {"weighted_rms", "vdv", "health_weighted_rms"}, "reasons": [...]}.
-        Values of the axes exclude the multiplying factors, sums include them; `vdv` is summed in the fourth power.
-        `mtvv_ratio` (MTVV / a_w) above 1.5 or `vdv_ratio` (VDV / (a_w T^(1/4))) above 1.75 mean that the RMS alone
-        understates the shocks. An undefined value is None, and `reasons` contains the reason: MSDV below 43.2 s, for
-        instance. An axis missing in `axes` is None, and then the sums are None. `highest_hz` is None from 80 Hz on, the
-        range of the standard; below 80 Hz, the values exclude vibration above `highest_hz`.
+        Values of the axes and their sums. An undefined value is None, and `reasons` contains the reason: MSDV below
+        43.2 s, for instance. An axis missing in `axes` is None, and then the sums are None.
 
     Raises:
         DataError: number of signals unequal to the number of axes, all signals zero, sampled below 25 Hz, values not
@@ -261,29 +252,28 @@ def evaluate(
             f"skip: found {skip:g} s, must be at least 0 and shorter than the record, {rows[0].size * step:.4g} s"
         )
     span = _Span(time_step=step, skip=skip, from_rest=from_rest)
-    values: dict[str, Any] = dict.fromkeys(AXES)
+    values: dict[str, AxisVibration] = {}
     remarks = []
     for axis, record in zip(axes, rows, strict=True):
         number = AXES.index(axis)
         name, factor = contact_point.weightings[number], contact_point.comfort_factors[number]
-        values[axis], axis_remarks = _axis(span, record, name, factor, average)
+        values[axis], axis_remarks = _axis(span, record, name, factor, average, doses=contact_point.doses)
         remarks += [f"{axis}: {remark}" for remark in axis_remarks]
-        if not contact_point.doses:
-            values[axis] |= dict.fromkeys(DOSES)
     duration = span.whole(rows[0]).size * step
-    sums: dict[str, float | None] | None = None
+    sums = None
     if len(axes) == 3:
-        rms, doses = ([values[axis][name] for axis in AXES] for name in ("weighted_rms", "vdv"))
         comfort, health = contact_point.comfort_factors, contact_point.health_factors
-        sums = {
-            "weighted_rms": vector_sum(rms, comfort),
-            "vdv": vector_sum(doses, comfort, power=4.0) if contact_point.doses else None,
-            "health_weighted_rms": None if health is None else vector_sum(rms, health),
-        }
+        rms = [values[axis].weighted_rms for axis in AXES]
+        doses = [dose for axis in AXES if (dose := values[axis].vdv) is not None]
+        sums = VibrationSums(
+            weighted_rms=vector_sum(rms, comfort),
+            vdv=vector_sum(doses, comfort, power=4.0) if doses else None,
+            health_weighted_rms=None if health is None else vector_sum(rms, health),
+        )
     reasons = [
         f"{axis}: the acceleration is zero throughout, so crest factor and ratios are undefined"
         for axis in axes
-        if values[axis]["crest_factor"] is None
+        if values[axis].crest_factor is None
     ]
     reasons += remarks + (_about_motion_sickness(duration) if contact_point.doses else [])
     if sums is None:
@@ -299,17 +289,19 @@ def evaluate(
         )
     if contact_point.health_factors is None:
         reasons.append(f"vector_sum.health_weighted_rms is empty: the standard has no health factors for {contact}")
-    return {
-        "place": contact,
-        "standard": contact_point.standard,
-        "duration_s": duration,
-        "sampling_rate_hz": 1.0 / step,
-        "highest_hz": band if limited else None,
-        "running_average": average,
-        **values,
-        "vector_sum": sums,
-        "reasons": reasons,
-    }
+    return ContactVibration(
+        place=contact,
+        standard=contact_point.standard,
+        duration_s=duration,
+        sampling_rate_hz=1.0 / step,
+        highest_hz=band if limited else None,
+        running_average=average,
+        x=values.get("x"),
+        y=values.get("y"),
+        z=values.get("z"),
+        vector_sum=sums,
+        reasons=reasons,
+    )
 
 
 def offset_line(signals: ArrayLike) -> Vector:

@@ -63,6 +63,9 @@ CAUSES = (
 TRANSIENT = (CAUSES[2], CAUSES[4])
 """Causes of an input that is no random signal."""
 
+MOST = 0.9
+"""Minimum share of lines without FRF above a frequency, for messages that name this frequency alone."""
+
 FEW = 0.05
 """Maximum share of lines without FRF below which the input is good, for messages: a random input may miss single lines.
 """
@@ -208,20 +211,20 @@ def silent_lines(
 
 
 def cause_messages(frequency: Vector, silent: NDArray[np.int_], causes: Sequence[str] = CAUSES) -> list[str]:
-    """Return a message for each cause, with its number of lines and their frequency ranges."""
-    messages = []
+    """Return a message for each remedy: span and number of lines without FRF, and their most frequent cause."""
+    groups: dict[str, list[int]] = {}
     for number, cause in enumerate(causes, 1):
-        affected = np.flatnonzero(silent == number)
+        remedy = "drive the car with a random signal" if cause in TRANSIENT else "give the input more power there"
+        groups.setdefault(remedy if cause in CAUSES else cause, []).append(number)
+    messages = []
+    for remedy, numbers in groups.items():
+        affected = np.flatnonzero(np.isin(silent, numbers))
         if affected.size:
-            # Consecutive lines form a range.
-            runs = np.split(affected, np.flatnonzero(np.diff(affected) > 1) + 1)
-            ends = [(f"{frequency[run[0]]:.3g}", f"{frequency[run[-1]]:.3g}") for run in runs[:4]]
-            spans = ", ".join(low if low == high else f"{low} to {high}" for low, high in ends)
-            more = f" and {len(runs) - 4} more ranges" if len(runs) > 4 else ""
-            few = affected.size <= FEW * frequency.size
-            remedy = "drive the car with a random signal" if cause in TRANSIENT else "give the input more power there"
-            advice = "the other lines are good" if few else remedy
-            messages.append(
-                f"no FRF at {spans} Hz{more} ({affected.size} of {frequency.size} lines): {cause}; {advice}"
-            )
+            low, high = (f"{frequency[line]:.3g}" for line in affected[[0, -1]])
+            upper = affected[-1] == frequency.size - 1 and affected.size >= MOST * (frequency.size - affected[0])
+            span = f"above {low}" if upper else f"at {low}" if low == high else f"at {low} to {high}"
+            cause = causes[max(numbers, key=lambda number: np.count_nonzero(silent == number)) - 1]
+            advice = "the other lines are good" if affected.size <= FEW * frequency.size else remedy
+            more = "" if advice == cause else f"; {advice}"
+            messages.append(f"no FRF {span} Hz ({affected.size} of {frequency.size} lines): {cause}{more}")
     return messages

@@ -10,10 +10,11 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.evaluation import application
 from vehicle.signals.analysis.exposure import vector_sum, vibration_dose_value, weighted_rms
 from vehicle.signals.analysis.weighting import weighted_record
+from vehicle.stored import Stored
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class SeatValue:
+class SeatValue(Stored):
     """Seat effective amplitude transmissibility along z: a seat with a value below 1 isolates."""
 
     rms: float

@@ -1,7 +1,6 @@
 """Comfort of an acceleration record after ISO 2631-1, BS 6841, ISO 5349-1 or EN 12299: offset, SEAT value."""
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +9,8 @@ import numpy as np
 from vehicle.digits import number
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import AXES
-from vehicle.signals.analysis.daily_exposure import exposure
+from vehicle.signals.analysis.contact_vibration import ContactVibration
+from vehicle.signals.analysis.daily_exposure import DailyExposure, exposure
 from vehicle.signals.analysis.evaluation import (
     LARGEST_MEAN,
     OFFSET_EFFECT,
@@ -22,49 +22,88 @@ from vehicle.signals.analysis.evaluation import (
 )
 from vehicle.signals.analysis.exposure import RunningAverage
 from vehicle.signals.analysis.rail_comfort import comfort_words, rail_comfort
-from vehicle.signals.analysis.seat_value import seat_value
+from vehicle.signals.analysis.seat_value import SeatValue, seat_value
 from vehicle.signals.formats.table import Record
 from vehicle.signals.records.acceleration import read_acceleration
 from vehicle.signals.records.channel_faults import copies
 from vehicle.signals.records.choice import Choice
 from vehicle.signals.records.finding import FindingError, findings_of
+from vehicle.stored import Stored
 
 OFFSETS = ("refuse", "remove", "keep")
 """Treatments of mean and drift of an axis."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Offset(Stored):
+    """Mean and drift of the axes of a record [m/s2], "removed" or "kept"."""
+
+    treatment: str
+    mean: dict[str, float]
+    drift: dict[str, float]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RailRating(Stored):
+    """Mean comfort N_MV of each 5 minutes with its words, and the largest continuous comfort by axis [m/s2]."""
+
+    mean: list[float]
+    words: list[str]
+    largest_continuous: dict[str, float]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class RecordComfort:
     """Comfort values of an acceleration record.
 
     Attributes:
-        summary: all values, see `vehicle.signals.analysis.evaluation.evaluate`, with the treatment of the offset,
-            notices, and the SEAT value if a rail was specified.
+        input: the record.
+        offset: mean and drift of the axes, and their treatment.
+        vibration: values of the axes and their sums.
+        remarks: messages on the record.
+        exposure: daily exposure; None without daily hours.
+        rail: mean comfort on the floor of a train; None at other points of contact.
+        seat: SEAT value of z; None if no rail was specified.
     """
 
-    summary: Mapping[str, Any]
+    input: str
+    offset: Offset
+    vibration: ContactVibration
+    remarks: tuple[str, ...]
+    exposure: DailyExposure | None = None
+    rail: RailRating | None = None
+    seat: SeatValue | None = None
 
     @property
     def weighted_rms(self) -> dict[str, float]:
         """Weighted RMS acceleration of each measured axis [m/s2]."""
-        return {axis: float(self.summary[axis]["weighted_rms"]) for axis in AXES if self.summary[axis] is not None}
+        return {axis: values.weighted_rms for axis, values in self.vibration.axes.items()}
 
     @property
     def overall(self) -> float | None:
         """Vector sum of the weighted RMS accelerations for comfort [m/s2]; None if an axis is missing."""
-        sums = self.summary["vector_sum"]
-        return None if sums is None else float(sums["weighted_rms"])
+        return None if self.vibration.vector_sum is None else self.vibration.overall
 
     @property
     def seat_value(self) -> float | None:
         """SEAT value of the weighted RMS along z [-]; None without a rail."""
-        ratio = self.summary.get("seat_value")
-        return None if ratio is None else float(ratio["rms"])
+        return None if self.seat is None else self.seat.rms
 
     @property
     def notices(self) -> tuple[str, ...]:
         """Messages on the record, and reasons for missing values."""
-        return (*self.summary["notices"], *self.summary["reasons"])
+        return (*self.remarks, *self.vibration.reasons)
+
+    def to_json(self) -> dict[str, Any]:
+        """Return all values as an object of JSON."""
+        further = {"exposure": self.exposure, "rail_comfort": self.rail, "seat_value": self.seat}
+        return {
+            "input": self.input,
+            "offset": self.offset.to_json(),
+            **self.vibration.to_json(),
+            "notices": list(self.remarks),
+            **{name: value.to_json() for name, value in further.items() if value is not None},
+        }
 
     def __repr__(self) -> str:
         """Return the weighted RMS by axis and overall in a line."""
@@ -78,38 +117,33 @@ class RecordComfort:
 
     def text(self) -> str:
         """Return the values as a table for the console."""
-        result = self.summary
-        axes = list(self.weighted_rms)
+        values, axes = self.vibration, self.vibration.axes
         lines = [
-            f"{result['input']}: {result['duration_s']:g} s at {result['sampling_rate_hz']:g} Hz, {result['place']} "
-            f"({result['standard']})",
+            f"{self.input}: {values.duration_s:g} s at {values.sampling_rate_hz:g} Hz, {values.place} "
+            f"({values.standard})",
             f"{'':16}" + "".join(f"{axis:>12}" for axis in axes),
         ]
         for title, key, unit in ROWS:
-            cells = [result[axis][key] for axis in axes]
+            cells = [getattr(axis, key) for axis in axes.values()]
             shown = ["-" if v is None else v if isinstance(v, str) else f"{v:.4g}" for v in cells]
             lines.append(f"{title:16}" + "".join(f"{cell:>12}" for cell in shown) + f"  {unit}".rstrip())
-        sums = result["vector_sum"]
-        if sums is not None:
-            lines.append(f"vector sum of RMS (comfort)  {sums['weighted_rms']:.4g} m/s2")
-            if sums["health_weighted_rms"] is not None:
-                lines.append(f"vector sum of RMS (health)   {sums['health_weighted_rms']:.4g} m/s2")
-            if sums["vdv"] is not None:
-                lines.append(f"sum of VDV (fourth power)    {sums['vdv']:.4g} m/s^1.75")
-        if "seat_value" in result:
-            ratio = result["seat_value"]
-            lines.append(f"SEAT value (z, {ratio['weighting']})       {ratio['rms']:.4g}, of VDV {ratio['vdv']:.4g}")
-        if "exposure" in result:
-            day = result["exposure"]
-            above = sum(day["a8"] >= day[key] for key in ("action_value", "limit_value"))
+        if (sums := values.vector_sum) is not None:
+            lines.append(f"vector sum of RMS (comfort)  {sums.weighted_rms:.4g} m/s2")
+            if sums.health_weighted_rms is not None:
+                lines.append(f"vector sum of RMS (health)   {sums.health_weighted_rms:.4g} m/s2")
+            if sums.vdv is not None:
+                lines.append(f"sum of VDV (fourth power)    {sums.vdv:.4g} m/s^1.75")
+        if (seat := self.seat) is not None:
+            lines.append(f"SEAT value (z, {seat.weighting})       {seat.rms:.4g}, of VDV {seat.vdv:.4g}")
+        if (day := self.exposure) is not None:
+            above = sum(day.a8 >= limit for limit in (day.action_value, day.limit_value))
             state = ("below the action value", "above the action value", "above the limit value")[above]
-            lines.append(f"exposure A(8), {day['hours']:g} h a day  {day['a8']:.4g} m/s2, {state}")
-            lines.append(f"{'':16}action value {day['action_value']:g}, limit value {day['limit_value']:g} m/s2")
-        if "rail_comfort" in result:
-            rated = result["rail_comfort"]
-            means = ", ".join(f"{mean:.3g} ({text})" for mean, text in zip(rated["mean"], rated["words"], strict=True))
+            lines.append(f"exposure A(8), {day.hours:g} h a day  {day.a8:.4g} m/s2, {state}")
+            lines.append(f"{'':16}action value {day.action_value:g}, limit value {day.limit_value:g} m/s2")
+        if (rated := self.rail) is not None:
+            means = ", ".join(f"{mean:.3g} ({text})" for mean, text in zip(rated.mean, rated.words, strict=True))
             lines.append(f"mean comfort N_MV of each 5 minutes (EN 12299)  {means}")
-            largest = ", ".join(f"{axis} {value:.3g}" for axis, value in rated["largest_continuous"].items())
+            largest = ", ".join(f"{axis} {value:.3g}" for axis, value in rated.largest_continuous.items())
             lines.append(f"largest continuous comfort, 5 s  {largest} m/s2")
         lines.append("values of this record alone; repeat the ride to see their scatter")
         return "\n".join(lines)
@@ -178,7 +212,7 @@ def evaluate_comfort(
         for first, second in copies(record.channels)
     ]
     removed = offset == "remove"
-    result = evaluate(
+    vibration = evaluate(
         record.step,
         without_offset(xyz) if removed else xyz,
         contact=contact,
@@ -189,25 +223,18 @@ def evaluate_comfort(
         highest=record.usable,
     )
     line = offset_line(xyz)
-    offset_summary = {
-        "treatment": "removed" if removed else "kept",
-        "mean": dict(zip(axes, (float(value) for value in xyz.mean(axis=1)), strict=True)),
-        "drift": dict(zip(axes, (float(value) for value in line[:, -1] - line[:, 0]), strict=True)),
-    }
     taken_out = findings_of(record.notices, kinds=("gravity",)) if removed else []
     notices = [text for text in record.notices if text not in taken_out]
-    summary = {"input": str(file), "offset": offset_summary, **result, "notices": [*notices, *copied]}
-    if hours is not None:
-        summary["exposure"] = exposure(summary, hours)
+    day = None if hours is None else exposure(vibration, hours)
+    rating = seat = None
     if contact == "train_floor":
-        rail_values = rail_comfort(
-            record.step, without_offset(xyz) if removed else xyz, skip=skip, from_rest=offset == "keep"
+        rated = without_offset(xyz) if removed else xyz
+        floor = rail_comfort(record.step, rated, skip=skip, from_rest=offset == "keep")
+        rating = RailRating(
+            mean=floor.mean.tolist(),
+            words=[comfort_words(mean) for mean in floor.mean],
+            largest_continuous=dict(zip(AXES, floor.continuous.max(axis=1).tolist(), strict=True)),
         )
-        summary["rail_comfort"] = {
-            "mean": rail_values.mean.tolist(),
-            "words": [comfort_words(mean) for mean in rail_values.mean],
-            "largest_continuous": dict(zip(AXES, rail_values.continuous.max(axis=1).tolist(), strict=True)),
-        }
     if seated:
         below = _read(file, rail, rail_choice, contact, offset, checked="z")
         if "z" not in record.channels or "z" not in below.channels:
@@ -223,10 +250,20 @@ def evaluate_comfort(
             )
         seat_and_rail = np.array([record.channels["z"], below.channels["z"]])
         seat_and_rail = without_offset(seat_and_rail) if removed else seat_and_rail
-        summary["seat_value"] = asdict(
-            seat_value(record.step, seat_and_rail[0], seat_and_rail[1], contact=contact, skip=skip)
-        )
-    return RecordComfort(summary)
+        seat = seat_value(record.step, seat_and_rail[0], seat_and_rail[1], contact=contact, skip=skip)
+    return RecordComfort(
+        input=str(file),
+        offset=Offset(
+            treatment="removed" if removed else "kept",
+            mean=dict(zip(axes, map(float, xyz.mean(axis=1)), strict=True)),
+            drift=dict(zip(axes, map(float, line[:, -1] - line[:, 0]), strict=True)),
+        ),
+        vibration=vibration,
+        remarks=(*notices, *copied),
+        exposure=day,
+        rail=rating,
+        seat=seat,
+    )
 
 
 def _read(

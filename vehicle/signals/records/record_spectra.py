@@ -14,7 +14,7 @@ from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.vibration_spectra import RANGE, ChannelSpectrum, vibration_spectra
 from vehicle.signals.formats.reader import read_columns, read_record, time_file
 from vehicle.signals.records.choice import Choice, choose, matching, pick
-from vehicle.signals.records.run_summary import RunSummary, available_summary
+from vehicle.signals.records.run_summary import available_summary
 
 SEAT = "seat_acc_[xyz]"
 """Channels of the seat, evaluated for a car with a seat; without, this point belongs to the body."""
@@ -95,16 +95,16 @@ def record_spectra(
     record, summary = read_columns(source), available_summary(source.parent)
     if summary is None:
         return recorded_spectra(record, path.name, source.name, channels, frequency_range=frequency_range)
-    tyres = f", tyres {summary['tyre']}" if "tyre" in summary else ""
-    span = f"{evaluated_from(summary):g} to {record.time[-1]:g} s"
+    tyres = f", tyres {summary.tyre}" if summary.tyre else ""
+    span = f"{summary.evaluated_from:g} to {record.time[-1]:g} s"
     return recorded_spectra(
         record,
         path.resolve().name,
-        f"{Path(summary['input']['file']).name}, {span}{tyres}",
+        f"{Path(summary.input.file).name}, {span}{tyres}",
         channels,
-        begin=evaluated_from(summary),
-        seated=summary.get("seat_value") is not None,
-        road=summary["input"].get("road"),
+        begin=summary.evaluated_from,
+        seated=summary.seat_value is not None,
+        road=summary.input.road,
         frequency_range=frequency_range,
     )
 
@@ -183,11 +183,6 @@ def recorded_spectra(
         channels=vibration_spectra(step, histories, record.units, frequency_range),
         road_levels=_road_levels(road, step, record.channels, evaluated),
     )
-
-
-def evaluated_from(summary: RunSummary) -> float:
-    """Return the beginning of the evaluated span of a run [s]."""
-    return (summary.get("evaluated_s") or [0.0])[0]
 
 
 def _chosen(

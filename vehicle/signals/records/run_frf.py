@@ -4,7 +4,7 @@ from pathlib import Path
 
 from vehicle.signals.analysis.response_name import ResponseName, parsed_name, plates_of
 from vehicle.signals.formats.frf_file import FrfData, read_frf
-from vehicle.signals.records.run_summary import RunSummary
+from vehicle.signals.records.run_summary import MotionSummary, RunSummary
 
 CHANNEL = "<channel>"
 """Output in the names of columns, see `MotionSummary`."""
@@ -21,11 +21,11 @@ def run_frf(path: Path, summary: RunSummary | None) -> FrfData:
         ConfigurationError, DataError: see `read_frf`.
     """
     table = read_frf(path)
-    estimate = None if summary is None else summary["frf"]
+    estimate = None if summary is None else summary.frf
     if summary is None or estimate is None:
         return table
-    motions = estimate.get("to") or [{"plates": {summary["input"]["wheel"]: 1.0}, "columns": CHANNEL}]
-    ends = {motion["columns"].removeprefix(CHANNEL): plates_of(motion["plates"]) for motion in motions}
+    motions = estimate.to or [MotionSummary(plates={summary.input.wheel: 1.0}, columns=CHANNEL)]
+    ends = {motion.columns.removeprefix(CHANNEL): plates_of(motion.plates) for motion in motions}
     names = []
     for column in map(str, table.names):
         end = max((end for end in ends if column.endswith(end)), key=len, default=None)

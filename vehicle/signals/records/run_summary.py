@@ -1,13 +1,15 @@
-"""Types of the content of `summary.json` in the folder of a run, and its only reader; `output.run_files` writes it."""
+"""Content of `summary.json` in the folder of a run; `output.run_files` writes it."""
 
-# No postponed annotations: Python 3.11 would then take every NotRequired key for a required one.
 import json
+from dataclasses import dataclass, field
 from pathlib import Path
-from types import UnionType
-from typing import Any, NotRequired, TypedDict, get_args, get_origin, get_type_hints, is_typeddict
+from typing import Any
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.comfort import COMFORT_BAND
+from vehicle.signals.analysis.contact_vibration import ContactVibration
+from vehicle.signals.analysis.seat_value import SeatValue
+from vehicle.stored import Stored, omitted
 
 SUMMARY_FILE = "summary.json"
 
@@ -15,7 +17,8 @@ ByWheel = dict[str, float]
 TimeByWheel = dict[str, float | None]
 
 
-class PlacedLoad(TypedDict):
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PlacedLoad(Stored):
     """Load on a part of the car: mass [kg], position [m] and the part."""
 
     mass_kg: float
@@ -23,7 +26,8 @@ class PlacedLoad(TypedDict):
     on: str
 
 
-class VehicleSummary(TypedDict):
+@dataclass(frozen=True, kw_only=True, slots=True)
+class VehicleSummary(Stored):
     """Origin of the vehicle parameters, and notes on the inertia and the body model."""
 
     name: str
@@ -31,11 +35,12 @@ class VehicleSummary(TypedDict):
     overrides: list[str]
     inertia_about: str
     inertia: str
-    loads: NotRequired[dict[str, PlacedLoad]]
+    loads: dict[str, PlacedLoad] | None = omitted()
     superelement: str
 
 
-class InputSummary(TypedDict):
+@dataclass(frozen=True, kw_only=True, slots=True)
+class InputSummary(Stored):
     """Displacement of the plates: file, levels [m], duration [s]; `road` has the settings of a road."""
 
     file: str
@@ -46,10 +51,11 @@ class InputSummary(TypedDict):
     highest_hz: float | None
     wheel: str
     wheel_text: str
-    road: NotRequired[dict[str, Any] | None]
+    road: dict[str, Any] | None = None
 
 
-class PeakSummary(TypedDict):
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PeakSummary(Stored):
     """Resonance of an FRF: frequency [Hz], magnitude and its standard error [m/s2 per m], coherence [-]."""
 
     frequency_hz: float
@@ -61,7 +67,8 @@ class PeakSummary(TypedDict):
 Peaks = dict[str, list[PeakSummary]]
 
 
-class ComfortSummary(TypedDict):
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ComfortSummary(Stored):
     """Comfort at one output point; `iso2631` is the result of `analysis.evaluation.evaluate`.
 
     `rms_of_band` replaces `rms_2_50_hz`, then null, where the band of the signal ends below 50 Hz. `half_interval`:
@@ -69,12 +76,25 @@ class ComfortSummary(TypedDict):
     """
 
     rms_2_50_hz: dict[str, float | None]
-    rms_of_band: NotRequired[dict[str, Any]]
-    half_interval: NotRequired[dict[str, float]]
-    iso2631: dict[str, Any]
+    iso2631: ContactVibration
+    rms_of_band: dict[str, Any] | None = omitted()
+    half_interval: dict[str, float] | None = omitted()
+
+    @property
+    def weighted(self) -> float:
+        """Vector sum of the weighted RMS accelerations [m/s2]."""
+        return self.iso2631.overall
+
+    @property
+    def unweighted(self) -> tuple[dict[str, Any], tuple[float, float]]:
+        """Unweighted RMS [m/s2] by axis and "overall", and the edges of its band [Hz]."""
+        rms: dict[str, Any] = self.rms_of_band or self.rms_2_50_hz
+        low, high = rms.get("band_hz", COMFORT_BAND)
+        return rms, (low, high)
 
 
-class RimSummary(TypedDict):
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RimSummary(Stored):
     """Comfort at the rim of the steering wheel, by axis and overall [m/s2]: RMS in a band [Hz], and weighted RMS."""
 
     rms: dict[str, float]
@@ -84,15 +104,8 @@ class RimSummary(TypedDict):
     standard: str
 
 
-class SeatSummary(TypedDict):
-    """SEAT value by RMS and by dose [-], with the name of the weighting."""
-
-    rms: float
-    vdv: float
-    weighting: str
-
-
-class ObstacleSummary(TypedDict):
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ObstacleSummary(Stored):
     """Values of a run over an obstacle: times [s], peak-to-peak and peak accelerations [m/s2], doses [m/s^1.75]."""
 
     obstacle: str
@@ -104,7 +117,8 @@ class ObstacleSummary(TypedDict):
     knuckle_peak: ByWheel
 
 
-class LineSummary(TypedDict):
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LineSummary(Stored):
     """Harmonic of an applied force: order of its angle, frequency [Hz], amplitude, phase [deg]."""
 
     order: float
@@ -113,7 +127,8 @@ class LineSummary(TypedDict):
     phase_deg: float
 
 
-class ForceSummary(TypedDict):
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ForceSummary(Stored):
     """Applied force: part, joint or tyre that it acts on, point [m], directions, constant part, harmonics.
 
     `unit` is N or N m, or m of the run-out and m/s of the tread of a tyre.
@@ -131,7 +146,8 @@ class ForceSummary(TypedDict):
     lines: list[LineSummary]
 
 
-class OrderSummary(TypedDict):
+@dataclass(frozen=True, kw_only=True, slots=True)
+class OrderSummary(Stored):
     """Amplitude of a channel at a frequency of the applied forces, with the standard error of both: see `order_lines`.
 
     `order` is that of the angle of `of`, "wheels", "crank" or "frequency". `stuck` and `without_friction` are the
@@ -147,13 +163,14 @@ class OrderSummary(TypedDict):
     standard_error: dict[str, float]
     stuck: dict[str, float]
     without_friction: dict[str, float]
-    stuck_range: NotRequired[dict[str, tuple[float, float]]]
-    without_friction_range: NotRequired[dict[str, tuple[float, float]]]
-    frictions: NotRequired[str]
-    floor: NotRequired[float]
+    frictions: str = "dampers"
+    floor: float = 0.0
+    stuck_range: dict[str, tuple[float, float]] | None = omitted()
+    without_friction_range: dict[str, tuple[float, float]] | None = omitted()
 
 
-class RunUpSummary(TypedDict):
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RunUpSummary(Stored):
     """Largest amplitude of each channel in an order of the crankshaft in a run-up, and its speed [1/min].
 
     Amplitudes up to `floor` are below the accuracy of the engine.
@@ -162,10 +179,11 @@ class RunUpSummary(TypedDict):
     order: float
     peak: dict[str, float]
     rpm: dict[str, float]
-    floor: NotRequired[float]
+    floor: float = 0.0
 
 
-class StaticSummary(TypedDict):
+@dataclass(frozen=True, kw_only=True, slots=True)
+class StaticSummary(Stored):
     """Static loads [N], and the largest displacement that remains after the trim [m]."""
 
     tyre_load_n: ByWheel
@@ -173,7 +191,8 @@ class StaticSummary(TypedDict):
     residual_m: float
 
 
-class SolverSummary(TypedDict):
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SolverSummary(Stored):
     """Engine, time step, computing time and energy balance; the energies are null for the reduced engine."""
 
     engine: str
@@ -190,19 +209,21 @@ class SolverSummary(TypedDict):
     engine_reason: str
 
 
-class MotionSummary(TypedDict):
+@dataclass(frozen=True, kw_only=True, slots=True)
+class MotionSummary(Stored):
     """Input of FRFs: plates that move together with their factors, its name, its columns in `frf.csv`, its resonances.
 
     `peaks` of the summary are those of the first input.
     """
 
     plates: dict[str, float]
-    input: NotRequired[str]
+    input: str = ""
     columns: str
-    peaks: NotRequired[Peaks]
+    peaks: Peaks | None = omitted()
 
 
-class FrfSummary(TypedDict):
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FrfSummary(Stored):
     """Estimate of the FRFs."""
 
     estimator: str
@@ -210,10 +231,11 @@ class FrfSummary(TypedDict):
     resolution_hz: float
     degrees_of_freedom: float | None
     degrees_of_freedom_range: list[float] | None
-    to: NotRequired[list[MotionSummary]]
+    to: list[MotionSummary] = field(default_factory=list)
 
 
-class MeasuredSummary(TypedDict):
+@dataclass(frozen=True, kw_only=True, slots=True)
+class MeasuredSummary(Stored):
     """Measurement that the run was compared with: file, rows of the table of differences, notices."""
 
     file: str
@@ -221,13 +243,14 @@ class MeasuredSummary(TypedDict):
     notices: list[str]
 
 
-class RunSummary(TypedDict):
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RunSummary(Stored):
     """Content of `summary.json`; a value that does not exist is null. Earlier versions lack the keys not required."""
 
     frame: str
     vehicle: VehicleSummary
     input: InputSummary
-    evaluated_s: NotRequired[list[float]]
+    evaluated_s: list[float] = field(default_factory=list)
     slip_share: ByWheel
     first_slip_s: TimeByWheel
     friction_saturated_share: ByWheel
@@ -235,37 +258,35 @@ class RunSummary(TypedDict):
     saturated_velocity: float
     peaks: Peaks
     comfort: dict[str, ComfortSummary]
-    seat_value: NotRequired[SeatSummary | None]
-    steering_wheel_rim: NotRequired[RimSummary]
-    obstacle: NotRequired[ObstacleSummary | None]
-    forces: NotRequired[dict[str, ForceSummary]]
-    orders: NotRequired[list[OrderSummary]]
-    run_up: NotRequired[list[RunUpSummary]]
+    seat_value: SeatValue | None = None
+    steering_wheel_rim: RimSummary | None = omitted()
+    obstacle: ObstacleSummary | None = None
+    forces: dict[str, ForceSummary] | None = omitted()
+    orders: list[OrderSummary] | None = omitted()
+    run_up: list[RunUpSummary] | None = omitted()
     static: StaticSummary
     solver: SolverSummary
     frf: FrfSummary | None
     notices: list[str]
     files: dict[str, str]
-    measured: NotRequired[MeasuredSummary | None]
-    tyre: NotRequired[str]
-    command: NotRequired[str | None]
+    measured: MeasuredSummary | None = None
+    tyre: str = ""
+    command: str | None = None
 
+    @property
+    def slip_shares(self) -> ByWheel:
+        """Share of the time in slip [-] by wheel, without the velocity that counts as slip."""
+        return {wheel: share for wheel, share in self.slip_share.items() if wheel != "slip_velocity"}
 
-def slip_shares(summary: RunSummary) -> ByWheel:
-    """Return the share of the time in slip [-] by wheel, without the velocity that counts as slip."""
-    return {wheel: share for wheel, share in summary["slip_share"].items() if wheel != "slip_velocity"}
+    @property
+    def comfort_band(self) -> tuple[float, float]:
+        """Band of the unweighted RMS [Hz], which a slow input narrows."""
+        return next((comfort.unweighted[1] for comfort in self.comfort.values()), COMFORT_BAND)
 
-
-def unweighted_rms(comfort: ComfortSummary) -> tuple[dict[str, Any], tuple[float, float]]:
-    """Return the unweighted RMS [m/s2] by axis and "overall", and the edges of its band [Hz]."""
-    rms: dict[str, Any] = comfort.get("rms_of_band", comfort["rms_2_50_hz"])
-    low, high = rms.get("band_hz", COMFORT_BAND)
-    return rms, (low, high)
-
-
-def comfort_band(summary: RunSummary) -> tuple[float, float]:
-    """Return the band of the unweighted RMS of a run [Hz], which a slow input narrows."""
-    return next((unweighted_rms(comfort)[1] for comfort in summary["comfort"].values()), COMFORT_BAND)
+    @property
+    def evaluated_from(self) -> float:
+        """Start of the evaluated span [s]."""
+        return self.evaluated_s[0] if self.evaluated_s else 0.0
 
 
 def read_summary(folder: Path) -> RunSummary:
@@ -281,14 +302,10 @@ def read_summary(folder: Path) -> RunSummary:
             f"{folder}: contains no {SUMMARY_FILE}; give the folder of a run, for example runs/low"
         )
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-        fault = _fault(content, RunSummary, "")
+        return RunSummary.from_json(json.loads(path.read_text(encoding="utf-8")))
     except (OSError, ValueError, RecursionError) as error:
-        fault = f"{type(error).__name__}: {error}"
-    if fault:
-        raise DataError(f"{path}: is damaged ({fault}); run the simulation again")
-    checked: RunSummary = content
-    return checked
+        fault = str(error) if type(error) is ValueError else f"{type(error).__name__}: {error}"
+        raise DataError(f"{path}: is damaged ({fault}); run the simulation again") from None
 
 
 def available_summary(folder: Path) -> RunSummary | None:
@@ -297,25 +314,3 @@ def available_summary(folder: Path) -> RunSummary | None:
         return read_summary(folder)
     except (ConfigurationError, DataError):
         return None
-
-
-def _fault(value: object, expected: Any, path: str) -> str:
-    """Return the first missing key or value of another type, with its path; empty if there is none."""
-    if is_typeddict(expected):
-        if not isinstance(value, dict):
-            return f"{path or 'content'}: must be an object"
-        if missing := sorted(expected.__required_keys__ - set(value)):
-            return f"{path}{missing[0]}: missing"
-        hints = get_type_hints(expected)
-        return next((f for key in hints if key in value and (f := _fault(value[key], hints[key], f"{path}{key}."))), "")
-    kinds = get_args(expected)
-    if isinstance(expected, UnionType):
-        faults = [_fault(value, expected_type, path) for expected_type in kinds]
-        return "" if "" in faults else faults[0]
-    if get_origin(expected) in (dict, list):
-        if not isinstance(value, get_origin(expected)):
-            return f"{path.rstrip('.')}: must be {'an object' if get_origin(expected) is dict else 'a list'}"
-        items = value.items() if isinstance(value, dict) else enumerate(value)
-        return next((f for key, item in items if (f := _fault(item, kinds[-1], f"{path}{key}."))), "")
-    matches = expected is Any or isinstance(value, (int, float) if expected is float else expected)
-    return "" if matches else f"{path.rstrip('.')}: found {value!r}, must be {expected.__name__}"
