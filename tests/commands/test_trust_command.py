@@ -39,9 +39,9 @@ def test_a_file_is_allowed_listed_and_removed(config, tmp_path, capsys):
     ("words", "message"),
     [
         ([], "error: name an FMU to allow, or type --list or --remove DIGEST"),
-        (["missing.fmu"], "error: missing.fmu: cannot be read (No such file or directory); set the path of an FMU"),
-        (["--remove", "abc"], "error: --remove abc: no entries of the list begin with it; must be one:"),
-        (["--remove", ""], "error: --remove : no entries of the list begin with it; must be one:"),
+        (["missing.fmu"], "error: missing.fmu: cannot be read (No such file or directory)"),
+        (["--remove", "abc"], "error: --remove abc: no entries"),
+        (["--remove", ""], "error: --remove : no entries"),
     ],
 )
 def test_what_cannot_be_done_is_one_message(config, words, message, capsys):

@@ -197,7 +197,7 @@ def test_steady_points_of_the_shaker_are_those_of_orders(capsys):
     assert main(["shaker", *words]) == 0
     assert capsys.readouterr().out == expected and "2 runs of 4 s" in expected
     assert main(["shaker", *words, "--input", "low.csv"]) == 2
-    assert "steady points are runs on a road; leave out --input" in capsys.readouterr().err
+    assert "--rpm A:B:STEP" in capsys.readouterr().err
 
 
 def test_the_shaker_runs_up(tmp_path, capsys):

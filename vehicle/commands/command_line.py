@@ -95,14 +95,14 @@ def _exit_code(
         _say(f"{error.filename or 'output'}: {error.strerror or error}")
         return OutputError.exit_code
     except MemoryError:
-        _say("out of memory; use a shorter input, or store fewer samples a second with --set solver.record_rate=HZ")
+        _say("out of memory; use a shorter input, or store fewer samples per second with --set solver.record_rate=HZ")
         return VehicleError.exit_code
     except Exception as error:
         if debug:
             traceback.print_exc()
         _say(
-            f"{FAULT} ({type(error).__name__}: {error}); please report it together with the output of the same "
-            "command with --debug"
+            f"{FAULT} ({type(error).__name__}: {error}); please report it with the output of the same command with "
+            "--debug"
         )
         return VehicleError.exit_code
     finally:
@@ -239,7 +239,7 @@ def command(
     return lambda arguments=None: parse_and_run(parser(), work, arguments)
 
 
-FAULT = "a fault of the program"
+FAULT = "internal error"
 """Beginning of the message of an unexpected error."""
 
 

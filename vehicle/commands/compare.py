@@ -93,13 +93,13 @@ def parser() -> Parser:
     parser.advise("to compare two runs, type python -m vehicle report RUN RUN")
     setting_options(parser, CompareSettings, "run")
     measured_options(parser, required=True, several=True)
-    records = parser.scoped_group(RECORDS, needs="measured time histories, and the file contains none", active=None)
+    records = parser.scoped_group(RECORDS, needs="measured time histories, but the file contains none", active=None)
     drift_option(records)
-    responses = parser.scoped_group(RESPONSES, needs="measured FRFs, and the file contains none", active=None)
+    responses = parser.scoped_group(RESPONSES, needs="measured FRFs, but the file contains none", active=None)
     setting_options(responses, CompareSettings, "window", "bands")
-    shapes = parser.scoped_group(SHAPES, needs="measured mode shapes, and the file contains none", active=None)
+    shapes = parser.scoped_group(SHAPES, needs="measured mode shapes, but the file contains none", active=None)
     damper_option(shapes)
-    channels = parser.scoped_group(CHANNELS, needs="measured channels, and the file contains mode shapes", active=None)
+    channels = parser.scoped_group(CHANNELS, needs="measured channels, but the file contains mode shapes", active=None)
     record_options(channels, "", channel=False)
     delay_option(channels)
     vehicle_options(
@@ -114,7 +114,7 @@ def parser() -> Parser:
     )
     output_options(parser, OUTPUT)
     figures_option(parser)
-    parser.add_argument("--json", action="store_true", help="print the results as JSON, as in compare.json")
+    parser.add_argument("--json", action="store_true", help="print compare.json instead of the text")
     message_options(parser, quiet=True)
     return parser
 

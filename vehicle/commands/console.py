@@ -40,7 +40,7 @@ class Console(Listener):
     idle: Mapping[str, str] = field(default_factory=dict)
 
     def command(self, name: str) -> str:
-        """Return the command line, with the name of the command, as "vehicle sweep"."""
+        """Return the command line of a command, for example "vehicle sweep"."""
         return shlex.join(["python", "-m", *name.split(), *self.words])
 
     def progress(self, work: str, *, runs: int = 0) -> ProgressLine:

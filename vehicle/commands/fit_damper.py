@@ -56,8 +56,8 @@ class DamperFitSettings(Settings):
     )
     record: RecordSettings = part(RecordSettings)
     positive: str | None = setting(
-        "direction in which displacement, velocity and force of the files are positive; default: extension; the "
-        "gas force and bump against rebound show a wrong direction",
+        "positive direction of displacement, velocity and force in the files; default: extension; if it is wrong, gas "
+        "force, bump and rebound come out reversed",
         choices=("extension", "compression"),
     )
     condition: tuple[str, ...] = setting(
@@ -69,8 +69,8 @@ class DamperFitSettings(Settings):
         metavar="NAME=VALUE",
     )
     pattern: str = setting(
-        "read conditions from the file names (without ending): name in braces, * for the rest, for example "
-        "'*Hz{current}A'",
+        "read conditions from the file names (without ending); braces contain the name, * stands for the rest, for "
+        "example '*Hz{current}A'",
         "",
         metavar="PATTERN",
     )

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from vehicle.studies.sweeps.sweep_inputs import InputChoice
 
 FILE_NEEDS = "--input (a road moves the plates of all wheels)"
-RECORD_NEEDS = "--input, or to a road recorded over time (--speed channel:NAME)"
-ROAD_NEEDS = "a road, for example --road C --speed 80, and not to --input"
+RECORD_NEEDS = "--input or to a road recorded over time (--speed channel:NAME)"
+ROAD_NEEDS = "a road, for example --road C --speed 80, not to --input"
 CLASS_NEEDS = (
     "a road class of ISO 8608, for example --road C --speed 80; signal files and measured profiles are used unchanged"
 )
@@ -53,8 +53,8 @@ def signal_options(parser: Parser, *, several: bool = False) -> argparse._Argume
     )
     parser.former(
         r"--road (--.*)?$",
-        "--road: the road is missing; give a class of ISO 8608 (A to H) or FILE.csv. To allow levels beyond a "
-        "shaker, use --any-level",
+        "--road: the road is missing; give a class of ISO 8608 (A to H) or FILE.csv; for levels beyond a shaker use "
+        "--any-level",
     )
     group = parser.scoped_group("a file of signals", needs=FILE_NEEDS, active=lambda options: bool(options.input))
     group.add_argument(
@@ -107,12 +107,12 @@ def road_options(
         type=speed_value,
         metavar="KM/H|channel:NAME",
         help="speed of the car [km/h]; for a road recorded over time also channel:NAME, the channel with the speed"
-        + ("; one speed for all roads, or a speed for each road" if several else ""),
+        + ("; one for all roads, or one for each" if several else ""),
     )
     setting_options(group, RoadSettings, "duration")
     setting_options(parser if rate_note else group, RoadSettings, "rate", note=rate_note)
     random = parser.scoped_group("a road of a class", needs=CLASS_NEEDS, active=is_class)
-    each = "; repeat it to drive each road with each seed, which shows the scatter" if several else ""
+    each = "; repeat it to see the scatter: each road runs with each seed" if several else ""
     setting_options(random, RoadSettings, "seed", note=each, action="append" if several else "store")
     setting_options(random, RoadSettings, "coherence")
     setting_options(group, RoadSettings, "patch")

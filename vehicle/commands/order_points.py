@@ -49,7 +49,7 @@ class OrderSettings(Settings):
         "orders (multiples of the rotation frequency), for example 2,4; default: %(default)s", "1,2", metavar="N,..."
     )
     channel: tuple[str, ...] | None = setting(
-        "acceleration channels, as seat rail z,roof left rear x; may be repeated. By default seat rail z",
+        "acceleration channels, for example seat rail z,roof left rear x; default: seat rail z. May be repeated",
         action="append",
         metavar="WORDS",
     )
@@ -79,8 +79,7 @@ def write_orders(settings: OrderSettings, console: Console) -> None:
         )
     if rpm and len(speeds) > 1:
         raise ConfigurationError(
-            "--rpm and --speed: only one of them can be a range; with --rpm A:B:STEP give a single speed, for "
-            "example --speed 80"
+            "--rpm and --speed: only one can be a range; with --rpm A:B:STEP give one speed, for example --speed 80"
         )
     orders = _orders(settings.orders)
     from vehicle.runs.car import Car

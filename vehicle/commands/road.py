@@ -53,14 +53,14 @@ def parser() -> Parser:
         "--profile",
         type=Path,
         metavar="FILE.csv",
-        help="or the file of a measured road: columns distance, left, right [m]",
+        help="file of a measured road: columns distance, left, right [m]",
     )
     setting_options(parser, RoadCommand, "obstacle")
     road_options(parser, lambda _: True, lambda options: options.road_class is not None)
     setting_options(parser, RoadCommand, "iri")
     parser.former(
         "--road[ =]",
-        "--road is an option of shaker; set --class B, --profile FILE.csv or --obstacle cleat:20x50 here",
+        "--road: belongs to shaker; use --class B, --profile FILE.csv or --obstacle cleat:20x50",
     )
     output_options(parser, FILE, metavar="FILE.csv")
     figures_option(parser)
@@ -90,7 +90,7 @@ class RoadCommand(Settings):
     )
     figures: bool = True
     obstacle: str | None = setting(
-        "or an obstacle on a level road, sizes in mm: cleat:20x50, half_round:50, speed_bump, ramp, pothole, cobbles",
+        "obstacle on a level road, sizes in mm: cleat:20x50, half_round:50, speed_bump, ramp, pothole, cobbles",
         metavar="NAME[:SIZES][:left|right][@METRES]",
     )
 
@@ -140,7 +140,7 @@ def _job(settings: RoadCommand, console: Console) -> None:
     if settings.iri:
         if not isinstance(drive, RoadDrive):
             raise ConfigurationError(
-                "--iri: the road was recorded over time, but the IRI needs heights over distance; leave --iri out"
+                "--iri: the IRI needs heights over distance, but this road was recorded over time; remove --iri"
             )
         destination.further_file(indices, "--output", ending=".csv", protect=inputs)
         roughness = drive.roughness()

@@ -97,7 +97,7 @@ def _steady_points(settings: ShakerSettings, engine_given: bool, speed: float | 
     """
     settings.require_forces()
     if isinstance(settings.source, PlateSettings):
-        raise ConfigurationError("--rpm A:B:STEP: steady points are runs on a road; leave out --input")
+        raise ConfigurationError("--rpm A:B:STEP: runs on a road at steady speeds; remove --input")
     car, destination = settings.car, settings.destination
     road, file = str(settings.source.road), destination.output
     arguments = ["--rpm", str(settings.rpm), "--road", road]

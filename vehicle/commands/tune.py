@@ -51,7 +51,7 @@ def parser() -> Parser:
     measurement_options(parser)
     responses = parser.scoped_group(
         "FRFs",
-        needs="--frf, or to --levels",
+        needs="--frf or --levels",
         active=lambda options: has_files(options, "frf") or any(each.levels for each in options.measurements),
     )
     setting_options(responses, ResponseSettings, "band", "spacing", "window", "averages")
@@ -71,15 +71,15 @@ def parser() -> Parser:
     setting_options(parser, SweepSettings, "engine", default="mujoco")
     output_options(parser, Path("runs/tune"))
     head_options(parser)
-    parser.add_argument("--json", action="store_true", help="print the results as JSON, as in tune.json")
-    parser.former("--measured", "--measured: FRFs are given by --frf FILE, time histories by --record FILE")
-    parser.former("--(vary|fit) ", "the parameters to fit are given by --parameters PATH=LOW:HIGH")
+    parser.add_argument("--json", action="store_true", help="print tune.json instead of the text")
+    parser.former("--measured", "--measured: use --frf FILE for FRFs, --record FILE for time histories")
+    parser.former("--(vary|fit) ", "use --parameters PATH=LOW:HIGH for the parameters to fit")
     message_options(parser, quiet=True)
     return parser
 
 
 def _range(text: str) -> Range:
-    """Return the range of a text as "front.damper.viscous=800:4000"."""
+    """Return the range of a text, for example "front.damper.viscous=800:4000"."""
     return parsed_variation("--parameters", text).range()
 
 

@@ -86,7 +86,7 @@ def test_a_run_reports_its_seat_value(tmp_path, monkeypatch, capsys):
     for wrong, message in (
         (
             ["--rail", "x=1"],
-            ("--rail x=1: names no z acceleration, which the SEAT value needs; set z=NAME, or a point of a run"),
+            "--rail x=1: the SEAT value needs a z acceleration; set z=NAME",
         ),
         (
             ["--rail", "seat_rail", "--place", "feet"],

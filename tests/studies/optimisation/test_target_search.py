@@ -132,8 +132,8 @@ def test_command(tmp_path, capsys, monkeypatch):
     path = "front.bushings.tyre.stiffness.z"
     assert changed[path].value == pytest.approx(summary["parameters"][path]["after"])
     for more, message in (
-        (["--minimise", "weighted"], "leave out --minimise"),
-        (["--road", "C", "--speed", "80"], "leave out --input and --road"),
+        (["--minimise", "weighted"], "remove --minimise"),
+        (["--road", "C", "--speed", "80"], "remove --input and --road"),
         (["--cost", "a"], "--cost a: must be PATH=C"),
     ):
         assert main([*words, *more, "--output", "wrong"]) == 2
