@@ -1,6 +1,5 @@
 """Comfort of the car on both roads under variations of its parameters, with statistical errors."""
 
-import argparse
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +11,6 @@ from scenarios.car_runs import CarRuns, swept
 from scenarios.road_measure import RoadInput, RoadMeasure
 from scenarios.signals.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.arrays import Vector
-from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.paths import value_of
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.signals.analysis.ride_comfort import UNWEIGHTED, WEIGHTED
@@ -245,23 +243,3 @@ RECORDS = 4
 
 QUICK = Records(count=2, duration=8.0, lead=3.0)
 """Records with --quick."""
-
-
-def comfort_options(parser: argparse.ArgumentParser) -> None:
-    """Add --records to the options of a study; the reduced engine by default."""
-    parser.set_defaults(engine="auto")
-    parser.add_argument(
-        "--records", type=int, metavar="N", help=f"records of road for every point, 60 s each; {RECORDS} by default"
-    )
-
-
-def records_of(options: argparse.Namespace) -> Records:
-    """Return the number of records from the options.
-
-    Raises:
-        ConfigurationError: the number of records is below 1.
-    """
-    if options.records is not None and options.records < 1:
-        raise ConfigurationError(f"--records {options.records}: must be at least 1; an error needs at least 2")
-    base = QUICK if options.quick else Records(count=RECORDS)
-    return base if options.records is None else Records(count=options.records, duration=base.duration, lead=base.lead)

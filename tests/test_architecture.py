@@ -72,7 +72,7 @@ ROOMS: dict[str, set[str]] = {
     "output": {"analysis", "car", "comparison", "excitation", "figures", "flexbody", "formats", "linear", "machine"}
     | {"parameters", "records", "rendering", "replacement", "simulation"},
     "targets": {"car", "figures", "parameters", "records", "simulation"},
-    "report": {"analysis", "car", "figures", "flexbody", "linear", "output", "parameters", "records"}
+    "report": {"analysis", "car", "figures", "flexbody", "formats", "linear", "output", "parameters", "records"}
     | {"rendering", "simulation", "targets", "version"},
     "fmu": {"car", "core", "linear", "parameters", "reduced", "version"},
     "page": {"analysis", "car", "excitation", "figures", "fmu", "formats", "laws", "linear", "output", "parameters"}

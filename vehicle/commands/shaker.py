@@ -29,11 +29,11 @@ from vehicle.commands.options import (
     setting_options,
     vehicle_options,
 )
-from vehicle.commands.order_points import USUAL_ENGINE, USUAL_LENGTH, OrderSettings, write_orders
 from vehicle.commands.parser import Parser
 from vehicle.commands.summary_text import summary_text
 from vehicle.errors import ConfigurationError
 from vehicle.handover.page.shaker_settings import ShakerSettings
+from vehicle.runs.report.order_study import USUAL_ENGINE, USUAL_LENGTH, OrderSettings, order_study
 from vehicle.signals.excitation.input_settings import PlateSettings
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ def parser() -> Parser:
 
 
 def settings_of(options: argparse.Namespace) -> ShakerSettings | OrderSettings:
-    """Return the settings of the parsed options; those of `orders` for steady speeds of the crankshaft.
+    """Return the settings of the parsed options, or the settings of `orders` for steady speeds of the crankshaft.
 
     Raises:
         ConfigurationError: no input, two inputs, or a value out of range.
@@ -120,7 +120,7 @@ def _steady_points(settings: ShakerSettings, engine_given: bool, speed: float | 
 
 def _job(settings: ShakerSettings | OrderSettings, console: Console) -> None:
     if isinstance(settings, OrderSettings):
-        write_orders(settings, console)
+        console.say(order_study(settings))
         return
     from vehicle.handover.page.shaken_run import shake
 
