@@ -243,7 +243,7 @@ class Findings:
     unjudged: Mapping[str, str] | None = field(default_factory=dict)
     notes: Sequence[str] = ()  # paragraphs below the table
     data: Mapping[str, Any] = field(default_factory=dict)  # further numbers for `results.json`, under their own keys
-    values: Sequence[str] = ()  # lines for the console, as fitted values
+    values: Sequence[str] = ()  # lines for the console, for example fitted values
     tyres: str = ""  # state of the tyres of the cars, see `tyre_words`
 
     def write(self, folder: Path) -> str:

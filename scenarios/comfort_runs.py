@@ -20,7 +20,7 @@ from vehicle.studies.sweeps.case_evaluation import recordings_of, run_of
 SEAT_RAIL_Z = ("seat_rail_acc_z",)
 
 Changes = tuple[str, ...]
-"""Overrides of one car, as "damper.coulomb_friction=62.5"."""
+"""Overrides of one car, for example "damper.coulomb_friction=62.5"."""
 
 Numbers = Mapping[str, float]
 """Values of `RoadMeasure` for one run."""
@@ -75,7 +75,7 @@ class Point:
     relative_error: float  # standard error of the ratio, from the ratios of the single records [-]
     comfort: float  # comfort value, `unweighted` [m/s2]
     weighted: float  # weighted RMS of the seat rail (ISO 2631-1) [m/s2]
-    relative_weighted: float  # `weighted` over that of the reference [-]
+    relative_weighted: float  # `weighted` over its value at the reference [-]
     comfort_error: float  # standard error, from the single records [m/s2]
     gaussian_error: float  # standard error for a Gaussian road of this length, from the spectrum [m/s2]
     slip: float  # slip, slip_error: share of the time above the slip velocity, right damper [-]
@@ -167,7 +167,7 @@ class ComfortRuns:
             car: overrides of the car.
             road: "smooth" or "rough".
             edge: lower band edge of the road [Hz].
-            engine: engine, by default that of the study.
+            engine: engine, by default the engine of the study.
             count: number of records, by default all.
         """
         return [
@@ -239,7 +239,7 @@ class ComfortRuns:
 
 
 RECORDS = 4
-"""Records of 60 s: with them the comfort value is known within 1 % even as that of a road with Gaussian amplitudes."""
+"""Records of 60 s: they give the comfort value within 1 %, also for a road with Gaussian amplitudes."""
 
 QUICK = Records(count=2, duration=8.0, lead=3.0)
 """Records with --quick."""

@@ -109,7 +109,7 @@ class LevelNumbers:
     wheel_peak_hz: float  # wheel_peak_hz, wheel_peak: largest line of the knuckle in `WHEEL_BAND` [Hz], [m/s2 per m]
     wheel_peak: float
     body_peak: float  # largest line of the knuckle in `BODY_BAND` [m/s2 per m]
-    damper_ratio: float  # |H| of the damper top over that of the knuckle, geometric mean over `DAMPER_BAND` [-]
+    damper_ratio: float  # |H| of the damper top over |H| of the knuckle, geometric mean over `DAMPER_BAND` [-]
 
 
 def numbers(run: Run, response: FrequencyResponse) -> LevelNumbers:

@@ -42,7 +42,7 @@ STUDIES = {
 VERTICAL_TYRES = "vertical springs, the same rolling and standing"
 """State of the tyres of lumped models."""
 
-QUICK_NOTE = "Short signals (--quick): numbers differ from those of the full study."
+QUICK_NOTE = "Short signals (--quick): numbers differ from the full study."
 
 Subject = TypeVar("Subject")
 S = TypeVar("S", bound="StudySettings")
@@ -87,7 +87,7 @@ def main_of(name: str) -> Callable[[list[str] | None], int]:
     return command
 
 
-def study_parser(name: str, settings: type[StudySettings], *, quick: str, jobs: str = "") -> Parser:
+def study_parser(name: str, settings: type[StudySettings] = StudySettings, *, quick: str, jobs: str = "") -> Parser:
     """Return a parser with the common options of studies, and those that the settings declare."""
     parser = Parser(prog=f"python -m scenarios.{name}", description=STUDIES.get(name))
     output_options(parser, Path("runs") / name)
@@ -113,7 +113,7 @@ class Study(Generic[S, Subject]):
         """Run the study, write its results, and turn errors into one message and an exit code.
 
         Args:
-            arguments: command line without the program name; by default that of the process.
+            arguments: command line without the program name; by default the arguments of the process.
 
         Returns:
             Exit code, see `run_command`.

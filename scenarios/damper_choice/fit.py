@@ -50,7 +50,7 @@ HALF_BOUNDS = (
     np.array([400.0, 0.2, 2.3, 0.3, 25.0, 25.0, 8e4, 8e4]),
     np.array([1500.0, 1.3, 2.9, 0.7, 130.0, 200.0, 5e5, 5e5]),
 )
-"""Lowest and highest values of `HALF_FREE` in their order: those of road vehicles, with room."""
+"""Lowest and highest values of `HALF_FREE` in their order: road vehicles, with room."""
 _COARSE = np.arange(2000.0, 6001.0, 250.0)
 _READING = 125.0  # half of the 250 N s/m to which the source reads its optima [N s/m]
 

@@ -340,7 +340,7 @@ def first_mode_claim(frequency: float, ratios: Mapping[str, Mapping[str, Sequenc
 
     Args:
         frequency: first natural frequency of the passive car [Hz].
-        ratios: law to quantity to its RMS over that of the passive car at each of `SPEEDS` [-].
+        ratios: law to quantity to its RMS over the passive car at each of `SPEEDS` [-].
     """
     return NOT_TESTABLE.statement(
         "semi-active suspension at the first natural frequency: body acceleration, suspension and tyre deflection",

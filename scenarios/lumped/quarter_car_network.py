@@ -73,7 +73,7 @@ def quarter_car(
     """
     if damper not in ("slip", "stick", "friction"):
         raise ConfigurationError(f"damper: found {damper!r}, must be slip, stick or friction")
-    # The force of a sliding pair depends on its velocity alone, that of presliding friction on the path.
+    # The force of a sliding pair depends on its velocity alone, presliding friction on the path.
     laws = [name for name in FRICTION if name != "presliding"]
     if friction not in laws:
         raise ConfigurationError(f"friction: found {friction!r}, must be one of {', '.join(laws)}")
@@ -157,7 +157,7 @@ def single_mass(
 ) -> Network:
     """Return a single mass m x'' + D x' + K x + f(x') = F; on a belt, f acts on x' minus the belt velocity.
 
-    Coordinate and output: `mass`. The applied force acts on the mass; the road displacement is that of the belt.
+    Coordinate and output: `mass`. The applied force acts on the mass; the road displacement acts on the belt.
 
     Args:
         mass: mass m [kg].

@@ -186,7 +186,7 @@ def tyre_load_ratio_of_density(car: RoadHoldingModel, lines: Vector, density: Ve
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RideMeasures:
-    """Ride measures of a damper on a road, as root mean squares."""
+    """Ride measures of a damper on a road: root mean squares."""
 
     tyre_load: float  # Dynamic tyre force over static load [-]
     acceleration: float  # Weighted vertical acceleration of the body [m/s2]

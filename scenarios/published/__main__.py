@@ -126,7 +126,7 @@ def study_results(
     Args:
         name: name of the study.
         settings: settings of the table.
-        folder_name: name of the folder of the results, by default that of the study.
+        folder_name: folder of the results, by default the name of the study.
         more: further options of the study.
 
     Raises:

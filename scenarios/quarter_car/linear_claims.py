@@ -14,7 +14,7 @@ PHASE_READING = 25.0
 """A phase is read from an axis with labels 100 deg apart: a quarter of that [deg]."""
 
 COINCIDE = 0.05
-"""Two frequencies coincide within this share [-], as `ABOUT`."""
+"""Two frequencies coincide within this share [-], equal to `ABOUT`."""
 
 EQUAL = 0.1
 """Two amplitudes are "equal" within this share [-]."""

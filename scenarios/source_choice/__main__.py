@@ -208,7 +208,7 @@ def _words(candidate: Candidate, plan: Plan) -> str:
 
 
 def half_claims(judgement: Judged, winner: Candidate) -> list[Claim]:
-    """Return the row that compares the agreement of the held-out half with that of the used half."""
+    """Return the row that compares the agreement of the held-out and the used half."""
     _, _, used, held = judgement.numbers(winner)
     _, _, was_used, was_held = judgement.numbers(before(judgement.plan))
     return [

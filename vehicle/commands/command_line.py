@@ -169,7 +169,7 @@ def parse_and_run(
         parser: with the option --debug.
         job: work of the command with the parsed options and its console; the options also have `held`, an exit stack
             that is closed when the command ends.
-        arguments: without the program name; those of the process by default.
+        arguments: without the program name; by default the arguments of the process.
 
     Returns:
         Exit code, see `run_command`.

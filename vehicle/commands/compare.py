@@ -249,7 +249,7 @@ def _run(
 def _modes(
     settings: CompareSettings, output: Path, measurement: Measurement, choice: Choice
 ) -> tuple[dict[str, Any], str]:
-    """Compare measured mode shapes with those of the car, write the results, and return summary and text."""
+    """Compare measured and simulated mode shapes, write the results, and return summary and text."""
     from vehicle.runs.comparison.mode_comparison import compare_modes
     from vehicle.runs.comparison.pictures import plot_mac
     from vehicle.runs.output.folder import output_folder, write_json, write_whole
@@ -279,7 +279,7 @@ def _modes(
 
 
 def _car(settings: CompareSettings) -> Car:
-    """Return the car of a run, or that of the options."""
+    """Return the car of the run, or of the options."""
     from vehicle.runs.car import Car
 
     file = settings.car.vehicle

@@ -132,7 +132,7 @@ class ProgressLine:
             self.end = now + (now - begun) * (1.0 - fraction) / (fraction - done)
         self.fraction = fraction
         due = now - self.last >= (MOVING_EVERY if self.moving else LINE_EVERY) or (self.moving and fraction >= 1.0)
-        # The first estimate of many runs comes at once: it tells whether to wait.
+        # The first estimate of many runs comes at once: it shows whether to wait.
         due = due or (bool(self.runs) and self.last == self.started and self.end - now > LINE_EVERY)
         if not (self.enabled and due) or self._ended.is_set():
             return

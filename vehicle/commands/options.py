@@ -64,7 +64,7 @@ def setting_options(
 
 
 def read(options: argparse.Namespace, settings: type[S], /, **more: Any) -> S:
-    """Return the settings of parsed options, and those of their parts.
+    """Return the settings of parsed options, with their parts.
 
     A field takes the option of its name, or of the `dest` of its declaration; without one it has its default.
 
@@ -107,7 +107,7 @@ def destination_of(options: argparse.Namespace) -> Destination:
 
 
 PARTS: dict[Any, Callable[[argparse.Namespace], Any]] = {CarChoice: car_of, Destination: destination_of}
-"""Reader of a part of settings that has no options of the names of its fields."""
+"""Reader of a part of settings whose options have other names than its fields."""
 
 
 def vehicle_options(parser: argparse._ActionsContainer) -> argparse._ActionsContainer:

@@ -1,4 +1,4 @@
-"""`python -m vehicle report`: write the report of one run, or of several runs compared, as an HTML file."""
+"""`python -m vehicle report`: write an HTML report of one run, or of several runs compared."""
 
 from dataclasses import dataclass
 from pathlib import Path

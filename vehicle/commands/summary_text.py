@@ -57,7 +57,7 @@ def summary_text(summary: RunSummary) -> str:
 
 
 def _dampers(summary: RunSummary) -> list[str]:
-    """Return the line of sticking and slipping dampers, and that of slow sliding; none without a damper."""
+    """Return the lines of sticking, slipping and slowly sliding dampers; none without a damper."""
     share, first = summary["slip_share"], summary["first_slip_s"]
     if not first:
         return []

@@ -83,7 +83,7 @@ class ImportSettings(Settings):
         "file of the mass matrix that belongs to the stiffness matrix", type=Path, metavar="FILE"
     )
     dofs: Path | None = setting(
-        "file with the node and direction (1 to 6) of each matrix row, as node,direction, or the mapping file of ANSYS",
+        "file with the node and direction (1 to 6) of each matrix row (node,direction), or the mapping file of ANSYS",
         type=Path,
         metavar="FILE",
     )
@@ -205,12 +205,12 @@ def _add_model_options(parser: Parser) -> None:
     points = parser.add_argument_group("points of the car")
     parser.former(
         "--tolerance",
-        "--tolerance is not an option here; set the largest allowed distance between a point of the car and its "
+        "--tolerance: no such option; set the largest allowed distance between a point of the car and its "
         "node with --point-distance MM",
     )
     parser.former(
         "--map",
-        "--map is not an option here; give the table of nodes for the points of the car with --point-nodes FILE",
+        "--map: no such option; give the table of nodes for the points of the car with --point-nodes FILE",
     )
     setting_options(points, ImportSettings, "point_distance", "spread", "point_nodes")
 

@@ -58,6 +58,7 @@ class SearchSettings(PoolSettings):
     )
     samples: int | None = setting(
         "cars within the tolerances for each car tried; 8 by default, more where the quantile needs them",
+        within="[2, inf)",
         type=int,
         metavar="K",
     )
