@@ -200,10 +200,7 @@ def roll_peak(response: FrequencyResponse, roll: float, row: int = 0) -> float:
 
 
 def roll_claims(
-    peaks: Sequence[Sequence[float]],
-    modes: Sequence[float],
-    moments: Sequence[float],
-    between: Mapping[float, float],
+    peaks: Sequence[Sequence[float]], modes: Sequence[float], moments: Sequence[float], between: Mapping[float, float]
 ) -> list[Claim]:
     """Return the rows on roll, at the peak of the FRF of the seat rail (figures 3.3 and 3.37).
 

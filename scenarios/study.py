@@ -134,10 +134,7 @@ class Study(Generic[S, Subject]):
 
 
 def lumped_study(
-    name: str,
-    load: Callable[[S], Subject],
-    study: Callable[[Subject, Path, S], Findings | str],
-    settings: type[S],
+    name: str, load: Callable[[S], Subject], study: Callable[[Subject, Path, S], Findings | str], settings: type[S]
 ) -> Study[S, Subject]:
     """Return a study of a lumped model with a parameter file; arguments as in `Study`."""
     jobs = "; without effect here, because the study batches its runs in one process"

@@ -28,13 +28,7 @@ S_co = TypeVar("S_co", covariant=True)
 
 
 def setting(
-    meaning: str,
-    default: Any = None,
-    *,
-    flag: str = "",
-    within: str = "",
-    factor: float = 1.0,
-    **option: Any,
+    meaning: str, default: Any = None, *, flag: str = "", within: str = "", factor: float = 1.0, **option: Any
 ) -> Any:
     """Declare a field of a class of `Settings`.
 

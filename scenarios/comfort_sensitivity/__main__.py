@@ -26,13 +26,7 @@ from scenarios.comfort_sensitivity.claims import (
     size_claims,
     slip_claims,
 )
-from scenarios.comfort_sensitivity.figures import (
-    curve_table,
-    draw_variation,
-    draw_wheel,
-    plain,
-    setting,
-)
+from scenarios.comfort_sensitivity.figures import curve_table, draw_variation, draw_wheel, plain, setting
 from scenarios.comfort_sensitivity.histories import (
     amplification_claim,
     history_claims,

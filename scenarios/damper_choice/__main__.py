@@ -45,12 +45,7 @@ from scenarios.damper_choice.runs import (
     road_holding,
     trade_off,
 )
-from scenarios.lumped.damper_choice import (
-    FITTED,
-    DamperChoiceParameters,
-    ExponentialRoad,
-    damper_choice_parameters,
-)
+from scenarios.lumped.damper_choice import FITTED, DamperChoiceParameters, ExponentialRoad, damper_choice_parameters
 from scenarios.study import VERTICAL_TYRES, LumpedSettings, lumped_study
 from vehicle.model.parameters.toml_file import as_table
 from vehicle.model.parameters.vehicle import load_vehicle

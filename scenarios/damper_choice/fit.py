@@ -15,12 +15,7 @@ from scipy.optimize import least_squares
 
 from scenarios.damper_choice.response_features import local_peaks
 from scenarios.lumped.axle import Axle
-from scenarios.lumped.damper_choice import (
-    ExponentialRoad,
-    FrequencyBands,
-    RoadHoldingHalfCar,
-    RoadHoldingQuarterCar,
-)
+from scenarios.lumped.damper_choice import ExponentialRoad, FrequencyBands, RoadHoldingHalfCar, RoadHoldingQuarterCar
 from scenarios.lumped.road_holding import half_car_model, printed_load_fluctuation, quarter_car_model
 from vehicle.arrays import Vector
 

@@ -33,11 +33,7 @@ from scenarios.half_car_rider.runs import (
 )
 from scenarios.half_car_rider.seats import FACTORS, Measure, with_experiment
 from scenarios.lumped.half_car_rider_model import ENDS
-from scenarios.lumped.half_car_rider_parameters import (
-    PUBLISHED,
-    HalfCarRiderParameters,
-    half_car_rider_parameters,
-)
+from scenarios.lumped.half_car_rider_parameters import PUBLISHED, HalfCarRiderParameters, half_car_rider_parameters
 from scenarios.study import VERTICAL_TYRES, LumpedSettings, lumped_study
 from vehicle.model.parameters.semi_active_damper import LAWS, PASSIVE
 from vehicle.signals.analysis.exposure import vibration_dose_value

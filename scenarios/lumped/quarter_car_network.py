@@ -100,10 +100,7 @@ def quarter_car(
         bedding = Kelvin(stiffness=value("strut.longitudinal_stiffness"), damping=value("strut.longitudinal_damping"))
         links.append(Link(row={"longitudinal": 1.0}, law=bedding))
     links.append(Link(row=axis, law=Kelvin(stiffness=value("spring.stiffness"), damping=0.0)))
-    masses = [
-        Mass(mass=value("body.mass"), axes=({"body": 1.0},)),
-        Mass(mass=value("wheel.mass"), axes=wheel_axes),
-    ]
+    masses = [Mass(mass=value("body.mass"), axes=({"body": 1.0},)), Mass(mass=value("wheel.mass"), axes=wheel_axes)]
     slides: tuple[Slide, ...] = ()
     mount = value("mount.stiffness")
     if damper == "stick":

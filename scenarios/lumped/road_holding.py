@@ -6,12 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.lumped.axle import Axle
-from scenarios.lumped.damper_choice import (
-    ExponentialRoad,
-    FrequencyBands,
-    RoadHoldingHalfCar,
-    RoadHoldingQuarterCar,
-)
+from scenarios.lumped.damper_choice import ExponentialRoad, FrequencyBands, RoadHoldingHalfCar, RoadHoldingQuarterCar
 from scenarios.lumped.half_car_rider_model import ENDS, GRAVITY, ROADS, axle_links
 from scenarios.lumped.network import ROAD, Network, masses_of
 from vehicle.arrays import Complex, Vector

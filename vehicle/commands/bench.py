@@ -90,11 +90,7 @@ def parser() -> Parser:
 
 
 def settings_of(options: argparse.Namespace) -> BenchSettings:
-    """Return the settings of the parsed options.
-
-    Raises:
-        ConfigurationError: no input, two inputs, or a value out of range.
-    """
+    """Return the settings of the parsed options."""
     return read(options, BenchSettings, source=input_of(options), car=car_of(options))
 
 

@@ -112,11 +112,7 @@ def _picked(record: RecordSettings, picks: Sequence[str]) -> tuple[str | None, C
 
 
 def evaluated(file: str, settings: ComfortSettings) -> RecordComfort:
-    """Evaluate a file.
-
-    Raises:
-        ConfigurationError: `rail` names another axis than z.
-    """
+    """Evaluate a file."""
     from vehicle.signals.analysis.evaluation import application
     from vehicle.signals.records.record_comfort import RecordComfort, evaluate_comfort
 

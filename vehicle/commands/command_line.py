@@ -62,10 +62,8 @@ def _exit_code(
     """Run the job; see `run_command`.
 
     Args:
-        job: work of the command.
         previous: handlers of signals, restored at the end.
         lost: substitute of a closed standard output; None: it is open.
-        debug: print the traceback of a failure.
     """
     try:
         backend = os.environ.get("MUJOCO_GL", "").strip().lower()
@@ -163,16 +161,13 @@ def _print_nowhere() -> None:
 def parse_and_run(
     parser: Parser, job: Callable[[argparse.Namespace, Console], None], arguments: Sequence[str] | None
 ) -> int:
-    """Parse the arguments of a command and run its job.
+    """Parse the arguments of a command, run its job, and return the exit code of `run_command`.
 
     Args:
         parser: with the option --debug.
         job: work of the command with the parsed options and its console; the options also have `held`, an exit stack
             that is closed when the command ends.
         arguments: without the program name; by default the arguments of the process.
-
-    Returns:
-        Exit code, see `run_command`.
     """
     typed = sys.argv[1:] if arguments is None else list(arguments)
     if arguments is None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.clock_options import delay_option, drift_option
 from vehicle.commands.command_line import command
-from vehicle.commands.console import Console
+from vehicle.commands.console import Console, folded
 from vehicle.commands.input_options import record_options
 from vehicle.commands.measured_options import measured_options
 from vehicle.commands.options import (
@@ -120,11 +120,7 @@ def parser() -> Parser:
 
 
 def settings_of(options: argparse.Namespace) -> CompareSettings:
-    """Return the settings of the parsed options.
-
-    Raises:
-        ConfigurationError: a value out of range.
-    """
+    """Return the settings of the parsed options."""
     return read(
         options,
         CompareSettings,
@@ -211,7 +207,7 @@ def _compared(settings: CompareSettings, output: Path, console: Console) -> tupl
         console.accept(comparison.notices)
         force, figures = settings.destination.force, settings.figures
         save_comparison(comparison, output, force=force, figures=figures, protect=(file,))
-        summary, said = comparison.summary(), comparison.text()
+        summary, said = comparison.summary(), "\n".join(folded(comparison.text().split("\n")))
     return summary, said
 
 

@@ -87,11 +87,7 @@ class DriveCommand(Settings):
 
 
 def settings_of(options: argparse.Namespace) -> DriveCommand:
-    """Return the settings of the parsed options.
-
-    Raises:
-        ConfigurationError: a value out of range.
-    """
+    """Return the settings of the parsed options."""
     wheels = [CORNERS[word] for word in options.wheels or ()] or None
     search = read(options, DriveSettings, wheels=wheels, delay=None)
     return read(options, DriveCommand, search=search, car=car_of(options), destination=destination_of(options))

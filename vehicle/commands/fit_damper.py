@@ -7,13 +7,7 @@ from pathlib import Path
 from vehicle.commands.command_line import command
 from vehicle.commands.console import Console
 from vehicle.commands.input_options import record_options
-from vehicle.commands.options import (
-    command_parser,
-    head_options,
-    message_options,
-    output_options,
-    setting_options,
-)
+from vehicle.commands.options import command_parser, head_options, message_options, output_options, setting_options
 from vehicle.commands.parser import Parser
 from vehicle.runs.output.destination import Destination
 from vehicle.settings import Settings, part, setting

@@ -82,9 +82,7 @@ class KinematicsSettings(Settings):
         "travel of the wheel centres [mm], upwards positive; default: %(default)s", "-50:50:5", metavar="A:B[:STEP]"
     )
     opposite: bool = setting(
-        "move the wheels in opposite directions, like roll: left wheel down, right wheel up",
-        False,
-        action="store_true",
+        "move the wheels in opposite directions, like roll: left wheel down, right wheel up", False, action="store_true"
     )
     contact_force: tuple[str, ...] = ()
     moment: tuple[str, ...] = ()
@@ -186,10 +184,7 @@ COLUMNS = (*HEADS, *GEOMETRY_HEADS, "roll_centre_lateral_m", "side_swing_height_
 
 
 def _report(
-    settings: KinematicsSettings,
-    poses: list[WheelPose],
-    geometry: list[WheelGeometry],
-    rates: dict[str, float | None],
+    settings: KinematicsSettings, poses: list[WheelPose], geometry: list[WheelGeometry], rates: dict[str, float | None]
 ) -> str:
     """Return both tables as text."""
     joints = "ideal joints" if settings.ideal else "compliant bushings"

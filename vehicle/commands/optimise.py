@@ -72,17 +72,12 @@ def parser() -> Parser:
     setting_options(search, SearchSettings, "maximise", "limits", "cars", "population", "seed")
     setting_options(parser, SearchSettings, "tolerances")
     tolerances = parser.scoped_group(
-        "cars as they are made",
-        needs="--tolerance PATH=SIZE",
-        active=lambda options: bool(options.tolerances),
+        "cars as they are made", needs="--tolerance PATH=SIZE", active=lambda options: bool(options.tolerances)
     )
     setting_options(tolerances, SearchSettings, "samples", "quantile")
     setting_options(parser, SearchSettings, "engine", "skip", "jobs", "executor", "check")
     parser.add_argument(
-        "--beside",
-        type=Path,
-        metavar="DIR",
-        help="also draw another search with the same objectives and its distance",
+        "--beside", type=Path, metavar="DIR", help="also draw another search with the same objectives and its distance"
     )
     output_options(parser, Path("runs/optimise"))
     parser.add_argument("--resume", action="store_true", help="continue the search in this folder; --cars may grow")
@@ -98,11 +93,7 @@ def _range(text: str) -> Range:
 
 
 def _cost(text: str) -> tuple[str, float]:
-    """Return path and cost of a text, for example "front.damper.viscous=2".
-
-    Raises:
-        ConfigurationError: another form, or a cost that is not positive.
-    """
+    """Return path and cost of a text, for example "front.damper.viscous=2"."""
     path, _, value = text.partition("=")
     try:
         cost = float(value)
@@ -114,11 +105,7 @@ def _cost(text: str) -> tuple[str, float]:
 
 
 def settings_of(options: argparse.Namespace) -> SearchStudy | TargetStudy:
-    """Return the study of parsed options.
-
-    Raises:
-        ConfigurationError: options without effect with --targets.
-    """
+    """Return the study of parsed options."""
     # Heavy packages are imported after the arguments are known to be good.
     from vehicle.studies.optimisation.search_study import SearchStudy, TargetStudy
 

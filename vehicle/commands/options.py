@@ -113,12 +113,7 @@ PARTS: dict[Any, Callable[[argparse.Namespace], Any]] = {CarChoice: car_of, Dest
 def vehicle_options(parser: argparse._ActionsContainer) -> argparse._ActionsContainer:
     """Add --vehicle and --set, which choose the car, to a group, or to a new one "the car"; return the group."""
     group = parser.add_argument_group("the car") if isinstance(parser, argparse.ArgumentParser) else parser
-    group.add_argument(
-        "--vehicle",
-        type=vehicle_file,
-        metavar="FILE.toml",
-        help=VEHICLE_HELP,
-    )
+    group.add_argument("--vehicle", type=vehicle_file, metavar="FILE.toml", help=VEHICLE_HELP)
     set_option(group)
     return group
 

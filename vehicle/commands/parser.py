@@ -83,10 +83,8 @@ class Parser(argparse.ArgumentParser):
         Args:
             title: of the group in the help.
             needs: completes the message "--option: belongs to ...", with the option that makes the group act.
-            active: True if the parsed options contain that object; None if only the command can decide it.
-
-        Returns:
-            The group; its options are rejected if it is not active.
+            active: True if the parsed options contain that object; None if only the command can decide it. The
+                options of a group that is not active are rejected.
         """
         group = _ScopedGroup(self, title)
         group.scope = Scope(active, needs)

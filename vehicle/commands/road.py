@@ -50,17 +50,13 @@ def parser() -> Parser:
     vehicle_options(parser)
     parser.add_argument("--class", dest="road_class", metavar="C", help="class of ISO 8608, A to H")
     parser.add_argument(
-        "--profile",
-        type=Path,
-        metavar="FILE.csv",
-        help="file of a measured road: columns distance, left, right [m]",
+        "--profile", type=Path, metavar="FILE.csv", help="file of a measured road: columns distance, left, right [m]"
     )
     setting_options(parser, RoadCommand, "obstacle")
     road_options(parser, lambda _: True, lambda options: options.road_class is not None)
     setting_options(parser, RoadCommand, "iri")
     parser.former(
-        "--road[ =]",
-        "--road: belongs to shaker; use --class B, --profile FILE.csv or --obstacle cleat:20x50",
+        "--road[ =]", "--road: belongs to shaker; use --class B, --profile FILE.csv or --obstacle cleat:20x50"
     )
     output_options(parser, FILE, metavar="FILE.csv")
     figures_option(parser)
@@ -96,11 +92,7 @@ class RoadCommand(Settings):
 
 
 def settings_of(options: argparse.Namespace) -> RoadCommand:
-    """Return the settings of the parsed options.
-
-    Raises:
-        ConfigurationError: no road, several roads, or a value out of range.
-    """
+    """Return the settings of the parsed options."""
     road_class = options.road_class and options.road_class.upper()
     roads = [road for road in (road_class, options.profile, options.obstacle) if road is not None]
     if len(roads) != 1:

@@ -76,11 +76,7 @@ def parser() -> Parser:
 
 
 def settings_of(options: argparse.Namespace) -> ShakerSettings | OrderSettings:
-    """Return the settings of the parsed options, or the settings of `orders` for steady speeds of the crankshaft.
-
-    Raises:
-        ConfigurationError: no input, two inputs, or a value out of range.
-    """
+    """Return the settings of the parsed options, or the settings of `orders` for steady speeds of the crankshaft."""
     source, car, destination = input_of(options), car_of(options), destination_of(options)
     settings = read(options, ShakerSettings, source=source, car=car, destination=destination)
     if settings.rpm is not None and settings.rpm.count(":") == 2:

@@ -90,11 +90,7 @@ def _cases(file: str) -> CaseFile:
 
 
 def steps_of(text: str) -> tuple[float, float]:
-    """Return the share [-] and the shift of coordinates [m] of "20%", "20" or "20%,5mm".
-
-    Raises:
-        ConfigurationError: no number.
-    """
+    """Return the share [-] and the shift of coordinates [m] of "20%", "20" or "20%,5mm"."""
     percent, comma, length = text.strip().removeprefix("+-").partition(",")
     try:
         share = 0.01 * float(percent.removesuffix("%"))
@@ -106,11 +102,7 @@ def steps_of(text: str) -> tuple[float, float]:
 
 
 def settings_of(options: argparse.Namespace) -> SweepStudy:
-    """Return the study of parsed options.
-
-    Raises:
-        ConfigurationError: options that exclude each other.
-    """
+    """Return the study of parsed options."""
     # Heavy packages are imported after the arguments are known to be good.
     from vehicle.studies.sweeps.sweep_study import SweepStudy
 
@@ -126,11 +118,7 @@ def settings_of(options: argparse.Namespace) -> SweepStudy:
 
 
 def _design(options: argparse.Namespace) -> Design:
-    """Return what varies.
-
-    Raises:
-        ConfigurationError: options that exclude each other.
-    """
+    """Return what varies."""
     from vehicle.studies.sweeps.chosen_cars import EveryCombination, VariationTable
     from vehicle.studies.sweeps.parameter_effects import SingleChanges
     from vehicle.studies.sweeps.sobol_sweep import SobolSample

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from vehicle.commands.clock_options import drift_option
 from vehicle.commands.command_line import command
-from vehicle.commands.console import Console
+from vehicle.commands.console import Console, folded
 from vehicle.commands.options import (
     CAR_HELP,
     car_of,
@@ -84,11 +84,7 @@ def _range(text: str) -> Range:
 
 
 def settings_of(options: argparse.Namespace) -> TuningStudy:
-    """Return the study of parsed options.
-
-    Raises:
-        ConfigurationError: no measurement, or no parameter.
-    """
+    """Return the study of parsed options."""
     # Heavy packages are imported after the arguments are known to be good.
     from vehicle.studies.tuning.measurement_settings import MeasurementSettings
     from vehicle.studies.tuning.tuning_study import TuningStudy
@@ -119,7 +115,7 @@ def _job(study: TuningStudy, console: Console) -> None:
     def noticed(notices: list[str]) -> None:
         console.accept(notices)
         if not (console.quiet or console.json):
-            for text in notices:
+            for text in folded(notices):
                 console.notice(text)
 
     fit = study.run(command=console.command("vehicle tune"), begin=console.progress, noticed=noticed)

@@ -103,11 +103,7 @@ def measurement_options(parser: Parser) -> None:
     mapping_options(files)
     record_options(files, "", channel=False)
     delay_option(files, "; without this option the delay of each group of channels is fitted")
-    files.add_argument(
-        "--channels",
-        metavar="NAME,...",
-        help="channels of the model to fit; default: all in the files",
-    )
+    files.add_argument("--channels", metavar="NAME,...", help="channels of the model to fit; default: all in the files")
 
 
 def has_files(options: argparse.Namespace, content: str) -> bool:

@@ -10,11 +10,7 @@ from typing import TYPE_CHECKING, Any
 from vehicle.commands.body.model_file import output_options, require_output, write
 from vehicle.commands.body.show_body import report
 from vehicle.commands.console import Console
-from vehicle.commands.options import (
-    message_options,
-    setting_options,
-    vehicle_options,
-)
+from vehicle.commands.options import message_options, setting_options, vehicle_options
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.flexbody.sources import FOLLOWING, LENGTHS, MASSES, METHODS
@@ -152,11 +148,7 @@ class ImportSettings(Settings):
     )
 
     def __post_init__(self) -> None:
-        """Check the values.
-
-        Raises:
-            ConfigurationError: a value is out of its interval.
-        """
+        """Check the values."""
         Settings.__post_init__(self)
         highest = self.attachment_modes
         if highest is not None and highest < self.up_to:
@@ -209,8 +201,7 @@ def _add_model_options(parser: Parser) -> None:
         "node with --point-distance MM",
     )
     parser.former(
-        "--map",
-        "--map: no such option; give the table of nodes for the points of the car with --point-nodes FILE",
+        "--map", "--map: no such option; give the table of nodes for the points of the car with --point-nodes FILE"
     )
     setting_options(points, ImportSettings, "point_distance", "spread", "point_nodes")
 
