@@ -45,13 +45,7 @@ def test_files_and_summary(tmp_path, capsys):
     folder = tmp_path / "out"
     assert main([*records(tmp_path), "--output", str(folder)]) == 0
     said = capsys.readouterr().out
-    assert (
-        "chosen: linear damping + Coulomb friction, the simplest law whose error on left-out tests is within "
-        "one standard error"
-    ) in said
-    assert (
-        "the friction at rest is not determined, because the slowest test reaches 126 mm/s, must be below 10 mm/s"
-    ) in said
+    assert "chosen: linear damping + Coulomb friction" in said and "126 mm/s, must be below 10 mm/s" in said
     damper = build(Damper, tomllib.loads((folder / "damper.toml").read_text()), "damper")
     assert damper.viscous == pytest.approx(1200.0, rel=0.02) and damper.coulomb_friction == pytest.approx(60.0, abs=3.0)
     assert damper.gas_force == pytest.approx(150.0, abs=2.0) and damper.friction_law == "coulomb"
@@ -172,9 +166,7 @@ def test_units_of_columns_and_metres_without_a_unit(tmp_path, capsys):
     paths = headless(tmp_path, [0, 1, 2, 3], factor=1.0)
     words = [*paths, "--output", str(tmp_path / "out")]
     assert main(words) == 3
-    assert (
-        "in m or mm? The file has no header; set --unit displacement=m or --unit displacement=mm"
-    ) in capsys.readouterr().err
+    assert "--unit displacement=m or --unit displacement=mm" in capsys.readouterr().err
     by_role = fitted(capsys, [*words, "--unit", "displacement=m", "--unit", "velocity=m/s"])
     by_column = fitted(capsys, [*words, "--unit", "2=m", "--unit", "column 3=m/s"])
     assert by_column == by_role

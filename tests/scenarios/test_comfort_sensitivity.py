@@ -204,10 +204,7 @@ def test_an_end_that_disagrees_tells_what_experiments_changed():
     why = {claim.name: claim.why for claim in size_claims(curves, trials)}
     first = why["relative comfort value at Fd 62.5, smooth road [%]"]
     assert "experiments: reached with edge 75; not with body 125" in first
-    assert (
-        "no modification reaches the interval (edge 75, body 125)"
-        in why["relative comfort value at Fd 62.5, rough road [%]"]
-    )
+    assert "(edge 75, body 125)" in why["relative comfort value at Fd 62.5, rough road [%]"]
 
 
 def test_levels_are_windows_of_all_cars_of_a_figure(tmp_path):
