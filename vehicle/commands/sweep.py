@@ -42,8 +42,8 @@ def parser() -> Parser:
         action="append",
         default=[],
         metavar="PATH=VALUES",
-        help="values of a parameter, for example damper.coulomb_friction=62.5,125, or 62.5:125:6 for six values; a "
-        "vector is [x,y,z], one component bushings.tyre.stiffness.z=2e5,2.5e5. Repeated: every combination",
+        help="values of a parameter, for example damper.coulomb_friction=62.5,125; 62.5:125:6 are six equally spaced "
+        "values; a vector is [x,y,z], one component bushings.tyre.stiffness.z=2e5,2.5e5. Repeated: every combination",
     )
     parser.add_argument(
         "--table",
