@@ -131,9 +131,7 @@ def test_a_command_has_one_thread_with_or_without_a_search_for_libraries(given, 
         "    numbers = {b.num_threads for b in ThreadpoolController().select(user_api='blas').lib_controllers}\n"
         "print(numbers, len(threads._libraries()) > 0)\n"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, timeout=HANG, check=True, cwd=ROOT
-    )
+    done = process(sys.executable, "-c", code, cwd=ROOT)
     assert done.stdout.strip() == f"{{1}} {given is not None}"
 
 
