@@ -19,7 +19,7 @@ class CarRuns:
 
     Args:
         vehicle: TOML file; default: the car of Bommer 2006.
-        overrides: of every car, before those of a case.
+        overrides: changes of every car, before the changes of a case.
         engine: "mujoco", "reduced" or "auto".
         jobs: worker processes.
     """
@@ -37,7 +37,7 @@ class CarRuns:
         Args:
             source: the signal, or another input.
             overrides: texts like "damper.coulomb_friction=75"; applied after the overrides of all cars.
-            engine: engine of this case, by default that of the other runs; a film needs "mujoco".
+            engine: engine of this case, by default the engine of the other runs; a film needs "mujoco".
         """
         changes = (*self.overrides, *overrides)
         return Case(

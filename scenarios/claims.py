@@ -84,14 +84,7 @@ class Kind:
     source: Source
 
     def number(
-        self,
-        name: str,
-        published: float,
-        ours: float,
-        tolerance: float,
-        why: str,
-        *,
-        error: float = 0.0,
+        self, name: str, published: float, ours: float, tolerance: float, why: str, *, error: float = 0.0
     ) -> Claim:
         """Return the row of a printed number.
 
@@ -243,7 +236,7 @@ class Findings:
     unjudged: Mapping[str, str] | None = field(default_factory=dict)
     notes: Sequence[str] = ()  # paragraphs below the table
     data: Mapping[str, Any] = field(default_factory=dict)  # further numbers for `results.json`, under their own keys
-    values: Sequence[str] = ()  # lines for the console, as fitted values
+    values: Sequence[str] = ()  # lines for the console, for example fitted values
     tyres: str = ""  # state of the tyres of the cars, see `tyre_words`
 
     def write(self, folder: Path) -> str:
@@ -254,10 +247,7 @@ class Findings:
         table = [f"{counts}.", LEGEND, claim_table(rows)] if self.claims else []
         notes = [f"Tyres: {self.tyres}."] if self.tyres else []
         notes += [*(f"Not judged here: {name}: {why}." for name, why in left.items()), *self.notes]
-        write_text(
-            folder / "results.md",
-            "\n\n".join([f"# {self.title}", *table, *notes]) + "\n",
-        )
+        write_text(folder / "results.md", "\n\n".join([f"# {self.title}", *table, *notes]) + "\n")
         open_rows = {} if self.unjudged is None else {"not_judged": dict(left)}
         content = {"title": self.title, "rows": rows, "notes": notes, "tyre": self.tyres, **open_rows, **self.data}
         write_text(folder / "results.json", json.dumps(_plain(content), indent=1, allow_nan=False) + "\n")

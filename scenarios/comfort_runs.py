@@ -1,6 +1,5 @@
 """Comfort of the car on both roads under variations of its parameters, with statistical errors."""
 
-import argparse
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +11,6 @@ from scenarios.car_runs import CarRuns, swept
 from scenarios.road_measure import RoadInput, RoadMeasure
 from scenarios.signals.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.arrays import Vector
-from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.paths import value_of
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.signals.analysis.ride_comfort import UNWEIGHTED, WEIGHTED
@@ -22,7 +20,7 @@ from vehicle.studies.sweeps.case_evaluation import recordings_of, run_of
 SEAT_RAIL_Z = ("seat_rail_acc_z",)
 
 Changes = tuple[str, ...]
-"""Overrides of one car, as "damper.coulomb_friction=62.5"."""
+"""Overrides of one car, for example "damper.coulomb_friction=62.5"."""
 
 Numbers = Mapping[str, float]
 """Values of `RoadMeasure` for one run."""
@@ -77,7 +75,7 @@ class Point:
     relative_error: float  # standard error of the ratio, from the ratios of the single records [-]
     comfort: float  # comfort value, `unweighted` [m/s2]
     weighted: float  # weighted RMS of the seat rail (ISO 2631-1) [m/s2]
-    relative_weighted: float  # `weighted` over that of the reference [-]
+    relative_weighted: float  # `weighted` over its value at the reference [-]
     comfort_error: float  # standard error, from the single records [m/s2]
     gaussian_error: float  # standard error for a Gaussian road of this length, from the spectrum [m/s2]
     slip: float  # slip, slip_error: share of the time above the slip velocity, right damper [-]
@@ -169,7 +167,7 @@ class ComfortRuns:
             car: overrides of the car.
             road: "smooth" or "rough".
             edge: lower band edge of the road [Hz].
-            engine: engine, by default that of the study.
+            engine: engine, by default the engine of the study.
             count: number of records, by default all.
         """
         return [
@@ -241,27 +239,7 @@ class ComfortRuns:
 
 
 RECORDS = 4
-"""Records of 60 s: with them the comfort value is known within 1 % even as that of a road with Gaussian amplitudes."""
+"""Records of 60 s: they give the comfort value within 1 %, also for a road with Gaussian amplitudes."""
 
 QUICK = Records(count=2, duration=8.0, lead=3.0)
 """Records with --quick."""
-
-
-def comfort_options(parser: argparse.ArgumentParser) -> None:
-    """Add --records to the options of a study; the reduced engine by default."""
-    parser.set_defaults(engine="auto")
-    parser.add_argument(
-        "--records", type=int, metavar="N", help=f"records of road for every point, 60 s each; {RECORDS} by default"
-    )
-
-
-def records_of(options: argparse.Namespace) -> Records:
-    """Return the number of records from the options.
-
-    Raises:
-        ConfigurationError: the number of records is below 1.
-    """
-    if options.records is not None and options.records < 1:
-        raise ConfigurationError(f"--records {options.records}: must be at least 1; an error needs at least 2")
-    base = QUICK if options.quick else Records(count=RECORDS)
-    return base if options.records is None else Records(count=options.records, duration=base.duration, lead=base.lead)

@@ -26,7 +26,7 @@ def evidence_claim(
         ours: own value, or one for each seed, (n,); infinite where what is timed never happens.
         why: reason of a disagreement, and how ours was found.
         printed: the number itself where the source prints one, shown instead of the interval.
-        error: error of the model in the unit of the row, see `slip_error`; by default that of the evidence.
+        error: error of the model in the unit of the row, see `slip_error`; by default the error of the evidence.
     """
     evidence, values = evidence_of(key), np.atleast_1d(np.asarray(ours, dtype=float))
     if error is not None:
@@ -35,7 +35,7 @@ def evidence_claim(
         why = f"the half second of {evidence_of(evidence.same).place} again, counted there; {why}"
     row = interval_claim(name, evidence.interval, float(np.mean(values)), why, status=status_of(key))
     source = _source(evidence, printed)
-    if source != "axis interval":  # an interval from 0 on is printed, as "no slip", and can be tested
+    if source != "axis interval":  # an interval from 0 on is printed ("no slip") and can be tested
         row = replace(row, status=status_of(key), within=row.inside, why=why)
     row = replace(row, place=evidence.place, evidence=key, source=source)
     if printed is not None:

@@ -3,7 +3,6 @@
 python -m scenarios.inertia [--output DIR] [--quick] [--jobs N] [--engine mujoco|reduced|auto] [--vehicle FILE.toml]
 """
 
-import argparse
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -31,7 +30,7 @@ from scenarios.rigid_modes import (
     rolled_by_tyres,
     tuning_claims,
 )
-from scenarios.study import car_study, computed_by, estimator_text, setting
+from scenarios.study import CarSettings, car_study, computed_by, estimator_text, setting
 from scenarios.verdict import common
 from vehicle.engines.linear.car_modes import Mode
 from vehicle.model.parameters.force_elements import Hydromount
@@ -52,9 +51,9 @@ BETWEEN = (1040.0, 1080.0, 1120.0, 1160.0)
 """Further moments about the origin [kg m2], as evidence for how much would bring the roll mode to the measured one."""
 
 
-def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
+def study(runs: CarRuns, folder: Path, settings: CarSettings) -> Findings:
     """Run the low level with both inertias, draw the FRFs into the folder, and compare."""
-    signal = level_signal("low", runs.wheel, quick=options.quick)
+    signal = level_signal("low", runs.wheel, quick=settings.quick)
     results = runs([runs.case(signal, change) for change in CHANGES])
     cars = [runs.car(change) for change in CHANGES]
     responses = [run.frf(CHANNELS) for run in results]
@@ -67,7 +66,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
         for row in range(len(CHANNELS))
     ]
     between = (
-        {} if options.quick else {value: roll_mode(runs.car((f"{IXX}={value!r}",))).frequency for value in BETWEEN}
+        {} if settings.quick else {value: roll_mode(runs.car((f"{IXX}={value!r}",))).frequency for value in BETWEEN}
     )
     first, heavier, softer = (rigid_modes(runs.car(change)) for change in (*CHANGES, (STABILIZER,)))
     by_tyre = rolled_by_tyres(runs)
@@ -76,8 +75,8 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     return Findings(
         title="Moment of inertia Ixx of the body (Bommer 2006, sections 3.2.1 and 3.4)",
         claims=[*mode_claims(cars), *tuning_claims(first, heavier, softer, by_tyre), *seen],
-        unjudged={claim.name: TOO_SHORT for claim in seen} if options.quick else {},
-        notes=[mode_table(dict(zip(VARIANTS, cars, strict=True))), *setting(runs, results[0], options.quick)],
+        unjudged={claim.name: TOO_SHORT for claim in seen} if settings.quick else {},
+        notes=[mode_table(dict(zip(VARIANTS, cars, strict=True))), *setting(runs, results[0], settings.quick)],
         data={
             "roll_hz": dict(zip(VARIANTS.values(), frequencies, strict=True)),
             "roll_peak_hz": {
@@ -97,7 +96,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     )
 
 
-main = car_study("inertia", study)
+main = car_study("inertia", study, CarSettings)
 
 
 MEASURED_DIGIT = 0.1
@@ -201,10 +200,7 @@ def roll_peak(response: FrequencyResponse, roll: float, row: int = 0) -> float:
 
 
 def roll_claims(
-    peaks: Sequence[Sequence[float]],
-    modes: Sequence[float],
-    moments: Sequence[float],
-    between: Mapping[float, float],
+    peaks: Sequence[Sequence[float]], modes: Sequence[float], moments: Sequence[float], between: Mapping[float, float]
 ) -> list[Claim]:
     """Return the rows on roll, at the peak of the FRF of the seat rail (figures 3.3 and 3.37).
 

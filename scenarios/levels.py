@@ -3,7 +3,6 @@
 python -m scenarios.levels [--output DIR] [--quick] [--jobs N] [--engine mujoco|reduced|auto] [--vehicle FILE.toml]
 """
 
-import argparse
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -20,7 +19,7 @@ from scenarios.frf_claims import FRF_END, axis_claims, coherence_claim
 from scenarios.inputs.make_inputs import LEVELS, QUICK_DURATION, level_signal
 from scenarios.interval_probability import AGREES_ABOVE, interval_probability
 from scenarios.slip_shares import slip_claims, slip_shares, slip_table
-from scenarios.study import car_study, computed_by, estimator_text, setting
+from scenarios.study import CarSettings, car_study, computed_by, estimator_text, setting
 from scenarios.verdict import common
 from vehicle.arrays import Vector
 from vehicle.engines.linear.car_modes import Mode
@@ -36,34 +35,34 @@ QUICK_OUTPUTS = ("seat_rail_acc_z",)
 TOO_SHORT = f"{QUICK_DURATION:g} s of signal tell it too coarsely"
 
 
-def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
+def study(runs: CarRuns, folder: Path, settings: CarSettings) -> Findings:
     """Run the three levels, draw the figures into the folder, and compare."""
-    results = runs([runs.case(level_signal(level, runs.wheel, quick=options.quick)) for level in LEVELS])
+    results = runs([runs.case(level_signal(level, runs.wheel, quick=settings.quick)) for level in LEVELS])
     by_level = dict(zip(LEVELS, results, strict=True))
     responses = {level: run.frf(channels_of(runs.wheel)) for level, run in by_level.items()}
-    level_figures(folder, by_level, responses, QUICK_OUTPUTS if options.quick else tuple(OUTPUTS))
+    level_figures(folder, by_level, responses, QUICK_OUTPUTS if settings.quick else tuple(OUTPUTS))
     values = {level: numbers(run, responses[level]) for level, run in by_level.items()}
     slip_velocity = runs.car().vehicle.damper.slip_velocity
-    shares = slip_shares(runs, quick=options.quick)
+    shares = slip_shares(runs, quick=settings.quick)
     shipped = {level: value.slip for level, value in values.items()}
     claims = [*slip_claims(shares, shipped, slip_velocity), *frequency_claims(values), *order_claims(values)]
     claims += [wheel_mode_claim(runs, values["low"]), other_damper_claim(by_level["low"])]
     claims.append(seat_claim(responses["low"]))
-    claims += axis_claims(responses, channels_of(runs.wheel), None if options.quick else rigid_lines(runs))
-    trial = None if options.quick else less_friction(runs)
+    claims += axis_claims(responses, channels_of(runs.wheel), None if settings.quick else rigid_lines(runs))
+    trial = None if settings.quick else less_friction(runs)
     claims.append(coherence_claim(responses, CHANNELS.index(DAMPER[0]), trial))
     sure = {claim.name for claim in order_claims(values)}
     return Findings(
         title="Low, mid and high level (Bommer 2006, sections 3.2.1 and 3.3)",
         claims=claims,
         tyres=runs.car().vehicle.driving.words,
-        unjudged={row.name: TOO_SHORT for row in claims if row.name not in sure} if options.quick else {},
-        notes=[slip_table(shares), sets_text(), *setting(runs, results[0], options.quick)],
+        unjudged={row.name: TOO_SHORT for row in claims if row.name not in sure} if settings.quick else {},
+        notes=[slip_table(shares), sets_text(), *setting(runs, results[0], settings.quick)],
         data={"levels": {level: asdict(value) for level, value in values.items()}, "slip_velocity": slip_velocity},
     )
 
 
-main = car_study("levels", study)
+main = car_study("levels", study, CarSettings)
 
 
 WHEEL_HZ = 28.0
@@ -110,7 +109,7 @@ class LevelNumbers:
     wheel_peak_hz: float  # wheel_peak_hz, wheel_peak: largest line of the knuckle in `WHEEL_BAND` [Hz], [m/s2 per m]
     wheel_peak: float
     body_peak: float  # largest line of the knuckle in `BODY_BAND` [m/s2 per m]
-    damper_ratio: float  # |H| of the damper top over that of the knuckle, geometric mean over `DAMPER_BAND` [-]
+    damper_ratio: float  # |H| of the damper top over |H| of the knuckle, geometric mean over `DAMPER_BAND` [-]
 
 
 def numbers(run: Run, response: FrequencyResponse) -> LevelNumbers:

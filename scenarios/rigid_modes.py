@@ -18,7 +18,7 @@ ROLL, MEASURED_ROLL = 6.5, 5.8
 """Roll mode (Rx) of the model of the source with Ixx 1000, and of the measured car [Hz]."""
 
 ROUND = 0.05
-"""Printed with one or two digits, as limits of a range or read off a figure: 5 %."""
+"""Printed with one or two digits, limits of a range, or read off a figure: 5 %."""
 
 ROLL_COORDINATE = 3
 """Of the six of a rigid body: x, y, z, Rx, Ry, Rz."""

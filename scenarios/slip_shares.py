@@ -32,7 +32,7 @@ RECORDS = 8
 """Records of the input, seeds 0 to 7; the record of the thesis is unknown."""
 
 LENGTH = 60.0
-"""Duration of a record [s], equal to that of the shipped inputs."""
+"""Duration of a record [s], equal to the shipped inputs."""
 
 OTHER_VELOCITIES = (1e-4, SATURATED_VELOCITY, 0.012)
 """Further definitions of slip, velocities [m/s]: 0.1 mm/s is that of the quarter car (10 / eps), 1 mm/s saturates the

@@ -3,7 +3,6 @@
 python -m scenarios.stribeck [--output DIR] [--quick] [--jobs N] [--engine mujoco|reduced|auto] [--vehicle FILE.toml]
 """
 
-import argparse
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
@@ -19,7 +18,7 @@ from scenarios.charts import figure_file
 from scenarios.claims import OWN_CHECK, PREDICTED, Claim, Findings, interval_claim, markdown, placed
 from scenarios.interval_probability import AGREES_ABOVE
 from scenarios.signals.bump import BUMP_DURATION_S, BUMP_START_S, bump
-from scenarios.study import car_study, computed_by, setting
+from scenarios.study import CarSettings, car_study, computed_by, setting
 from vehicle.arrays import Vector
 from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.model.laws.damper import damper_law
@@ -48,22 +47,22 @@ AFTER = BUMP_DURATION_S + 0.2
 """Maximum start of a counted slip after the start of the bump [s]; later slips are due to the noise."""
 
 
-def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
+def study(runs: CarRuns, folder: Path, settings: CarSettings) -> Findings:
     """Run the bump with both laws, draw the figures into the folder, and compare."""
-    record = QUICK if options.quick else FULL
+    record = QUICK if settings.quick else FULL
     signal = bump(amplitude=SIZES[1], duration=record.noisy, start=record.start, wheel=runs.wheel)
     step = f"solver.timestep={min(FINE_STEP, runs.car().vehicle.solver.step)!r}"
     cases = [runs.case(signal, (*law, step)) for law in LAWS.values()]
     results = dict(zip(LAWS, runs(cases), strict=True))
     phases = {name: phases_of(run, record.start) for name, run in results.items()}
-    counts = counts_of_seeds(runs, 2 if options.quick else SEEDS)
+    counts = counts_of_seeds(runs, 2 if settings.quick else SEEDS)
     peak_figure(folder / "relative_acceleration.png", results, phases, record.start)
     force_figure(folder / "force_velocity.png", results)
     return Findings(
         title="Coulomb and Stribeck friction over the 7.5 mm bump (Bommer 2006, section 3.4)",
         claims=[*peak_claims(results, phases, counts), *axis_claims(results)],
         tyres=runs.car().vehicle.driving.words,
-        notes=[peak_table(phases, record.start), *setting(runs, results["Coulomb"], options.quick)],
+        notes=[peak_table(phases, record.start), *setting(runs, results["Coulomb"], settings.quick)],
         data={
             "phases": {name: [asdict(phase) for phase in phase_list] for name, phase_list in phases.items()},
             "extra_peaks_over_seeds": counts,
@@ -71,7 +70,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     )
 
 
-main = car_study("stribeck", study)
+main = car_study("stribeck", study, CarSettings)
 
 
 def phases_of(run: Run, begin: float) -> list[SlipPhase]:

@@ -1,6 +1,5 @@
 """Common parts of all studies: list, options, run as a command, and notes on the conditions."""
 
-import argparse
 import importlib
 import time as clock
 from collections.abc import Callable
@@ -12,12 +11,16 @@ import numpy as np
 
 from scenarios.car_runs import CarRuns
 from scenarios.claims import Findings
-from vehicle.commands.command_line import parse_and_run
+from vehicle.commands.command_line import command
 from vehicle.commands.console import Console
-from vehicle.commands.options import destination_of, message_options, output_options, setting_options, vehicle_options
+from vehicle.commands.options import message_options, output_options, setting_options, vehicle_options
 from vehicle.commands.parser import Parser
+from vehicle.model.parameters.car_choice import CarChoice
 from vehicle.runs.car import Run
+from vehicle.runs.output.destination import Destination
 from vehicle.runs.output.folder import study_folder
+from vehicle.settings import Settings, part
+from vehicle.settings import setting as declared
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
 from vehicle.threads import one_blas_thread
@@ -39,11 +42,40 @@ STUDIES = {
 VERTICAL_TYRES = "vertical springs, the same rolling and standing"
 """State of the tyres of lumped models."""
 
-QUICK_NOTE = "Short signals (--quick): numbers differ from those of the full study."
+QUICK_NOTE = "Short signals (--quick): numbers differ from the full study."
 
 Subject = TypeVar("Subject")
+S = TypeVar("S", bound="StudySettings")
 
-AddOptions = Callable[[Parser], None]
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class StudySettings(Settings):
+    """Settings of every study.
+
+    Attributes:
+        destination: folder of the results.
+        quick: a small study.
+        jobs: worker processes.
+    """
+
+    destination: Destination = part(Destination)
+    quick: bool = False
+    jobs: int = 1
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LumpedSettings(StudySettings):
+    """Settings of a study of a lumped model."""
+
+    parameters: Path | None = declared("own parameters, named as the shipped ones", type=Path, metavar="FILE.toml")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class CarSettings(StudySettings):
+    """Settings of a study of the complete car."""
+
+    car: CarChoice = part(CarChoice)
+    engine: str = "mujoco"
 
 
 def main_of(name: str) -> Callable[[list[str] | None], int]:
@@ -55,82 +87,77 @@ def main_of(name: str) -> Callable[[list[str] | None], int]:
     return command
 
 
-def study_parser(name: str, *, quick: str, jobs: str = "") -> Parser:
-    """Return a parser with the common options of studies."""
+def study_parser(name: str, settings: type[StudySettings] = StudySettings, *, quick: str, jobs: str = "") -> Parser:
+    """Return a parser with the common options of studies, and those that the settings declare."""
     parser = Parser(prog=f"python -m scenarios.{name}", description=STUDIES.get(name))
     output_options(parser, Path("runs") / name)
     parser.add_argument("--quick", action="store_true", help=quick)
     setting_options(parser, SweepSettings, "jobs", note=jobs)
+    setting_options(parser, settings)
     message_options(parser)
     return parser
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Study(Generic[Subject]):
+class Study(Generic[S, Subject]):
     """Study as a command."""
 
+    name: str
     parser: Parser  # parser of the options
-    # function of the options that returns the subject of the study; called before the folder is created
-    load: Callable[[argparse.Namespace], Subject]
-    # function that computes, writes figures into the folder and returns the findings, or a line to print
-    study: Callable[[Subject, Path, argparse.Namespace], Findings | str]
+    settings: type[S]
+    load: Callable[[S], Subject]  # returns the subject of the study; called before the folder is created
+    # computes, writes figures into the folder and returns the findings, or a line to print
+    study: Callable[[Subject, Path, S], Findings | str]
 
     def __call__(self, arguments: list[str] | None = None) -> int:
         """Run the study, write its results, and turn errors into one message and an exit code.
 
         Args:
-            arguments: command line without the program name; by default that of the process.
+            arguments: command line without the program name; by default the arguments of the process.
 
         Returns:
             Exit code, see `run_command`.
         """
+        return command(lambda: self.parser, self.settings, one_blas_thread()(self._run))(arguments)
 
-        @one_blas_thread()
-        def job(options: argparse.Namespace, console: Console) -> None:
-            started = clock.perf_counter()
-            subject = self.load(options)
-            output = destination_of(options).study_folder(options.output)
-            with study_folder(output, force=options.force) as folder:
-                findings = self.study(subject, folder, options)
-                line = findings if isinstance(findings, str) else findings.write(folder)
-            if isinstance(findings, Findings):
-                for text in findings.values:
-                    print(text)
-            print(f"{output}: {line}; {clock.perf_counter() - started:.0f} s")
-
-        return parse_and_run(self.parser, job, arguments)
+    def _run(self, settings: S, console: Console) -> None:
+        started = clock.perf_counter()
+        subject = self.load(settings)
+        output = settings.destination.study_folder(Path("runs") / self.name)
+        with study_folder(output, force=settings.destination.force) as folder:
+            findings = self.study(subject, folder, settings)
+            line = findings if isinstance(findings, str) else findings.write(folder)
+        if isinstance(findings, Findings):
+            for text in findings.values:
+                print(text)
+        print(f"{output}: {line}; {clock.perf_counter() - started:.0f} s")
 
 
 def lumped_study(
-    name: str,
-    load: Callable[[argparse.Namespace], Subject],
-    study: Callable[[Subject, Path, argparse.Namespace], Findings | str],
-    *options: AddOptions,
-) -> Study[Subject]:
-    """Return a study of a lumped model with a parameter file; arguments as in `Study`, and functions for options."""
-    jobs = "; this study batches its runs in one process, so that it changes nothing"
-    parser = study_parser(name, quick="fewer points on the curves", jobs=jobs)
-    text = "own parameters, named as the shipped ones"
-    parser.add_argument("--parameters", type=Path, metavar="FILE.toml", help=text)
-    for add in options:
-        add(parser)
-    return Study(parser=parser, load=load, study=study)
+    name: str, load: Callable[[S], Subject], study: Callable[[Subject, Path, S], Findings | str], settings: type[S]
+) -> Study[S, Subject]:
+    """Return a study of a lumped model with a parameter file; arguments as in `Study`."""
+    jobs = "; without effect here, because the study batches its runs in one process"
+    parser = study_parser(name, settings, quick="fewer points on the curves", jobs=jobs)
+    return Study(name=name, parser=parser, settings=settings, load=load, study=study)
+
+
+C = TypeVar("C", bound=CarSettings)
 
 
 def car_study(
-    name: str, study: Callable[[CarRuns, Path, argparse.Namespace], Findings], *options: AddOptions
-) -> Study[CarRuns]:
-    """Return a study of the complete car; arguments as in `Study`, and functions for options."""
-    parser = study_parser(name, quick="short signals; what they cannot judge is left open")
+    name: str, study: Callable[[CarRuns, Path, C], Findings], settings: type[C], *, engine: str = "mujoco"
+) -> Study[C, CarRuns]:
+    """Return a study of the complete car; arguments as in `Study`, and the default engine."""
+    parser = study_parser(name, settings, quick="short signals; what they cannot judge is left open")
     vehicle_options(parser)
-    setting_options(parser, SweepSettings, "engine", default="mujoco")
-    for add in options:
-        add(parser)
-    return Study(parser=parser, load=_car_runs, study=study)
+    setting_options(parser, SweepSettings, "engine", default=engine)
+    return Study(name=name, parser=parser, settings=settings, load=_car_runs, study=study)
 
 
-def _car_runs(options: argparse.Namespace) -> CarRuns:
-    runs = CarRuns(vehicle=options.vehicle, overrides=options.overrides, engine=options.engine, jobs=options.jobs)
+def _car_runs(settings: CarSettings) -> CarRuns:
+    car = settings.car
+    runs = CarRuns(vehicle=car.vehicle, overrides=car.overrides, engine=settings.engine, jobs=settings.jobs)
     runs.car()
     return runs
 

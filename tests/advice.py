@@ -3,6 +3,7 @@
 import contextlib
 import io
 import shlex
+from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
 
@@ -19,7 +20,7 @@ def advised(file: Path, *options: str) -> tuple[list[list[str]], str]:
     return ([shlex.split(line)[3:] for line in lines] if code == 0 else []), out.getvalue() + err.getvalue()
 
 
-def run_advice(file: Path, folder: Path, *options: str) -> list[str]:
+def run_advice(file: Path, folder: Path, *options: str, commands: Sequence[Sequence[str]] | None = None) -> list[str]:
     """Run each advised command to its end; return the names of the commands.
 
     Runs take the reduced engine and draw nothing. The run of a comparison is that of the command above it.
@@ -28,8 +29,9 @@ def run_advice(file: Path, folder: Path, *options: str) -> list[str]:
         file: measurement file.
         folder: folder for the results.
         options: further options of `inspect`.
+        commands: what it advises, if that is known.
     """
-    commands, _ = advised(file, *options)
+    commands = advised(file, *options)[0] if commands is None else commands
     run = folder / "run"
     for number, (name, *words) in enumerate(commands):
         more = []

@@ -15,7 +15,13 @@ from vehicle.model.parameters.shipped import VEHICLES, vehicle_file
 from vehicle.runs.car import Car
 
 SHARED = (
-    *("tests/commands/", "tests/documentation/test_executed_pages", "tests/physics/", "tests/runs/car/"),
+    *(
+        "tests/commands/",
+        "tests/core/test_own_",
+        "tests/documentation/test_executed_pages",
+        "tests/physics/",
+        "tests/runs/car/",
+    ),
     *("tests/runs/comparison/", "tests/signals/", "tests/studies/"),
     *(f"tests/system/test_{name}" for name in ("bad_inputs", "lost_files", "no_traceback", "road_run")),
 )

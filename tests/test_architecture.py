@@ -2,14 +2,13 @@
 
 import ast
 import re
-import subprocess
 import sys
 from functools import cache
 from pathlib import Path
 
 import pytest
 
-from tests.patience import HANG
+from tests.patience import process
 from vehicle.commands import OLDER
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -73,7 +72,7 @@ ROOMS: dict[str, set[str]] = {
     "output": {"analysis", "car", "comparison", "excitation", "figures", "flexbody", "formats", "linear", "machine"}
     | {"parameters", "records", "rendering", "replacement", "simulation"},
     "targets": {"car", "figures", "parameters", "records", "simulation"},
-    "report": {"analysis", "car", "figures", "flexbody", "linear", "output", "parameters", "records"}
+    "report": {"analysis", "car", "figures", "flexbody", "formats", "linear", "output", "parameters", "records"}
     | {"rendering", "simulation", "targets", "version"},
     "fmu": {"car", "core", "linear", "parameters", "reduced", "version"},
     "page": {"analysis", "car", "excitation", "figures", "fmu", "formats", "laws", "linear", "output", "parameters"}
@@ -370,22 +369,22 @@ def test_nothing_heavy_is_loaded_before_it_is_used(tmp_path):
         "print(sorted({name.split('.')[0] for name in sys.modules} & "
         "{'mujoco', 'numpy', 'scipy', 'matplotlib', 'trimesh', 'mediapy', 'OpenGL'}))"
     )
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=HANG)
+    done = process(sys.executable, "-c", code, cwd=ROOT)
     assert done.returncode == 0 and done.stdout.strip() == "[]", done.stdout + done.stderr
     # Most of the time of an import would be scipy.signal: written scipy.signal.welch, it is loaded where it is used.
     late = {"scipy.signal", "scipy.stats", "scipy.fft", "scipy.interpolate", "scipy.optimize", "matplotlib"}
     code = f"import sys, vehicle.runs.car; print({late} & set(sys.modules))"
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=HANG)
+    done = process(sys.executable, "-c", code, cwd=ROOT)
     assert done.stdout.strip() == "set()", done.stdout + done.stderr
     # Those of a whole run with its pictures: their imports would take a fifth of its time.
     late -= {"matplotlib"}
     words = f"--input bump_7p5mm.csv --engine reduced --quiet --output {tmp_path / 'run'}".split()
     code = f"import sys; from vehicle.shaker import main; main({words}); print({late} & set(sys.modules))"
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=HANG)
+    done = process(sys.executable, "-c", code, cwd=ROOT)
     assert done.stdout.strip().splitlines()[-1:] == ["set()"], done.stdout + done.stderr
     assert (tmp_path / "run" / "frf.png").is_file()
     code = "import sys, vehicle; print('vehicle.shaker' in sys.modules)"
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=HANG)
+    done = process(sys.executable, "-c", code, cwd=ROOT)
     assert done.stdout.strip() == "False", done.stderr
 
 

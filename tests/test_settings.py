@@ -50,14 +50,11 @@ NUMBERS = {
 UNLIMITED = {"--from", "--to"}
 """Options without limits: a time of a file may be negative."""
 
-LIMITED_LATER = {"--samples", "--levels"}
-"""Options of studies whose limits depend on other values, and are checked with them."""
-
 
 @pytest.mark.parametrize(("flag", "within"), NUMBERS)
 def test_a_number_of_a_command_is_refused_with_option_value_and_interval(flag, within):
     settings, name = NUMBERS[flag, within]
-    assert within or flag in UNLIMITED | LIMITED_LATER, f"{flag}: needs an interval"
+    assert within or flag in UNLIMITED, f"{flag}: needs an interval"
     factor = settings.declared()[name]["factor"]
     low, high = (float(end) for end in (within or FINITE)[1:-1].split(","))
     outside = [float("nan"), float("-inf"), *([] if within.endswith("]") else [float("inf")])]

@@ -3,8 +3,8 @@
     python -m tools.drawn_faults [--seed 1] [--each 2] [--package vehicle/engines ...] [--list]
 
 Each is one changed operator, sign, comparison or decimal number in a file that computes with numpy, drawn with a seed,
-so that a draw can be repeated. Its tests are those of the product that import the changed module, then those of the
-folder of its name.
+so that a draw can be repeated. Its tests are those of the product that import the changed module, then the folder of
+its name.
 A fault that survives is either one that changes nothing (a start value, a tolerance, a limit never met) or a gap.
 """
 
@@ -15,12 +15,11 @@ import ast
 import random
 import re
 import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
 from tests.parts import is_rest
-from tools.mutations import ROOT, Fault, tried
+from tools.mutations import ROOT, Fault, try_all
 
 PACKAGES = (
     *("vehicle/signals", "vehicle/model", "vehicle/engines", "vehicle/core", "vehicle/drawing"),
@@ -38,7 +37,7 @@ OPERATORS: dict[type[ast.AST], tuple[str, str]] = {
     ast.Gt: (">", "<="),
     ast.GtE: (">=", "<"),
 }
-"""Operator to its text and to that of the fault."""
+"""Operator to its text and the text of the fault."""
 
 
 def drawn(package: str, count: int, seed: int) -> list[Fault]:
@@ -114,7 +113,7 @@ def alone(text: str, begin: int, end: int, new: str) -> tuple[str, str]:
 
 
 def tests_of(file: str) -> str:
-    """Return the tests that may see a fault: those that import its module, then those of the folder of its name."""
+    """Return the tests that may see a fault: tests that import its module, then the folder of its name."""
     package, _, module = file.removesuffix(".py").replace("/", ".").rpartition(".")
     direct = re.compile(rf"from {re.escape(package)} import .*\b{module}\b|from {re.escape(package)}\.{module} import")
     tests = ROOT / "tests"
@@ -138,18 +137,8 @@ def main() -> int:
     parser.add_argument("--package", nargs="+", default=PACKAGES, help="folders to draw from (default: all)")
     parser.add_argument("--list", action="store_true", help="print each fault and its tests, and try none")
     options = parser.parse_args()
-    worst = 0
-    for package in options.package:
-        for fault in drawn(package, options.each, options.seed):
-            change = f"{fault.file}: {fault.old.strip()} -> {fault.new.strip()}"
-            if options.list:
-                print(f"{change}\n    {fault.tests}")
-                continue
-            started = time.monotonic()
-            outcome = tried(fault)
-            worst |= not outcome.startswith("caught")
-            print(f"{time.monotonic() - started:5.0f} s  {change}\n         {outcome}", flush=True)
-    return worst
+    faults = (("", fault) for package in options.package for fault in drawn(package, options.each, options.seed))
+    return try_all(faults, only_list=options.list)
 
 
 if __name__ == "__main__":

@@ -18,6 +18,7 @@ import os
 import subprocess
 import sys
 import time
+from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -92,20 +93,31 @@ def main() -> int:
     """Run faults and print the table; return the exit code."""
     parser = argparse.ArgumentParser(description="Seeded faults over all packages: does a test see each of them?")
     parser.add_argument("numbers", nargs="*", type=int, help="faults to try, one after the other; all by default")
-    parser.add_argument("--list", action="store_true", help="print number, file and change of each fault")
+    parser.add_argument("--list", action="store_true", help="print each fault and its tests, and try none")
     options = parser.parse_args()
     if unknown := [number for number in options.numbers if not 1 <= number <= len(FAULTS)]:
         parser.error(f"found fault {unknown[0]}, must be 1 to {len(FAULTS)}")
+    numbers = options.numbers or range(1, len(FAULTS) + 1)
+    return try_all(((f"{number} ", FAULTS[number - 1]) for number in numbers), only_list=options.list)
+
+
+def try_all(faults: Iterable[tuple[str, Fault]], *, only_list: bool) -> int:
+    """Try faults and print a line for each; return 1 if one survives.
+
+    Args:
+        faults: label and fault.
+        only_list: print each fault with its tests, and try none.
+    """
     worst = 0
-    for number in options.numbers or range(1, len(FAULTS) + 1):
-        fault = FAULTS[number - 1]
-        if options.list:
-            print(f"{number:3d} {fault.file}: {fault.old!r} -> {fault.new!r}")
+    for label, fault in faults:
+        change = f"{label}{fault.file}: {fault.old.strip()} -> {fault.new.strip()}"
+        if only_list:
+            print(f"{change}\n    {fault.tests}")
             continue
         started = time.monotonic()
         outcome = tried(fault)
         worst |= not outcome.startswith("caught")
-        print(f"{number:3d} {time.monotonic() - started:5.0f} s  {fault.file}: {outcome}", flush=True)
+        print(f"{time.monotonic() - started:5.0f} s  {change}\n         {outcome}", flush=True)
     return worst
 
 

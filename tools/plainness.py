@@ -2,6 +2,7 @@
 
 Every count is a candidate, not a verdict: a reader decides. The sum per 1 000 lines is the number to bring down.
 `plainness.py DIR --comments` prints lines of code and of comments by folder, C included.
+`plainness.py DIR --habits` counts habits of a translation in all texts of a folder.
 `plainness.py DIR --reader` counts instead what a user reads: texts of console, errors, help and reports (strings and HTML
 templates). `--draw 60 --seed 1` prints sentences of these texts, to be read by someone who does not know the code.
 """
@@ -80,6 +81,18 @@ READER_PHRASES = {
     "elliptic": r"\b(?:does|do|may|has|is|are) ?(?:[.;]|$)|\bwhere none\b|\bif none\b|\bsuch (?:a|an) one\b|\bit is that\b|\bwhat it was\b",
 }
 """Phrases in texts that a user reads, that newcomers did not understand; {name} is a value."""
+
+HABITS = {
+    "as before an example": r"(?:,| \() ?as (?!(?:if|well|soon|long|far|many|much|it|they|this|that|these|is|are|do|does|did|"
+    r"was|were|in|at|of|for|by|on|with|when|to|before|after|shown|above|below|there|required|usual)\b|"
+    r"(?:(?:an?|the) )?(?:[\w-]+ ){1,3}?(?:is|are|does|do|has|have|had|was|were|may|can|must|needs?)\b)",
+    "chain of nouns": r"(?:\bof\b[^.;:,()\n]*){3,}\bof\b|\b(?:that|those) of\b",
+    "inverted opening": r"(?:^|[.:;,] )(?:[Mm]ost |[Nn]ot )?(?:[Dd]ecisive|[Nn]eeded|[Aa]llowed|[Mm]issing|[Pp]ossible|"
+    r"[Kk]nown|[Gg]iven|[Ff]ound|[Cc]omfortable|[Ss]tated|[Uu]sed|[Mm]eant|[Rr]efused|[Ll]eft out|[Cc]ounted|"
+    r"[Oo]f (?:a|the|these|an)\b[^.;:,]{3,30}) (?:is|are|was|were)\b",
+    "speaking thing": r"\b(?:says?|tells?|knows|forgets|said|told|asks)\b",
+}
+"""Habits of a translation: "X, as Y" for "for example Y", "that of the ... of the ...", "decisive is ride", "says so"."""
 
 VERBS = re.compile(
     r"\b(?:is|are|was|were|be|been|has|have|had|do|does|did|can|may|must|will|would|should|could|"
@@ -183,6 +196,19 @@ def reader(files: list[Path]) -> tuple[float, dict[str, list[str]], list[str]]:
     return 1000 * sum(map(len, hits.values())) / max(words, 1), hits, every
 
 
+def habits(files: list[Path]) -> dict[str, list[str]]:
+    """Return the sentences of each kind of `HABITS`: texts that a user reads, docstrings and comments."""
+    every = reader(files)[2]
+    for path in files:
+        if path.suffix == ".py":
+            source = path.read_text(encoding="utf-8")
+            every += [f"{path}:{line} {text}" for line, text in described(ast.parse(source), source)]
+    return {
+        kind: sorted({each for each in every if re.search(pattern, re.sub(r"\{.*?\}", "{}", each.partition(" ")[2]))})
+        for kind, pattern in HABITS.items()
+    }
+
+
 WORDS = collections.Counter[str]()
 """Words of prose that were looked at: the measure for peers with fewer docstrings."""
 
@@ -220,6 +246,25 @@ def share_of_comments(folder: Path) -> tuple[int, int]:
     return sum(code for code, _ in counts), sum(comments for _, comments in counts)
 
 
+def described(tree: ast.AST, source: str) -> list[tuple[int, str]]:
+    """Return the sentences of docstrings and the comments of a file, with their lines."""
+    texts, seen = list[tuple[int, str]](), set[int]()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
+            text, line = ast.get_docstring(node) or "", getattr(node, "lineno", 1)
+            texts += [(line, s) for s in sentences(text)]
+            sections = re.split(r"\n\s*(?:Args|Returns|Raises|Attributes|Yields):", text)[1:]
+            texts += [(line, s.strip()) for part in sections for s in part.split("\n") if s.strip()]
+            seen |= {id(node.body[0])} if text else set()
+        elif isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
+            # The docstring of a constant.
+            texts += [] if id(node) in seen else [(node.lineno, s) for s in sentences(node.value.value)]
+    for token in tokenize.generate_tokens(io.StringIO(source).readline):
+        if token.type == tokenize.COMMENT and "noqa" not in token.string and "type:" not in token.string:
+            texts.append((token.start[0], token.string.lstrip("# ")))
+    return texts
+
+
 def examine(path: Path) -> tuple[collections.Counter[str], list[tuple[str, int, str]]]:
     """Candidates of a file."""
     source = path.read_text(encoding="utf-8")
@@ -230,30 +275,16 @@ def examine(path: Path) -> tuple[collections.Counter[str], list[tuple[str, int, 
         bound = {n.id: n.lineno for n in ast.walk(f) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
         bound |= {a.arg: a.lineno for a in ast.walk(f) if isinstance(a, ast.arg)}
         hits += [(f"name: {n}", line, f.name) for n, line in bound.items() if n in NAMES]
-    texts: list[tuple[int, str]] = []
     for node in ast.walk(tree):
-        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
-            text = ast.get_docstring(node)
-            if text is None:
-                continue
-            line = getattr(node, "lineno", 1)
-            first = sentences(text)[:1]
-            if first and not isinstance(node, ast.Module):
+        if isinstance(node, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
+            for first in sentences(ast.get_docstring(node) or "")[:1]:
                 WORDS["first lines"] += 1
-                words = len(first[0].split())
-                if isinstance(node, ast.FunctionDef) and not VERBS.search(first[0]):
-                    hits.append(("sentence without verb", line, first[0]))
-                if words >= 5 and len(PRONOUN.findall(first[0])) * 5 >= words:
-                    hits.append(("riddle: pronouns for nouns", line, first[0]))
-            texts += [(line, s) for s in sentences(text)]
-            sections = re.split(r"\n\s*(?:Args|Returns|Raises|Attributes|Yields):", text)[1:]
-            texts += [(line, s.strip()) for part in sections for s in part.split("\n") if s.strip()]
-        elif isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
-            texts += [(node.lineno, s) for s in sentences(node.value.value)]
-    texts += strings(tree)
-    for token in tokenize.generate_tokens(io.StringIO(source).readline):
-        if token.type == tokenize.COMMENT and "noqa" not in token.string and "type:" not in token.string:
-            texts.append((token.start[0], token.string.lstrip("# ")))
+                words = len(first.split())
+                if isinstance(node, ast.FunctionDef) and not VERBS.search(first):
+                    hits.append(("sentence without verb", node.lineno, first))
+                if words >= 5 and len(PRONOUN.findall(first)) * 5 >= words:
+                    hits.append(("riddle: pronouns for nouns", node.lineno, first))
+    texts = [*described(tree, source), *strings(tree)]
     WORDS["prose"] += sum(len(text.split()) for _, text in texts)
     WORDS["functions"] += len(functions)
     for line, text in texts:
@@ -285,6 +316,7 @@ def main() -> None:
     parser.add_argument("--worst", type=int, default=12, help="number of files to name")
     parser.add_argument("--comments", action="store_true", help="count lines of code and of comments, by folder")
     parser.add_argument("--reader", action="store_true", help="count what a user reads, HTML templates included")
+    parser.add_argument("--habits", action="store_true", help="count habits of a translation")
     parser.add_argument("--draw", type=int, default=0, metavar="N", help="print N sentences that a user reads")
     parser.add_argument("--seed", type=int, default=1, help="seed of the draw (default 1)")
     options = parser.parse_args()
@@ -294,19 +326,21 @@ def main() -> None:
             if code:
                 print(f"{100 * comments / code:5.1f} %  {comments:5} comments, {code:6} lines of code  {folder}")
         return
-    if options.reader or options.draw:
+    if options.reader or options.draw or options.habits:
         paths = [path for path in sorted(options.folder.rglob("*")) if path.suffix in (".py", ".html")]
         rate, kinds, every = reader(paths or [options.folder])
         if options.draw:
             print("\n".join(" ".join(text.split()) for text in random.Random(options.seed).sample(every, options.draw)))
             return
+        kinds = habits(paths or [options.folder]) if options.habits else kinds
         for kind, found in sorted(kinds.items(), key=lambda item: -len(item[1])):
             print(f"{len(found):6} {kind}")
             if options.list and kind.startswith(options.kind):
                 print(
                     "\n".join(f"       {text}" for text in found[:: max(len(found) // options.list, 1)][: options.list])
                 )
-        print(f"{rate:.1f} per 1 000 words, {len(every)} sentences")
+        if not options.habits:
+            print(f"{rate:.1f} per 1 000 words, {len(every)} sentences")
         return
     total: collections.Counter[str] = collections.Counter()
     per_file: dict[str, tuple[int, int]] = {}

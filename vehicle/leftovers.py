@@ -1,4 +1,4 @@
-"""Hidden files and folders of results that are being written, and the notice about those of a killed command.
+"""Hidden files and folders of results that are being written, and the notice about what a killed command left.
 
 A command that only reads changes nothing on the disk: it prints a notice of unfinished results.
 """

@@ -11,7 +11,7 @@ MEMINFO, CONTAINER = Path("/proc/meminfo"), Path("/sys/fs/cgroup")
 
 
 def physical_memory() -> float:
-    """Return the memory of this machine or its container [bytes]; infinity where the system does not say."""
+    """Return the memory of this machine or its container [bytes]; infinity if unknown."""
     if os.name == "nt":
         return _windows_memory(1)
     try:

@@ -39,7 +39,7 @@ def side_of(wheel: str, wheels: Iterable[str]) -> str:
     """Return a wheel in words: the side for a car with one axle, else the corner, else the name of the wheel.
 
     Args:
-        wheel: name of the wheel, as "fr".
+        wheel: name of the wheel, for example "fr".
         wheels: names of all wheels of the car.
     """
     sides = {name: sides.replace("_", " ") for sides, name in CORNERS.items()}
@@ -58,7 +58,7 @@ def point_words(point: str) -> str:
     """Return the name of a part or point in words: "seat rail", "front right suspension mount".
 
     Args:
-        point: name as in channels, as "seat_rail" or "suspension_mount_fr".
+        point: name in channels, for example "seat_rail" or "suspension_mount_fr".
     """
     part, _, wheel = point.rpartition("_")
     corner = next((corner for corner, name in CORNERS.items() if name == wheel), None)
@@ -88,12 +88,12 @@ def axle_and_side(wheel: str) -> tuple[str, str]:
 
 
 def across(wheel: str) -> str:
-    """Return the other wheel of the axle, as "fl" for "fr"."""
+    """Return the other wheel of the axle: "fl" for "fr"."""
     return wheel[:-1] + ("l" if wheel.endswith("r") else "r")
 
 
 def is_wheel(name: str) -> bool:
-    """Return True for a valid name of a wheel: a corner, or the side of a further axle, as middle_r."""
+    """Return True for a valid name of a wheel: a corner, or the side of a further axle like middle_r."""
     return name in CORNERS.values() or re.fullmatch(r"[a-z]\w*_[rl]", name) is not None
 
 
@@ -145,7 +145,7 @@ def channel_units(channels: Iterable[str]) -> dict[str, str]:
         unit = next((unit for form, unit in _UNITS.items() if re.fullmatch(form, channel)), None)
         if unit is None:
             raise ConfigurationError(
-                f"no channel {channel!r}; names of channels look like seat_rail_acc_z, damper_fr_velocity, "
+                f"no channel {channel!r}; channels have names like seat_rail_acc_z, damper_fr_velocity, "
                 "damper_fr_force, tyre_fr_force_z, plate_fr_displacement"
             )
         units[channel] = unit

@@ -28,31 +28,25 @@ S_co = TypeVar("S_co", covariant=True)
 
 
 def setting(
-    meaning: str,
-    default: Any = None,
-    *,
-    flag: str = "",
-    within: str = "",
-    factor: float = 1.0,
-    **option: Any,
+    meaning: str, default: Any = None, *, flag: str = "", within: str = "", factor: float = 1.0, **option: Any
 ) -> Any:
     """Declare a field of a class of `Settings`.
 
     Args:
         meaning: meaning with unit, for the documentation and the help; "%(default)s" stands for the default.
         default: value in Python of a setting that is left out.
-        flag: option of the command, for messages too; by default that of the name of the field.
-        within: interval of the values of the option, as "(0, 1]" or "[8, inf)"; empty without limits.
-        factor: value in Python over that of the option: 0.01 for a percentage.
-        option: arguments of `add_argument`, as metavar, and help if the option has another unit than Python; none for a
-            setting without an option.
+        flag: option of the command; by default the name of the field.
+        within: interval of the option, for example "(0, 1]" or "[8, inf)"; empty without limits.
+        factor: value in Python over value of the option: 0.01 for a percentage.
+        option: arguments of `add_argument`, with help if the option has another unit than Python; none for a setting
+            without an option.
     """
     declared = {"meaning": meaning, "flag": flag, "within": within, "factor": factor, "option": option}
     return field(default=default, metadata=declared | {"default": default})
 
 
 def part(settings: Callable[[], A]) -> A:
-    """Declare a field with further settings, for example the settings of a road in those of a run.
+    """Declare a field with further settings, for example the road in the settings of a run.
 
     Args:
         settings: class of `Settings`; by default each has its defaults.
@@ -108,7 +102,7 @@ class Settings:
 
 
 def _unit(declared: Mapping[str, Any]) -> str:
-    """Return the unit in the brackets of a declaration, as "Hz" of "frequency [Hz]"; empty without one."""
+    """Return the unit in the brackets of a declaration: "Hz" of "frequency [Hz]"; empty without brackets."""
     texts = (declared["option"].get("help", ""), declared["meaning"])
     found = next((found for text in texts if (found := re.search(r"\[([^\]]+)\]", text))), None)
     return found[1] if found and found[1] != "-" else ""
@@ -162,7 +156,7 @@ def pair(flag: str, needed: str, *, above: float | None = None) -> Callable[[str
 
     Args:
         flag: name of the option, for the message.
-        needed: what must be given, as "LOW:HIGH in Hz, as 3:45".
+        needed: required form for the message, for example "LOW:HIGH in Hz, for example 3:45".
         above: number above which both are, in place of at least 0.
     """
 
@@ -238,8 +232,8 @@ def with_settings(settings_class: Callable[P, S]) -> _WithSettings[P, S]:
 def engine_setting(default: str) -> Any:
     """Declare the engine of the runs of a function or a command; the default is "auto" for many runs."""
     return setting(
-        "mujoco: complete nonlinear model; reduced: one run 3 times, sweeps tens of times faster, with all force laws "
-        "but linear geometry, no film; auto: reduced inside its valid range, otherwise mujoco; default: %(default)s",
+        "mujoco: complete nonlinear model; reduced: 3 times faster for a run, tens of times for sweeps, with all force "
+        "laws but linear geometry, no film; auto: reduced in its valid range, otherwise mujoco; default: %(default)s",
         default,
         choices=ENGINES,
     )
@@ -248,8 +242,8 @@ def engine_setting(default: str) -> Any:
 def skip_setting() -> Any:
     """Declare the start of the evaluation, see `vehicle.signals.excitation.evaluation_start`."""
     return setting(
-        "begin the evaluation (comfort, SEAT, slip shares, densities) S seconds after the start; on a road 2 by "
-        "default, more below 19 km/h, since a road rises from rest during the first second; 0 with --input",
+        "start the evaluation (comfort, SEAT, slip shares, densities) S seconds into the run; default: 0 with --input, "
+        "2 on a road, which rises from rest during the first second (more below 19 km/h)",
         within="[0, inf)",
         type=float,
         metavar="S",

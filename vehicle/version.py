@@ -8,7 +8,7 @@ PROJECT = "vehicle-on-shaker"
 
 
 def package_version() -> str:
-    """Return the name and the version of the package, as "vehicle-on-shaker 0.1.0".
+    """Return name and version of the package, for example "vehicle-on-shaker 0.1.0".
 
     The metadata of an editable installation can be outdated, so `pyproject.toml` of a clone has priority.
     """

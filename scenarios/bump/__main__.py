@@ -3,8 +3,8 @@
 python -m scenarios.bump [--output DIR] [--reading height|literal] [--video [FILE.mp4]] [--quick] [--jobs N] ...
 """
 
-import argparse
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -27,9 +27,11 @@ from scenarios.bump.runs import (
 from scenarios.bump.seeds import RECORD, SEEDS, BumpSeeds, experiments, many_seeds
 from scenarios.car_runs import CarRuns
 from scenarios.claims import Findings, markdown
-from scenarios.study import car_study, setting
+from scenarios.signals.bump import Reading
+from scenarios.study import CarSettings, car_study, setting
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import SATURATED_VELOCITY
+from vehicle.settings import setting as declared
 
 RING_DOWN = (
     "Ring-down time: from the end of the bump until the vertical acceleration last exceeds 20 % of its largest value "
@@ -38,26 +40,38 @@ RING_DOWN = (
 )
 
 
-def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
+@dataclass(frozen=True, kw_only=True, slots=True)
+class BumpSettings(CarSettings):
+    """Settings of the study of bumps."""
+
+    reading: Reading = declared(
+        "A of the printed formula as peak height, or taken literally (peak 2 A)", "height", choices=sorted(OTHER)
+    )
+    video: str | None = declared(
+        "film of both bumps side by side, in step", nargs="?", const="bumps.mp4", metavar="FILE.mp4"
+    )
+
+
+def study(runs: CarRuns, folder: Path, settings: BumpSettings) -> Findings:
     """Run the bumps, draw the figures (and the film) into the folder, and compare."""
-    if options.video is not None:
+    if settings.video is not None:
         from vehicle.drawing.rendering.backend import require_film
 
-        if Path(options.video).suffix != ".mp4":
-            raise ConfigurationError(f"--video {options.video}: a film is written as .mp4; give FILE.mp4")
+        if Path(settings.video).suffix != ".mp4":
+            raise ConfigurationError(f"--video {settings.video}: a film is written as .mp4; give FILE.mp4")
         require_film()
-    record = QUICK if options.quick else FULL
-    frictions = FRICTIONS[::2] if options.quick else FRICTIONS
-    bumps = run_bumps(runs, record, options.reading, frictions)
-    count = 2 if options.quick else SEEDS
-    seeds = many_seeds(runs, options.reading, frictions, count)
-    trials = {} if options.quick else experiments(runs, options.reading, bumps.other_reading, seeds)
+    record = QUICK if settings.quick else FULL
+    frictions = FRICTIONS[::2] if settings.quick else FRICTIONS
+    bumps = run_bumps(runs, record, settings.reading, frictions)
+    count = 2 if settings.quick else SEEDS
+    seeds = many_seeds(runs, settings.reading, frictions, count)
+    trials = {} if settings.quick else experiments(runs, settings.reading, bumps.other_reading, seeds)
     history_figures(folder, bumps, seeds)
     friction_figure(folder / "friction.png", bumps)
     ring_down_figure(folder / "ring_down.png", bumps)
-    if options.video is not None:
+    if settings.video is not None:
         shown = runs([runs.case(run.signal, engine="mujoco") for run in bumps.noisy])
-        side_by_side(folder / options.video, shown, start=record.start - 0.1, duration=record.film)
+        side_by_side(folder / settings.video, shown, start=record.start - 0.1, duration=record.film)
     ends = extreme_claims(seeds, trials)
     slips, ringing = slip_claims(bumps, seeds), list(ring_down_claims(bumps))
     too_short = {claim.name: "the record ends before the motion has rung down" for claim in ringing}
@@ -66,10 +80,10 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     low, high = bumps.other
     slip, end = (when(slip_after(high, record.start, limit)) for limit in (bumps.slip_velocity, SATURATED_VELOCITY))
     return Findings(
-        title=f"Bumps of 1.5 and 7.5 mm, {options.reading} reading (Bommer 2006, section 3.2.2)",
+        title=f"Bumps of 1.5 and 7.5 mm, {settings.reading} reading (Bommer 2006, section 3.2.2)",
         claims=[*slips, *ends, *ringing, linear_claim(linear_errors(runs, count))],
         tyres=runs.car().vehicle.driving.words,
-        unjudged={**too_few, **too_short} if options.quick else {},
+        unjudged={**too_few, **too_short} if settings.quick else {},
         notes=[
             slip_table(bumps),
             seeds_text(seeds),
@@ -77,21 +91,13 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
             f"The other reading of the printed formula ({bumps.other_reading}): first slip {slip} (above 1 mm/s {end}) "
             f"with 7.5 mm; with 1.5 mm largest damper velocity {1e3 * fastest(low):.1f} mm/s "
             f"({'slips' if fastest(low) > bumps.slip_velocity else 'does not slip'}).",
-            *setting(runs, bumps.noisy[0], options.quick),
+            *setting(runs, bumps.noisy[0], settings.quick),
         ],
         data={**bumps.data(), **seeds.data(), "experiments": trials},
     )
 
 
-def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of this study."""
-    meaning = "A of the printed formula as peak height, or taken literally (peak 2 A)"
-    parser.add_argument("--reading", choices=sorted(OTHER), default="height", help=meaning)
-    film = "film of both bumps side by side, in step"
-    parser.add_argument("--video", nargs="?", const="bumps.mp4", metavar="FILE.mp4", help=film)
-
-
-main = car_study("bump", study, add_options)
+main = car_study("bump", study, BumpSettings)
 
 
 def seeds_text(seeds: BumpSeeds) -> str:

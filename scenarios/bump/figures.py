@@ -1,4 +1,4 @@
-"""Figures of the bumps, as 3.12 to 3.20 of the source, and the film of both side by side, in step."""
+"""Figures of the bumps (3.12 to 3.20 of the source), and the film of both side by side, in step."""
 
 from collections.abc import Sequence
 from pathlib import Path

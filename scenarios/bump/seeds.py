@@ -81,7 +81,7 @@ def many_seeds(runs: CarRuns, reading: Reading, frictions: Sequence[float], coun
             fastest[size].append(float(np.max(np.abs(recorded["velocity"]))))
             for point, values in recorded.items():
                 kept.setdefault((size, point), []).append((float(np.min(values)), float(np.max(values))))
-        for friction, car in cars.items():  # `found` is that of the high bump
+        for friction, car in cars.items():  # `found`: of the high bump
             speed = np.abs((recorded if car is nominal else motions(car, signal, engine))["velocity"])
             above = np.flatnonzero(speed > SATURATED_VELOCITY)
             ends[friction].append(BUMP_START_S + above[0] * signal.timestep if above.size else np.inf)

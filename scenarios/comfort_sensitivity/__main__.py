@@ -4,17 +4,16 @@ python -m scenarios.comfort_sensitivity [--output DIR] [--quick] [--jobs N] [--e
     [--records N] [--source-only] [--vehicle FILE.toml] [--set PATH=VALUE]
 """
 
-import argparse
 import sys
 import time as clock
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from scenarios.car_runs import CarRuns
 from scenarios.claims import Findings, markdown
-from scenarios.comfort_runs import QUICK, Changes, ComfortRuns, Curves, Point, comfort_options, records_of
+from scenarios.comfort_runs import QUICK, RECORDS, Changes, ComfortRuns, Curves, Point, Records
 from scenarios.comfort_sensitivity.claims import (
     BODY,
     DEGRESSIVE,
@@ -27,13 +26,7 @@ from scenarios.comfort_sensitivity.claims import (
     size_claims,
     slip_claims,
 )
-from scenarios.comfort_sensitivity.figures import (
-    curve_table,
-    draw_variation,
-    draw_wheel,
-    plain,
-    setting,
-)
+from scenarios.comfort_sensitivity.figures import curve_table, draw_variation, draw_wheel, plain, setting
 from scenarios.comfort_sensitivity.histories import (
     amplification_claim,
     history_claims,
@@ -45,7 +38,8 @@ from scenarios.comfort_sensitivity.histories import (
 )
 from scenarios.comfort_sensitivity.trials import end_trials, level_trials, trial_cases
 from scenarios.signals.exact_road import ROAD_EDGE_HZ, ROAD_RMS
-from scenarios.study import QUICK_NOTE, car_study
+from scenarios.study import QUICK_NOTE, CarSettings, car_study
+from vehicle.settings import setting as declared
 from vehicle.signals.analysis.ride_comfort import UNWEIGHTED
 from vehicle.studies.sweeps.case import Case
 
@@ -57,11 +51,28 @@ SURE = f"comfort value against {TITLES['coulomb_friction']}, smooth road"
 ENGINES = ("reduced", "mujoco")
 
 
-def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SensitivitySettings(CarSettings):
+    """Settings of the study of comfort."""
+
+    engine: str = "auto"
+    records: int | None = declared(
+        f"records of road for every point, 60 s each; {RECORDS} by default", within="[1, inf)", type=int, metavar="N"
+    )
+    source_only: bool = declared("only the three parameters of Bommer 2006", False, action="store_true")
+
+
+def records_of(settings: SensitivitySettings) -> Records:
+    """Return the records of every point."""
+    base = QUICK if settings.quick else Records(count=RECORDS)
+    return base if settings.records is None else replace(base, count=settings.records)
+
+
+def study(runs: CarRuns, folder: Path, settings: SensitivitySettings) -> Findings:
     """Run all cars on both roads, draw the figures into the folder, and compare."""
-    comfort = ComfortRuns(runs, records_of(options), folder / "sweep")
+    comfort = ComfortRuns(runs, records_of(settings), folder / "sweep")
     started = clock.perf_counter()
-    beyond = not (options.quick or options.source_only)
+    beyond = not (settings.quick or settings.source_only)
     cases = [case for variation in SOURCE for case in comfort.all_cases(variation)]
     # All at once: the worker processes take longer to start than most of the runs.
     comfort([*cases, *(beyond_cases(comfort) if beyond else [])])
@@ -114,18 +125,13 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
         title="Comfort on a smooth and a rough road (Bommer 2006, chapter 4)",
         claims=claims,
         tyres=comfort.tyres,
-        unjudged={entry.name: QUICK_WHY for entry in claims if entry.name != SURE} if options.quick else {},
-        notes=[*notes, *([QUICK_NOTE] if options.quick else [])],
+        unjudged={entry.name: QUICK_WHY for entry in claims if entry.name != SURE} if settings.quick else {},
+        notes=[*notes, *([QUICK_NOTE] if settings.quick else [])],
         data=data,
     )
 
 
-def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of this study."""
-    parser.add_argument("--source-only", action="store_true", help="only the three parameters of Bommer 2006")
-
-
-main = car_study("comfort_sensitivity", study, comfort_options, add_options)
+main = car_study("comfort_sensitivity", study, SensitivitySettings, engine="auto")
 
 
 def beyond_cases(comfort: ComfortRuns) -> list[Case]:

@@ -52,19 +52,19 @@ class Exercise:
         """Return "right" with the solution, or "not yet" with a hint.
 
         Args:
-            text: number with its unit, as "1.2 mm"; the unit is optional for a ratio.
+            text: number with its unit, for example "1.2 mm"; the unit is optional for a ratio.
 
         Raises:
             ConfigurationError: no number.
         """
         match = re.fullmatch(r"\s*([-+]?\d*\.?\d+(?:[eE][-+]?\d+)?)\s*(.*?)\s*", text)
         if match is None:
-            raise ConfigurationError(f"{text!r}: no number; type a number and its unit, as '12 {self.unit}'")
+            raise ConfigurationError(f"{text!r}: no number; type a number and its unit, for example '12 {self.unit}'")
         unit = match[2] or "-"
         factor = self._factor(unit)
         if factor is None:
             fault = f"{unit} is no unit of this answer" if match[2] else "the unit is missing"
-            return f"not yet: {fault}; the page asks for {self.unit}"
+            return f"not yet: {fault}; the answer is in {self.unit}"
         value = float(match[1]) * factor
         if self._agrees(value, self.value):
             return f"right: {number(self.value)} {self.unit}".removesuffix(" -")

@@ -3,10 +3,10 @@
 python -m scenarios.damper_choice [--output DIR] [--parameters FILE.toml] [--quick] [--force] [--refit]
 """
 
-import argparse
 import math
 import sys
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -45,15 +45,11 @@ from scenarios.damper_choice.runs import (
     road_holding,
     trade_off,
 )
-from scenarios.lumped.damper_choice import (
-    FITTED,
-    DamperChoiceParameters,
-    ExponentialRoad,
-    damper_choice_parameters,
-)
-from scenarios.study import VERTICAL_TYRES, lumped_study
+from scenarios.lumped.damper_choice import FITTED, DamperChoiceParameters, ExponentialRoad, damper_choice_parameters
+from scenarios.study import VERTICAL_TYRES, LumpedSettings, lumped_study
 from vehicle.model.parameters.toml_file import as_table
 from vehicle.model.parameters.vehicle import load_vehicle
+from vehicle.settings import setting as declared
 
 TITLE = "Choice of dampers for road holding (Mehmood, Khan and Mehmood 2014)"
 
@@ -61,9 +57,16 @@ HEAVY_INDEX = 0.5
 """Least J / (Ms a b) of the comparison fit of --refit [-]."""
 
 
-def study(parameters: DamperChoiceParameters, folder: Path, options: argparse.Namespace) -> Findings:
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DamperSettings(LumpedSettings):
+    """Settings of the study of dampers."""
+
+    refit: bool = declared("repeat the fit of the parameters and report it", False, action="store_true")
+
+
+def study(parameters: DamperChoiceParameters, folder: Path, settings: DamperSettings) -> Findings:
     """Run everything, draw the figures into the folder, and compare."""
-    damping = [float(c) for c in np.linspace(1000.0, 8000.0, 15 if options.quick else 57)]
+    damping = [float(c) for c in np.linspace(1000.0, 8000.0, 15 if settings.quick else 57)]
     lines = np.arange(0.01, 15.0, 0.01)
     wide = np.arange(0.02, 30.0, 0.02)
     quarter, half = quarter_responses(parameters, lines), half_responses(parameters, wide)
@@ -74,8 +77,8 @@ def study(parameters: DamperChoiceParameters, folder: Path, options: argparse.Na
     }
     printed = half_car_measure(parameters, "printed", parameters.highway)
     cars = {"fitted quarter car": parameters.quarter_car, "complete car": complete_car_quarter(load_vehicle())}
-    wide_damping = [float(c) for c in np.geomspace(200.0, 10000.0, 25 if options.quick else 81)]
-    curves = compare_curves(parameters, duration=6.0 if options.quick else 30.0)
+    wide_damping = [float(c) for c in np.geomspace(200.0, 10000.0, 25 if settings.quick else 81)]
+    curves = compare_curves(parameters, duration=6.0 if settings.quick else 30.0)
     trades = {name: trade_off(car, wide_damping) for name, car in cars.items()}
 
     claims = [
@@ -83,7 +86,7 @@ def study(parameters: DamperChoiceParameters, folder: Path, options: argparse.Na
         *quarter_response_claims(parameters, lines, quarter),
         *quarter_optimum_claims(parameters, holding["highway"]["printed"], "printed"),
         *quarter_optimum_claims(parameters, holding["highway"]["physical"], "physical"),
-        *half_response_claims(parameters, wide, half, None if options.quick else fitted_to_wheels(parameters)),
+        *half_response_claims(parameters, wide, half, None if settings.quick else fitted_to_wheels(parameters)),
         *half_optimum_claims(holding["highway"]["printed"], "printed"),
         *rate_claims(parameters, holding["highway"]["printed"], printed(4000.0, 4000.0), printed(3250.0, 3250.0)),
         *half_optimum_claims(holding["highway"]["physical"], "physical"),
@@ -105,7 +108,7 @@ def study(parameters: DamperChoiceParameters, folder: Path, options: argparse.Na
         "parameters": as_table(parameters),
         "complete_car_quarter": as_table(cars["complete car"]),
     }
-    if options.refit:
+    if settings.refit:
         data["refit"] = _refit(parameters)
         notes.append(_refit_note(data["refit"]))
     return Findings(title=TITLE, claims=claims, tyres=VERTICAL_TYRES, unjudged=None, notes=notes, data=data)
@@ -217,17 +220,12 @@ def _refit(parameters: DamperChoiceParameters) -> dict[str, Any]:
     return result
 
 
-def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of this study."""
-    parser.add_argument("--refit", action="store_true", help="repeat the fit of the parameters and report it")
-
-
-def load(options: argparse.Namespace) -> DamperChoiceParameters:
+def load(settings: DamperSettings) -> DamperChoiceParameters:
     """Return the parameters."""
-    return damper_choice_parameters(options.parameters or FITTED)
+    return damper_choice_parameters(settings.parameters or FITTED)
 
 
-main = lumped_study("damper_choice", load, study, add_options)
+main = lumped_study("damper_choice", load, study, DamperSettings)
 
 
 if __name__ == "__main__":

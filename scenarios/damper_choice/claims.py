@@ -115,10 +115,7 @@ def _second_maximum(parameters: DamperChoiceParameters, lines: Vector) -> Claim:
 
 
 def half_response_claims(
-    parameters: DamperChoiceParameters,
-    lines: Vector,
-    responses: dict[float, Vector],
-    other: Refit | None = None,
+    parameters: DamperChoiceParameters, lines: Vector, responses: dict[float, Vector], other: Refit | None = None
 ) -> list[Claim]:
     """Return the rows on figures 5 to 8: damping [N s/m] to |response| over lines [Hz], (4, m).
 
@@ -355,12 +352,7 @@ def rate_claims(
 
 
 def _regions(
-    name: str,
-    lines: Vector,
-    curves: Vector,
-    low_edge: float,
-    printed_edge: str,
-    why: Sequence[str] = ("", ""),
+    name: str, lines: Vector, curves: Vector, low_edge: float, printed_edge: str, why: Sequence[str] = ("", "")
 ) -> list[Claim]:
     """Return the rows on the three frequency regions of a wheel response; `why` has a note for each of two rows."""
     same, ordered = region_verdicts(lines, curves, low_edge)

@@ -15,12 +15,7 @@ from scipy.optimize import least_squares
 
 from scenarios.damper_choice.response_features import local_peaks
 from scenarios.lumped.axle import Axle
-from scenarios.lumped.damper_choice import (
-    ExponentialRoad,
-    FrequencyBands,
-    RoadHoldingHalfCar,
-    RoadHoldingQuarterCar,
-)
+from scenarios.lumped.damper_choice import ExponentialRoad, FrequencyBands, RoadHoldingHalfCar, RoadHoldingQuarterCar
 from scenarios.lumped.road_holding import half_car_model, printed_load_fluctuation, quarter_car_model
 from vehicle.arrays import Vector
 
@@ -50,7 +45,7 @@ HALF_BOUNDS = (
     np.array([400.0, 0.2, 2.3, 0.3, 25.0, 25.0, 8e4, 8e4]),
     np.array([1500.0, 1.3, 2.9, 0.7, 130.0, 200.0, 5e5, 5e5]),
 )
-"""Lowest and highest values of `HALF_FREE` in their order: those of road vehicles, with room."""
+"""Lowest and highest values of `HALF_FREE` in their order: road vehicles, with room."""
 _COARSE = np.arange(2000.0, 6001.0, 250.0)
 _READING = 125.0  # half of the 250 N s/m to which the source reads its optima [N s/m]
 

@@ -45,7 +45,7 @@ def printed_determinant(matrix: Complex) -> complex:
 
 
 def wrong_terms() -> list[str]:
-    """Return the printed terms that are no permutation, as "a31 a42 a14 a24"."""
+    """Return the printed terms that are no permutation, for example "a31 a42 a14 a24"."""
     return [
         " ".join(f"a{factor}" for factor in term)
         for _, term in PRINTED_TERMS

@@ -3,7 +3,6 @@
 python -m scenarios.half_car_rider [--output DIR] [--parameters FILE.toml] [--quick] [--force]
 """
 
-import argparse
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -34,12 +33,8 @@ from scenarios.half_car_rider.runs import (
 )
 from scenarios.half_car_rider.seats import FACTORS, Measure, with_experiment
 from scenarios.lumped.half_car_rider_model import ENDS
-from scenarios.lumped.half_car_rider_parameters import (
-    PUBLISHED,
-    HalfCarRiderParameters,
-    half_car_rider_parameters,
-)
-from scenarios.study import VERTICAL_TYRES, lumped_study
+from scenarios.lumped.half_car_rider_parameters import PUBLISHED, HalfCarRiderParameters, half_car_rider_parameters
+from scenarios.study import VERTICAL_TYRES, LumpedSettings, lumped_study
 from vehicle.model.parameters.semi_active_damper import LAWS, PASSIVE
 from vehicle.signals.analysis.exposure import vibration_dose_value
 
@@ -57,17 +52,17 @@ ASSUMED = (
 )
 
 
-def study(car: HalfCarRiderParameters, folder: Path, options: argparse.Namespace) -> Findings:
+def study(car: HalfCarRiderParameters, folder: Path, settings: LumpedSettings) -> Findings:
     """Run everything, draw the figures into the folder, and compare."""
-    factors = [float(f) for f in np.linspace(0.8, 1.2, 3 if options.quick else 9)]
+    factors = [float(f) for f in np.linspace(0.8, 1.2, 3 if settings.quick else 9)]
     history = passive(car, SPEEDS[0])
     studied = parameter_study(car, factors)
-    skyhook = None if options.quick else parameter_study(car, factors, "skyhook")
-    speeds = np.arange(2.0 if options.quick else 1.0, 61.0, 2.0 if options.quick else 1.0).tolist()
+    skyhook = None if settings.quick else parameter_study(car, factors, "skyhook")
+    speeds = np.arange(2.0 if settings.quick else 1.0, 61.0, 2.0 if settings.quick else 1.0).tolist()
     scanned = [outcome(car, passive(car, speed)) for speed in speeds]
     scan = {"speed": speeds, "upper": [o.upper_vdv for o in scanned], "lower": [o.lower_vdv for o in scanned]}
     outcomes = {PASSIVE: [outcome(car, passive(car, speed)) for speed in SPEEDS]}
-    laws = ("skyhook", "hybrid") if options.quick else LAWS
+    laws = ("skyhook", "hybrid") if settings.quick else LAWS
     semi_active = {law: driven(car, SPEEDS, law, one_sided_tyres=False) for law in laws}
     outcomes.update({law: [outcome(car, solution) for solution in histories] for law, histories in semi_active.items()})
     free = driven(car, SPEEDS, PASSIVE, one_sided_tyres=True)
@@ -82,7 +77,7 @@ def study(car: HalfCarRiderParameters, folder: Path, options: argparse.Namespace
         law_claim({law: [o.upper_vdv for o in row] for law, row in outcomes.items()}),
         first_mode_claim(*at_first_mode(car, laws)),
     ]
-    if not options.quick:
+    if not settings.quick:
         claims = with_experiment(claims, car, rows_of)
     shown = {PASSIVE: history, "skyhook": semi_active["skyhook"][0], "hybrid": semi_active["hybrid"][0]}
     time_figures(folder, shown, SPEEDS[0])
@@ -155,12 +150,12 @@ def _row(outcome: Outcome) -> dict[str, Any]:
     }
 
 
-def load(options: argparse.Namespace) -> HalfCarRiderParameters:
+def load(settings: LumpedSettings) -> HalfCarRiderParameters:
     """Return the parameters."""
-    return half_car_rider_parameters(options.parameters or PUBLISHED)
+    return half_car_rider_parameters(settings.parameters or PUBLISHED)
 
 
-main = lumped_study("half_car_rider", load, study)
+main = lumped_study("half_car_rider", load, study, LumpedSettings)
 
 
 if __name__ == "__main__":

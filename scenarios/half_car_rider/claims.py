@@ -7,17 +7,7 @@ import numpy as np
 
 from scenarios.claims import COMPARED, DUPLICATE, NOT_TESTABLE, PREDICTED, Claim, Kind
 from scenarios.half_car_rider.printed_matrices import growth_rate, printed_system
-from scenarios.half_car_rider.runs import (
-    KMH,
-    SPEEDS,
-    VARIED,
-    Motion,
-    Outcome,
-    outcome,
-    passive,
-    peak,
-    varied,
-)
+from scenarios.half_car_rider.runs import KMH, SPEEDS, VARIED, Motion, Outcome, outcome, passive, peak, varied
 from scenarios.half_car_rider.settling_claims import settling_claims
 from scenarios.lumped.half_car_rider_model import half_car_rider
 from scenarios.lumped.half_car_rider_parameters import HalfCarRiderParameters
@@ -340,7 +330,7 @@ def first_mode_claim(frequency: float, ratios: Mapping[str, Mapping[str, Sequenc
 
     Args:
         frequency: first natural frequency of the passive car [Hz].
-        ratios: law to quantity to its RMS over that of the passive car at each of `SPEEDS` [-].
+        ratios: law to quantity to its RMS over the passive car at each of `SPEEDS` [-].
     """
     return NOT_TESTABLE.statement(
         "semi-active suspension at the first natural frequency: body acceleration, suspension and tyre deflection",

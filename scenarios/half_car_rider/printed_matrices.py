@@ -20,11 +20,11 @@ def printed_system(parameters: HalfCarRiderParameters) -> LinearSystem:
     """
     system, seat, arm = half_car_rider(parameters), parameters.seat, parameters.body.seat_arm
     damping, stiffness = system.damping.copy(), system.stiffness.copy()
-    damping[:2, 2] = -seat.damping  # of the seat, where those of the limbs belong
+    damping[:2, 2] = -seat.damping  # of the seat, but the limbs belong here
     damping[3, 2] = seat.damping  # the wrong sign
     damping[6, 3:] *= -1.0  # the wrong sign, of the damping of pitch itself too
     stiffness[2, 3] = seat.stiffness  # the wrong sign
-    stiffness[3, 5] = -parameters.rear.tyre_stiffness  # of the tyre, where that of the suspension belongs
+    stiffness[3, 5] = -parameters.rear.tyre_stiffness  # of the tyre, but the suspension belongs here
     stiffness[5, 6] *= -1.0  # the wrong sign
     stiffness[6, 3] += 2.0 * arm * seat.stiffness  # the wrong sign of the part of the seat
     return replace(system, stiffness=stiffness, damping=damping)

@@ -146,7 +146,7 @@ WAVES = 20
 
 
 def at_first_mode(car: HalfCarRiderParameters, laws: Sequence[str]) -> tuple[float, dict[str, dict[str, list[float]]]]:
-    """Return the first natural frequency [Hz], and law to quantity to RMS over that of the passive car at `SPEEDS`.
+    """Return the first natural frequency [Hz], and law to quantity to RMS over the passive car at `SPEEDS`.
 
     The road is a sine of that frequency and of the height of the bump under both axles, one wheelbase apart.
     """
@@ -193,7 +193,7 @@ def settling_time(time: npt.ArrayLike, signal: npt.ArrayLike, band: float) -> fl
     Args:
         time: times [s], (m,).
         signal: signal y, (m,).
-        band: share of the maximum [-], as 0.05.
+        band: share of the maximum [-], for example 0.05.
 
     Returns:
         Time on the clock of `time` [s]; None if the record ends outside the band, 0 for a zero signal.

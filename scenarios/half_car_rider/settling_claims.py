@@ -82,13 +82,7 @@ def _order(history: History, delay: float, late: str, early: str, quantity: Moti
             "than the front wheel at every band"
         )
     name = f"settling of {late} {quantity} against {early}"
-    return PREDICTED.statement(
-        name,
-        "later",
-        pairs,
-        holds,
-        why,
-    ).at(f"figure {figure}", f"figure_{figure:02d}.png")
+    return PREDICTED.statement(name, "later", pairs, holds, why).at(f"figure {figure}", f"figure_{figure:02d}.png")
 
 
 def _later(late: float | None, early: float | None) -> bool:

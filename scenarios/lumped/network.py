@@ -154,7 +154,7 @@ def _law_shapes(law: Any) -> list[tuple[int, ...]]:
 
 
 def _each(value: Numbers, axes: int) -> Vector:
-    """Return a parameter with further axes of length one, as a factor of vectors or matrices."""
+    """Return a parameter with further axes of length one, for products with vectors or matrices."""
     array = np.asarray(value, dtype=float)
     return array.reshape(array.shape + (1,) * axes)
 

@@ -73,7 +73,7 @@ def quarter_car(
     """
     if damper not in ("slip", "stick", "friction"):
         raise ConfigurationError(f"damper: found {damper!r}, must be slip, stick or friction")
-    # The force of a sliding pair depends on its velocity alone, that of presliding friction on the path.
+    # The force of a sliding pair depends on its velocity alone, presliding friction on the path.
     laws = [name for name in FRICTION if name != "presliding"]
     if friction not in laws:
         raise ConfigurationError(f"friction: found {friction!r}, must be one of {', '.join(laws)}")
@@ -100,10 +100,7 @@ def quarter_car(
         bedding = Kelvin(stiffness=value("strut.longitudinal_stiffness"), damping=value("strut.longitudinal_damping"))
         links.append(Link(row={"longitudinal": 1.0}, law=bedding))
     links.append(Link(row=axis, law=Kelvin(stiffness=value("spring.stiffness"), damping=0.0)))
-    masses = [
-        Mass(mass=value("body.mass"), axes=({"body": 1.0},)),
-        Mass(mass=value("wheel.mass"), axes=wheel_axes),
-    ]
+    masses = [Mass(mass=value("body.mass"), axes=({"body": 1.0},)), Mass(mass=value("wheel.mass"), axes=wheel_axes)]
     slides: tuple[Slide, ...] = ()
     mount = value("mount.stiffness")
     if damper == "stick":
@@ -157,7 +154,7 @@ def single_mass(
 ) -> Network:
     """Return a single mass m x'' + D x' + K x + f(x') = F; on a belt, f acts on x' minus the belt velocity.
 
-    Coordinate and output: `mass`. The applied force acts on the mass; the road displacement is that of the belt.
+    Coordinate and output: `mass`. The applied force acts on the mass; the road displacement acts on the belt.
 
     Args:
         mass: mass m [kg].

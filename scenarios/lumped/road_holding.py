@@ -6,12 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.lumped.axle import Axle
-from scenarios.lumped.damper_choice import (
-    ExponentialRoad,
-    FrequencyBands,
-    RoadHoldingHalfCar,
-    RoadHoldingQuarterCar,
-)
+from scenarios.lumped.damper_choice import ExponentialRoad, FrequencyBands, RoadHoldingHalfCar, RoadHoldingQuarterCar
 from scenarios.lumped.half_car_rider_model import ENDS, GRAVITY, ROADS, axle_links
 from scenarios.lumped.network import ROAD, Network, masses_of
 from vehicle.arrays import Complex, Vector
@@ -186,7 +181,7 @@ def tyre_load_ratio_of_density(car: RoadHoldingModel, lines: Vector, density: Ve
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RideMeasures:
-    """Ride measures of a damper on a road, as root mean squares."""
+    """Ride measures of a damper on a road: root mean squares."""
 
     tyre_load: float  # Dynamic tyre force over static load [-]
     acceleration: float  # Weighted vertical acceleration of the body [m/s2]

@@ -3,11 +3,11 @@
 python -m scenarios.published [--output DIR] [--quick] [--jobs N] [--reuse]
 """
 
-import argparse
 import json
 import sys
 import time as clock
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,12 +17,14 @@ from scenarios.published.pictures import write_copy
 from scenarios.published.sources import BESIDE, BESIDE_NAME, BESIDE_STUDIES, SOURCES
 from scenarios.published.table import collect
 from scenarios.study import main_of
-from vehicle.commands.command_line import parse_and_run
+from vehicle.commands.command_line import command
 from vehicle.commands.console import Console
-from vehicle.commands.options import destination_of, message_options, output_options, setting_options
+from vehicle.commands.options import message_options, output_options, setting_options
 from vehicle.commands.parser import Parser
 from vehicle.errors import DataError, SimulationError
+from vehicle.runs.output.destination import Destination
 from vehicle.runs.output.folder import study_folder, write_text
+from vehicle.settings import Settings, part, setting
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
 
 HOME = Path("renders/published")
@@ -39,6 +41,22 @@ CHOICE = "source_choice"
 STUDIES = tuple(study for source in SOURCES for study in source.studies)
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PublishedSettings(Settings):
+    """Settings of the table of all studies.
+
+    Attributes:
+        destination: folder of the table.
+        jobs: worker processes of each study.
+    """
+
+    destination: Destination = part(Destination)
+    jobs: int = 1
+    runs: Path = setting("folder of the studies' own results", Path("runs/published"), type=Path, metavar="DIR")
+    reuse: bool = setting("read studies that are finished there, run the others", False, action="store_true")
+    quick: bool = setting("short signals; what they cannot judge is left open", False, action="store_true")
+
+
 def parser() -> Parser:
     """Return the options of the command."""
     result = Parser(
@@ -46,44 +64,35 @@ def parser() -> Parser:
         description="Compare all results of the thesis and the two papers with ours.",
     )
     output_options(result, None, default=f"{HOME} with the page {PAGE}, or {QUICK_HOME} with --quick")
-    result.add_argument(
-        "--runs", type=Path, default=Path("runs/published"), metavar="DIR", help="folder of the studies' own results"
-    )
-    result.add_argument("--reuse", action="store_true", help="read studies that are finished there, run the others")
-    result.add_argument("--quick", action="store_true", help="short signals; what they cannot judge is left open")
+    setting_options(result, PublishedSettings)
     setting_options(result, SweepSettings, "jobs")
     message_options(result)
     return result
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Run the command; returns its exit code."""
-    return parse_and_run(parser(), _job, arguments)
-
-
-def _job(options: argparse.Namespace, console: Console) -> None:
-    output = destination_of(options).study_folder(QUICK_HOME if options.quick else HOME)
+def _job(settings: PublishedSettings, console: Console) -> None:
+    output = settings.destination.study_folder(QUICK_HOME if settings.quick else HOME)
     started = clock.perf_counter()
     results, seconds = {}, {}
     for number, name in enumerate(STUDIES, start=1):
         print(f"{number}/{len(STUDIES)} {name}", flush=True)
         began = clock.perf_counter()
-        results[name] = study_results(name, options)
+        results[name] = study_results(name, settings)
         seconds[name] = clock.perf_counter() - began
     beside: dict[str, dict[str, Any]] = {}
-    for name in () if options.quick else (name for name in STUDIES if name in BESIDE_STUDIES):
+    for name in () if settings.quick else (name for name in STUDIES if name in BESIDE_STUDIES):
         print(f"{name}, {BESIDE_NAME}", flush=True)
-        beside[name] = study_results(name, options, f"{name}_beside", (*BESIDE_STUDIES[name], "--vehicle", BESIDE))
+        beside[name] = study_results(name, settings, f"{name}_beside", (*BESIDE_STUDIES[name], "--vehicle", BESIDE))
     rows = collect(results, beside)
     notes = results.get(CHOICE, {}).get("notes", [])
     left_open = [f"{name}: {row}" for name, content in results.items() for row in content.get("not_judged", {})]
-    with study_folder(output, force=options.force) as folder:
+    with study_folder(output, force=settings.destination.force) as folder:
         content = {"rows": rows, "choice": notes}
         write_text(folder / "results.json", json.dumps(content, indent=1, allow_nan=False) + "\n")
-        copied = copy_pictures(results, options.runs, folder / "figures")
+        copied = copy_pictures(results, settings.runs, folder / "figures")
         home = output == HOME
         text = page(
-            rows, notes, f"../{HOME}/figures" if home else "figures", copied, quick=options.quick, left_open=left_open
+            rows, notes, f"../{HOME}/figures" if home else "figures", copied, quick=settings.quick, left_open=left_open
         )
         if not home:
             write_text(folder / PAGE.name, text)
@@ -110,25 +119,25 @@ def copy_pictures(results: Mapping[str, Mapping[str, Any]], runs: Path, folder: 
 
 
 def study_results(
-    name: str, options: argparse.Namespace, folder_name: str = "", more: Sequence[str] = ()
+    name: str, settings: PublishedSettings, folder_name: str = "", more: Sequence[str] = ()
 ) -> dict[str, Any]:
     """Return the content of `results.json` of a study; run the study unless a finished run may be used.
 
     Args:
         name: name of the study.
-        options: options of `parser`.
-        folder_name: name of the folder of the results, by default that of the study.
+        settings: settings of the table.
+        folder_name: folder of the results, by default the name of the study.
         more: further options of the study.
 
     Raises:
         SimulationError: the study failed; its message is printed above.
         DataError: the file of the study cannot be read.
     """
-    folder = options.runs / (folder_name or name)
+    folder = settings.runs / (folder_name or name)
     path = folder / "results.json"
-    if not (options.reuse and path.exists()):
-        arguments = ["--output", str(folder), "--force", "--jobs", str(options.jobs), *more]
-        if options.quick:
+    if not (settings.reuse and path.exists()):
+        arguments = ["--output", str(folder), "--force", "--jobs", str(settings.jobs), *more]
+        if settings.quick:
             arguments.append("--quick")
         code = main_of(name)(arguments)
         if code:
@@ -138,6 +147,9 @@ def study_results(
     except (OSError, ValueError) as error:
         raise DataError(f"{path}: cannot be read ({error}); run without --reuse") from None
     return content
+
+
+main = command(parser, PublishedSettings, _job)
 
 
 if __name__ == "__main__":

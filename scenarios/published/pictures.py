@@ -18,7 +18,7 @@ COLOURS = 256
 
 
 def write_copy(figure: Path, copy: Path) -> None:
-    """Write a figure as a PNG of at most `LARGEST` bytes, as wide as that allows, or as wide as the last of `WIDTHS`.
+    """Write a figure as a PNG of at most `LARGEST` bytes: the widest of `WIDTHS` that fits, else the last of them.
 
     Raises:
         OSError: the figure cannot be read.

@@ -33,15 +33,7 @@ THESIS = Source(
     key="bommer",
     short="thesis of Bommer, 2006",
     title="Bommer, *A Nonlinear Vehicle Model for Comfort Analysis*, master's thesis OCT 2006.43, TU Eindhoven, 2006",
-    studies=(
-        "levels",
-        "inertia",
-        "bump",
-        "stribeck",
-        "comfort_sensitivity",
-        "quarter_car",
-        "source_choice",
-    ),
+    studies=("levels", "inertia", "bump", "stribeck", "comfort_sensitivity", "quarter_car", "source_choice"),
     sections=(
         Section(number="2.1", title="Experimental study on different roads", first="2.1"),
         Section(number="2.2", title="Linear quarter-car models", first="2.2"),

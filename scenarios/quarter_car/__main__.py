@@ -3,8 +3,8 @@
 python -m scenarios.quarter_car [--output DIR] [--parameters FILE.toml] [--figure NAME] [--quick] [--force]
 """
 
-import argparse
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 
 from scenarios.claims import Findings
@@ -12,28 +12,30 @@ from scenarios.lumped.quarter_car_parameters import PUBLISHED, load_quarter_car
 from scenarios.quarter_car.claims import findings
 from scenarios.quarter_car.figures import FIGURES
 from scenarios.quarter_car.runs import Runs
-from scenarios.study import lumped_study
+from scenarios.study import LumpedSettings, lumped_study
+from vehicle.settings import setting as declared
 
 
-def study(runs: Runs, folder: Path, options: argparse.Namespace) -> Findings | str:
+@dataclass(frozen=True, kw_only=True, slots=True)
+class QuarterCarSettings(LumpedSettings):
+    """Settings of the study of quarter cars."""
+
+    figure: str | None = declared(f"one of {', '.join(FIGURES)}; no table", choices=list(FIGURES), metavar="NAME")
+
+
+def study(runs: Runs, folder: Path, settings: QuarterCarSettings) -> Findings | str:
     """Draw the figures; the table unless one figure alone was asked for."""
-    for name in [options.figure] if options.figure else FIGURES:
+    for name in [settings.figure] if settings.figure else FIGURES:
         FIGURES[name](runs, folder / f"figure_{name.replace('.', '_').lower()}.png")
-    return f"1 figure; {runs.seconds:.0f} s of solving" if options.figure else findings(runs)
+    return f"1 figure; {runs.seconds:.0f} s of solving" if settings.figure else findings(runs)
 
 
-def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of this study."""
-    names = f"one of {', '.join(FIGURES)}; no table"
-    parser.add_argument("--figure", choices=list(FIGURES), metavar="NAME", help=names)
-
-
-def load(options: argparse.Namespace) -> Runs:
+def load(settings: QuarterCarSettings) -> Runs:
     """Return the runs of the parameters in a file."""
-    return Runs(car=load_quarter_car(options.parameters or PUBLISHED), quick=options.quick)
+    return Runs(car=load_quarter_car(settings.parameters or PUBLISHED), quick=settings.quick)
 
 
-main = lumped_study("quarter_car", load, study, add_options)
+main = lumped_study("quarter_car", load, study, QuarterCarSettings)
 
 
 if __name__ == "__main__":

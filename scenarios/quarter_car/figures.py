@@ -10,16 +10,7 @@ import numpy as np
 from scenarios.charts import chart, lines
 from scenarios.lumped.history import History
 from scenarios.lumped.quarter_car_network import elastomer
-from scenarios.quarter_car.runs import (
-    CONSTANT,
-    DEGRESSIVE,
-    HIGH,
-    LEVELS,
-    LOW,
-    NO_FRICTION,
-    STEP,
-    Runs,
-)
+from scenarios.quarter_car.runs import CONSTANT, DEGRESSIVE, HIGH, LEVELS, LOW, NO_FRICTION, STEP, Runs
 from vehicle.arrays import Vector
 from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.engines.linear.response import frequency_response

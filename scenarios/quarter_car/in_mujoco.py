@@ -75,7 +75,7 @@ def in_mujoco(
             position[index] = data.qpos
             mujoco.mj_step(model, data)
             sensors[index] = data.sensordata
-            # After the step MuJoCo's velocity is that of its middle.
+            # After the step MuJoCo's velocity belongs to its middle.
             velocity[index] = data.qvel - 0.5 * timestep * data.qacc
     displacement = {"body": position[:, 0], "wheel": position[:, 1]}
     sliding = np.zeros(times.size)

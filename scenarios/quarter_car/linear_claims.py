@@ -14,7 +14,7 @@ PHASE_READING = 25.0
 """A phase is read from an axis with labels 100 deg apart: a quarter of that [deg]."""
 
 COINCIDE = 0.05
-"""Two frequencies coincide within this share [-], as `ABOUT`."""
+"""Two frequencies coincide within this share [-], equal to `ABOUT`."""
 
 EQUAL = 0.1
 """Two amplitudes are "equal" within this share [-]."""
@@ -178,13 +178,9 @@ def element_claims(runs: Runs) -> list[Claim]:
             all(abs(natural / (2.0 * np.pi) / frequency - 1.0) <= COINCIDE for frequency in (wheel, free)),
             f"rule: within {COINCIDE:.0%} of both, as the frequencies that are printed with 'about'",
         ).at(mass),
-        PREDICTED.number(
-            "elastomer, loss angle at 9 Hz [deg]",
-            10.0,
-            at_nine,
-            0.5,
-            f"{digits}; {largest}",
-        ).at(rubbers, picture),
+        PREDICTED.number("elastomer, loss angle at 9 Hz [deg]", 10.0, at_nine, 0.5, f"{digits}; {largest}").at(
+            rubbers, picture
+        ),
         PREDICTED.number("elastomer, K2 / (2 pi De) [Hz]", 9.0, corner, 0.5, digits).at(rubbers, picture),
     ]
 

@@ -92,7 +92,7 @@ FAMILIES = {
         output="small_mass",
     ),
 }
-"""Elastomer: the smoothing of chapter 2, then that of appendix C with constant damping. Degressive: as printed, half
+"""Elastomer: the smoothing of chapter 2, then of appendix C with constant damping. Degressive: as printed, half
 the knee velocity, half the damping below it. Inclined strut: two angles, then two more longitudinal dampings at
 4.2 deg; at 0 deg the model is the degressive one. Small mass: the three smoothings of table B.1."""
 

@@ -21,7 +21,7 @@ NOISE_RMS = 5e-5
 """RMS of the noise before and after the bump [m] (thesis section 3.2.2)."""
 
 NOISE_SEED = 7
-"""Seed of the noise, different from that of the random inputs: the noise is not a scaled copy of the input `low`."""
+"""Seed of the noise, different from the random inputs: the noise is not a scaled copy of the input `low`."""
 
 Reading = Literal["height", "literal"]
 

@@ -3,7 +3,6 @@
 python -m scenarios.source_choice [--output DIR] [--quick] [--jobs N]
 """
 
-import argparse
 import sys
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -31,7 +30,7 @@ from scenarios.source_choice.likelihood import (
     values_of,
 )
 from scenarios.source_choice.runs import Plan, Readings, readings
-from scenarios.study import QUICK_NOTE, Study, study_parser
+from scenarios.study import QUICK_NOTE, Study, StudySettings, study_parser
 from vehicle.arrays import Vector
 from vehicle.studies.sweeps.executors import process_pool
 
@@ -130,14 +129,14 @@ def before(plan: Plan) -> Candidate:
     )
 
 
-def study(_: None, folder: Path, options: argparse.Namespace) -> Findings:
+def study(_: None, folder: Path, settings: StudySettings) -> Findings:
     """Compute the likelihoods of all candidates, draw them by side, and compare the winner with the car before."""
-    plan = QUICK if options.quick else FULL
-    judgement = judged(plan, rigs(options.quick), folder / "cars", options.jobs)
-    if not options.quick:
+    plan = QUICK if settings.quick else FULL
+    judgement = judged(plan, rigs(settings.quick), folder / "cars", settings.jobs)
+    if not settings.quick:
         more = bodies(best(judgement.used)[0][1].rig)
         # Two halves: a worker for each.
-        judgement = joined(judgement, judged(plan, [more[::2], more[1::2]], folder / "cars", options.jobs))
+        judgement = joined(judgement, judged(plan, [more[::2], more[1::2]], folder / "cars", settings.jobs))
     ranking = best(judgement.used)
     winner = chosen(ranking)
     winner = shipped_numbers(judgement.of(winner), winner.rig, plan, judgement.used[winner.rig])
@@ -147,9 +146,9 @@ def study(_: None, folder: Path, options: argparse.Namespace) -> Findings:
     return Findings(
         title="Joint choice of what Bommer 2006 does not print",
         claims=claims,
-        unjudged={claim.name: "short records of two seeds cannot choose" for claim in claims} if options.quick else {},
+        unjudged={claim.name: "short records of two seeds cannot choose" for claim in claims} if settings.quick else {},
         notes=[
-            f"{'Most likely here' if options.quick else 'Winner'}: {winner.rig.sides()}; {winner.rig.body()}; "
+            f"{'Most likely here' if settings.quick else 'Winner'}: {winner.rig.sides()}; {winner.rig.body()}; "
             f"{_words(winner, plan)}. {len(USED)} rows chose, "
             f"{len(HELD)} are held out, drawn with seed {HALF_SEED}. Log-likelihood: sum over rows of weight times "
             f"ln(m + (1 - m) P), m = {MISREADING:g} for a row that we misread, P the probability of the printed "
@@ -165,7 +164,7 @@ def study(_: None, folder: Path, options: argparse.Namespace) -> Findings:
             velocity_table(judgement, winner.rig),
             rank_table(judgement, [other["held-out"], other["all"]], "Chosen on the held-out half, and on all rows:"),
             row_table(judgement, before(plan), winner),
-            *([QUICK_NOTE] if options.quick else []),
+            *([QUICK_NOTE] if settings.quick else []),
         ],
         data={
             "winner": {"sides": winner.rig.sides(), "body": winner.rig.body(), "numbers": winner.text(plan)},
@@ -209,7 +208,7 @@ def _words(candidate: Candidate, plan: Plan) -> str:
 
 
 def half_claims(judgement: Judged, winner: Candidate) -> list[Claim]:
-    """Return the row that compares the agreement of the held-out half with that of the used half."""
+    """Return the row that compares the agreement of the held-out and the used half."""
     _, _, used, held = judgement.numbers(winner)
     _, _, was_used, was_held = judgement.numbers(before(judgement.plan))
     return [
@@ -317,7 +316,11 @@ def row_table(judgement: Judged, was: Candidate, winner: Candidate) -> str:
 
 
 main = Study(
-    parser=study_parser("source_choice", quick="two rigs, short records", jobs="; one for each group of rigs"),
+    name="source_choice",
+    parser=study_parser(
+        "source_choice", StudySettings, quick="two rigs, short records", jobs="; one for each group of rigs"
+    ),
+    settings=StudySettings,
     load=lambda _: None,
     study=study,
 )

@@ -109,7 +109,7 @@ def _share(key: str, readings: Readings, candidate: Candidate, _: Plan) -> Vecto
 
 
 def _error(row: Evidence, readings: Readings, candidate: Candidate) -> float:
-    """Return the error of the model in the unit of a row; for a slip share that of the candidate's own shares."""
+    """Return the error of the model in the unit of a row; for a slip share the error of the candidate's shares."""
     if row.key not in _SHARES:
         return row.error
     _, less, more = _SHARES[row.key](readings, candidate).T

@@ -34,9 +34,7 @@ def test_all_dampers_with_a_control_have_the_controller(tmp_path, monkeypatch, c
     option = ["--vehicle", "focus_road", "--controller", "my contröllers/skyhook.fmu"]
     assert shaker.main([*ROAD, *option, "--output", "run"]) == 2
     said = capsys.readouterr().err
-    assert (
-        "native code, which runs with all your rights" in said and "vehicle trust" in said and not Path("run").exists()
-    )
+    assert "native code" in said and "vehicle trust" in said and not Path("run").exists()
     option.append("--trust")
     assert shaker.main([*ROAD, *option, "--output", "run"]) == 0
     car = load_vehicle(tmp_path / "run" / "vehicle.toml")

@@ -159,7 +159,7 @@ def test_faults_of_an_acceleration(name, tmp_path):
     cells = (f"{t:.6g},{'' if np.isnan(a) else f'{a:.6f}'}" for t, a in zip(time, values, strict=True))
     path.write_text("\n".join(["time [s],seat z [m/s2]", *cells]) + "\n")
     commands, text = advised(path)
-    assert run_advice(path, tmp_path) == ([] if words is None else ["comfort"]), text
+    assert run_advice(path, tmp_path, commands=commands) == ([] if words is None else ["comfort"]), text
     assert (words or "no command: ") in (text if words is None else " ".join(commands[0])), text
 
 
@@ -177,9 +177,9 @@ def test_a_displacement_that_is_no_plate(words, names, tmp_path):
     table = np.column_stack([TIME, SINE, 5.0 * SINE])
     heads = ",".join(["time [s]", *(f"{name} [mm]" for name in names)])
     np.savetxt(path, table, "%.5f", ",", header=heads, comments="")
-    text = advised(path)[1]
-    assert (words or "does not say that it is the motion of a plate under a wheel") in text
-    run_advice(path, tmp_path)
+    commands, text = advised(path)
+    assert (words or "no command: a displacement, ") in text
+    run_advice(path, tmp_path, commands=commands)
 
 
 @pytest.mark.parametrize("jitter", [0.0, 0.2])

@@ -68,8 +68,5 @@ def test_a_file_without_units_is_refused(tmp_path, capsys):
     path = tmp_path / "points.csv"
     path.write_text(table(path, track=True).read_text().replace(" [mm]", ""))
     assert main([str(path), "--output", str(tmp_path / "out")]) == 3
-    assert (
-        "column 'amplitude': the unit is missing or unknown; write amplitude [mm] or amplitude [um] or amplitude [m]"
-        in capsys.readouterr().err
-    )
+    assert "amplitude [mm] or amplitude [um] or amplitude [m]" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()

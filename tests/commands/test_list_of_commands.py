@@ -2,9 +2,7 @@
 
 import argparse
 import json
-import os
 import re
-import subprocess
 import sys
 from importlib import import_module
 from pathlib import Path
@@ -13,7 +11,7 @@ import pytest
 
 from scenarios.comfort_sensitivity.__main__ import main as comfort_sensitivity
 from scenarios.study import study_parser
-from tests.patience import HANG
+from tests.patience import process
 from vehicle.__main__ import main
 from vehicle.commands import COMMANDS, OLDER, module_of
 
@@ -67,14 +65,8 @@ def test_numbers_of_processes_are_checked_alike(capsys):
 @pytest.mark.parametrize("name", COMMANDS)
 def test_modules_run_as_commands(name, tmp_path):
     """One fresh interpreter each; what the commands do is tested in this process."""
-    done = subprocess.run(
-        [sys.executable, "-m", *([f"vehicle.{name}"] if name in OLDER else ["vehicle", name]), "--nonsense"],
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-        timeout=HANG,
-    )
+    module = [f"vehicle.{name}"] if name in OLDER else ["vehicle", name]
+    done = process(sys.executable, "-m", *module, "--nonsense", cwd=tmp_path)
     assert done.returncode == 2 and done.stdout == ""
     assert done.stderr.startswith("error: ") and done.stderr.endswith(f"see python -m vehicle {name} --help\n")
 

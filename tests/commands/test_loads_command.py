@@ -44,10 +44,8 @@ def test_files_of_a_sine(folder, capsys):
     assert (folder / "loads.png").stat().st_size > 10_000
     # Once more beside the first ones, or with --force in their place.
     assert main([str(folder)]) == 0
-    assert (
-        "loads.csv exists; writing " in (said := capsys.readouterr()).err
-        and "loads-2.csv, load_spectra-2.csv" in said.out
-    )
+    said = capsys.readouterr()
+    assert "loads.csv exists; writing " in said.err and "loads-2.csv, load_spectra-2.csv" in said.out
     assert all((folder / name).exists() for name in ("loads-2.csv", "load_spectra-2.csv", "loads-2.png"))
     assert main([str(folder), "--output", str(folder)]) == 2 and "give --force" in capsys.readouterr().err
     assert main([str(folder), "--force", "--quiet"]) == 0

@@ -39,7 +39,4 @@ def test_tables_and_files_say_the_same(tmp_path, capsys):
     assert main([*command[:5]]) == 0
     printed = capsys.readouterr().out
     assert "+81.4 %      590.1   -36 deg  mode 2 (torsion), 25.48 Hz" in printed
-    assert (
-        "what drives mode 2 (torsion), 25.48 Hz: share of each attachment in the force on this mode\n  +74.4 % "
-        " suspension_mou"
-    ) in printed
+    assert "mode 2 (torsion), 25.48 Hz: " in printed and "\n  +74.4 %  suspension_mou" in printed

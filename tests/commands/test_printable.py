@@ -1,4 +1,4 @@
-"""What a command prints cannot steer a terminal."""
+"""What a command prints: nothing that steers a terminal, one line for what belongs together."""
 
 import sys
 
@@ -6,7 +6,7 @@ import pytest
 
 from vehicle.commands import inspect
 from vehicle.commands.command_line import run_command
-from vehicle.commands.console import ProgressLine
+from vehicle.commands.console import ProgressLine, folded
 from vehicle.commands.printable import PrintableStream, printable
 from vehicle.errors import DataError
 
@@ -51,3 +51,13 @@ def test_a_bar_still_returns_to_the_begin_of_its_line(capsys, monkeypatch):
 
     assert run_command(job) == 0
     assert "\rwork [" in capsys.readouterr().err
+
+
+def test_chosen_channels_are_one_line():
+    """Equal names are no news; the content of a file is that of `inspect`."""
+    chosen = [f"a.csv: hub_{number}: channel {number} 'Hub {number}' [g]" for number in range(6)]
+    others = ["a.uff: seat_acc_z/plate_fl: channel 9 'seat_acc_z / plate_fl'", "a.uff: 14 nodes, 2 lines and elements"]
+    clipped = "a.csv: hub_1: channel 1 'Hub 1' [g]; clipped at 5 g"
+    first, *rest = folded([*chosen[:3], clipped, *others, *chosen[3:]])
+    assert rest == [clipped] and first.count(" is channel ") == 4 and first.endswith(" and 2 more")
+    assert first.startswith("a.csv: hub_0 is channel 0 'Hub 0' [g], hub_1 is ") and folded(others) == []

@@ -79,7 +79,7 @@ def test_the_file_holds_the_road_beside_what_the_tyre_takes(tmp_path, capsys):
     ("arguments", "code", "message"),
     [
         (["--speed", "80"], 2, "one of --class, --profile and --obstacle"),
-        (["--road", "B", "--speed", "80"], 2, "set --class B, --profile FILE.csv or --obstacle cleat:20x50 here"),
+        (["--road", "B", "--speed", "80"], 2, "use --class B, --profile FILE.csv or --obstacle cleat:20x50"),
         (["--class", "A"], 2, "the speed on the road is missing"),
         (["--class", "K", "--speed", "80"], 2, "road class 'K': must be one of A, B"),
         (["--class", "A", "--speed", "0"], 2, "--speed 0 km/h: must be above 0"),

@@ -45,18 +45,10 @@ def test_without_library_and_compiler_it_is_said(monkeypatch, tmp_path):
     monkeypatch.setattr(library, "COMPILERS", ())
     monkeypatch.setattr(library, "cache_folder", lambda: tmp_path)
     monkeypatch.delenv("CC", raising=False)
-    with pytest.raises(
-        MissingPartError,
-        match=r"the compiled core for .* is missing or outdated, and "
-        r"no C compiler .*; install gcc or clang",
-    ):
+    with pytest.raises(MissingPartError, match=r"missing or outdated.* install gcc or clang"):
         library.core.__wrapped__()
     monkeypatch.setenv("CC", "false")
-    with pytest.raises(
-        MissingPartError,
-        match=r"the core cannot be compiled with false: .*; correct vehicle/core/source .* set the "
-        r"environment variable CC to",
-    ):
+    with pytest.raises(MissingPartError, match=r"compiled with false: .* variable CC to"):
         library.core.__wrapped__()
     compiler = tmp_path / "compiler"
     compiler.write_text(
@@ -65,10 +57,7 @@ def test_without_library_and_compiler_it_is_said(monkeypatch, tmp_path):
     )
     compiler.chmod(0o700)
     monkeypatch.setenv("CC", str(compiler))
-    with pytest.raises(
-        MissingPartError,
-        match=r"compiler: laws\.h:12:3: error: 'x' undeclared; correct vehicle/core/source if you have changed",
-    ):
+    with pytest.raises(MissingPartError, match=r"compiler: laws\.h:12:3: error: 'x' undeclared; "):
         library.core.__wrapped__()
 
 

@@ -18,6 +18,7 @@ from pathlib import Path
 
 from tests.faults.commands import Written, run_words
 from tests.patience import HANG
+from vehicle.commands.command_line import FAULT
 from vehicle.runs.output.work_folder import put_in_order
 from vehicle.runs.output.written_files import MARKER, is_own
 
@@ -153,8 +154,8 @@ class Bench:
         wrong, results = [], self._results_for_a_reader(left)
         if results == "wrong":
             wrong.append("the results are neither those of before nor the new ones")
-        if "Traceback" in said or "a fault of the program" in said:
-            wrong.append("traceback, or a fault of the program")
+        if "Traceback" in said or FAULT in said:
+            wrong.append("traceback, or an internal error")
         if fault.error:
             if code not in (0, 2, 3, 6) or (code == 0 and results != "new"):
                 wrong.append(f"exit code {code} with results {results}")

@@ -11,6 +11,7 @@ from pathlib import Path
 from unittest import mock
 
 from tests.faults.cases import hidden_in
+from vehicle.commands.command_line import FAULT
 from vehicle.leftovers import FINISHED_ROWS, REPLACED
 from vehicle.runs.output import work_folder
 from vehicle.runs.output.written_files import MARKER
@@ -92,7 +93,7 @@ def faults(name: str, path: Path, case: Path, runs: Sequence[tuple[int, str]]) -
     """
     said = "".join(text for _, text in runs)
     wrong = [f"exit code {code}" for code, text in runs if code not in (0, 2, 3)]
-    wrong += ["traceback"] if "Traceback" in said or "a fault of the program" in said else []
+    wrong += ["traceback"] if "Traceback" in said or FAULT in said else []
     if name == "remove":
         return wrong
     found = [each for each in case.rglob("*") if each.is_file() and MINE in each.read_bytes()]

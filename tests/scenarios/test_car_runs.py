@@ -10,7 +10,7 @@ from scenarios import car_runs
 from scenarios.car_runs import CarRuns
 from scenarios.claims import PREDICTED, Findings
 from scenarios.signals.bump import bump
-from scenarios.study import car_study
+from scenarios.study import CarSettings, car_study
 from vehicle.errors import ConfigurationError
 from vehicle.signals.excitation.signal import Signal
 
@@ -59,14 +59,14 @@ def test_one_process_is_asked_for_where_several_would_not_help(monkeypatch):
     assert runs([runs.case(SHORT)])
 
 
-def findings(runs, folder, options):
+def findings(runs, folder, settings):
     row = PREDICTED.statement("a statement", "so", "so", True, "because")
     return Findings(title="Example", claims=[row], unjudged={"another": "too short"}, notes=["a note"], data={"n": 1})
 
 
 def test_the_command_writes_what_was_found_and_what_was_not_judged(tmp_path, capsys):
     folder = tmp_path / "out"
-    assert car_study("example", findings)(["--output", str(folder)]) == 0
+    assert car_study("example", findings, CarSettings)(["--output", str(folder)]) == 0
     text = (folder / "results.md").read_text(encoding="utf-8")
     assert "Not judged here: another: too short." in text
     assert "a note" in text
@@ -84,7 +84,7 @@ def test_the_command_writes_what_was_found_and_what_was_not_judged(tmp_path, cap
 )
 def test_wrong_options_are_refused_before_the_folder_is_made(arguments, message, tmp_path, capsys):
     folder = tmp_path / "out"
-    assert car_study("example", findings)([*arguments, "--output", str(folder)]) == 2
+    assert car_study("example", findings, CarSettings)([*arguments, "--output", str(folder)]) == 2
     assert message in capsys.readouterr().err
     assert not folder.exists()
 

@@ -215,7 +215,8 @@ def test_units_and_sizes(capsys):
 
 def test_what_is_no_answer_is_an_error(capsys):
     assert main(["1.1", "many mm"]) == 2
-    assert capsys.readouterr().err == "error: 'many mm': no number; type a number and its unit, as '12 mm'\n"
+    said = capsys.readouterr().err
+    assert said.startswith("error: 'many mm': no number") and "'12 mm'" in said
     assert main(["9.1", "1 mm"]) == 2
     assert capsys.readouterr().err.startswith("error: exercise '9.1': must be 1.1, 1.2, ")
 

@@ -39,7 +39,11 @@ def shaker(
 @pytest.fixture
 def short_signal(tmp_path: Path) -> Path:
     """A random signal of 6 s at the high level."""
-    path = tmp_path / "short.csv"
+    return write_short(tmp_path / "short.csv")
+
+
+def write_short(path: Path) -> Path:
+    """Write that signal."""
     write_signal(path, random_road(rms=5.25e-4, seed=3, wheel="fl", duration=6.0), plain=True)
     return path
 

@@ -6,17 +6,15 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from scenarios.signals.random_road import random_road
-from tests.patience import HANG
+from tests.patience import HANG, ROOT, process
 from tests.system.conftest import csv_text
 from vehicle.runs.car import Car
 
-ROOT = Path(__file__).resolve().parents[2]
 GOOD = random_road(rms=1e-4, seed=1, wheel="fr", duration=4.0).displacement["fr"]
 
 
@@ -95,11 +93,7 @@ def test_item_35_existing_output(shaker, short_signal, tmp_path):
     outcome = shaker("--input", "short.csv", "--output", "runs/short")
     assert outcome.code == 2 and "give --force" in outcome.err and kept.read_text() == "mine"
     outcome = shaker("--input", "short.csv", "--force")
-    assert (
-        outcome.code == 2
-        and "files that are not results of a run: mine.txt" in outcome.err
-        and kept.read_text() == "mine"
-    )
+    assert outcome.code == 2 and "run: mine.txt" in outcome.err and kept.read_text() == "mine"
     outcome = shaker("--input", "short.csv", "--engine", "reduced")
     assert outcome.code == 0 and "runs/short exists; writing runs/short-2" in outcome.err
     assert (tmp_path / "runs" / "short-2" / "summary.json").exists() and kept.read_text() == "mine"
@@ -166,14 +160,7 @@ def test_item_39_closed_pipe(tmp_path):
     command = (
         f'set -o pipefail; "{sys.executable}" -m vehicle.modes --json | head -c 1 >/dev/null; echo "${{PIPESTATUS[0]}}"'
     )
-    done = subprocess.run(
-        ["bash", "-c", command],
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(ROOT), "PYTHONUNBUFFERED": "1"},
-        capture_output=True,
-        text=True,
-        timeout=HANG,
-    )
+    done = process("bash", "-c", command, cwd=tmp_path, PYTHONUNBUFFERED="1")
     assert done.stderr == "" and done.stdout.strip() in {"0", "6"}
 
 
@@ -193,9 +180,6 @@ def test_item_40_no_rendering_library(shaker, short_signal, tmp_path, monkeypatc
 def test_usage_errors(shaker, short_signal):
     assert shaker().code == 2
     outcome = shaker("--input", "short.csv", "--wheel", "rear_left")
-    assert (
-        outcome.code == 2
-        and ("wheel rl (rear_left): focus has no such wheel; choose from fr (front_right)") in outcome.err
-    )
+    assert outcome.code == 2 and "wheel rl (rear_left): " in outcome.err and "fr (front_right)" in outcome.err
     outcome = shaker("--input", "short.csv", "--set", "damper")
     assert outcome.code == 2 and "PATH=VALUE" in outcome.err

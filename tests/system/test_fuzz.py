@@ -5,6 +5,7 @@ import json
 import pytest
 
 from tests.fuzz import judge, run_case
+from vehicle.commands.command_line import FAULT
 
 
 @pytest.mark.parametrize("index", range(15))
@@ -25,7 +26,7 @@ def test_the_judge_sees_what_is_wrong(tmp_path, monkeypatch):
     assert judge(0, "", "") == "" and judge(2, "", "error: no") == ""
     assert judge(1, "", "error: no") == "exit code 1"
     assert judge(2, "", "Traceback (most recent call last):").startswith("traceback")
-    assert judge(4, "", "error: a fault of the program (X)").startswith("traceback")
+    assert judge(4, "", f"error: {FAULT} (X)").startswith("traceback")
     assert judge(3, "", "") == "no message"
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "summary.json").write_text(json.dumps({"a": float("inf")}))

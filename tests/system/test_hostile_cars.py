@@ -15,6 +15,7 @@ from tests.model.laws.controller_files import controller_fmu
 from tests.system.test_hostile_folder import tree
 from vehicle.__main__ import main
 from vehicle.commands import COMMANDS
+from vehicle.commands.command_line import FAULT
 from vehicle.core.trusted_code import trusted_list
 
 pytestmark = pytest.mark.skipif(not has_compiler(), reason="the native code needs Linux and a C compiler")
@@ -131,7 +132,7 @@ def test_no_command_runs_native_code_of_a_car(car, native, archive, capsys):
         codes[name] = main([name, *(word.replace("CAR", f"{car}.toml").replace("RUN", f"run_{car}") for word in words)])
         said = capsys.readouterr()
         assert not witness.exists(), name
-        assert "Traceback" not in said.err + said.out and "fault of the program" not in said.err, (name, said.err)
+        assert "Traceback" not in said.err + said.out and FAULT not in said.err, (name, said.err)
         shutil.rmtree("out", ignore_errors=True)
         assert tree(archive) == before, name
     assert not trusted_list().exists() or "controller.fmu" not in trusted_list().read_text()

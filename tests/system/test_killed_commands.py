@@ -162,9 +162,7 @@ def test_several_files_are_whole_and_the_next_reader_says_that_they_are_mixed(tm
     assert [path.read_text() for path in files] == ["new", "old"]
     mention(tmp_path)
     said = capsys.readouterr().err
-    assert (
-        "a.csv: a killed command left .a.csv.partial, and of files that it wrote together some may be earlier" in said
-    )
+    assert "a.csv: a killed command left .a.csv.partial, and of files that it wrote together " in said
     write("new")
     assert [path.read_text() for path in files] == ["new", "new"] and visible(tmp_path) == ["a.csv", "b.csv"]
 
@@ -186,9 +184,7 @@ def test_a_killed_study_goes_on_where_it_was(tmp_path, capsys):
     folder = tmp_path / "study"
     killed(1, partial(study, folder, "1"), tmp_path)
     assert not folder.exists()
-    with pytest.raises(
-        ConfigurationError, match="holds finished runs; continue them with --resume, or start again with --force"
-    ):
+    with pytest.raises(ConfigurationError, match=r"holds finished runs; .*--resume.*--force"):
         check_study(folder, force=False, rows=ROWS)
     for ways in ({}, {"resume": True}):
         with pytest.raises(ConfigurationError, match=r"holds rows\.jsonl of another killed command"):

@@ -1,14 +1,13 @@
 """Every traceback that was seen, every input that hung: one message, an exit code of the contract, at once."""
 
 import os
-import subprocess
 import sys
 
 import pytest
 
-from tests.patience import HANG
+from tests.patience import process
 from tests.system.conftest import csv_text
-from tests.system.test_bad_inputs import GOOD, ROOT
+from tests.system.test_bad_inputs import GOOD
 from vehicle.commands.command_line import FAULT, run_command
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Car
@@ -115,14 +114,7 @@ def test_an_unknown_opengl_backend(shaker, short_signal, monkeypatch):
 @pytest.mark.parametrize("redirection", [">&-", ">/dev/full", ">&- 2>&-", "2>&-"])
 def test_closed_and_full_streams(redirection, tmp_path):
     """The list of modes is the result: where nobody can read it, the exit code says so."""
-    done = subprocess.run(
-        ["bash", "-c", f'"{sys.executable}" -m vehicle.modes --json {redirection}'],
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-        timeout=HANG,
-    )
+    done = process("bash", "-c", f'"{sys.executable}" -m vehicle.modes --json {redirection}', cwd=tmp_path)
     assert done.returncode == (0 if redirection == "2>&-" else 6)
     assert done.stderr.count("\n") == (0 if "2>&-" in redirection else 1)
 
@@ -130,13 +122,8 @@ def test_closed_and_full_streams(redirection, tmp_path):
 def test_a_file_name_that_standard_output_cannot_write(tmp_path):
     """A pipe of Windows has the encoding cp1252."""
     (tmp_path / "Größe Ω.csv").write_text(csv_text(GOOD))
-    done = subprocess.run(
-        [sys.executable, "-m", "vehicle", "inspect", "Größe Ω.csv"],
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(ROOT), "PYTHONIOENCODING": "cp1252"},
-        capture_output=True,
-        timeout=HANG,
-    )
+    words = (sys.executable, "-m", "vehicle", "inspect", "Größe Ω.csv")
+    done = process(*words, cwd=tmp_path, text=False, PYTHONIOENCODING="cp1252")
     assert done.returncode == 0
     assert "Größe \\u03a9.csv" in done.stdout.decode("cp1252")
 

@@ -1,10 +1,8 @@
 """Number of threads for linear algebra: one in commands and in calls of the package; the setting of the user stays."""
 
 import os
-import subprocess
 import sys
 import threading
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,11 +10,9 @@ import scipy.linalg
 from threadpoolctl import ThreadpoolController, threadpool_limits
 
 from tests.benchmarks.blas_threads import Server, jobs
-from tests.patience import HANG
+from tests.patience import HANG, ROOT, process
 from vehicle import threads
 from vehicle.threads import THREADS, one_blas_thread, prefer_one_thread
-
-ROOT = Path(__file__).resolve().parents[2]
 
 
 def blas_threads():
@@ -117,10 +113,8 @@ def test_libraries_are_found_whatever_is_imported_first(first):
         "[library.set_num_threads(3) for library in libraries]\n"
         "with one_blas_thread(): print(len(libraries) > 0, {library.num_threads for library in libraries})\n"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, timeout=HANG, check=True, cwd=ROOT
-    )
-    assert done.stdout.strip() == "True {1}"
+    done = process(sys.executable, "-c", code, cwd=ROOT)
+    assert done.stdout.strip() == "True {1}", done.stderr
 
 
 @pytest.mark.parametrize("given", [None, "3"])
@@ -137,9 +131,7 @@ def test_a_command_has_one_thread_with_or_without_a_search_for_libraries(given, 
         "    numbers = {b.num_threads for b in ThreadpoolController().select(user_api='blas').lib_controllers}\n"
         "print(numbers, len(threads._libraries()) > 0)\n"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, timeout=HANG, check=True, cwd=ROOT
-    )
+    done = process(sys.executable, "-c", code, cwd=ROOT)
     assert done.stdout.strip() == f"{{1}} {given is not None}"
 
 

@@ -22,7 +22,7 @@ def advice_option(parser: argparse._ActionsContainer) -> None:
     parser.add_argument(
         OPTION,
         action="store_true",
-        help="apply the options that the findings on the record name (units, offsets, channels, signs, delays, "
+        help="apply the options that the checks of the record recommend (units, offsets, channels, signs, delays, "
         "constant parts), and print each finding",
     )
 

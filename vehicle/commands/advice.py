@@ -54,7 +54,7 @@ def command_for(
     collected = [] if collected is None else collected
     if measurement.shapes and not measurement.channels:
         command, why = _first(measurement, [["compare", "--measured", file]], collected)
-        return command, "compares the mode shapes with those of a car" if command else f"mode shapes, but: {why}"
+        return command, "to compare the mode shapes with a car" if command else f"mode shapes, but: {why}"
     road = _road(measurement, file, collected)
     if road is not None:
         return road
@@ -100,8 +100,8 @@ def command_for(
         return "", "the file has only nodes, no channels"
     if histories:
         return "", (
-            "the file states no units, so displacements and accelerations cannot be told apart; set --channel "
-            "ROLE=NAME and --unit ROLE=UNIT"
+            "the file states no units, so a displacement looks like an acceleration; set --channel ROLE=NAME and "
+            "--unit ROLE=UNIT"
         )
     if any(channel.function in NOT_OVER_TIME for channel in measurement.channels):
         return "", "the channels are over distance or angle, not over time; export them over time"
@@ -209,7 +209,7 @@ def _road(measurement: Measurement, file: str, collected: list[Finding]) -> tupl
         return ("", f"not usable as a road for a car of 1.5 m track: {error}") if profile else None
     arguments = ["shaker", "--vehicle", "focus_road", "--road", file, "--speed", "80"]
     command, why = _first(measurement, [arguments], collected)
-    return command, "drives over the road at 80 km/h" if command else f"a road, but: {why}"
+    return command, "to drive over the road at 80 km/h" if command else f"a road, but: {why}"
 
 
 def _clock(*channels: Channel) -> tuple[str, ...]:
@@ -258,15 +258,15 @@ def _plates(
         arguments = ["shaker", "--vehicle", "focus_road", "--road", *files, "--speed", f"channel:{speed}"]
         same = [channel for _, channel in speeds if channel.axis is tracks[0].axis]  # others are interpolated
         command, why = _first(measurement, [[*arguments, *_clock(*tracks, *same)]], collected)
-        return command, "drives over the recorded road at the recorded speed" if command else f"a road, but: {why}"
+        return command, "to drive over the recorded road at the recorded speed" if command else f"a road, but: {why}"
     moves = [(number, channel) for number, channel in displacements if is_plate(channel)]
     if not moves:
         number, channel = displacements[0]
         shown = ", ".join(repr(each.name) for _, each in displacements[:4])
         option = shlex.join(["--channel", f"{wheel_of(channel.name) or SHAKER_WHEEL}={_pick(measurement, number)}"])
         return "", (
-            f"a displacement, but the name {shown} does not say that it is the motion of a plate under a wheel (plate, "
-            f"shaker, poster, actuator, Stempel ...); if it is, set {option} of the command shaker"
+            f"a displacement, but nothing in the name {shown} points to a plate under a wheel (plate, shaker, poster, "
+            f"actuator, Stempel ...); if it is the motion of a plate, run shaker with {option}"
         )
     wheels: dict[str, int] = {}
     for number, channel in moves:
@@ -280,7 +280,7 @@ def _plates(
         addition = (
             ""
             if len(moves) == 1
-            else f"; the names of {len(moves) - 1} more displacements state no wheel, so they are not used"
+            else f"; {len(moves) - 1} more displacements are not used, because their names state no wheel"
         )
     car = ["--vehicle", "focus_road"] if set(wheels) - {"fr", "fl"} else []
     names = {measurement.channels[number - 1].name: wheel for wheel, number in wheels.items()}
@@ -292,7 +292,7 @@ def _plates(
     clock = _clock(*(measurement.channels[number - 1] for number in wheels.values()))
     arguments = ["shaker", *car, "--input", *files, *picks, *clock]
     command, why = _first(measurement, [arguments, [*arguments, "--detrend"]], collected)
-    purpose = "puts the displacement on the plate of wheel" + ("s " if len(wheels) > 1 else " ") + ", ".join(wheels)
+    purpose = "to drive the plate of wheel" + ("s " if len(wheels) > 1 else " ") + ", ".join(wheels) + " with it"
     return (command, purpose + addition) if command else ("", f"a displacement, but: {why}")
 
 
@@ -320,8 +320,8 @@ def _accelerations(
         number, channel = of_point[0]
         option = shlex.join(["--channel", f"z={_pick(measurement, number)}"])
         return "", (
-            f"an acceleration, but the name {channel.name!r} states no single direction; if it is vertical, set "
-            f"{option} of the command comfort, else x= or y="
+            f"an acceleration, but the name {channel.name!r} states no direction; if it is vertical, run comfort with "
+            f"{option}, otherwise with x= or y="
         )
     chosen = [measurement.channels[number - 1] for number in axes.values()]
     rate = chosen[0].rate or 0.0
@@ -347,4 +347,4 @@ def _accelerations(
     more = f"; {others} other acceleration{'s are' if others > 1 else ' is'} not used" if others else ""
     if not command:
         return "", f"an acceleration, but: {why}"
-    return command, f"gives the comfort of {which} in {', '.join(sorted(axes))}{more}"
+    return command, f"to compute the comfort of {which} in {', '.join(sorted(axes))}{more}"

@@ -52,7 +52,7 @@ class BenchSettings(Settings):
     output: Path = Path("runs/bench")
     first: float = setting("use the file from this time on [s]", 0.0, flag="--from", type=float, metavar="S")
     seconds: float | None = setting(
-        "length of the evaluation [s], 5 to 60; default: 10, with an obstacle until 3 s after it",
+        "length of the evaluation [s], 5 to 60; default: 10, on an obstacle until 3 s after it",
         within="[5, 60]",
         type=float,
         metavar="S",
@@ -90,11 +90,7 @@ def parser() -> Parser:
 
 
 def settings_of(options: argparse.Namespace) -> BenchSettings:
-    """Return the settings of the parsed options.
-
-    Raises:
-        ConfigurationError: no input, two inputs, or a value out of range.
-    """
+    """Return the settings of the parsed options."""
     return read(options, BenchSettings, source=input_of(options), car=car_of(options))
 
 

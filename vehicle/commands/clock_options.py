@@ -18,5 +18,5 @@ def delay_option(parser: argparse._ActionsContainer, more: str = "") -> None:
 
 
 def drift_option(parser: argparse._ActionsContainer) -> None:
-    """Add --drift, the drift of the clock of a measurement against that of the run."""
+    """Add --drift, the clock drift of a measurement against the run."""
     setting_options(parser, MeasuredSettings, "drift")

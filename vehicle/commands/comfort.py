@@ -47,7 +47,7 @@ class ComfortSettings(Settings):
         metavar="PLACE|z=NAME",
     )
     place: str = setting(
-        "point of contact, which chooses weightings and factors: seat (default; z Wk, x and y Wd), "
+        "point of contact, which sets weightings and factors: seat (default; z Wk, x and y Wd), "
         "backrest, feet, seat_rotation, standing, seat_bs6841, backrest_bs6841, feet_bs6841, hand (ISO "
         "5349-1: Wh), steering_wheel (Giacomin 2004: Ws), train_floor (EN 12299: mean comfort of 5 minutes)",
         "seat",
@@ -106,17 +106,13 @@ def _picked(record: RecordSettings, picks: Sequence[str]) -> tuple[str | None, C
     """Return the point of a run, or the choice of channels, that the texts of an option name."""
     points = [text for text in picks if "=" not in text]
     if len(points) > 1 or (points and len(picks) > 1):
-        raise ConfigurationError("--channel: give one point of a run, or channels as x=NAME, y=NAME and z=NAME")
+        raise ConfigurationError("--channel: give one point of a run, or x=NAME, y=NAME and z=NAME")
     channels = replace(record, picks=tuple(text for text in picks if "=" in text))
     return (points[0] if points else None), channels.choice("", further=AXES)
 
 
 def evaluated(file: str, settings: ComfortSettings) -> RecordComfort:
-    """Evaluate a file.
-
-    Raises:
-        ConfigurationError: `rail` names another axis than z.
-    """
+    """Evaluate a file."""
     from vehicle.signals.analysis.evaluation import application
     from vehicle.signals.records.record_comfort import evaluate_comfort
 
@@ -127,8 +123,7 @@ def evaluated(file: str, settings: ComfortSettings) -> RecordComfort:
         axis, equals, name = settings.rail.partition("=")
         if equals and axis != "z":
             raise ConfigurationError(
-                f"--rail {settings.rail}: names no z acceleration, which the SEAT value needs; set z=NAME, or "
-                "a point of a run"
+                f"--rail {settings.rail}: the SEAT value needs a z acceleration; set z=NAME, or a point of a run"
             )
         rail = _picked(settings.record, [f"z={name}"] if equals else [settings.rail])
     result = evaluate_comfort(

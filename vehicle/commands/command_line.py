@@ -62,10 +62,8 @@ def _exit_code(
     """Run the job; see `run_command`.
 
     Args:
-        job: work of the command.
         previous: handlers of signals, restored at the end.
         lost: substitute of a closed standard output; None: it is open.
-        debug: print the traceback of a failure.
     """
     try:
         backend = os.environ.get("MUJOCO_GL", "").strip().lower()
@@ -95,14 +93,14 @@ def _exit_code(
         _say(f"{error.filename or 'output'}: {error.strerror or error}")
         return OutputError.exit_code
     except MemoryError:
-        _say("out of memory; use a shorter input, or store fewer samples a second with --set solver.record_rate=HZ")
+        _say("out of memory; use a shorter input, or store fewer samples per second with --set solver.record_rate=HZ")
         return VehicleError.exit_code
     except Exception as error:
         if debug:
             traceback.print_exc()
         _say(
-            f"{FAULT} ({type(error).__name__}: {error}); please report it together with the output of the same "
-            "command with --debug"
+            f"{FAULT} ({type(error).__name__}: {error}); please report it with the output of the same command with "
+            "--debug"
         )
         return VehicleError.exit_code
     finally:
@@ -163,16 +161,13 @@ def _print_nowhere() -> None:
 def parse_and_run(
     parser: Parser, job: Callable[[argparse.Namespace, Console], None], arguments: Sequence[str] | None
 ) -> int:
-    """Parse the arguments of a command and run its job.
+    """Parse the arguments of a command, run its job, and return the exit code of `run_command`.
 
     Args:
         parser: with the option --debug.
         job: work of the command with the parsed options and its console; the options also have `held`, an exit stack
             that is closed when the command ends.
-        arguments: without the program name; those of the process by default.
-
-    Returns:
-        Exit code, see `run_command`.
+        arguments: without the program name; by default the arguments of the process.
     """
     typed = sys.argv[1:] if arguments is None else list(arguments)
     if arguments is None:
@@ -239,7 +234,7 @@ def command(
     return lambda arguments=None: parse_and_run(parser(), work, arguments)
 
 
-FAULT = "a fault of the program"
+FAULT = "internal error"
 """Beginning of the message of an unexpected error."""
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.clock_options import delay_option, drift_option
 from vehicle.commands.command_line import command
-from vehicle.commands.console import Console
+from vehicle.commands.console import Console, folded
 from vehicle.commands.input_options import record_options
 from vehicle.commands.measured_options import measured_options
 from vehicle.commands.options import (
@@ -93,13 +93,13 @@ def parser() -> Parser:
     parser.advise("to compare two runs, type python -m vehicle report RUN RUN")
     setting_options(parser, CompareSettings, "run")
     measured_options(parser, required=True, several=True)
-    records = parser.scoped_group(RECORDS, needs="measured time histories, and the file contains none", active=None)
+    records = parser.scoped_group(RECORDS, needs="measured time histories, but the file contains none", active=None)
     drift_option(records)
-    responses = parser.scoped_group(RESPONSES, needs="measured FRFs, and the file contains none", active=None)
+    responses = parser.scoped_group(RESPONSES, needs="measured FRFs, but the file contains none", active=None)
     setting_options(responses, CompareSettings, "window", "bands")
-    shapes = parser.scoped_group(SHAPES, needs="measured mode shapes, and the file contains none", active=None)
+    shapes = parser.scoped_group(SHAPES, needs="measured mode shapes, but the file contains none", active=None)
     damper_option(shapes)
-    channels = parser.scoped_group(CHANNELS, needs="measured channels, and the file contains mode shapes", active=None)
+    channels = parser.scoped_group(CHANNELS, needs="measured channels, but the file contains mode shapes", active=None)
     record_options(channels, "", channel=False)
     delay_option(channels)
     vehicle_options(
@@ -114,17 +114,13 @@ def parser() -> Parser:
     )
     output_options(parser, OUTPUT)
     figures_option(parser)
-    parser.add_argument("--json", action="store_true", help="print the results as JSON, as in compare.json")
+    parser.add_argument("--json", action="store_true", help="print compare.json instead of the text")
     message_options(parser, quiet=True)
     return parser
 
 
 def settings_of(options: argparse.Namespace) -> CompareSettings:
-    """Return the settings of the parsed options.
-
-    Raises:
-        ConfigurationError: a value out of range.
-    """
+    """Return the settings of the parsed options."""
     return read(
         options,
         CompareSettings,
@@ -211,7 +207,7 @@ def _compared(settings: CompareSettings, output: Path, console: Console) -> tupl
         console.accept(comparison.notices)
         force, figures = settings.destination.force, settings.figures
         save_comparison(comparison, output, force=force, figures=figures, protect=(file,))
-        summary, said = comparison.summary(), comparison.text()
+        summary, said = comparison.summary(), "\n".join(folded(comparison.text().split("\n")))
     return summary, said
 
 
@@ -249,7 +245,7 @@ def _run(
 def _modes(
     settings: CompareSettings, output: Path, measurement: Measurement, choice: Choice
 ) -> tuple[dict[str, Any], str]:
-    """Compare measured mode shapes with those of the car, write the results, and return summary and text."""
+    """Compare measured and simulated mode shapes, write the results, and return summary and text."""
     from vehicle.runs.comparison.mode_comparison import compare_modes
     from vehicle.runs.comparison.pictures import plot_mac
     from vehicle.runs.output.folder import output_folder, write_json, write_whole
@@ -279,7 +275,7 @@ def _modes(
 
 
 def _car(settings: CompareSettings) -> Car:
-    """Return the car of a run, or that of the options."""
+    """Return the car of the run, or of the options."""
     from vehicle.runs.car import Car
 
     file = settings.car.vehicle

@@ -55,11 +55,7 @@ where it prints none."""
 
 
 def completion_script(shell: str) -> str:
-    """Return the completion script of a shell, "bash" or "zsh".
-
-    Raises:
-        ConfigurationError: another shell.
-    """
+    """Return the completion script of a shell, "bash" or "zsh"."""
     if shell not in SHELLS:
         raise ConfigurationError(f"--print-completion {shell}: must be {' or '.join(SHELLS)}")
     rows = [("", f"{' '.join(COMMANDS)} --help --version --print-completion"), ("--print-completion", " ".join(SHELLS))]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import shlex
 import sys
 import threading
@@ -40,7 +41,7 @@ class Console(Listener):
     idle: Mapping[str, str] = field(default_factory=dict)
 
     def command(self, name: str) -> str:
-        """Return the command line, with the name of the command, as "vehicle sweep"."""
+        """Return the command line of a command, for example "vehicle sweep"."""
         return shlex.join(["python", "-m", *name.split(), *self.words])
 
     def progress(self, work: str, *, runs: int = 0) -> ProgressLine:
@@ -64,32 +65,47 @@ class Console(Listener):
         print(f"notice: {text}", file=sys.stderr, flush=True)
 
     def accept(self, notices: Iterable[str]) -> None:
-        """Raise the findings among notices that --accept-advice has to apply: the command begins again with them.
-
-        Raises:
-            FindingError: findings with options that were not yet applied, with --accept-advice only.
-        """
+        """Raise the findings among notices that --accept-advice has to apply: the command begins again with them."""
         findings = findings_of(notices)
         if self.accept_advice and any(is_new(each, self) for each in findings):
             raise FindingError("", findings)
 
     def require_one_file(self) -> None:
-        """Refuse --accept-advice with several files, whose findings differ.
-
-        Raises:
-            ConfigurationError: --accept-advice.
-        """
+        """Refuse --accept-advice with several files, whose findings differ."""
         if self.accept_advice:
             raise ConfigurationError(f"{OPTION} needs a single file; run the command once for each file")
 
     def refuse_idle(self, title: str) -> None:
-        """Reject the options of a group that the command found to be without effect.
-
-        Raises:
-            ConfigurationError: an option of the group is on the command line.
-        """
+        """Reject the options of a group that the command found to be without effect."""
         if title in self.idle:
             raise ConfigurationError(self.idle[title])
+
+
+CHOSEN = re.compile(r"(notice: )?(\S+\.\w+: )?([\w/]+): (channel \d+ '([^']*)'( \[[^\]]*\])?)")
+"""Notice of the channel of a file that was chosen for a channel of the car."""
+
+CONTENT = re.compile(r"(notice: )?(\S+\.\w+: )?\d+ nodes, \d+ lines and elements")
+"""Notice of what else a file contains, which `inspect` prints."""
+
+NAMED_CHANNELS = 4
+"""Maximum number of chosen channels that are printed; the files of results contain all."""
+
+
+def folded(lines: Iterable[str]) -> list[str]:
+    """Return lines of results with one line for all chosen channels of another name or unit."""
+    kept, chosen, place = list[str](), list[re.Match[str]](), 0
+    for line in lines:
+        match = CHOSEN.fullmatch(line)
+        if match is None:
+            kept += [] if CONTENT.fullmatch(line) else [line]
+        elif match[6] or match[5].replace(" ", "") != match[3]:
+            place = place if chosen else len(kept)
+            chosen.append(match)
+    if chosen:
+        head, named = chosen[0], ", ".join(f"{each[3]} is {each[4]}" for each in chosen[:NAMED_CHANNELS])
+        more = f" and {len(chosen) - NAMED_CHANNELS} more" if len(chosen) > NAMED_CHANNELS else ""
+        kept.insert(place, f"{head[1] or ''}{head[2] or ''}{named}{more}")
+    return kept
 
 
 asked_to_end = threading.Event()
@@ -132,7 +148,7 @@ class ProgressLine:
             self.end = now + (now - begun) * (1.0 - fraction) / (fraction - done)
         self.fraction = fraction
         due = now - self.last >= (MOVING_EVERY if self.moving else LINE_EVERY) or (self.moving and fraction >= 1.0)
-        # The first estimate of many runs comes at once: it tells whether to wait.
+        # The first estimate of many runs comes at once: it shows whether to wait.
         due = due or (bool(self.runs) and self.last == self.started and self.end - now > LINE_EVERY)
         if not (self.enabled and due) or self._ended.is_set():
             return

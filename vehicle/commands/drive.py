@@ -44,7 +44,7 @@ def parser() -> Parser:
     channels = parser.add_argument_group("channels of the target measurement")
     record_options(
         channels,
-        'acceleration of the car and its channel in the file, for example knuckle_fr_acc_z="Dof 12 +Z". The '
+        'an acceleration of the car, for example knuckle_fr_acc_z="Dof 12 +Z". The '
         "name alone is sufficient if the file uses it or has only one channel. Give at least as many channels "
         "as plates",
     )
@@ -54,7 +54,7 @@ def parser() -> Parser:
     setting_options(iteration, DriveSettings, "band", "iterations", "gain", "target_error")
     parser.former(
         "--tolerance",
-        "--tolerance is not an option here; set the error at which the iteration ends with --target-error PERCENT",
+        "--tolerance: no such option; set the error at which the iteration ends with --target-error PERCENT",
     )
     setting_options(iteration, DriveSettings, "engine")
     output_options(parser, None, default="runs/drive_<name of the target>")
@@ -69,7 +69,7 @@ class DriveCommand(Settings):
 
     Attributes:
         record: channels, units and times of the measurement.
-        delay: delays of groups of channels, as "GROUP=TIME".
+        delay: delays of groups of channels, "GROUP=TIME".
         search: settings of the replication.
         destination: folder of the results.
         figures: write pictures (PNG).
@@ -87,11 +87,7 @@ class DriveCommand(Settings):
 
 
 def settings_of(options: argparse.Namespace) -> DriveCommand:
-    """Return the settings of the parsed options.
-
-    Raises:
-        ConfigurationError: a value out of range.
-    """
+    """Return the settings of the parsed options."""
     wheels = [CORNERS[word] for word in options.wheels or ()] or None
     search = read(options, DriveSettings, wheels=wheels, delay=None)
     return read(options, DriveCommand, search=search, car=car_of(options), destination=destination_of(options))
@@ -122,7 +118,7 @@ def _job(settings: DriveCommand, console: Console) -> None:
 
 def _say(step: Step, iterations: int) -> None:
     """Print the error of a finished iteration."""
-    back = "" if step.kept else ", worse than before: step undone, next step with half the gain"
+    back = "" if step.kept else ", worse than before: this step is undone and the gain halved"
     print(
         f"iteration {step.number} of at most {iterations}: error {100.0 * step.error:.3g} %{back}",
         file=sys.stderr,

@@ -7,13 +7,7 @@ from pathlib import Path
 from vehicle.commands.command_line import command
 from vehicle.commands.console import Console
 from vehicle.commands.input_options import record_options
-from vehicle.commands.options import (
-    command_parser,
-    head_options,
-    message_options,
-    output_options,
-    setting_options,
-)
+from vehicle.commands.options import command_parser, head_options, message_options, output_options, setting_options
 from vehicle.commands.parser import Parser
 from vehicle.runs.output.destination import Destination
 from vehicle.settings import Settings, part, setting
@@ -56,8 +50,8 @@ class DamperFitSettings(Settings):
     )
     record: RecordSettings = part(RecordSettings)
     positive: str | None = setting(
-        "direction in which displacement, velocity and force of the files are positive; default: extension; the "
-        "gas force and bump against rebound show a wrong direction",
+        "positive direction of displacement, velocity and force in the files; default: extension; if it is wrong, gas "
+        "force, bump and rebound come out reversed",
         choices=("extension", "compression"),
     )
     condition: tuple[str, ...] = setting(
@@ -69,8 +63,8 @@ class DamperFitSettings(Settings):
         metavar="NAME=VALUE",
     )
     pattern: str = setting(
-        "read conditions from the file names (without ending): name in braces, * for the rest, for example "
-        "'*Hz{current}A'",
+        "read conditions from the file names (without ending); braces contain the name, * stands for the rest, for "
+        "example '*Hz{current}A'",
         "",
         metavar="PATTERN",
     )

@@ -18,21 +18,18 @@ if TYPE_CHECKING:
     from vehicle.studies.sweeps.sweep_inputs import InputChoice
 
 FILE_NEEDS = "--input (a road moves the plates of all wheels)"
-RECORD_NEEDS = "--input, or to a road recorded over time (--speed channel:NAME)"
-ROAD_NEEDS = "a road, for example --road C --speed 80, and not to --input"
+RECORD_NEEDS = "--input or to a road recorded over time (--speed channel:NAME)"
+ROAD_NEEDS = "a road, for example --road C --speed 80, not to --input"
 CLASS_NEEDS = (
     "a road class of ISO 8608, for example --road C --speed 80; signal files and measured profiles are used unchanged"
 )
 
 
 def signal_options(parser: Parser, *, several: bool = False) -> argparse._ArgumentGroup:
-    """Add --input, --road and the options of each.
+    """Add --input, --road and the options of each; return the group of the options that act on a file of signals.
 
     Args:
         several: --input, --road and --speed may be repeated; then their values are lists.
-
-    Returns:
-        The group of the options that act on a file of signals.
     """
     action = "append" if several else "store"
     again = ". May be repeated" if several else ""
@@ -53,8 +50,8 @@ def signal_options(parser: Parser, *, several: bool = False) -> argparse._Argume
     )
     parser.former(
         r"--road (--.*)?$",
-        "--road: the road is missing; give a class of ISO 8608 (A to H) or FILE.csv. To allow levels beyond a "
-        "shaker, use --any-level",
+        "--road: the road is missing; give a class of ISO 8608 (A to H) or FILE.csv; for levels beyond a shaker use "
+        "--any-level",
     )
     group = parser.scoped_group("a file of signals", needs=FILE_NEEDS, active=lambda options: bool(options.input))
     group.add_argument(
@@ -89,16 +86,13 @@ def signal_options(parser: Parser, *, several: bool = False) -> argparse._Argume
 def road_options(
     parser: Parser, on_road: Condition, is_class: Condition, *, several: bool = False, rate_note: str = ""
 ) -> argparse._ArgumentGroup:
-    """Add the numeric options of a road; the default of each is None.
+    """Add the numeric options of a road, each None by default; return the group of those that act on any road.
 
     Args:
         on_road: True if the options contain a road.
         is_class: True if a road is a class of ISO 8608.
         several: --speed may be repeated, once for each road, and --seed; then their values are lists.
         rate_note: addition to the help of --rate, for a command in which it acts on a file of signals too.
-
-    Returns:
-        The group of the options that act on any road.
     """
     group = parser.scoped_group("a road", needs=ROAD_NEEDS, active=on_road)
     group.add_argument(
@@ -107,12 +101,12 @@ def road_options(
         type=speed_value,
         metavar="KM/H|channel:NAME",
         help="speed of the car [km/h]; for a road recorded over time also channel:NAME, the channel with the speed"
-        + ("; one speed for all roads, or a speed for each road" if several else ""),
+        + ("; one for all roads, or one for each" if several else ""),
     )
     setting_options(group, RoadSettings, "duration")
     setting_options(parser if rate_note else group, RoadSettings, "rate", note=rate_note)
     random = parser.scoped_group("a road of a class", needs=CLASS_NEEDS, active=is_class)
-    each = "; repeat it to drive each road with each seed, which shows the scatter" if several else ""
+    each = "; repeat it to see the scatter: each road runs with each seed" if several else ""
     setting_options(random, RoadSettings, "seed", note=each, action="append" if several else "store")
     setting_options(random, RoadSettings, "coherence")
     setting_options(group, RoadSettings, "patch")
@@ -125,11 +119,7 @@ def _listed(value: Any) -> list[Any]:
 
 
 def speed_value(text: str) -> float | str:
-    """Return a speed [km/h], or the text channel:NAME.
-
-    Raises:
-        argparse.ArgumentTypeError: neither of them.
-    """
+    """Return a speed [km/h], or the text channel:NAME."""
     if text.startswith("channel:") and len(text) > len("channel:"):
         return text
     try:
@@ -151,11 +141,7 @@ def inputs_of(options: argparse.Namespace) -> InputChoice:
 
 
 def input_of(options: argparse.Namespace) -> PlateSettings | DriveInput:
-    """Return the input of parsed options; with --rpm alone it is a level road.
-
-    Raises:
-        ConfigurationError: no input, two inputs, or a value out of range.
-    """
+    """Return the input of parsed options; with --rpm alone it is a level road."""
     if not options.road and not options.input and vars(options).get("rpm"):
         # The engine alone shakes the car, which stands or drives on a level road.
         return read(options, DriveInput, road=LEVEL, speed=options.speed or 0.0)

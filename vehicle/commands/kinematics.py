@@ -44,7 +44,7 @@ def parser() -> Parser:
     setting_options(parser, KinematicsSettings, "axle", "travel", "opposite")
     loads = parser.scoped_group(
         "loads on the wheels",
-        needs="elastic bushings, and --ideal makes them rigid joints; leave one of the two out",
+        needs="elastic bushings, but --ideal makes them rigid joints; remove one of the two",
         active=lambda options: not options.ideal,
     )
     for name, quantity in (("contact-force", "force [N]"), ("moment", "moment [N m]")):
@@ -58,10 +58,10 @@ def parser() -> Parser:
         )
     setting_options(parser, KinematicsSettings, "ideal", "tyre")
     extra_output_options(parser, "kinematics.csv and kinematics.png")
-    parser.former("--replace", "--replace is not an option here; use --force to replace files")
+    parser.former("--replace", "--replace: no such option; use --force to replace files")
     parser.former(
         "--force(=| [^-])",
-        "--force takes no value, it replaces files; set a force on the wheels with --contact-force AXIS=VALUE",
+        "--force replaces files and takes no value; set a force on the wheels with --contact-force AXIS=VALUE",
     )
     parser.add_argument("--json", action="store_true", help="print JSON")
     message_options(parser)
@@ -82,9 +82,7 @@ class KinematicsSettings(Settings):
         "travel of the wheel centres [mm], upwards positive; default: %(default)s", "-50:50:5", metavar="A:B[:STEP]"
     )
     opposite: bool = setting(
-        "move the wheels in opposite directions, as in roll: left wheel down, right wheel up",
-        False,
-        action="store_true",
+        "move the wheels in opposite directions, like roll: left wheel down, right wheel up", False, action="store_true"
     )
     contact_force: tuple[str, ...] = ()
     moment: tuple[str, ...] = ()
@@ -186,10 +184,7 @@ COLUMNS = (*HEADS, *GEOMETRY_HEADS, "roll_centre_lateral_m", "side_swing_height_
 
 
 def _report(
-    settings: KinematicsSettings,
-    poses: list[WheelPose],
-    geometry: list[WheelGeometry],
-    rates: dict[str, float | None],
+    settings: KinematicsSettings, poses: list[WheelPose], geometry: list[WheelGeometry], rates: dict[str, float | None]
 ) -> str:
     """Return both tables as text."""
     joints = "ideal joints" if settings.ideal else "compliant bushings"

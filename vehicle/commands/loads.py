@@ -10,12 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.command_line import command
 from vehicle.commands.console import Console
-from vehicle.commands.options import (
-    command_parser,
-    message_options,
-    output_options,
-    setting_options,
-)
+from vehicle.commands.options import command_parser, message_options, output_options, setting_options
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 from vehicle.runs.output.destination import Destination
@@ -102,7 +97,7 @@ SCHEDULE = "schedule.csv"
 
 
 def _schedule(settings: LoadSettings, console: Console) -> None:
-    """Write the damage of several runs, each repeated, and its ratio to that of a reference run."""
+    """Write the damage of several runs, each repeated, and its ratio to a reference run."""
     from vehicle.digits import number
     from vehicle.runs.output.folder import write_text
     from vehicle.signals.analysis.load_schedule import scheduled_loads
@@ -159,7 +154,7 @@ def _counted(run: Path, settings: LoadSettings) -> CountedRun:
 
 
 def _chosen(text: str | None, units: Mapping[str, str], source: Path) -> list[str]:
-    """Return the channels to count: those of --channels, by default all forces, torques and travels."""
+    """Return the channels to count: --channels, by default all forces, torques and travels."""
     if text is None:
         loads = [name for name, unit in units.items() if unit in ("N", "N m") or name.startswith("suspension_travel_")]
         if not loads:

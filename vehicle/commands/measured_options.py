@@ -22,12 +22,12 @@ def measured_options(parser: Parser, *, required: bool = False, several: bool = 
         metavar="FILE",
         help="measurement file in any format that `inspect` reads, with FRFs, time histories, or mode shapes (UFF 55)"
         + (
-            "; several files, or a folder, give one table, and a folder of results for each file"
+            "; several files, or a folder, give one table and a folder of results for each file"
             if several
             else ""
             if required
-            else ". --unit CHANNEL=UNIT sets the unit of a channel. If the file needs --rate, --from or --delay, "
-            "run python -m vehicle compare afterwards instead"
+            else ". --unit CHANNEL=UNIT sets the unit of a channel. For a file that needs --rate, --from or --delay, "
+            "run python -m vehicle compare afterwards"
         ),
     )
     mapping_options(

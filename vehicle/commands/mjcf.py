@@ -5,12 +5,7 @@ from pathlib import Path
 
 from vehicle.commands.command_line import command
 from vehicle.commands.console import Console
-from vehicle.commands.options import (
-    command_parser,
-    message_options,
-    output_options,
-    vehicle_options,
-)
+from vehicle.commands.options import command_parser, message_options, output_options, vehicle_options
 from vehicle.commands.parser import Parser
 from vehicle.model.parameters.car_choice import CarChoice
 from vehicle.runs.output.destination import Destination

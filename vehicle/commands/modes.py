@@ -153,11 +153,7 @@ def _decoupling(settings: ModesSettings, name: str, car: Any, *, as_json: bool) 
         raise ConfigurationError(f"--crankshaft {settings.crankshaft}: must be three numbers, for example 0,1,0")
     x, y, z = crankshaft
     engine_modes = decoupling(
-        car.matrices,
-        name,
-        grounded=settings.grounded,
-        stuck=settings.damper == "stuck",
-        crankshaft=(x, y, z),
+        car.matrices, name, grounded=settings.grounded, stuck=settings.damper == "stuck", crankshaft=(x, y, z)
     )
     return decoupling_json(engine_modes) if as_json else decoupling_table(engine_modes, settings.aim)
 

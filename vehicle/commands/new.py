@@ -55,7 +55,7 @@ def parser() -> Parser:
             declared = field_quantity(StatedNumbers, name)
             file = declared["is_file"]
             unit = f" [{declared['unit']}]" if declared["unit"] != "-" else ""
-            unit += ", or as 57%% of the kerb mass" if name in AXLE_LOADS else ""
+            unit += ", or its share of the kerb mass, for example 57%%" if name in AXLE_LOADS else ""
             group.add_argument(
                 option(name), type=str if file else _kg_or_percent if name in AXLE_LOADS else float,
                 metavar="FILE" if file else "X",
@@ -63,7 +63,7 @@ def parser() -> Parser:
             )  # fmt: skip
         if "tyre_radius" in names:
             group.add_argument(
-                "--tyre-size", metavar="SIZE", help="size of the tyres, as 205/55R16, instead of --tyre-radius"
+                "--tyre-size", metavar="SIZE", help="tyre size, for example 205/55R16, instead of --tyre-radius"
             )
     inertia = field_quantity(StatedNumbers, "inertia")
     parser.add_argument(
@@ -76,7 +76,7 @@ def parser() -> Parser:
 
 
 def _kg_or_percent(text: str) -> float | str:
-    """Return a number, or a text that is none, as "57%", which `stated_numbers` resolves or rejects."""
+    """Return a number, or the text: `stated_numbers` resolves "57%" and rejects others."""
     try:
         return float(text)
     except ValueError:
@@ -135,13 +135,13 @@ def _job(settings: NewSettings, console: Console) -> None:
         raise ConfigurationError(f"NAME {str(settings.folder)!r}: its last part must be letters, digits, '_', '.', '-'")
     if name in CARS and settings.folder == Path(name):
         raise ConfigurationError(
-            f"NAME {name}: is the name of a shipped car, which --vehicle would find first; choose another name"
+            f"NAME {name}: is the name of a shipped car, which --vehicle finds first; choose another name"
         )
     stated = stated_numbers(settings.numbers, settings.stated)
     if from_car is None:
         if stated.car_class is None:
             raise ConfigurationError(
-                "--from is missing; give the car to start from, for example --from sedan, or a --car-class"
+                "--from is missing; give the car to start from, for example --from sedan, or a class with --car-class"
             )
         from_car = "sedan"
     source = vehicle_file(from_car)
@@ -159,16 +159,21 @@ def _job(settings: NewSettings, console: Console) -> None:
 
 
 def _report(result: NewCar, file: Path, figures: Sequence[MotionFigure]) -> str:
-    """Return the checks as text: each number, its stated value and the value of the car; then its headline figures."""
+    """Return the stated numbers with the values of the car, the others with their origin, and its headline figures."""
     from vehicle.runs.car.car_text import figures_table
+    from vehicle.studies.design.new_car import RIDE_ORDER
 
-    lines = [f"{file}: {result.car.vehicle.name}", f"{'':<34}{'stated':>10}{'car':>12}{'deviation':>12}"]
-    for check in result.checks:
-        unit = f" [{check.unit}]" if check.unit != "-" else ""
-        stated = "-" if check.stated is None else f"{check.stated:.6g}"
-        deviation = "" if check.stated is None else f"{100.0 * check.deviation:z.3f} %"
-        lines.append(f"{check.name.replace('_', ' ') + unit:<34}{stated:>10}{check.value:>12.6g}{deviation:>12}")
-    lines += ["", str(figures_table(figures)), "", *(f"note: {text}" for text in _notes(result))]
+    lines = [f"{file}: {result.car.vehicle.name}", f"{'stated':<34}{'value':>10}{'car':>12}{'deviation':>12}"]
+    others = [f"{'not stated, largest influence on ride first':<44}{'car':>12}  from"]
+    ranks = {name: rank for rank, name in enumerate(RIDE_ORDER)}
+    for check in sorted(result.checks, key=lambda check: ranks.get(check.name, len(ranks)) if check.origin else -1):
+        name = check.name.replace("_", " ") + (f" [{check.unit}]" if check.unit != "-" else "")
+        if check.origin:
+            others.append(f"{name:<44}{check.value:>12.6g}  {check.origin}")
+        else:
+            lines.append(f"{name:<34}{check.stated:>10.6g}{check.value:>12.6g}{100.0 * check.deviation:z10.3f} %")
+    others += [f"{name:<56}  {origin}" for name, origin in result.parts]
+    lines += ["", *others, "", str(figures_table(figures)), "", *(f"note: {text}" for text in _notes(result))]
     lines.append(f"run it: python -m vehicle shaker --vehicle {file} --road B --speed 80")
     return "\n".join(lines)
 
@@ -179,10 +184,11 @@ def _checks(result: NewCar, file: Path, figures: Sequence[MotionFigure]) -> dict
     for check in result.checks:
         numbers = {"stated": check.stated, "value": check.value, "deviation": check.deviation}
         finite = {name: None if value is None or math.isnan(value) else value for name, value in numbers.items()}
-        rows[check.name] = {"unit": check.unit, **finite}
+        rows[check.name] = {"unit": check.unit, **finite, "origin": check.origin}
     return {
         "file": str(file),
         "checks": rows,
+        "parts": dict(result.parts),
         "figures": [asdict(figure) for figure in figures],
         "notes": _notes(result),
     }

@@ -42,24 +42,24 @@ def parser() -> Parser:
         type=_range,
         default=[],
         metavar="PATH=LOW:HIGH",
-        help="a parameter and its bounds, in its unit, as front.damper.viscous=800:4000; *.damper.viscous sets all "
-        "that end so alike. May be repeated",
+        help="parameter and its bounds in its unit, for example front.damper.viscous=800:4000; *.damper.viscous sets "
+        "all parameters with this ending to one value. May be repeated",
     )
     search.add_argument(
         "--minimise",
         action="append",
         default=[],
         metavar="NUMBER[@INPUT]",
-        help="an objective: a figure of a ride, as weighted, seat_weighted [m/s2], tyre_load [-], travel [m], "
-        "peak:seat_rail_acc_z; of an axis or wheel weighted_z, travel_fr; after the @ an input, as road_A_120 or the "
-        "stem of a file, or mean or worst of all. May be repeated",
+        help="figure of the ride to minimise, for example weighted, seat_weighted [m/s2], tyre_load [-], travel [m] or "
+        "peak:seat_rail_acc_z; of one axis or wheel: weighted_z, travel_fr. @ adds the input: road_A_120, the stem of "
+        "a file, mean or worst. May be repeated",
     )
     search.add_argument(
         "--targets",
         type=Path,
         metavar="FILE.toml",
-        help="in place of objectives: the smallest change of at most 8 parameters with which all figures of the file "
-        "meet their limits, on the inputs of the file, which is that of `report --targets`",
+        help="instead of objectives: find the smallest change of at most 8 parameters that meets all limits of this "
+        "file on its inputs; `report --targets` reads the same file",
     )
     search.add_argument(
         "--cost",
@@ -67,55 +67,45 @@ def parser() -> Parser:
         type=_cost,
         default=[],
         metavar="PATH=C",
-        help="with --targets: a change of this parameter counts C times. By default 1. May be repeated",
+        help="with --targets: count a change of this parameter C times; default: 1. May be repeated",
     )
     setting_options(search, SearchSettings, "maximise", "limits", "cars", "population", "seed")
     setting_options(parser, SearchSettings, "tolerances")
     tolerances = parser.scoped_group(
-        "cars as they are made",
-        needs="--tolerance PATH=SIZE, and there is none",
-        active=lambda options: bool(options.tolerances),
+        "cars as they are made", needs="--tolerance PATH=SIZE", active=lambda options: bool(options.tolerances)
     )
     setting_options(tolerances, SearchSettings, "samples", "quantile")
     setting_options(parser, SearchSettings, "engine", "skip", "jobs", "executor", "check")
     parser.add_argument(
-        "--beside", type=Path, metavar="DIR", help="another search with these objectives: drawn with its distance"
+        "--beside", type=Path, metavar="DIR", help="also draw another search with the same objectives and its distance"
     )
     output_options(parser, Path("runs/optimise"))
-    parser.add_argument("--resume", action="store_true", help="go on in that folder, also with more --cars")
+    parser.add_argument("--resume", action="store_true", help="continue the search in this folder; --cars may grow")
     message_options(parser, quiet=True)
     return parser
 
 
 def _range(text: str) -> Range:
-    """Return the range of a text as "front.damper.viscous=800:4000"."""
+    """Return the range of a text, for example "front.damper.viscous=800:4000"."""
     from vehicle.model.parameters.ranges import parsed_variation
 
     return parsed_variation("--vary", text).range()
 
 
 def _cost(text: str) -> tuple[str, float]:
-    """Return path and cost of a text as "front.damper.viscous=2".
-
-    Raises:
-        ConfigurationError: another form, or a cost that is not positive.
-    """
+    """Return path and cost of a text, for example "front.damper.viscous=2"."""
     path, _, value = text.partition("=")
     try:
         cost = float(value)
     except ValueError:
         cost = 0.0
     if not 0.0 < cost < float("inf"):
-        raise ConfigurationError(f"--cost {text}: must be PATH=C with a number above 0, as front.damper.viscous=2")
+        raise ConfigurationError(f"--cost {text}: must be PATH=C with C above 0, for example front.damper.viscous=2")
     return path, cost
 
 
 def settings_of(options: argparse.Namespace) -> SearchStudy | TargetStudy:
-    """Return the study of parsed options.
-
-    Raises:
-        ConfigurationError: options without effect with --targets.
-    """
+    """Return the study of parsed options."""
     # Heavy packages are imported after the arguments are known to be good.
     from vehicle.studies.optimisation.search_study import SearchStudy, TargetStudy
 
@@ -125,9 +115,9 @@ def settings_of(options: argparse.Namespace) -> SearchStudy | TargetStudy:
     for name in ("minimise", "maximise", "limits", "tolerances", "check", "beside", "resume"):
         if getattr(options, name):
             option = f"--{name.removesuffix('s')}"
-            raise ConfigurationError(f"--targets: searches by the limits of its file; leave out {option}")
+            raise ConfigurationError(f"--targets already sets the limits; remove {option}")
     if options.input or options.road:
-        raise ConfigurationError("--targets: its file names the inputs; leave out --input and --road")
+        raise ConfigurationError("--targets already sets the inputs; remove --input and --road")
     return read(options, TargetStudy, **chosen)
 
 

@@ -21,7 +21,7 @@ EXIT_CODES = (
     "Exit codes: 0 done, 2 usage, 3 bad data, 4 simulation failed, 5 library missing, 6 cannot write, 130 interrupted."
 )
 
-FORCE_HELP = "replace files of an earlier run; stops if the folder contains other or edited files"
+FORCE_HELP = "replace files of an earlier run, unless the folder contains other or edited files"
 
 
 def command_parser(name: str, description: str) -> Parser:
@@ -32,7 +32,7 @@ def command_parser(name: str, description: str) -> Parser:
 
 
 CAR_HELP = f"folder or file of a car, or the name of a shipped car: {', '.join(CARS)}"
-VEHICLE_HELP = f"{CAR_HELP}; default: the car of Bommer 2006"
+VEHICLE_HELP = f"{CAR_HELP}; default: focus"
 
 
 def setting_options(
@@ -64,7 +64,7 @@ def setting_options(
 
 
 def read(options: argparse.Namespace, settings: type[S], /, **more: Any) -> S:
-    """Return the settings of parsed options, and those of their parts.
+    """Return the settings of parsed options, with their parts.
 
     A field takes the option of its name, or of the `dest` of its declaration; without one it has its default.
 
@@ -107,18 +107,13 @@ def destination_of(options: argparse.Namespace) -> Destination:
 
 
 PARTS: dict[Any, Callable[[argparse.Namespace], Any]] = {CarChoice: car_of, Destination: destination_of}
-"""Reader of a part of settings that has no options of the names of its fields."""
+"""Reader of a part of settings whose options have other names than its fields."""
 
 
 def vehicle_options(parser: argparse._ActionsContainer) -> argparse._ActionsContainer:
     """Add --vehicle and --set, which choose the car, to a group, or to a new one "the car"; return the group."""
     group = parser.add_argument_group("the car") if isinstance(parser, argparse.ArgumentParser) else parser
-    group.add_argument(
-        "--vehicle",
-        type=vehicle_file,
-        metavar="FILE.toml",
-        help=VEHICLE_HELP,
-    )
+    group.add_argument("--vehicle", type=vehicle_file, metavar="FILE.toml", help=VEHICLE_HELP)
     set_option(group)
     return group
 
@@ -131,8 +126,8 @@ def set_option(parser: argparse._ActionsContainer) -> None:
         action="append",
         default=[],
         metavar="PATH=VALUE",
-        help="change one parameter, for example damper.coulomb_friction=93.75. A vector is [x, y, z]; one "
-        "component of it ends with its axis: bushings.tyre.stiffness.z=2e5. May be repeated",
+        help="change one parameter, for example damper.coulomb_friction=93.75; a vector is [x, y, z], and .z selects "
+        "its third component: bushings.tyre.stiffness.z=2e5. May be repeated",
     )
 
 
@@ -145,7 +140,7 @@ def output_options(parser: Parser, path: Path | None, *, default: str = "", meta
         metavar: DIR, or FILE with its ending.
     """
     destination = "folder" if metavar == "DIR" else "file"
-    text = f"{destination} of the results; default: {default or path}, or the next free name if that exists"
+    text = f"{destination} of the results; default: {default or path}, or the next free name if it exists"
     parser.add_argument("--output", type=Path, default=path, metavar=metavar, help=text)
     parser.add_argument("--force", action="store_true", help=FORCE_HELP)
 
@@ -163,7 +158,7 @@ def figures_option(parser: argparse._ActionsContainer) -> None:
         "--no-figures",
         dest="figures",
         action="store_false",
-        help="write no pictures (PNG), which saves time; tables, summary and report are unchanged",
+        help="write no pictures (PNG), to save time; tables, summary and report are unchanged",
     )
 
 
@@ -188,7 +183,7 @@ def report_option(parser: Parser, content: str, folder: str) -> None:
 def damper_option(parser: argparse._ActionsContainer) -> None:
     """Add --damper, the state of the dampers for modes and FRFs of the linear car."""
     states = ("stuck", "sliding")
-    help_text = "dampers stuck by their friction, or sliding; default: stuck"
+    help_text = "dampers stuck by friction, or sliding; default: stuck"
     parser.add_argument("--damper", choices=states, default="stuck", help=help_text)
 
 
@@ -199,7 +194,8 @@ def measure_option(parser: argparse._ActionsContainer, where: str) -> None:
         action="append",
         default=[],
         metavar="NAME",
-        help=f"further figure of the {where}, as tyre_load_crest, travel_fr or peak:seat_rail_acc_z; may be repeated",
+        help=f"add a figure to the {where}, for example tyre_load_crest, travel_fr or peak:seat_rail_acc_z. May be "
+        "repeated",
     )
 
 

@@ -3,6 +3,7 @@
 import argparse
 
 from vehicle.commands.command_line import command
+from vehicle.commands.console import Console
 from vehicle.commands.options import (
     car_of,
     command_parser,
@@ -13,8 +14,8 @@ from vehicle.commands.options import (
     setting_options,
     vehicle_options,
 )
-from vehicle.commands.order_points import OrderSettings, write_orders
 from vehicle.commands.parser import Parser
+from vehicle.runs.report.order_study import OrderSettings, order_study
 
 
 def parser() -> Parser:
@@ -37,4 +38,10 @@ def settings_of(options: argparse.Namespace) -> OrderSettings:
     )
 
 
-main = command(parser, settings_of, write_orders)
+def print_orders(settings: OrderSettings, console: Console) -> None:
+    """Run the car at each speed, and print its orders."""
+    study = order_study(settings)
+    console.result(study.summary(), study)
+
+
+main = command(parser, settings_of, print_orders)

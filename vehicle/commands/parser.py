@@ -83,10 +83,8 @@ class Parser(argparse.ArgumentParser):
         Args:
             title: of the group in the help.
             needs: completes the message "--option: belongs to ...", with the option that makes the group act.
-            active: True if the parsed options contain that object; None if only the command can decide it.
-
-        Returns:
-            The group; its options are rejected if it is not active.
+            active: True if the parsed options contain that object; None if only the command can decide it. The
+                options of a group that is not active are rejected.
         """
         group = _ScopedGroup(self, title)
         group.scope = Scope(active, needs)
@@ -157,7 +155,7 @@ class Parser(argparse.ArgumentParser):
         """Return the message for words that belong to no option, with the option that was probably meant."""
         word = typed.split()[0]
         if word == "=":
-            return f"{typed}: write PATH=VALUE without blanks around '='"
+            return f"{typed}: write PATH=VALUE without spaces around '='"
         options = [option for option in self._option_string_actions if option.startswith("--")]
         if word.startswith("--"):
             name = word.partition("=")[0]
@@ -166,10 +164,10 @@ class Parser(argparse.ArgumentParser):
             )
             return f"{word}: no such option" + (f"; did you mean {' or '.join(near)}?" if near else "")
         if "--vehicle" in options and (word in CARS or word.endswith(".toml")):
-            return f"{typed}: a car is given by --vehicle {word}"
+            return f"{typed}: name the car with --vehicle {word}"
         if "--input" in options and (re.fullmatch(r"\.\w{2,3}", Path(word).suffix) or Path(word).is_file()):
-            return f"{typed}: a measurement is given by --input {word}"
-        return f"{typed}: belongs to no option; names without an option come first"
+            return f"{typed}: name the measurement with --input {word}"
+        return f"{typed}: belongs to no option; put names without an option first"
 
     def error(self, message: str) -> None:  # type: ignore[override]
         """Raise a ConfigurationError with the message and the advice; argparse would end the process."""

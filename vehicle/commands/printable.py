@@ -15,7 +15,7 @@ STEERING = ("Cc", "Cf")
 
 
 class PrintableStream:
-    """Text stream that writes control and format characters as escapes; everything else is that of the stream."""
+    """Text stream that writes control and format characters as escapes; everything else is unchanged."""
 
     def __init__(self, stream: Any) -> None:
         self.stream = stream

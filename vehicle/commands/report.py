@@ -1,4 +1,4 @@
-"""`python -m vehicle report`: write the report of one run, or of several runs compared, as an HTML file."""
+"""`python -m vehicle report`: write an HTML report of one run, or of several runs compared."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,8 +28,8 @@ def parser() -> Parser:
     measure_option(parser, "report")
     film_options(
         parser,
-        "render a film of two runs of one input side by side, and put it into the report; both are simulated again "
-        "for it. film.mp4 here by default",
+        "render a film of two runs of one input side by side and put it into the report; both are simulated again. "
+        "Default: film.mp4 in this folder",
     )
     head_options(parser)
     output_options(
@@ -61,8 +61,8 @@ class ReportSettings(Settings):
         metavar="RUN",
     )
     targets: str | None = setting(
-        "start the report with the check of these targets (figures with limits); 'ride' is a shipped file "
-        "to copy and change",
+        "start the report with a check of these targets (figures with limits); 'ride' is a shipped file to copy "
+        "and change",
         metavar="FILE.toml",
     )
     measure: tuple[str, ...] = ()
@@ -83,8 +83,7 @@ def _job(settings: ReportSettings, console: Console) -> None:
     if settings.film.video is not None:
         if len(settings.runs) != 2:
             raise ConfigurationError(
-                f"--video: shows two runs side by side, found {len(settings.runs)}; for a film of a single run, give "
-                "--video to shaker"
+                f"--video: needs two runs, found {len(settings.runs)}; for a film of one run use --video of shaker"
             )
         require_figures(settings.runs, settings.measure)
         film = _film(settings, console)

@@ -50,17 +50,13 @@ def parser() -> Parser:
     vehicle_options(parser)
     parser.add_argument("--class", dest="road_class", metavar="C", help="class of ISO 8608, A to H")
     parser.add_argument(
-        "--profile",
-        type=Path,
-        metavar="FILE.csv",
-        help="or the file of a measured road: columns distance, left, right [m]",
+        "--profile", type=Path, metavar="FILE.csv", help="file of a measured road: columns distance, left, right [m]"
     )
     setting_options(parser, RoadCommand, "obstacle")
     road_options(parser, lambda _: True, lambda options: options.road_class is not None)
     setting_options(parser, RoadCommand, "iri")
     parser.former(
-        "--road[ =]",
-        "--road is an option of shaker; set --class B, --profile FILE.csv or --obstacle cleat:20x50 here",
+        "--road[ =]", "--road: belongs to shaker; use --class B, --profile FILE.csv or --obstacle cleat:20x50"
     )
     output_options(parser, FILE, metavar="FILE.csv")
     figures_option(parser)
@@ -90,17 +86,13 @@ class RoadCommand(Settings):
     )
     figures: bool = True
     obstacle: str | None = setting(
-        "or an obstacle on a level road, sizes in mm: cleat:20x50, half_round:50, speed_bump, ramp, pothole, cobbles",
+        "obstacle on a level road, sizes in mm: cleat:20x50, half_round:50, speed_bump, ramp, pothole, cobbles",
         metavar="NAME[:SIZES][:left|right][@METRES]",
     )
 
 
 def settings_of(options: argparse.Namespace) -> RoadCommand:
-    """Return the settings of the parsed options.
-
-    Raises:
-        ConfigurationError: no road, several roads, or a value out of range.
-    """
+    """Return the settings of the parsed options."""
     road_class = options.road_class and options.road_class.upper()
     roads = [road for road in (road_class, options.profile, options.obstacle) if road is not None]
     if len(roads) != 1:
@@ -140,7 +132,7 @@ def _job(settings: RoadCommand, console: Console) -> None:
     if settings.iri:
         if not isinstance(drive, RoadDrive):
             raise ConfigurationError(
-                "--iri: the road was recorded over time, but the IRI needs heights over distance; leave --iri out"
+                "--iri: the IRI needs heights over distance, but this road was recorded over time; remove --iri"
             )
         destination.further_file(indices, "--output", ending=".csv", protect=inputs)
         roughness = drive.roughness()

@@ -7,11 +7,7 @@ from vehicle.errors import ConfigurationError
 
 
 def schema_text(names: Sequence[str]) -> str:
-    """Return the JSON Schema "vehicle", the default, or "template" as text.
-
-    Raises:
-        ConfigurationError: another name, or more than one.
-    """
+    """Return the JSON Schema "vehicle", the default, or "template" as text."""
     from vehicle.model.parameters.file_schema import template_schema, vehicle_schema
 
     schemas = {"vehicle": vehicle_schema, "template": template_schema}

@@ -10,11 +10,7 @@ Row = tuple[str, ...]
 
 
 def expanded(names: Sequence[str]) -> tuple[list[str], bool]:
-    """Return the files of names and folders, and True for several; files of a folder in alphabetical order.
-
-    Raises:
-        ConfigurationError: a folder without files.
-    """
+    """Return the files of names and folders, and True for several; files of a folder in alphabetical order."""
     paths: list[str] = []
     for name in names:
         folder = Path(name)
@@ -65,11 +61,7 @@ def table_of(heads: Row, results: Sequence[dict[str, Any]], rows_of: Callable[[d
 
 
 def raise_worst(errors: Sequence[VehicleError], files: int) -> None:
-    """Raise one error for all failed files; call it after printing the results.
-
-    Raises:
-        DataError: a file failed.
-    """
+    """Raise one error for all failed files; call it after printing the results."""
     if errors:
         count = len(errors)
         raise DataError(

@@ -30,11 +30,11 @@ from vehicle.commands.options import (
     setting_options,
     vehicle_options,
 )
-from vehicle.commands.order_points import USUAL_ENGINE, USUAL_LENGTH, OrderSettings, write_orders
 from vehicle.commands.parser import Parser
 from vehicle.commands.summary_text import summary_text
 from vehicle.errors import ConfigurationError
 from vehicle.handover.page.shaker_settings import ShakerSettings
+from vehicle.runs.report.order_study import USUAL_ENGINE, USUAL_LENGTH, OrderSettings, order_study
 from vehicle.signals.excitation.input_settings import PlateSettings
 
 if TYPE_CHECKING:
@@ -77,11 +77,7 @@ def parser() -> Parser:
 
 
 def settings_of(options: argparse.Namespace) -> ShakerSettings | OrderSettings:
-    """Return the settings of the parsed options; those of `orders` for steady speeds of the crankshaft.
-
-    Raises:
-        ConfigurationError: no input, two inputs, or a value out of range.
-    """
+    """Return the settings of the parsed options, or the settings of `orders` for steady speeds of the crankshaft."""
     source, car, destination = input_of(options), car_of(options), destination_of(options)
     settings = read(options, ShakerSettings, source=source, car=car, destination=destination)
     if settings.rpm is not None and settings.rpm.count(":") == 2:
@@ -98,7 +94,7 @@ def _steady_points(settings: ShakerSettings, engine_given: bool, speed: float | 
     """
     settings.require_forces()
     if isinstance(settings.source, PlateSettings):
-        raise ConfigurationError("--rpm A:B:STEP: steady points are runs on a road; leave out --input")
+        raise ConfigurationError("--rpm A:B:STEP: runs on a road at steady speeds; remove --input")
     car, destination = settings.car, settings.destination
     road, file = str(settings.source.road), destination.output
     arguments = ["--rpm", str(settings.rpm), "--road", road]
@@ -121,7 +117,7 @@ def _steady_points(settings: ShakerSettings, engine_given: bool, speed: float | 
 
 def _job(settings: ShakerSettings | OrderSettings, console: Console) -> None:
     if isinstance(settings, OrderSettings):
-        write_orders(settings, console)
+        console.say(order_study(settings))
         return
     from vehicle.handover.page.shaken_run import shake
 

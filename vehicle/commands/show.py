@@ -30,7 +30,7 @@ def parser() -> Parser:
     set_option(parser)
     setting_options(parser, ShowSettings, "search")
     extra_output_options(parser, "car.png (drawing with dimensions), car.json and parameters.csv")
-    parser.former("--vehicle", "--vehicle is not an option here; name the car first, for example `show sedan`")
+    parser.former("--vehicle", "--vehicle: no such option; name the car first, for example `show sedan`")
     parser.add_argument("--json", action="store_true", help="print JSON")
     message_options(parser)
     return parser
@@ -43,8 +43,8 @@ class ShowSettings(Settings):
     car: CarChoice = part(CarChoice)
     destination: Destination = part(Destination)
     search: str | None = setting(
-        "list parameters whose path or meaning contains these words, with value, unit, range and source; "
-        "without words all parameters",
+        "list parameters whose path or meaning contains these words, with value, unit, range and source; without "
+        "words list all",
         nargs="?",
         const="",
         metavar="WORDS",
@@ -57,8 +57,7 @@ def _job(settings: ShowSettings, console: Console) -> None:
     output = settings.destination.output
     if settings.search is not None and output is not None:
         raise ConfigurationError(
-            "--search and --output exclude each other: --search prints some parameters, --output writes all; "
-            "leave one of them out"
+            "--search and --output: --search prints some parameters, --output writes all; remove one of them"
         )
     car = Car.load(settings.car.vehicle, settings.car.overrides)
     if settings.search is not None:

@@ -11,12 +11,7 @@ from typing import TYPE_CHECKING
 from vehicle.commands.command_line import command
 from vehicle.commands.console import Console
 from vehicle.commands.input_options import record_options
-from vehicle.commands.options import (
-    command_parser,
-    message_options,
-    output_options,
-    setting_options,
-)
+from vehicle.commands.options import command_parser, message_options, output_options, setting_options
 from vehicle.commands.parser import Parser
 from vehicle.runs.output.destination import Destination
 from vehicle.settings import Settings, pair, part, setting

@@ -32,9 +32,11 @@ def summary_text(summary: RunSummary) -> str:
     level = f"plate RMS {', '.join(moved)}" if moved else "plates at rest"
     lines = [
         f"input       {summary.input.file}, {summary.input.duration_s:g} s{span}, {level}; tyres {summary.tyre}",
+        *_comfort(summary),
+        *_obstacle(summary),
+        *_forces(summary),
+        *_dampers(summary),
     ]
-    lines += _forces(summary)
-    lines += _dampers(summary)
     for wheel, plate, peaks in _peaks(summary) if summary.frf is not None else ():
         for channel in (f"knuckle_{wheel}_acc_z", "seat_rail_acc_z", "engine_acc_z"):
             if channel not in peaks:
@@ -43,7 +45,6 @@ def summary_text(summary: RunSummary) -> str:
             by_frequency = sorted(strongest, key=lambda peak: peak.frequency_hz)
             text = ", ".join(f"{peak.frequency_hz:.1f}" for peak in by_frequency)
             lines.append(f"resonances  {channel}{plate}: {text + ' Hz' if text else 'none found'}")
-    lines += _comfort(summary) + _obstacle(summary)
     lines += [
         f"static      tyre loads {_each(load, lambda w, side: f'{load[w]:.0f} N ({side})', ' and ')}",
         f"solver      {summary.solver.engine}, step {1e3 * summary.solver.timestep_s:g} ms, "
@@ -55,7 +56,7 @@ def summary_text(summary: RunSummary) -> str:
 
 
 def _dampers(summary: RunSummary) -> list[str]:
-    """Return the line of sticking and slipping dampers, and that of slow sliding; none without a damper."""
+    """Return the lines of sticking, slipping and slowly sliding dampers; none without a damper."""
     share, first = summary.slip_share, summary.first_slip_s
     if not first:
         return []

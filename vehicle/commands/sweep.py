@@ -42,43 +42,42 @@ def parser() -> Parser:
         action="append",
         default=[],
         metavar="PATH=VALUES",
-        help="values of a parameter, as damper.coulomb_friction=62.5,125, or 62.5:125:6 for six equally spaced values; "
-        "of a component of a vector, as bushings.tyre.stiffness.z=2e5,2.5e5; a whole vector is [x,y,z]; repeated: "
-        "every combination",
+        help="values of a parameter, for example damper.coulomb_friction=62.5,125; 62.5:125:6 are six equally spaced "
+        "values; a vector is [x,y,z], one component bushings.tyre.stiffness.z=2e5,2.5e5. Repeated: every combination",
     )
     parser.add_argument(
         "--table",
         type=Path,
         metavar="FILE.csv",
-        help="columns are parameter paths, rows are variations; or the table.csv of another sweep",
+        help="table with a column for each parameter path and a row for each variation, or table.csv of another sweep",
     )
     parser.add_argument(
         "--sobol",
         type=int,
         metavar="N",
-        help="Sobol indices of comfort, or of --measure, with N base points, a power of two, at least 64; each "
-        "parameter is uniform between the bounds of --vary PATH=LOW:HIGH; N times (parameters + 2) runs on each input",
+        help="compute Sobol indices of comfort or of --measure from N base points (a power of two, at least 64); each "
+        "parameter is uniform between the bounds of --vary PATH=LOW:HIGH; takes N (parameters + 2) runs on each input",
     )
     parser.add_argument(
         "--cases",
         type=_cases,
         metavar="FILE.toml",
-        help="roads, speeds, laden states and variants of a file, every car on every input, in one table",
+        help="run every car on every input of this file of roads, speeds, laden states and variants; one table",
     )
     parser.add_argument(
         "--each",
         type=steps_of,
         metavar="P%[,Dmm]",
-        help="change each parameter alone by P percent, down and up, and rank them by their effect on comfort or "
-        "--measure; --vary PATH, as front.damper or viscous, chooses them; by default all stiffnesses, dampings, "
-        "friction forces, masses; a coordinate, which has no percentage, is moved by D mm, 10 by default: 20%%,5mm",
+        help="vary one parameter at a time by ±P %% and rank the effects on comfort or --measure, for example 20%%; "
+        "default: all stiffnesses, dampings, friction forces and masses; restrict with --vary, for example --vary "
+        "front.damper; coordinates are shifted by ±D mm (default 10), for example 20%%,5mm",
     )
     vehicle_options(parser)
     setting_options(parser, SweepSettings, "measure", "engine", "skip", "jobs", "executor", "time_limit")
     output_options(parser, Path("runs/sweep"))
     resume_options(parser)
-    parser.add_argument("--allow-failed", action="store_true", help="exit with 0, not 4, although runs failed")
-    report_option(parser, "best and base car, picture, tables, how to repeat the sweep", "the sweep")
+    parser.add_argument("--allow-failed", action="store_true", help="exit with 0 instead of 4 if runs failed")
+    report_option(parser, "best and base car, picture, tables, the command to repeat the sweep", "the sweep")
     message_options(parser, quiet=True)
     return parser
 
@@ -91,28 +90,19 @@ def _cases(file: str) -> CaseFile:
 
 
 def steps_of(text: str) -> tuple[float, float]:
-    """Return the share [-] and the shift of coordinates [m] of a text as "20%", "20" or "20%,5mm".
-
-    Raises:
-        ConfigurationError: no number.
-    """
+    """Return the share [-] and the shift of coordinates [m] of "20%", "20" or "20%,5mm"."""
     percent, comma, length = text.strip().removeprefix("+-").partition(",")
     try:
         share = 0.01 * float(percent.removesuffix("%"))
         return share, 1e-3 * float(length.removesuffix("mm")) if comma else SHIFT
     except ValueError:
         raise ConfigurationError(
-            f"--each {text!r}: must be a percentage, as --each 20%, or that and the shift of coordinates in mm, as "
-            "--each 20%,5mm"
+            f"--each {text!r}: must be a percentage, for example 20%, or with the shift of coordinates in mm 20%,5mm"
         ) from None
 
 
 def settings_of(options: argparse.Namespace) -> SweepStudy:
-    """Return the study of parsed options.
-
-    Raises:
-        ConfigurationError: options that exclude each other.
-    """
+    """Return the study of parsed options."""
     # Heavy packages are imported after the arguments are known to be good.
     from vehicle.studies.sweeps.sweep_study import SweepStudy
 
@@ -128,11 +118,7 @@ def settings_of(options: argparse.Namespace) -> SweepStudy:
 
 
 def _design(options: argparse.Namespace) -> Design:
-    """Return what varies.
-
-    Raises:
-        ConfigurationError: options that exclude each other.
-    """
+    """Return what varies."""
     from vehicle.studies.sweeps.chosen_cars import EveryCombination, VariationTable
     from vehicle.studies.sweeps.parameter_effects import SingleChanges
     from vehicle.studies.sweeps.sobol_sweep import SobolSample
@@ -141,16 +127,14 @@ def _design(options: argparse.Namespace) -> Design:
         (options.vary, options.table, options.sobol, options.each, options.input, options.road)
     ):
         raise ConfigurationError(
-            "--cases: its file has inputs and variants; leave out --vary, --input, --road and so on"
+            "--cases already sets inputs and variants: remove --vary, --input, --road and the like"
         )
     if options.each is not None and (options.table or options.sobol is not None):
-        raise ConfigurationError("--each: takes --vary PATH, or no parameters; leave out --table and --sobol")
+        raise ConfigurationError("--each takes its parameters from --vary PATH: remove --table and --sobol")
     if options.cases is None and options.each is None and bool(options.vary) == bool(options.table):
-        raise ConfigurationError("give either --vary PATH=A,B,C (once or more) or --table FILE.csv")
+        raise ConfigurationError("set either --vary PATH=A,B,C (may be repeated) or --table FILE.csv")
     if options.sobol is not None and (options.table or options.report is not None):
-        raise ConfigurationError(
-            "--sobol: needs --vary PATH=LOW:HIGH, and has no report; leave out --table and --report"
-        )
+        raise ConfigurationError("--sobol needs --vary PATH=LOW:HIGH and writes no report: remove --table and --report")
     vary = tuple(options.vary)
     if options.cases is not None:
         listed: CaseFile = options.cases
@@ -172,8 +156,8 @@ def _job(study: SweepStudy, console: Console) -> None:
     console.say(result)
     if result.failed and not study.allow_failed:
         raise SimulationError(
-            f"{result.failed} of {result.runs} runs failed; the table is written, with the reason in their rows; "
-            "--allow-failed takes that as success"
+            f"{result.failed} of {result.runs} runs failed; their rows of the table state the reason; to accept them, "
+            "set --allow-failed"
         )
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from vehicle.commands.clock_options import drift_option
 from vehicle.commands.command_line import command
-from vehicle.commands.console import Console
+from vehicle.commands.console import Console, folded
 from vehicle.commands.options import (
     CAR_HELP,
     car_of,
@@ -51,7 +51,7 @@ def parser() -> Parser:
     measurement_options(parser)
     responses = parser.scoped_group(
         "FRFs",
-        needs="--frf, or to --levels",
+        needs="--frf or --levels",
         active=lambda options: has_files(options, "frf") or any(each.levels for each in options.measurements),
     )
     setting_options(responses, ResponseSettings, "band", "spacing", "window", "averages")
@@ -71,24 +71,20 @@ def parser() -> Parser:
     setting_options(parser, SweepSettings, "engine", default="mujoco")
     output_options(parser, Path("runs/tune"))
     head_options(parser)
-    parser.add_argument("--json", action="store_true", help="print the results as JSON, as in tune.json")
-    parser.former("--measured", "--measured: FRFs are given by --frf FILE, time histories by --record FILE")
-    parser.former("--(vary|fit) ", "the parameters to fit are given by --parameters PATH=LOW:HIGH")
+    parser.add_argument("--json", action="store_true", help="print tune.json instead of the text")
+    parser.former("--measured", "--measured: use --frf FILE for FRFs, --record FILE for time histories")
+    parser.former("--(vary|fit) ", "use --parameters PATH=LOW:HIGH for the parameters to fit")
     message_options(parser, quiet=True)
     return parser
 
 
 def _range(text: str) -> Range:
-    """Return the range of a text as "front.damper.viscous=800:4000"."""
+    """Return the range of a text, for example "front.damper.viscous=800:4000"."""
     return parsed_variation("--parameters", text).range()
 
 
 def settings_of(options: argparse.Namespace) -> TuningStudy:
-    """Return the study of parsed options.
-
-    Raises:
-        ConfigurationError: no measurement, or no parameter.
-    """
+    """Return the study of parsed options."""
     # Heavy packages are imported after the arguments are known to be good.
     from vehicle.studies.tuning.measurement_settings import MeasurementSettings
     from vehicle.studies.tuning.tuning_study import TuningStudy
@@ -119,7 +115,7 @@ def _job(study: TuningStudy, console: Console) -> None:
     def noticed(notices: list[str]) -> None:
         console.accept(notices)
         if not (console.quiet or console.json):
-            for text in notices:
+            for text in folded(notices):
                 console.notice(text)
 
     fit = study.run(command=console.command("vehicle tune"), begin=console.progress, noticed=noticed)

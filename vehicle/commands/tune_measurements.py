@@ -36,17 +36,13 @@ class _OfMeasurement(argparse.Action):
     def __call__(self, parser: Any, namespace: argparse.Namespace, values: Any, option: str | None = None) -> None:
         latest = namespace.measurements[len(namespace.measurements) - namespace.latest :]
         if not latest:
-            raise ConfigurationError(
-                f"{option}: must follow the --frf or --record that it belongs to; move it behind this option"
-            )
+            raise ConfigurationError(f"{option}: must follow the --frf or --record that it belongs to; move it there")
         for each in latest:
             if self.dest == "stuck" and each.content != "frf":
-                raise ConfigurationError(
-                    f"--stuck: belongs to --frf, but {each.file} follows --record; leave --stuck out"
-                )
+                raise ConfigurationError(f"--stuck: belongs to --frf, but {each.file} follows --record; remove --stuck")
             if self.dest in OF_RECORD and each.content != "record":
                 raise ConfigurationError(
-                    f"{option}: belongs to --record, but {each.file} follows --frf; give the file with --record"
+                    f"{option}: belongs to --record, but {each.file} follows --frf; name the file with --record"
                 )
         value = {self.dest: values if self.nargs is None else True}
         namespace.measurements[-len(latest) :] = [replace(each, **value) for each in latest]
@@ -107,11 +103,7 @@ def measurement_options(parser: Parser) -> None:
     mapping_options(files)
     record_options(files, "", channel=False)
     delay_option(files, "; without this option the delay of each group of channels is fitted")
-    files.add_argument(
-        "--channels",
-        metavar="NAME,...",
-        help="channels of the model to fit; default: all in the files",
-    )
+    files.add_argument("--channels", metavar="NAME,...", help="channels of the model to fit; default: all in the files")
 
 
 def has_files(options: argparse.Namespace, content: str) -> bool:

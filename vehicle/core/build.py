@@ -1,6 +1,6 @@
 """Commands that compile the core from its sources, with any C compiler that has the vector extensions of GCC.
 
-Files of `VARIANTS` are compiled once for each number type and processor (`NAME` in vector.h), those of `DOUBLE` in
+Files of `VARIANTS` are compiled once for each number type and processor (`NAME` in vector.h), files of `DOUBLE` in
 double precision only, all others once. Products and sums are rounded one by one (-ffp-contract=off): all compilers and
 processors give equal bits.
 """

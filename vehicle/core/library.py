@@ -1,8 +1,8 @@
 """The library of the core: shipped for this platform, or compiled from its sources with the C compiler at hand.
 
-The environment variable VEHICLE_CORE names another library, as one with checks of memory (`tools/core_sanitized.py`).
-A library belongs to the sources whose digest it returns as its stamp. Where no shipped one does, as beside changed
-sources, it is compiled once into a private cache folder (`cache_folder`), from which the next process loads it.
+The environment variable VEHICLE_CORE names another library, for example with memory checks (`tools/core_sanitized.py`).
+A library fits the sources whose digest it returns as its stamp. If no shipped library fits, because the sources have
+changed, it is compiled once into a private cache folder (`cache_folder`), from which the next process loads it.
 """
 
 import ctypes
@@ -58,7 +58,7 @@ def core() -> ctypes.CDLL:
 
 
 def variant() -> str:
-    """Return the variant of the core that runs on this processor: vector instructions, as AVX2, and the platform."""
+    """Return the variant of the core that runs on this processor, for example "AVX2, x86_64-linux"."""
     try:
         number = int(core().core_variant())
     except MissingPartError:
@@ -67,7 +67,7 @@ def variant() -> str:
 
 
 def platform_name() -> str:
-    """Return processor and operating system, as x86_64-linux."""
+    """Return processor and operating system: "x86_64-linux"."""
     machine = platform.machine().lower()
     return f"{MACHINES.get(machine, machine)}-{platform.system().lower()}"
 
@@ -115,7 +115,7 @@ def _compiled(stamp: str) -> Path:
             compile_core(compiler, platform_name().split("-")[0], library, options, ["-shared", "-lm"])
         except (OSError, subprocess.CalledProcessError) as error:
             lines = (getattr(error, "stderr", "") or str(error)).strip().splitlines()
-            # The first line of a compiler says only from where a file is included.
+            # The first line of a compiler contains only the path of an include.
             fault = next((line for line in lines if "error" in line), lines[0])
             raise MissingPartError(
                 f"the core cannot be compiled with {' '.join(compiler)}: {fault}; correct vehicle/core/source if you "

@@ -159,7 +159,7 @@ class Stored(NamedTuple):
     Attributes:
         content: the structure, then the arrays, each at a multiple of `LANE_BYTES`, little-endian; addresses are
             offsets from the beginning of the file.
-        extents: offset in the file and size of each array by the path of its field, as "march.table" [byte].
+        extents: offset in the file and size of each array by the path of its field, for example "march.table" [byte].
     """
 
     content: bytes

@@ -39,8 +39,7 @@ def trusted() -> dict[str, str]:
         raise ConfigurationError(f"{path}: the list of trusted code cannot be read ({error.strerror})") from None
     if os.name != "nt" and (status.st_uid != os.geteuid() or status.st_mode & 0o022):
         raise ConfigurationError(
-            f"{path}: the list of trusted code belongs to another user or can be changed by one; it must be yours "
-            f"alone: chmod 600 {path}"
+            f"{path}: another user owns or can change this list of trusted code; make it yours alone: chmod 600 {path}"
         )
     return {entry[1]: entry[2] for line in text.splitlines() if (entry := ENTRY.fullmatch(line))}
 
@@ -55,7 +54,7 @@ def trust(path: Path) -> str:
     try:
         digest = hashlib.sha256(path.read_bytes()).hexdigest()
     except OSError as error:
-        raise ConfigurationError(f"{path}: cannot be read ({error.strerror}); set the path of an FMU") from None
+        raise ConfigurationError(f"{path}: cannot be read ({error.strerror}); give the path of an FMU") from None
     name = "".join(letter if letter.isprintable() else "?" for letter in str(path.resolve()))
     _write({**trusted(), digest: name})
     return digest
@@ -72,7 +71,7 @@ def distrust(beginning: str) -> tuple[str, str]:
     matches = [digest for digest in entries if beginning and digest.startswith(beginning.lower())]
     if len(matches) != 1:
         raise ConfigurationError(
-            f"--remove {beginning}: {len(matches) or 'no'} entries of the list begin with it; must be one: "
+            f"--remove {beginning}: {len(matches) or 'no'} entries of the list begin so; give more digits of one of "
             "python -m vehicle trust --list"
         )
     name = entries.pop(matches[0])

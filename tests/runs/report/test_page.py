@@ -239,7 +239,7 @@ def test_parameters_are_in_words():
         (["nowhere"], "nowhere: is not a folder; give the folder of a run"),
         (["."], "contains no summary.json; give the folder of a run"),
         (["{run}", "--output", "page.txt"], "--output page.txt: the name must end in .html"),
-        (["{run}", "--video"], "--video: shows two runs side by side, found 1"),
+        (["{run}", "--video"], "--video: needs two runs, found 1"),
         (
             ["{run}", "--output", "mine.html", "--force"],
             "--output mine.html: was not written by this program, or was changed since",

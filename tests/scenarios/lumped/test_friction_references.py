@@ -231,8 +231,5 @@ def test_the_switch_model_gives_up_after_its_evaluations():
 
 
 def test_the_switch_model_refuses_a_belt():
-    with pytest.raises(
-        ConfigurationError,
-        match="the model must be a single model with one sliding pair that is independent of the road",
-    ):
+    with pytest.raises(ConfigurationError, match="a single model with one sliding pair"):
         switch_solution(oscillator(1.0, belt=True), Switch(limit=1.0, band=1e-6, return_time=1e-4), [0.0, 1.0])

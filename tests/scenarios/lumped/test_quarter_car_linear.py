@@ -265,9 +265,7 @@ def test_the_friction_law_is_chosen_by_its_word():
 
 def test_stacks_of_different_length_are_refused():
     network = quarter_car(CAR, damper="slip", vary={"body.mass": np.full(3, 180.0), "wheel.mass": np.full(4, 45.0)})
-    with pytest.raises(
-        ConfigurationError, match=r"^network: parameters of shapes .*\(3,\), \(4,\).* do not broadcast together$"
-    ):
+    with pytest.raises(ConfigurationError, match=r"^network: .*\(3,\), \(4,\)"):
         network.first_order()
 
 

@@ -241,9 +241,7 @@ def test_the_height_of_a_receiver_is_no_road(tmp_path, name):
     from vehicle.signals.excitation.recorded_road import RecordedDrive
 
     commands, text = advised(path)
-    assert not commands and re.search(
-        f"no command: a displacement, but the name {name!r} does not say that it is the motion of a plate", text
-    )
+    assert not commands and re.search(f"no command: a displacement, .*{name!r}", text)
     if name == "height":
         with pytest.raises(DataError, match="GPS receiver"):
             RecordedDrive(road=path, channel="velocity", wheels=(("fr", 0.0, "right"),)).signal()

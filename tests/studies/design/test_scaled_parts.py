@@ -64,15 +64,20 @@ def test_stated_numbers_precede_those_of_the_class():
     stated = StatedNumbers(car_class="small", kerb_mass=1050.0, front_axle_load=640.0)
     result = new_car("one", "sedan", stated)
     values = {check.name: check.value for check in result.checks}
-    of_class, of_template = (note for note in result.notes if note.startswith("not stated"))
-    assert re.findall("--[a-z-]+", of_class) == [
-        "--ride-frequency-front", "--ride-frequency-rear", "--track-front", "--track-rear", "--wheelbase",
-        "--cog-height", "--tyre-radius",
-    ]  # fmt: skip
-    assert re.findall("--[a-z-]+", of_template) == [
-        "--wheel-hop-front", "--wheel-hop-rear", "--roll-stiffness-front", "--roll-stiffness-rear",
-        "--damping-ratio-front", "--damping-ratio-rear", "--roll-inertia", "--pitch-inertia", "--yaw-inertia",
-    ]  # fmt: skip
+    names: dict[str, set[str]] = {}
+    for check in result.checks:
+        names.setdefault(check.origin, set()).add(check.name)
+    axles = [f"{name}_{axle}" for name in ("ride_frequency", "track") for axle in ("front", "rear")]
+    assert names == {
+        "": {"kerb_mass", "front_axle_load"},
+        "class small": {*axles, "wheelbase", "cog_height", "tyre_radius"},
+        "sedan": {"damping_ratio_front", "damping_ratio_rear"},
+        "sedan, parts scaled with the kerb mass": {
+            f"{name}_{axle}" for name in ("wheel_hop", "roll_stiffness") for axle in ("front", "rear")
+        },
+        "sedan, same radius of gyration": {"roll_inertia", "pitch_inertia", "yaw_inertia"},
+        "the other numbers": {"rear_axle_load", "cog_x", "pitch_frequency"},
+    }
     assert values["kerb_mass"] == pytest.approx(1050.0) and values["front_axle_load"] == pytest.approx(640.0, rel=1e-3)
     with pytest.raises(ConfigurationError, match=r"--car-class 'bus': .*small, sedan, van"):
         new_car("one", "sedan", StatedNumbers(car_class="bus"))

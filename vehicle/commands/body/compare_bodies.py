@@ -10,12 +10,7 @@ from typing import TYPE_CHECKING, Any
 from vehicle.arrays import Vector
 from vehicle.commands.body.model_file import model_of
 from vehicle.commands.console import Console
-from vehicle.commands.options import (
-    extra_output_options,
-    message_options,
-    setting_options,
-    vehicle_options,
-)
+from vehicle.commands.options import extra_output_options, message_options, setting_options, vehicle_options
 from vehicle.model.parameters.car_choice import CarChoice
 from vehicle.runs.output.destination import Destination
 from vehicle.settings import Settings, part, setting

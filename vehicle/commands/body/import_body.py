@@ -10,11 +10,7 @@ from typing import TYPE_CHECKING, Any
 from vehicle.commands.body.model_file import output_options, require_output, write
 from vehicle.commands.body.show_body import report
 from vehicle.commands.console import Console
-from vehicle.commands.options import (
-    message_options,
-    setting_options,
-    vehicle_options,
-)
+from vehicle.commands.options import message_options, setting_options, vehicle_options
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.flexbody.sources import FOLLOWING, LENGTHS, MASSES, METHODS
@@ -83,7 +79,7 @@ class ImportSettings(Settings):
         "file of the mass matrix that belongs to the stiffness matrix", type=Path, metavar="FILE"
     )
     dofs: Path | None = setting(
-        "file with the node and direction (1 to 6) of each matrix row, as node,direction, or the mapping file of ANSYS",
+        "file with the node and direction (1 to 6) of each matrix row (node,direction), or the mapping file of ANSYS",
         type=Path,
         metavar="FILE",
     )
@@ -152,11 +148,7 @@ class ImportSettings(Settings):
     )
 
     def __post_init__(self) -> None:
-        """Check the values.
-
-        Raises:
-            ConfigurationError: a value is out of its interval.
-        """
+        """Check the values."""
         Settings.__post_init__(self)
         highest = self.attachment_modes
         if highest is not None and highest < self.up_to:
@@ -205,12 +197,11 @@ def _add_model_options(parser: Parser) -> None:
     points = parser.add_argument_group("points of the car")
     parser.former(
         "--tolerance",
-        "--tolerance is not an option here; set the largest allowed distance between a point of the car and its "
+        "--tolerance: no such option; set the largest allowed distance between a point of the car and its "
         "node with --point-distance MM",
     )
     parser.former(
-        "--map",
-        "--map is not an option here; give the table of nodes for the points of the car with --point-nodes FILE",
+        "--map", "--map: no such option; give the table of nodes for the points of the car with --point-nodes FILE"
     )
     setting_options(points, ImportSettings, "point_distance", "spread", "point_nodes")
 

@@ -49,7 +49,7 @@ def write(path: Path, model: Superelement) -> None:
 
 
 def model_of(file: Path | None, car: CarChoice, vehicle: Vehicle) -> Superelement:
-    """Read a body model from a file; by default return that of the vehicle."""
+    """Read a body model from a file, by default from the vehicle."""
     from vehicle.model.flexbody.body_model import body_model
     from vehicle.model.flexbody.superelement_file import read_superelement
 

@@ -74,7 +74,7 @@ def add(tasks: Any) -> None:
     setting_options(asked, ParticipationSettings, "response", "at")
     asked.former(
         "--place",
-        "--place is not an option here; name the acceleration with --response CHANNEL, for example --response "
+        "--place: no such option; name the acceleration with --response CHANNEL, for example --response "
         "seat_rail_acc_z",
     )
     setting_options(asked, ParticipationSettings, "wheel")

@@ -10,12 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.body.model_file import model_of
 from vehicle.commands.console import Console
-from vehicle.commands.options import (
-    extra_output_options,
-    message_options,
-    setting_options,
-    vehicle_options,
-)
+from vehicle.commands.options import extra_output_options, message_options, setting_options, vehicle_options
 from vehicle.digits import number
 from vehicle.errors import DataError
 from vehicle.model.parameters.car_choice import CarChoice

@@ -36,14 +36,16 @@ class Check:
     Attributes:
         name: name of the number, a field of `StatedNumbers`.
         unit: its unit.
-        stated: stated value; None without a statement.
+        stated: stated value, or that of the class of the car; None without one.
         value: value of the new car.
+        origin: where the value comes from; empty for a number that the user has stated.
     """
 
     name: str
     unit: str
     stated: float | None
     value: float
+    origin: str
 
     @property
     def deviation(self) -> float:
@@ -59,12 +61,14 @@ class NewCar:
         car: the car, ready to run.
         text: its vehicle file.
         checks: each number of the car with its stated value.
-        notes: messages about estimates and about parts of the template that are left out.
+        parts: parts without a stated number, and their origin.
+        notes: messages about unusual figures and about parts of the template that are left out.
     """
 
     car: Car
     text: str
     checks: tuple[Check, ...]
+    parts: tuple[tuple[str, str], ...]
     notes: tuple[str, ...]
 
 
@@ -108,7 +112,7 @@ def new_car(name: str, source: Path | str, stated: StatedNumbers) -> NewCar:
     table = solved({**table, "name": name, "solver": solver}, template, targets)
     sources |= {"name": "given", **_sources_of_targets(targets, stated, template)}
     car = new_car_of(table, template)
-    checks = _checks_of(car, template, stated)
+    checks = _checks_of(car, template, stated, ratio)
     _require_met(checks)
     header = (
         f"{name}: made by `python -m vehicle new` from the template {template.name}.\n"
@@ -117,7 +121,9 @@ def new_car(name: str, source: Path | str, stated: StatedNumbers) -> NewCar:
         "Frame: x to the rear, y to the driver's right, z up. SI units."
     )
     text = vehicle_text(car.vehicle, header, sources, template.name, before)
-    return NewCar(car=car, text=text, checks=checks, notes=_notes(car, template, stated, ratio))
+    return NewCar(
+        car=car, text=text, checks=checks, parts=_parts(template, stated, ratio), notes=_notes(car, template, stated)
+    )
 
 
 def template_files(source: Path, car: Car) -> list[Path]:
@@ -158,8 +164,8 @@ def _sources_of_targets(targets: list[Target], stated: StatedNumbers, template: 
     return sources
 
 
-def _checks_of(car: Car, template: TemplateCar, stated: StatedNumbers) -> tuple[Check, ...]:
-    """Return all numbers of a car with their stated values."""
+def _checks_of(car: Car, template: TemplateCar, stated: StatedNumbers, ratio: float) -> tuple[Check, ...]:
+    """Return all numbers of a car with their stated values and origins."""
     kerb = kerb_model(car.vehicle.table, template)
     whole, loads = car_masses(kerb), axle_loads(kerb, template)
     wheels = {wheel.name: wheel for wheel in car.vehicle.composition.wheels}
@@ -183,6 +189,7 @@ def _checks_of(car: Car, template: TemplateCar, stated: StatedNumbers) -> tuple[
             unit=field_quantity(StatedNumbers, name)["unit"],
             stated=getattr(stated, name),
             value=values[name],
+            origin=_origin(name, template, stated, ratio),
         )
         for name in NAMES
         if name in values
@@ -254,20 +261,21 @@ def _unusual_notes(car: Car, template: TemplateCar, stated: StatedNumbers) -> It
         yield f"unusual: {figure}; {', '.join(origins) or otherwise}"
 
 
-def _notes(car: Car, template: TemplateCar, stated: StatedNumbers, ratio: float) -> tuple[str, ...]:
-    """Return the notes: figures outside their usual ranges, numbers that are not stated, parts left out."""
-    scaled = "" if ratio == 1.0 else f"scaled by the kerb mass ({ratio:.3f} of that of {template.name}): "
-    parts = "parts of axles and powertrain, bushings, mounts, damper friction, tyres"
-    if powertrain(stated.car_class) is not None:
-        parts = "parts of axles, bushings, damper friction, tyres"
+def _notes(car: Car, template: TemplateCar, stated: StatedNumbers) -> tuple[str, ...]:
+    """Return the notes: figures outside their usual ranges, and what is left out or kept."""
     return (
         *_unusual_notes(car, template, stated),
-        *_origin_notes(template, stated, ratio),
-        f"as in {template.name}: {scaled}{parts}; points of the body, as the seat rail, at the same share "
-        "of the wheelbase; these values are marked 'template' in the file",
         *_tyre_notes(template, stated),
         *(f"left out from {template.name}: {text}" for text in template.left_out),
     )
+
+
+def _parts(template: TemplateCar, stated: StatedNumbers, ratio: float) -> tuple[tuple[str, str], ...]:
+    """Return parts without a stated number, and their origin."""
+    powered = powertrain(stated.car_class) is None
+    parts = "axles, powertrain, bushings, mounts, friction" if powered else "axles, bushings, friction"
+    scaled = "" if ratio == 1.0 else f", scaled with the kerb mass ({ratio:.3f})"
+    return (parts, f"{template.name}{scaled}"), ("points of the body", f"{template.name}, same share of the wheelbase")
 
 
 RIDE_ORDER = (
@@ -291,20 +299,18 @@ OTHER_NAMES = {
 """Numbers that state another number too; the kerb mass needs both axle loads."""
 
 
-def _origin_notes(template: TemplateCar, stated: StatedNumbers, ratio: float) -> Iterator[str]:
-    """Yield notes on the numbers that are not stated, with their options."""
-    if stated.of_class:
-        names = dict.fromkeys(name for name in (*RIDE_ORDER, *NAMES) if name in stated.of_class)
-        yield f"not stated, assumed for class {stated.car_class}: {', '.join(map(option, names))}"
-    missing = [name for name in RIDE_ORDER if not _is_stated(stated, name)]
-    scaled = [name for name in missing if ratio != 1.0 and name.startswith(("wheel_hop", "roll_stiffness"))]
-    inertia = [name for name in missing if name.endswith("inertia")]
-    kept = [name for name in missing if name not in (*scaled, *inertia)]
-    gyration = "means of 73 cars for" if stated.inertia == "survey" else "its radii of gyration for"
-    groups = (("its parts scaled by the kerb mass for", scaled), ("its own", kept), (gyration, inertia))
-    texts = [f"{words} {', '.join(map(option, names))}" for words, names in groups if names]
-    if texts:
-        yield f"not stated, from {template.name}, largest influence on ride comfort first: {'; '.join(texts)}"
+def _origin(name: str, template: TemplateCar, stated: StatedNumbers, ratio: float) -> str:
+    """Return where a number of the new car comes from; empty for a number that the user has stated."""
+    if name in stated.of_class:
+        return f"class {stated.car_class}"
+    if getattr(stated, name) is not None:
+        return ""
+    if name not in RIDE_ORDER or _is_stated(stated, name):
+        return "the other numbers"
+    if name.endswith("inertia"):
+        return "means of 73 cars" if stated.inertia == "survey" else f"{template.name}, same radius of gyration"
+    scaled = ratio != 1.0 and name.startswith(("wheel_hop", "roll_stiffness"))
+    return f"{template.name}, parts scaled with the kerb mass" if scaled else template.name
 
 
 def _is_stated(stated: StatedNumbers, name: str) -> bool:

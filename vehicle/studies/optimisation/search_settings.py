@@ -57,7 +57,8 @@ class SearchSettings(PoolSettings):
         "for a coordinate in m (0.002); may be repeated",
     )
     samples: int | None = setting(
-        "cars within the tolerances for each car tried; default: 8, more if the quantile needs them",
+        "cars within the tolerances for each car tried; 8 by default, more where the quantile needs them",
+        within="[2, inf)",
         type=int,
         metavar="K",
     )

@@ -139,9 +139,9 @@ class HistorySettings(ReadingSettings):
 class LevelSettings(HistorySettings, BandSettings):
     """Settings of time histories that are compared by FRFs in classes of the input level."""
 
-    levels: int = setting(
+    levels: int | None = setting(
         "number of classes of the input level, at least 2",
-        0,
+        within="[2, inf)",
         type=int,
         metavar="N",
         help="compare the preceding --record by FRFs in N classes of the input level, instead of its time histories",
@@ -162,6 +162,7 @@ class PosteriorSettings(Settings):
     samples: int = setting(
         "number of simulated cars from which the fast replacement model is built; default: %(default)s",
         CARS,
+        within="[1, inf)",
         type=int,
         metavar="K",
     )

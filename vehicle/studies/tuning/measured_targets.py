@@ -163,7 +163,7 @@ def measured_levels(car: Car, file: Path | str, settings: LevelSettings) -> Meas
         reference,
         np.asarray(excitation),
         np.array([run[name] for name in front]),
-        levels=settings.levels,
+        levels=settings.levels or 0,
         window=settings.window or LEVEL_WINDOW,
         band=settings.band,
         spacing=settings.spacing,

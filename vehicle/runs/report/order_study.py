@@ -1,8 +1,7 @@
-"""Orders at steady speeds, for the commands `orders` and `shaker`: settings, files and printed tables."""
+"""Orders at steady speeds as a study: settings, files and printed tables, for the commands `orders` and `shaker`."""
 
 from __future__ import annotations
 
-import json
 import math
 import shlex
 from collections.abc import Sequence
@@ -11,7 +10,6 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vehicle.commands.console import Console
 from vehicle.digits import aligned
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.car_choice import CarChoice
@@ -49,7 +47,7 @@ class OrderSettings(Settings):
         "orders (multiples of the rotation frequency), for example 2,4; default: %(default)s", "1,2", metavar="N,..."
     )
     channel: tuple[str, ...] | None = setting(
-        "acceleration channels, as seat rail z,roof left rear x; may be repeated. By default seat rail z",
+        "acceleration channels, for example seat rail z,roof left rear x; default: seat rail z. May be repeated",
         action="append",
         metavar="WORDS",
     )
@@ -64,8 +62,38 @@ class OrderSettings(Settings):
     engine: str = engine_setting(USUAL_ENGINE)
 
 
-def write_orders(settings: OrderSettings, console: Console) -> None:
-    """Run the car at each speed, and write and print its orders.
+@dataclass(frozen=True, kw_only=True, slots=True)
+class OrderStudy:
+    """Orders of a car at steady speeds; as text the printed tables.
+
+    Attributes:
+        car: name of the car.
+        caption: number and length of the runs, road and engine.
+        channels: results of each channel.
+    """
+
+    car: str
+    caption: str
+    channels: Sequence[OrderPoints]
+
+    def summary(self) -> dict[str, Any]:
+        """Return the results for JSON: those of the first channel, and of all if there are several."""
+        data = [_data(results) for results in self.channels]
+        return data[0] | ({"channels": data} if len(data) > 1 else {})
+
+    def __str__(self) -> str:
+        """Return a table and its findings for each channel."""
+        from vehicle.runs.report.order_page import HEADS, order_points_sentences, order_rows
+
+        lines = []
+        for results in self.channels:
+            lines += [f"{self.car}, {results.channel}, {self.caption}; amplitudes"]
+            lines += [*aligned([HEADS, *order_rows(results)], left=0), *order_points_sentences(results)]
+        return "\n".join(lines)
+
+
+def order_study(settings: OrderSettings) -> OrderStudy:
+    """Run the car at each speed, and write its orders if there is an output.
 
     Raises:
         ConfigurationError: no speeds, two ranges of speeds, or orders that cannot be computed.
@@ -79,14 +107,12 @@ def write_orders(settings: OrderSettings, console: Console) -> None:
         )
     if rpm and len(speeds) > 1:
         raise ConfigurationError(
-            "--rpm and --speed: only one of them can be a range; with --rpm A:B:STEP give a single speed, for "
-            "example --speed 80"
+            "--rpm and --speed: only one can be a range; with --rpm A:B:STEP give one speed, for example --speed 80"
         )
     orders = _orders(settings.orders)
     from vehicle.runs.car import Car
     from vehicle.runs.car.order_points import order_points_at
     from vehicle.runs.output.run_size import batch_memory, say_size
-    from vehicle.runs.report.order_page import HEADS, order_points_sentences, order_rows
 
     output = settings.destination.output
     folder = None if output is None else settings.destination.folder(output)
@@ -116,16 +142,10 @@ def write_orders(settings: OrderSettings, console: Console) -> None:
     caption = (
         f"{len(channels[0].points)} runs of {settings.duration:g} s, road {settings.road}, engine {settings.engine}"
     )
+    study = OrderStudy(car=car.vehicle.name, caption=caption, channels=channels)
     if folder is not None:
-        _write(settings, folder, channels, car.vehicle.name, caption)
-    if console.json:
-        data = [_data(results) for results in channels]
-        # Keys of the first channel as without the others.
-        print(json.dumps(data[0] | ({"channels": data} if len(data) > 1 else {}), indent=2, allow_nan=False))
-        return
-    for results in channels:
-        print(f"{car.vehicle.name}, {results.channel}, {caption}; amplitudes")
-        print("\n".join([*aligned([HEADS, *order_rows(results)], left=0), *order_points_sentences(results)]))
+        _write(study, settings, folder)
+    return study
 
 
 def _data(results: OrderPoints) -> dict[str, Any]:
@@ -188,11 +208,12 @@ def _orders(text: str) -> list[float]:
     return orders
 
 
-def _write(settings: OrderSettings, path: Path, channels: Sequence[OrderPoints], name: str, caption: str) -> None:
+def _write(study: OrderStudy, settings: OrderSettings, path: Path) -> None:
     from vehicle.runs.output.folder import output_folder, write_text, write_whole
     from vehicle.runs.report.order_page import draw_cuts, draw_map, order_page
     from vehicle.signals.formats.csv_table import write_table
 
+    name, channels, caption = study.car, study.channels, study.caption
     command = shlex.join(["python", "-m", "vehicle", "orders", *settings.words])
     with output_folder(path, force=settings.destination.force) as folder:
         for results in channels:
