@@ -19,6 +19,7 @@ from vehicle.handover.bench.setting import Setting
 from vehicle.handover.bench.stage import Stage
 from vehicle.handover.bench.state import BenchState, LatestOnly
 from vehicle.handover.bench.view import View
+from vehicle.names import side_of
 from vehicle.runs.car import Car
 from vehicle.runs.report.differences import difference, parameter_words
 
@@ -71,7 +72,7 @@ class Page:
                     self.add_slider(path)
         self._added = gui.add_folder("Any parameter", expand_by_default=False)
         with self._added:
-            search = gui.add_text("search", "", hint="words in path or meaning, as: strut top")
+            search = gui.add_text("search", "", hint="words in path or meaning, for example strut top")
             paths = gui.add_dropdown(
                 "parameter", self._matches(""), hint="points and stiffnesses end with an axis, for example .z"
             )
@@ -212,7 +213,7 @@ class Page:
             change = "" if math.isnan(a) or math.isnan(b) else difference(a, b, unit)
             # Long words in the last column would break the names into one word a line.
             change = change.replace("percentage ", "").replace(" ", "\u00a0")
-            lines.append(f"| {name} [{unit}] | {_short(a)} | {_short(b)} | {change} |")
+            lines.append(f"| {self._words(name)} [{unit}] | {_short(a)} | {_short(b)} | {change} |")
         texts = [_escaped(self._changed(shown)) for shown in (car, other)]
         label = f"{_escaped(state.drive.label)}; computed in {1e3 * present.seconds:.0f} ms"
         lines.append(f"\n**A** {texts[1]} · **B** {texts[0]}\n\n{label}")
@@ -227,6 +228,12 @@ class Page:
                     f"the fast model is not valid here: {warnings}; save the vehicle file and run it with "
                     "--engine mujoco"
                 )
+
+    def _words(self, row: str) -> str:
+        """Return the name of a row; a damper without friction is fast, and does not slip, so its velocity is named."""
+        _, slip, wheel = row.rpartition("slip ")
+        vehicle = self.state.car.vehicle
+        return f"above {1e3 * vehicle.damper.slip_velocity:g} mm/s, {side_of(wheel, vehicle.wheels)}" if slip else row
 
     def _changed(self, car: Car) -> str:
         """Return what differs from the car of the start, in words."""
@@ -271,7 +278,7 @@ class Page:
                 logarithmic(density_curves(*both)[1]),
             ),
             (
-                f"damper {wheel}: force [N] over velocity [m/s]",
+                f"{side_of(wheel, self.state.car.vehicle.wheels)} damper: force [N] over velocity [m/s]",
                 lambda a, b: damper_curves(a, b, wheel),
                 (
                     uplot.Series(label="v [m/s]"),

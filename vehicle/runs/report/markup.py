@@ -29,6 +29,11 @@ def templates(module: str) -> Callable[..., Markup]:
     return fill
 
 
+def named(name: str, words: str) -> Markup:
+    """Return words that show the name in the program when the pointer rests on them."""
+    return Markup('<span title="{}">{}</span>').format(name, words)
+
+
 @cache
 def _environment(folder: Path) -> Environment:
     """Return the environment of the templates of a folder; elements.html has the elements of all."""
