@@ -29,9 +29,9 @@ def templates(module: str) -> Callable[..., Markup]:
     return fill
 
 
-def named(name: str, words: str) -> Markup:
-    """Return words that show the name in the program when the pointer rests on them."""
-    return Markup('<span title="{}">{}</span>').format(name, words)
+def named(name: str, title: str) -> Markup:
+    """Return a title in words that shows the name in the program when the pointer rests on it."""
+    return Markup('<span title="{}">{}</span>').format(name, title)
 
 
 @cache
