@@ -136,18 +136,18 @@ def body_outline(vehicle: Vehicle) -> tuple[Vector, Indices]:
     windows = [cowl, head, door, back, foot]
     roof = np.interp(station, windows, [ends[0], *(ground + height * np.array([0.96, 1.0, 0.97])), ends[1]])
     narrow = np.interp(station, windows, [1.0, 0.74, 0.76, 0.74, 1.0])
-    at = np.searchsorted(x, shown)
-    outside = np.r_[: at[2] + 1, at[6] : len(x)]
+    edge = np.searchsorted(x, shown)
+    outside = np.r_[: edge[2] + 1, edge[6] : len(x)]
     roof[outside], narrow[outside] = waist[outside], 1.0
     right = np.stack([np.stack([x, y, z], axis=1) for y, z in
                       ((0.97 * wide, lower), (wide, waist), (narrow * wide, roof))], axis=1)  # fmt: skip
     sheets = np.concatenate([right, right[:, ::-1] * [1.0, -1.0, 1.0]], axis=1)
 
-    # Lines: along the sides, across at the edges, pillars and edges of the doors.
-    every, few, glass = range(len(x)), sorted(set(at)), at[2:7]
+    # Lines: along the sides, across edge the edges, pillars and edges of the doors.
+    every, few, glass = range(len(x)), sorted(set(edge)), edge[2:7]
     joined = [(column, rows) for column, rows in ((0, every), (1, few), (2, glass), (3, glass), (4, few), (5, every))]
     lines = [(6 * i + column, 6 * j + column) for column, rows in joined for i, j in pairwise(rows)]
-    lines += [(6 * row + i, 6 * row + j) for row in at[[0, -1]] for i, j in ((0, 1), (1, 4), (4, 5), (0, 5))]
-    lines += [(6 * row + i, 6 * row + 5 - i) for row, i in zip(at[1:7], (1, 1, 2, 2, 2, 1), strict=True)]
-    lines += [(6 * at[4] + i, 6 * at[4] + i + 1) for i in (0, 1, 3, 4)]
+    lines += [(6 * row + i, 6 * row + j) for row in edge[[0, -1]] for i, j in ((0, 1), (1, 4), (4, 5), (0, 5))]
+    lines += [(6 * row + i, 6 * row + 5 - i) for row, i in zip(edge[1:7], (1, 1, 2, 2, 2, 1), strict=True)]
+    lines += [(6 * edge[4] + i, 6 * edge[4] + i + 1) for i in (0, 1, 3, 4)]
     return sheets, np.array(lines, dtype=np.intp)
