@@ -143,7 +143,7 @@ def body_outline(vehicle: Vehicle) -> tuple[Vector, Indices]:
                       ((0.97 * wide, lower), (wide, waist), (narrow * wide, roof))], axis=1)  # fmt: skip
     sheets = np.concatenate([right, right[:, ::-1] * [1.0, -1.0, 1.0]], axis=1)
 
-    # Lines: along the sides, across edge the edges, pillars and edges of the doors.
+    # Lines: along the sides, across at the edges, pillars and edges of the doors.
     every, few, glass = range(len(x)), sorted(set(edge)), edge[2:7]
     joined = [(column, rows) for column, rows in ((0, every), (1, few), (2, glass), (3, glass), (4, few), (5, every))]
     lines = [(6 * i + column, 6 * j + column) for column, rows in joined for i, j in pairwise(rows)]

@@ -173,11 +173,11 @@ def plot_time(path: Path, run: RecordedRun, *, page: bool = False, others: Seque
         f"tyres {run.car.model.vehicle.driving.words}"
     )
     if dampers:
-        rubs, velocity = run.car.model.vehicle.damper.static_friction > 0.0, f"±{1e3 * slip:g} mm/s"
+        rubs, shown = run.car.model.vehicle.damper.static_friction > 0.0, f"±{1e3 * slip:g} mm/s"
         caption += (
-            f"; dashed: slip velocity {velocity}, red: {side} damper in slip"
+            f"; dashed: slip velocity {shown}, red: {side} damper in slip"
             if rubs
-            else (f"; dashed: {velocity}, red: {side} damper faster")
+            else (f"; dashed: {shown}, red: {side} damper faster")
         )
     size = (PAGE_WIDTH, PAGE_HEIGHT) if page else (15.0, 9.2)
     title = "" if page else "Main time histories"
