@@ -45,13 +45,8 @@ def test_files_and_summary(tmp_path, capsys):
     folder = tmp_path / "out"
     assert main([*records(tmp_path), "--output", str(folder)]) == 0
     said = capsys.readouterr().out
-    assert (
-        "chosen: linear damping + Coulomb friction, the simplest law whose error on left-out tests is within "
-        "one standard error"
-    ) in said
-    assert (
-        "the friction at rest is not determined, because the slowest test reaches 126 mm/s, must be below 10 mm/s"
-    ) in said
+    assert "chosen: linear damping + Coulomb friction" in said
+    assert "not determined: friction at rest" in said and "126 mm/s" in said and "10 mm/s" in said
     damper = build(Damper, tomllib.loads((folder / "damper.toml").read_text()), "damper")
     assert damper.viscous == pytest.approx(1200.0, rel=0.02) and damper.coulomb_friction == pytest.approx(60.0, abs=3.0)
     assert damper.gas_force == pytest.approx(150.0, abs=2.0) and damper.friction_law == "coulomb"
@@ -75,7 +70,7 @@ def test_a_current_gives_a_fit_each_and_the_limits_of_a_semi_active_damper(tmp_p
     assert control == pytest.approx({"minimum_damping": 800.0, "maximum_damping": 2400.0}, rel=0.02)
     laws = [tomllib.loads((tmp_path / "out" / f"damper_current_{n}.toml").read_text()) for n in (0, 1)]
     assert [law["tested"]["current"] for law in laws] == [[0.0, 0.0], [1.0, 1.0]]
-    assert "# there: tested.current = [0.0, 1.0]" in (tmp_path / "out" / "damper_control.toml").read_text()
+    assert "# tested.current = [0.0, 1.0]" in (tmp_path / "out" / "damper_control.toml").read_text()
     page = (tmp_path / "out" / "report.html").read_text()
     for text in ("Law at current 0", "Law at current 1", "maximum_damping", "friction_law", "sine20_1A"):
         assert text in page
@@ -91,7 +86,7 @@ def test_typed_conditions(tmp_path):
         {"current": current, "temperature": 20.0} for current in (0.0, 1.5)
     ]
     assert [each.curve_damping() for each in fits] == pytest.approx([800.0, 2400.0], rel=0.02)
-    with pytest.raises(ConfigurationError, match="found 3 values for 4 files; give a single value for all files"):
+    with pytest.raises(ConfigurationError, match="found 3 values for 4 files"):
         fit_damper(files, conditions={"current": "0,1,2"})
 
 
@@ -172,13 +167,11 @@ def test_units_of_columns_and_metres_without_a_unit(tmp_path, capsys):
     paths = headless(tmp_path, [0, 1, 2, 3], factor=1.0)
     words = [*paths, "--output", str(tmp_path / "out")]
     assert main(words) == 3
-    assert (
-        "in m or mm? The file has no header; set --unit displacement=m or --unit displacement=mm"
-    ) in capsys.readouterr().err
+    assert "--unit displacement=m or --unit displacement=mm" in capsys.readouterr().err
     by_role = fitted(capsys, [*words, "--unit", "displacement=m", "--unit", "velocity=m/s"])
     by_column = fitted(capsys, [*words, "--unit", "2=m", "--unit", "column 3=m/s"])
     assert by_column == by_role
     values = {each["path"]: each["value"] for each in by_role["parameters"]}
     assert values["damper.damping_1"] == pytest.approx(1200.0, rel=0.05)
     assert main([*words, "--unit", "displacement=m", "--unit", "load=N"]) == 2
-    assert "'load' is neither a column of the test nor one of time" in capsys.readouterr().err
+    assert "--unit load=N: " in capsys.readouterr().err

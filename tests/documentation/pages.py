@@ -49,9 +49,9 @@ LONGEST = 12
 UNREPEATABLE = re.compile(
     r"[\d.]+(?= times real time)|(?<=energy residual )[\d.e-]+|(?<=results\.md; )\d+(?= s$)|[0-9a-f]{64}"
     r"|\d[\d.]*e-(?:0[5-9]|1\d)|(?<=\.html, )[\d.]+ [kM]B"
-    r"|(?<=reduced takes about )[\d.]+ (?:s|min|h)"
+    r"|(?<=reduced would take about )[\d.]+ (?:s|min|h)"
     # A search goes another way after a difference of round-off.
-    r"|\d+(?= on the front)|(?<=the front grew by )[\d.]+"
+    r"|\d+(?= on the front)|(?<=the front still grew by )[\d.]+"
 )
 """Text of an output that differs from run to run, or with the platform; written as `...`."""
 

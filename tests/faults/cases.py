@@ -35,17 +35,11 @@ LIST = "calls.txt"
 
 @dataclass(frozen=True)
 class Fault:
-    """A fault of the n-th call.
+    """A fault of the n-th call."""
 
-    Attributes:
-        calls: kinds of calls that are counted.
-        error: error number; 0 kills the process.
-        lasting: all later calls fail too, as on a full disk.
-    """
-
-    calls: int
-    error: int
-    lasting: bool = False
+    calls: int  # kinds of calls that are counted
+    error: int  # error number; 0 kills the process
+    lasting: bool = False  # all later calls fail too, as on a full disk
 
 
 FAULTS = {
@@ -99,7 +93,6 @@ class Bench:
     """A command with its results of before and its new results, and cases of it.
 
     Args:
-        command: the command.
         folder: empty folder of this bench.
     """
 

@@ -17,18 +17,12 @@ from vehicle.runs.output.written_files import note
 
 @dataclass(frozen=True)
 class Written:
-    """A command that writes.
+    """A command that writes."""
 
-    Attributes:
-        name: name in the table.
-        old: arguments that make the results of before.
-        new: arguments that replace them.
-        draws: it draws frames of a film, whose threads are lost in a forked process: it runs in forked ones only.
-    """
-
-    name: str
-    old: Sequence[str]
-    new: Sequence[str]
+    name: str  # name in the table
+    old: Sequence[str]  # arguments that make the results of before
+    new: Sequence[str]  # arguments that replace them
+    # it draws frames of a film, whose threads are lost in a forked process: it runs in forked ones only
     draws: bool = False
 
 

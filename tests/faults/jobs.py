@@ -134,16 +134,8 @@ def commands(inputs: Path) -> list[Written]:
     kinematics = ("kinematics", "--vehicle", "sedan", "--output", "a", "--travel", "0:10:10", "--axle")
     orders = ("orders", "--vehicle", "sedan", "--set", "front.imbalance.mass=0.01", "--set",
               "front.imbalance.radius=0.2", "--duration", "4", "--output", "a", "--speed")  # fmt: skip
-    channel = (
-        "--channel",
-        "knuckle_fl_acc_z=knuckle_fl_acc_z",
-        "--band",
-        "2:20",
-        "--iterations",
-        "3",
-        "--wheel",
-        "front_left",
-    )
+    channel = ("--channel", "knuckle_fl_acc_z=knuckle_fl_acc_z", "--band", "2:20", "--iterations", "3",
+               "--wheel", "front_left")  # fmt: skip
     mapped = (str(runs[0]), "--map", "seat_rail_acc_z=seat_rail_acc_z")
     fitted = ("--parameters", "damper.viscous=800:4000", "--engine", "reduced", "--channels", "knuckle_fl_acc_z")
     return [

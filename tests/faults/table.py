@@ -16,19 +16,12 @@ ROOT = Path(__file__).resolve().parents[2]
 
 @dataclass
 class Count:
-    """Outcomes of the cases of a command and a fault.
+    """Outcomes of the cases of a command and a fault."""
 
-    Attributes:
-        calls: number of system calls of the command that the fault can meet; 0 for kills at random times.
-        different: number of these calls without those between the first, the middle and the last of equal ones.
-        results: number of cases by their results, "old", "new" or "wrong".
-        wrong: cases in which something that must hold does not.
-    """
-
-    calls: int = 0
-    different: int = 0
-    results: Counter[str] = field(default_factory=Counter)
-    wrong: list[dict[str, Any]] = field(default_factory=list)
+    calls: int = 0  # number of system calls of the command that the fault can meet; 0 for kills at random times
+    different: int = 0  # number of these calls without those between the first, the middle and the last of equal ones
+    results: Counter[str] = field(default_factory=Counter)  # number of cases by their results, "old", "new" or "wrong"
+    wrong: list[dict[str, Any]] = field(default_factory=list)  # cases in which something that must hold does not
 
 
 def has_compiler() -> bool:

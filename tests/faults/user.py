@@ -87,7 +87,6 @@ def faults(name: str, path: Path, case: Path, runs: Sequence[tuple[int, str]]) -
 
     Args:
         name: see `changes`.
-        path: the changed file.
         case: folder of the case.
         runs: exit code and messages of each command.
     """

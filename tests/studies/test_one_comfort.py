@@ -18,16 +18,7 @@ from vehicle.studies.sweeps.plan import plan_sweep
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
 
 VISCOUS = "front.damper.viscous"
-NAMES = (
-    "unweighted",
-    "unweighted_x",
-    "unweighted_y",
-    "unweighted_z",
-    "weighted",
-    "weighted_x",
-    "weighted_y",
-    "weighted_z",
-)
+NAMES = [f"{name}{axis}" for name in ("unweighted", "weighted") for axis in ("", "_x", "_y", "_z")]
 
 
 @pytest.fixture(scope="module")

@@ -147,8 +147,6 @@ def _design(options: argparse.Namespace) -> Design:
         raise ConfigurationError("--each: takes --vary PATH, or no parameters; leave out --table and --sobol")
     if options.cases is None and options.each is None and bool(options.vary) == bool(options.table):
         raise ConfigurationError("give either --vary PATH=A,B,C (once or more) or --table FILE.csv")
-    if options.measure is not None and options.report is not None:
-        raise ConfigurationError("--measure: a report is of comfort: leave out --report")
     if options.sobol is not None and (options.table or options.report is not None):
         raise ConfigurationError(
             "--sobol: needs --vary PATH=LOW:HIGH, and has no report; leave out --table and --report"

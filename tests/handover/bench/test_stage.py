@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from vehicle import Car, read_signal, road
+from vehicle import Car, road
 from vehicle.drawing.rendering.mode_motion import FARTHEST, ModeMotion
 from vehicle.drawing.rendering.motion import coil_seats
 from vehicle.drawing.rendering.wireframe import car_wireframe, unit_factor
@@ -17,7 +17,6 @@ from vehicle.handover.bench.drive import bench_drive
 from vehicle.handover.bench.guard import Guard
 from vehicle.handover.bench.motion import SECONDS, car_motion, mode_motion
 from vehicle.signals.analysis.modal_assurance import mac
-from vehicle.signals.excitation.input_files import find_input
 
 viser = pytest.importorskip("viser", reason="viser is missing: pip install 'vehicle-on-shaker[bench]'")
 
@@ -27,11 +26,6 @@ from vehicle.handover.bench.stage import CYCLE, Stage  # noqa: E402
 from vehicle.handover.bench.view import RUN, STATES, View  # noqa: E402
 
 TOP = "front.hardpoints.strut_top.z"
-
-
-@pytest.fixture(scope="module")
-def drive(car):
-    return bench_drive(car, read_signal(find_input("high.csv"), wheel="fr"), seconds=5.0)
 
 
 @pytest.fixture

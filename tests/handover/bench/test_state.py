@@ -8,26 +8,29 @@ import time
 import pytest
 
 from tests.patience import HANG
-from vehicle import read_signal, road
+from vehicle import road
 from vehicle.errors import ConfigurationError
 from vehicle.handover.bench.drive import bench_drive
 from vehicle.handover.bench.results import write_car, write_comparison, write_run
 from vehicle.handover.bench.setting import settings
 from vehicle.handover.bench.state import BenchState, LatestOnly
 from vehicle.runs.car import Car
-from vehicle.signals.excitation.input_files import find_input
 
 FRICTION = "front.damper.coulomb_friction"
 
 
 @pytest.fixture(scope="module")
-def drive(car):
-    return bench_drive(car, read_signal(find_input("high.csv"), wheel="fr"), seconds=5.0)
+def bench(car, drive):
+    return BenchState(car, drive)
 
 
 @pytest.fixture
-def state(car, drive):
-    return BenchState(car, drive)
+def state(bench, monkeypatch):
+    """State of the unchanged car, with the message and the car A of the beginning."""
+    bench.reset()
+    assert bench.update()
+    bench.keep()
+    return bench
 
 
 def test_settings_are_numbers_and_components_with_their_ranges(state):
@@ -62,7 +65,7 @@ def test_a_zero_has_a_range_of_a_usual_size(car):
 def test_a_slider_ends_where_the_car_cannot_be_built(state, path):
     whole, setting = state.settings[path], state.setting(path)
     assert whole.low <= setting.low < setting.high <= whole.high and setting.high - setting.low < whole.high - whole.low
-    for share in (0.0, 0.45, 1.0):
+    for share in (0.0, 1.0):
         state.reset()
         state.change(path, setting.low + share * (setting.high - setting.low))
         assert state.update(), state.message
@@ -82,9 +85,9 @@ def test_a_slider_ends_where_the_car_cannot_be_built(state, path):
 @pytest.mark.parametrize(
     ("path", "reason"),
     [
-        ("engine.bushings.hydromount.friction_force.z", r"friction_stroke\.z: found 0\.0 m, must be at least"),
+        ("engine.bushings.hydromount.friction_force.z", r"friction_stroke\.z: found 0\.0 m"),
         # A thin rod: its two large moments differ by less than the third.
-        ("front.parts.steering_rod.inertia.x", "the sum of the two smaller must be at least the largest"),
+        ("front.parts.steering_rod.inertia.x", "sum of the two smaller"),
     ],
 )
 def test_a_number_of_which_no_other_value_is_possible_has_no_slider(state, path, reason):
@@ -99,17 +102,14 @@ def test_search_finds_words_in_path_or_meaning(state):
     assert len(state.search("")) == 50
 
 
-@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 1e300, -1.0, 500.1])
-def test_values_outside_the_slider_are_refused(state, value):
-    with pytest.raises(ConfigurationError, match=r"coulomb_friction: found .*, must be 0 to 500 N"):
-        state.change(FRICTION, value)
-    assert state.changes == {}
-
-
-def test_unknown_paths_are_refused(state):
+def test_values_outside_the_slider_and_unknown_paths_are_refused(state):
+    for value in (math.nan, math.inf, -math.inf, 1e300, -1.0, 500.1):
+        with pytest.raises(ConfigurationError, match=r"coulomb_friction: found .* 0 to 500 N"):
+            state.change(FRICTION, value)
     for path in ("body", "__class__", "x" * 1000, ""):
-        with pytest.raises(ConfigurationError, match="must be the path of a number of the car"):
+        with pytest.raises(ConfigurationError, match="path of a number"):
             state.change(path, 1.0)
+    assert state.changes == {}
 
 
 def test_changes_give_the_numbers_of_the_changed_car(car, state):

@@ -24,11 +24,7 @@ STEP = 2e-4
 
 
 class Fmu:
-    """An unpacked FMU.
-
-    Args:
-        path: file.
-    """
+    """An unpacked FMU."""
 
     def __init__(self, path: Path) -> None:
         self.path, self.description = path, fmpy.read_model_description(str(path), validate=True)

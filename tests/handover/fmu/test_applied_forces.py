@@ -86,13 +86,9 @@ def test_a_force_is_linear_within_a_step(exported):
     pushed = {"force_push": lambda t: 400.0 * np.sin(2.0 * np.pi * 25.0 * t), "torque_idle": lambda t: 0.0}
     fine, coarse = (deviation(exported, pushed, 0.3, length)["load"] for length in (STEP, 1e-3))
     validated(
-        "Exported FMUs",
-        "force of 25 Hz: deviation of the loads at communication steps of 1 ms over those at 0.2 ms",
-        coarse / fine,
-        25.0,
-        source="closed form: the mean of a sine over a step is (w h)^2/12 low",
-        rel=0.2,
-    )
+        "Exported FMUs", "force of 25 Hz: deviation of the loads at communication steps of 1 ms over those at 0.2 ms",
+        coarse / fine, 25.0, source="closed form: the mean of a sine over a step is (w h)^2/12 low", rel=0.2,
+    )  # fmt: skip
     assert coarse < 2.0 * (2.0 * np.pi * 25.0 * 1e-3) ** 2 / 12.0
 
 

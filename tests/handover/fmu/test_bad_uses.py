@@ -15,19 +15,19 @@ from tests.handover.fmu.master import Fmu, Instance, written
 from vehicle.runs.car import Car
 
 VALUES = {
-    "plate_fl_displacement": (math.nan, "plate_fl_displacement: found nan, must be -1000 to 1000 m"),
-    "plate_fr_displacement": (1e300, "plate_fr_displacement: found 1e+300, must be -1000 to 1000 m"),
-    "plate_fl_velocity": (math.inf, "plate_fl_velocity: found inf, must be -100 to 100 m/s"),
-    "plate_fr_velocity": (-101.0, "plate_fr_velocity: found -101, must be -100 to 100 m/s"),
-    "damper_fl_force_command": (math.nan, "damper_fl_force_command: found nan, must be -1e+06 to 1e+06 N"),
-    "damper_fr_force_command": (1e7, "damper_fr_force_command: found 1e+07"),
-    "damper_fl_coefficient_command": (-math.inf, "damper_fl_coefficient_command: found -inf"),
-    "damper_fl_coulomb_friction": (-1.0, "damper_fl_coulomb_friction: found -1, must be 0 to 1e+06 N"),
-    "damper_fr_coulomb_friction": (math.nan, "damper_fr_coulomb_friction: found nan"),
-    "damper_fl_curve_scale": (-0.5, "damper_fl_curve_scale: found -0.5, must be 0 to 10"),
-    "damper_fr_curve_scale": (11.0, "damper_fr_curve_scale: found 11, must be 0 to 10"),
-    "seat_rail_acc_z": (1.0, "outputs and the time cannot be set"),
-    "time": (1.0, "outputs and the time cannot be set"),
+    "plate_fl_displacement": (math.nan, "found nan, must be -1000 to 1000 m"),
+    "plate_fr_displacement": (1e300, "found 1e+300, must be -1000 to 1000 m"),
+    "plate_fl_velocity": (math.inf, "found inf, must be -100 to 100 m/s"),
+    "plate_fr_velocity": (-101.0, "found -101, must be -100 to 100 m/s"),
+    "damper_fl_force_command": (math.nan, "found nan, must be -1e+06 to 1e+06 N"),
+    "damper_fr_force_command": (1e7, "found 1e+07"),
+    "damper_fl_coefficient_command": (-math.inf, "found -inf"),
+    "damper_fl_coulomb_friction": (-1.0, "found -1, must be 0 to 1e+06 N"),
+    "damper_fr_coulomb_friction": (math.nan, "found nan"),
+    "damper_fl_curve_scale": (-0.5, "found -0.5, must be 0 to 10"),
+    "damper_fr_curve_scale": (11.0, "found 11, must be 0 to 10"),
+    "seat_rail_acc_z": (1.0, "cannot be set"),
+    "time": (1.0, "cannot be set"),
 }
 
 
@@ -43,50 +43,35 @@ def refused(instance: Instance, call, text: str) -> None:
     said(instance, text)
 
 
-@pytest.mark.parametrize("name", VALUES)
-def test_values(name, focus_fmu):
-    value, text = VALUES[name]
+def test_values(focus_fmu):
     instance = Instance(focus_fmu)
-    before = instance.get([name])
-    refused(instance, lambda: instance.set({name: value}), text)
-    assert instance.get([name]) == before
-    instance.step(1e-3)
+    for name, (value, text) in VALUES.items():
+        before = instance.get([name])
+        refused(instance, lambda name=name, value=value: instance.set({name: value}), text)
+        assert instance.get([name]) == before and ("set" in text or name in instance.messages[-1])
+        instance.step(1e-3)
 
 
-@pytest.mark.parametrize("reference", [1, 99, 104, 10004, 20000 + 12, 30000 + 5000, 2**32 - 1])
-def test_unknown_references(reference, focus_fmu):
+def test_unknown_references_and_parameters_of_laws_that_the_car_does_not_have(focus_fmu):
     instance = Instance(focus_fmu)
     slave = instance.slave
     get, put = (slave.getReal, slave.setReal) if focus_fmu.second else (slave.getFloat64, slave.setFloat64)
-    refused(instance, lambda: get([reference]), f"no variable has the value reference {reference}")
-    refused(instance, lambda: put([reference], [0.0]), f"no variable has the value reference {reference}")
+    for reference in (1, 99, 104, 10004, 20000 + 12, 30000 + 5000, 2**32 - 1):
+        refused(instance, lambda number=reference: get([number]), f"value reference {reference}")
+        refused(instance, lambda number=reference: put([number], [0.0]), f"value reference {reference}")
+    for parameter in (1, 2, 3, 5):
+        text = "control law" if parameter == 5 else "friction of this damper"
+        refused(instance, lambda number=parameter: put([20000 + number], [0.5]), text)
 
 
-@pytest.mark.parametrize("parameter", [1, 2, 3, 5])
-def test_parameters_of_laws_that_the_car_does_not_have(parameter, focus_fmu):
+def test_steps(focus_fmu):
     instance = Instance(focus_fmu)
-    put = instance.slave.setReal if focus_fmu.second else instance.slave.setFloat64
-    text = "has no control law" if parameter == 5 else "the friction of this damper is constant"
-    refused(instance, lambda: put([20000 + parameter], [0.5]), text)
-
-
-@pytest.mark.parametrize(
-    ("length", "text"),
-    [
-        (0.0, "communication step of 0 s: must be above 0"),
-        (-1e-3, "communication step of -0.001 s: must be above 0"),
-        (math.nan, "communication step of nan s: must be above 0"),
-        (1e300, "must be a multiple of the internal step of 0.0002 s, up to 100000 times"),
-        (math.inf, "must be a multiple of the internal step"),
-        (1e-4, "communication step of 0.0001 s: must be a multiple of the internal step of 0.0002 s"),
-        (2.5e-4, "write the FMU with another --step"),
-        (1e-6, "must be a multiple of the internal step"),
-    ],
-)
-def test_steps(length, text, focus_fmu):
-    instance = Instance(focus_fmu)
-    refused(instance, lambda: instance.step(length), text)
-    instance.time = 0.0
+    for length, text in (
+        (0.0, "step of 0 s: "), (-1e-3, "step of -0.001 s: "), (math.nan, "step of nan s: "), (math.inf, "multiple"),
+        (1e300, "0.0002 s, up to 100000 times"), (1e-4, "step of 0.0001 s: "), (2.5e-4, "--step"), (1e-6, "multiple"),
+    ):  # fmt: skip
+        refused(instance, lambda length=length: instance.step(length), text)
+        instance.time = 0.0
     instance.step(1e-3)
 
 
@@ -119,7 +104,7 @@ def test_remainders_do_not_add_up(focus_fmu):
     instance = Instance(focus_fmu)
     instance.step(1.5e-7)
     instance.step(1.5e-7)
-    refused(instance, lambda: instance.step(1.5e-7), "communication point 3e-07 s: the car is at 0 s")
+    refused(instance, lambda: instance.step(1.5e-7), "3e-07 s: ")
 
 
 def test_a_plate_that_moves_without_velocity(focus_fmu):
@@ -128,8 +113,7 @@ def test_a_plate_that_moves_without_velocity(focus_fmu):
         instance.set({"plate_fl_displacement": 1e-5 * (k + 1)})
         instance.step(1e-3)
     instance.set({"plate_fl_displacement": 1e-3})
-    text = "plate_fl_velocity has been 0 for 50 steps while plate_fl_displacement moved"
-    refused(instance, lambda: instance.step(1e-3), text)
+    refused(instance, lambda: instance.step(1e-3), "plate_fl_velocity has been 0 for 50 steps")
     standing = Instance(focus_fmu)
     for _ in range(100):
         standing.step(1e-3)
@@ -139,8 +123,7 @@ def test_a_plate_that_moves_without_velocity(focus_fmu):
 def test_a_damper_that_drives_the_car(focus_fmu):
     instance = Instance(focus_fmu)
     instance.set({"damper_fl_coefficient_command": -9e5})
-    text = "damper_fl_coefficient_command: -900000 N s/m with curve_scale 1 makes the damper drive the car"
-    refused(instance, lambda: instance.step(1e-3), text)
+    refused(instance, lambda: instance.step(1e-3), "damper_fl_coefficient_command: -900000 N s/m with curve_scale 1")
     instance.time = 0.0
     instance.set({"damper_fl_coefficient_command": 0.0})
     instance.step(1e-3)
@@ -230,9 +213,7 @@ def test_states_of_other_cars(focus_fmu, tmp_path):
     # FMPy gives the messages of all FMI 2.0 instances to the newest.
     second = Instance(other)
     refused(second, lambda: getattr(second.slave, f"setFMU{kind}")(state), "set state: the state is of another car")
-    refused(
-        second, lambda: getattr(second.slave, read)(stored), "deserialize state: the bytes are no state of this car"
-    )
+    refused(second, lambda: getattr(second.slave, read)(stored), "the bytes are no state of this car")
 
 
 def test_functions_that_are_not_offered(focus_fmu):

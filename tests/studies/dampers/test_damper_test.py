@@ -36,27 +36,23 @@ def test_channels_are_found_and_converted(tmp_path):
 
 def test_a_file_without_a_header_has_usual_columns_unless_they_are_named(tmp_path):
     path = write(tmp_path / "12mm0x5Hz1x5A.txt", head="", columns=(0, 1, 3))
-    with pytest.raises(DataError, match="if its values are in kN, set --unit force=kN"):
+    with pytest.raises(DataError, match="--unit force=kN"):
         read_test(path)
     usual = read_test(write(tmp_path / "newton.txt", head="", sign=1000.0, columns=(0, 1, 3)))
-    assert any(
-        ("the file has no header; the columns are read as time [s], displacement [mm], force [N]") in text
-        for text in usual.notices
-    )
+    assert any("time [s], displacement [mm], force [N]" in text for text in usual.notices)
     channels = {"time": "1", "displacement": "2", "force": "3"}
     choice = Choice(channels=channels, units={"time": "s", "displacement": "mm", "force": "kN"})
     test = read_test(path, choice, pattern="*Hz{current}A")
     assert test.conditions == {"current": 1.5} and test.scale == pytest.approx(usual.scale)
-    assert any("Savitzky-Golay filter of 5 samples: no delay, within 1 % up to" in text for text in test.notices)
+    assert any("Savitzky-Golay filter of 5 samples" in text for text in test.notices)
     reference = read_test(write(tmp_path / "a.csv"))
     error = (test.velocity - reference.velocity)[test.settled]
     assert np.max(np.abs(error)) < 1e-3 * np.max(reference.velocity)
 
 
 def test_the_frequency_of_the_notice_has_that_error(tmp_path):
-    test = read_test(
-        write(tmp_path / "a.csv", columns=(0, 1, 3, 4), head="time [s],displacement [mm],force [kN],I [A]")
-    )
+    head = "time [s],displacement [mm],force [kN],I [A]"
+    test = read_test(write(tmp_path / "a.csv", columns=(0, 1, 3, 4), head=head))
     (text,) = (text for text in test.notices if "Savitzky" in text)
     frequency = float(text.split("up to ")[1].split(" Hz")[0])
     t = np.arange(2000) / 500.0
@@ -69,7 +65,7 @@ def test_the_frequency_of_the_notice_has_that_error(tmp_path):
 
 def test_a_velocity_that_lags_is_replaced(tmp_path):
     test = read_test(write(tmp_path / "a.csv", late=0.003))
-    assert any("which is used; the measured velocity is 3 ms late" in text for text in test.notices)
+    assert any("3 ms late" in text for text in test.notices)
     reference = read_test(write(tmp_path / "b.csv"))
     assert not any("derivative" in text for text in reference.notices)
     assert np.max(np.abs(test.velocity - reference.velocity)[test.settled]) < 1e-3 * np.max(reference.velocity)
@@ -78,7 +74,7 @@ def test_a_velocity_that_lags_is_replaced(tmp_path):
 def test_signs(tmp_path):
     plain = read_test(write(tmp_path / "a.csv"))
     opposite = read_test(write(tmp_path / "b.csv", sign=-1.0))
-    assert any("it is inverted" in text for text in opposite.notices)
+    assert any("inverted" in text for text in opposite.notices)
     np.testing.assert_allclose(opposite.force, plain.force)
     turned = read_test(tmp_path / "a.csv", compression=True)
     np.testing.assert_allclose(turned.displacement, -plain.displacement)
@@ -92,7 +88,6 @@ def test_conditions(tmp_path):
     other = read_test(path, conditions={"temperature": "5", "current": "0.5"})
     assert [dict(key)["temperature"] for key in by_conditions([typed, other, typed])] == [5.0, 20.0]
     assert [len(group) for group in by_conditions([typed, other, typed]).values()] == [1, 2]
-    for wrong, said in (({"conditions": {"current": "high"}}, "must be a number, or channel:NAME"),
-                        ({"pattern": "*Hz{current}A"}, "does not match a; write the file name")):  # fmt: skip
+    for wrong, said in (({"conditions": {"current": "high"}}, "channel:NAME"), ({"pattern": "*Hz{current}A"}, " a; ")):
         with pytest.raises(ConfigurationError, match=said):
             read_test(path, **wrong)

@@ -38,6 +38,10 @@ def words(numbers):
     return [word for name, value in numbers.items() for word in (f"--{name}", str(value))]
 
 
+def stated(**numbers):
+    return stated_numbers(None, numbers)
+
+
 @pytest.fixture(scope="module")
 def compact(tmp_path_factory):
     """A car of seven numbers, far from the sedan."""
@@ -53,14 +57,10 @@ def test_masses_and_lengths_are_met(compact):
     wheels = {wheel.name: wheel for wheel in compact.vehicle.composition.wheels}
     assert whole.mass == pytest.approx(1350.0, rel=1e-8)
     validated(
-        "Static equilibrium",
-        "new car of 1350 kg, 820 kg on its front axle: axle loads",
-        np.array([loads["fr"] + loads["fl"], loads["rr"] + loads["rl"]]) / 9.81,
-        np.array([820.0, 530.0]),
-        source="closed form: the scales under the axles, statement of the user",
-        rel=1e-3,
-        unit="kg",
-    )
+        "Static equilibrium", "new car of 1350 kg, 820 kg on its front axle: axle loads",
+        np.array([loads["fr"] + loads["fl"], loads["rr"] + loads["rl"]]) / 9.81, np.array([820.0, 530.0]),
+        source="closed form: the scales under the axles, statement of the user", rel=1e-3, unit="kg",
+    )  # fmt: skip
     behind = whole.cog[0] - wheels["fr"].center[0]
     assert behind == pytest.approx(2.6 * 530.0 / 1350.0, rel=1e-6)
     assert whole.cog[2] - wheels["fr"].patch[2] == pytest.approx(0.53, abs=1e-6)
@@ -73,14 +73,10 @@ def test_masses_and_lengths_are_met(compact):
 def test_frequencies_are_met(compact):
     front, rear = (axle_ride(compact.model, axle) for axle in ("front", "rear"))
     validated(
-        "Linear system",
-        "new car of ride frequencies 1.2 and 1.4 Hz: ride frequencies of its model",
-        np.array([front.ride_frequency, rear.ride_frequency]),
-        np.array([1.2, 1.4]),
-        source="closed form: statement of the user, sqrt(K_r / m_s) / 2 pi",
-        rel=1e-2,
-        unit="Hz",
-    )
+        "Linear system", "new car of ride frequencies 1.2 and 1.4 Hz: ride frequencies of its model",
+        np.array([front.ride_frequency, rear.ride_frequency]), np.array([1.2, 1.4]),
+        source="closed form: statement of the user, sqrt(K_r / m_s) / 2 pi", rel=1e-2, unit="Hz",
+    )  # fmt: skip
     assert front.damping_ratio == pytest.approx(0.3, rel=1e-3)
     # Not stated: the damping ratio of the template.
     assert rear.damping_ratio == pytest.approx(axle_ride(Car.load("sedan").model, "rear").damping_ratio, rel=1e-3)
@@ -109,14 +105,10 @@ def test_wheel_rate_and_unsprung_mass_follow_from_the_matrices_too(axle):
     rising = sum(matrices.body_masses[name][0, 0] * rows[2] @ motion for name, rows in matrices.body_rows.items())
     mass = float(rising) / 2.0
     validated(
-        "Suspension kinematics",
-        f"sedan, {axle} axle: wheel rate of the axle on rolling tyres",
-        ride.wheel.stiffness,
-        rate,
-        source="second derivation: K of the whole car with body and engine held, statically condensed",
-        rel=1e-4,
+        "Suspension kinematics", f"sedan, {axle} axle: wheel rate of the axle on rolling tyres", ride.wheel.stiffness,
+        rate, source="second derivation: K of the whole car with body and engine held, statically condensed", rel=1e-4,
         unit="N/m",
-    )
+    )  # fmt: skip
     assert ride.unsprung_mass == pytest.approx(mass, rel=1e-4)
 
 
@@ -128,14 +120,9 @@ def test_the_numbers_of_the_sedan_give_its_comfort(tmp_path, capsys):
     road = Road("B", speed=80, duration=10)
     same, sedan = (one.run(road, engine="reduced").comfort().unweighted.overall for one in (car, Car.load("sedan")))
     validated(
-        "Published cars",
-        "sedan's numbers stated to `new`: comfort on a class B road at 80 km/h",
-        same,
-        sedan,
-        source="second derivation: the shipped sedan",
-        rel=0.03,
-        unit="m/s2",
-    )
+        "Published cars", "sedan's numbers stated to `new`: comfort on a class B road at 80 km/h", same, sedan,
+        source="second derivation: the shipped sedan", rel=0.03, unit="m/s2",
+    )  # fmt: skip
 
 
 def test_every_value_says_where_it_comes_from(compact):
@@ -165,55 +152,36 @@ def test_a_numbers_file_a_damper_test_and_a_load(tmp_path, capsys):
     assert json.loads(capsys.readouterr().out)["checks"]["kerb_mass"]["value"] == pytest.approx(1500.0)
 
 
-def test_the_command_line_takes_precedence_over_the_file(tmp_path):
-    (tmp_path / "numbers.toml").write_text("kerb_mass = 1500.0\nwheelbase = 2.7\n")
-    stated = stated_numbers(tmp_path / "numbers.toml", {"kerb_mass": 1400.0, "wheelbase": None})
-    assert (stated.kerb_mass, stated.wheelbase) == (1400.0, 2.7)
-
-
-def test_an_axle_load_in_percent_is_a_share_of_the_kerb_mass(tmp_path):
-    (tmp_path / "numbers.toml").write_text('kerb_mass = 1500\nfront_axle_load = "57%"\n')
-    assert stated_numbers(tmp_path / "numbers.toml", {}).front_axle_load == pytest.approx(855.0, rel=1e-12)
-    assert stated_numbers(None, {"kerb_mass": 1000.0, "rear_axle_load": "43 %"}).rear_axle_load == pytest.approx(430.0)
+def test_a_number_is_typed_or_of_the_file_and_an_axle_load_in_percent_is_a_share(tmp_path):
+    file = tmp_path / "numbers.toml"
+    file.write_text('kerb_mass = 1500.0\nwheelbase = 2.7\nfront_axle_load = "57%"\n')
+    assert stated_numbers(file, {}).front_axle_load == pytest.approx(855.0, rel=1e-12)
+    typed = stated_numbers(file, {"kerb_mass": 1400.0, "wheelbase": None})
+    assert (typed.kerb_mass, typed.wheelbase) == (1400.0, 2.7)
+    assert stated(kerb_mass=1000.0, rear_axle_load="43 %").rear_axle_load == pytest.approx(430.0)
 
 
 @pytest.mark.parametrize(
     ("numbers", "message"),
     [
-        (
-            "--kerb-mass 120",
-            "--kerb-mass: parts of sedan, scaled by 0.0726, are outside the range of cars: engine.parts.engine.mass",
-        ),
-        ("--kerb-mass 1500 --front-axle-load 1800", "--front-axle-load: .* must be inside the wheelbase of 2.757"),
-        (
-            "--kerb-mass 1450 --front-axle-load 57",
-            "--front-axle-load 57 kg: is 3.9 % of the kerb mass of 1450 kg, must be at least 20 %; cars have 42 to "
-            "65 % of it on the front axle; for 57 % of the kerb mass type --front-axle-load 57%",
-        ),
-        ("--rear-axle-load 43%", "--rear-axle-load 43%: is a share of the kerb mass; state --kerb-mass too"),
-        ("--front-axle-load many%", "'many%': must be a number in kg, or a share of the kerb mass as 57%"),
-        ("--cog-height 550", "--cog-height: found 550.0 m, must be at most 1.5 .m, not mm; cars have 0.44 to 0.85 m"),
-        ("--damping-ratio-front 30", "front: found 30.0, must be at most 3.0 .a ratio: 30 % of the critical damping"),
-        ("--cog-x 3", "--cog-x: the centre of gravity would be 3.000 m behind the front axle"),
-        ("--kerb-mass 1500 --front-axle-load 800 --rear-axle-load 800", "together 1600 kg, must be the kerb mass"),
-        (
-            "--ride-frequency-front 0.4",
-            "0.4 Hz: cannot be reached, must be 0.78.* to 3.4.* Hz, with front.main_spring",
-        ),
-        (
-            "--track-front 0.8",
-            ("--track-front 0.8 m: must be above 0.826 m, or front.hardpoints.tie_inner would be 13 mm"),
-        ),
-        ("--roll-inertia 200", "the body would have I.*check --yaw-inertia"),
-        ("--wheel-hop-front 80", "--wheel-hop-front: found 80.0 Hz, must be at most 30.0"),
-        ("--pitch-frequency 2 --pitch-inertia 3000", "each follows from the other; leave one of the two out"),
-        (
-            "--tyre-size 205-55-16",
-            "--tyre-size '205-55-16': not the size of a radial tyre; write width/height R rim, as 205/55R16",
-        ),
-        ("--tyre-size 205/55R99", "rim 99 inch, must be 10 to 24"),
-        ("--tyre-size 205/55R16 --tyre-radius 0.3", "the size gives the radius; leave one of the two out"),
-        ("--damper-curve-front none.csv", "front.damper.curve: .*none.csv does not exist"),
+        ("--kerb-mass 120", "--kerb-mass: .*0.0726, .*engine.parts.engine.mass"),
+        ("--kerb-mass 1500 --front-axle-load 1800", "--front-axle-load: .*2.757"),
+        ("--kerb-mass 1450 --front-axle-load 57", "57 kg: .*3.9 % .* 1450 kg, .* 20 %; .*--front-axle-load 57%"),
+        ("--rear-axle-load 43%", "--rear-axle-load 43%: .*--kerb-mass"),
+        ("--front-axle-load many%", "'many%': .*57%"),
+        ("--cog-height 550", "--cog-height: found 550.0 m, .* 1.5 .*0.44 to 0.85 m"),
+        ("--damping-ratio-front 30", "front: found 30.0, .* 3.0 .*30 %"),
+        ("--cog-x 3", "--cog-x: .* 3.000 m"),
+        ("--kerb-mass 1500 --front-axle-load 800 --rear-axle-load 800", "1600 kg"),
+        ("--ride-frequency-front 0.4", "0.4 Hz: .* 0.78.* to 3.4.* Hz.*front.main_spring"),
+        ("--track-front 0.8", "--track-front 0.8 m: .* 0.826 m, .*front.hardpoints.tie_inner .*13 mm"),
+        ("--roll-inertia 200", "I.*--yaw-inertia"),
+        ("--wheel-hop-front 80", "--wheel-hop-front: found 80.0 Hz, .* 30.0"),
+        ("--pitch-frequency 2 --pitch-inertia 3000", "--pitch-"),
+        ("--tyre-size 205-55-16", "'205-55-16': .*205/55R16"),
+        ("--tyre-size 205/55R99", "99 inch, .* 10 to 24"),
+        ("--tyre-size 205/55R16 --tyre-radius 0.3", "--tyre-"),
+        ("--damper-curve-front none.csv", "front.damper.curve: .*none.csv"),
     ],
 )
 def test_a_car_that_cannot_be_is_rejected_by_name(numbers, message, tmp_path, capsys):
@@ -224,10 +192,9 @@ def test_a_car_that_cannot_be_is_rejected_by_name(numbers, message, tmp_path, ca
 
 def test_templates_without_four_wheels_and_names_of_shipped_cars_are_rejected(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    assert main(["mine", "--from", "focus"]) == 2
-    assert "needs two axles with two wheels each" in capsys.readouterr().err
-    assert main(["sedan", "--from", "sedan"]) == 2
-    assert "is the name of a shipped car" in capsys.readouterr().err
+    for words, message in ((["mine", "--from", "focus"], "two axles"), (["sedan", "--from", "sedan"], "shipped car")):
+        assert main(words) == 2
+        assert message in capsys.readouterr().err
 
 
 def test_estimates_are_inside_the_survey_for_a_measured_car():
@@ -237,14 +204,11 @@ def test_estimates_are_inside_the_survey_for_a_measured_car():
     yaw = SURVEY["k_z^2 / a b"]
     expected = 1791.599
     validated(
-        "Published cars",
-        "BMW 320i: yaw inertia estimated by the mean of 73 measured cars",
-        geometry.inertia(1093.295, indices)[2],
-        expected,
+        "Published cars", "BMW 320i: yaw inertia estimated by the mean of 73 measured cars",
+        geometry.inertia(1093.295, indices)[2], expected,
         source="publication: CommonRoad vehicle models 2017, parameters of vehicle 2; tolerance: range of the 73 cars",
-        within=(expected * yaw.least / yaw.mean, expected * yaw.most / yaw.mean),
-        unit="kg m2",
-    )
+        within=(expected * yaw.least / yaw.mean, expected * yaw.most / yaw.mean), unit="kg m2",
+    )  # fmt: skip
     back = geometry.indices(1093.295, geometry.inertia(1093.295, indices))
     assert back == pytest.approx(indices, rel=1e-12)
 
@@ -264,13 +228,6 @@ def test_the_size_of_a_tyre_is_its_radius_without_load(surveyed):
     assert 0.015 < deflection < 0.025
     assert wheels["fl"].center[2] - wheels["fl"].patch[2] + deflection == pytest.approx(0.31595, abs=1e-5)
 
-
-def test_the_size_of_a_tyre_is_said_to_set_its_radius_alone(tmp_path, capsys):
-    made(tmp_path / "low", "--tyre-size", "205/45R16")
-    assert any("sets the radius alone" in note for note in json.loads(capsys.readouterr().out)["notes"])
-
-
-def test_a_tyre_of_a_van_has_its_c():
     assert unloaded_radius("215/65R16C 109/107T") == unloaded_radius("215/65R16") == pytest.approx(0.34295, abs=1e-6)
 
 
@@ -292,7 +249,7 @@ def test_survey_inertia_is_that_of_the_whole_car(surveyed):
 
 
 def test_contradictions_are_found_before_any_computation():
-    with pytest.raises(ConfigurationError, match="the curve sets the damping"):
-        stated_numbers(None, {"damping_ratio_front": 0.3, "damper_curve_front": "a.csv"})
-    with pytest.raises(ConfigurationError, match="most similar known name is kerb_mass"):
-        stated_numbers(None, {"kerb_mas": 3.0})
+    with pytest.raises(ConfigurationError, match="curve"):
+        stated(damping_ratio_front=0.3, damper_curve_front="a.csv")
+    with pytest.raises(ConfigurationError, match="kerb_mass"):
+        stated(kerb_mas=3.0)

@@ -65,37 +65,31 @@ def test_stated_numbers_precede_those_of_the_class():
     result = new_car("one", "sedan", stated)
     values = {check.name: check.value for check in result.checks}
     of_class, of_template = (note for note in result.notes if note.startswith("not stated"))
-    assert of_class == (
-        "not stated, assumed for class small: --ride-frequency-front, --ride-frequency-rear, --track-front, "
-        "--track-rear, --wheelbase, --cog-height, --tyre-radius"
-    )
-    assert of_template == (
-        "not stated, from sedan, largest influence on ride comfort first: its parts scaled by the kerb mass for "
-        "--wheel-hop-front, --wheel-hop-rear, --roll-stiffness-front, --roll-stiffness-rear; its own "
-        "--damping-ratio-front, --damping-ratio-rear; its radii of gyration for --roll-inertia, --pitch-inertia, "
-        "--yaw-inertia"
-    )
+    assert re.findall("--[a-z-]+", of_class) == [
+        "--ride-frequency-front", "--ride-frequency-rear", "--track-front", "--track-rear", "--wheelbase",
+        "--cog-height", "--tyre-radius",
+    ]  # fmt: skip
+    assert re.findall("--[a-z-]+", of_template) == [
+        "--wheel-hop-front", "--wheel-hop-rear", "--roll-stiffness-front", "--roll-stiffness-rear",
+        "--damping-ratio-front", "--damping-ratio-rear", "--roll-inertia", "--pitch-inertia", "--yaw-inertia",
+    ]  # fmt: skip
     assert values["kerb_mass"] == pytest.approx(1050.0) and values["front_axle_load"] == pytest.approx(640.0, rel=1e-3)
-    with pytest.raises(ConfigurationError, match="--car-class 'bus': must be one of small, sedan, van"):
+    with pytest.raises(ConfigurationError, match=r"--car-class 'bus': .*small, sedan, van"):
         new_car("one", "sedan", StatedNumbers(car_class="bus"))
 
 
 def test_a_template_or_a_class_is_needed(tmp_path, capsys):
     assert main([str(tmp_path / "mine"), "--kerb-mass", "1000"]) == 2
-    assert (
-        "--from is missing; give the car to start from, for example --from sedan, or a --car-class"
-    ) in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert "--from sedan" in said and "--car-class" in said
 
 
 def test_an_unusual_figure_of_the_template_is_named():
     result = new_car("one", "kinematic_reference", StatedNumbers(kerb_mass=900.0))
     (caster,) = [note for note in unusual(result) if "caster [deg]" in note]
-    assert "front: caster [deg] 11.04, usual are 1 to 9" in caster and caster.endswith(
-        "from the template kinematic_reference"
-    )
+    assert re.search(r"front: caster \[deg\] 11\.04, .*1 to 9.*template kinematic_reference$", caster)
     (stated,) = unusual(new_car("one", "sedan", StatedNumbers(tyre_radius=0.45)))[:1]
-    assert "loaded tyre radius [mm] 450, usual are 240 to 400" in stated
-    assert stated.endswith("follows from tyre radius 0.45 m (given)")
+    assert re.search(r"loaded tyre radius \[mm\] 450, .*240 to 400.*tyre radius 0\.45 m \(given\)$", stated)
 
 
 def test_a_refused_hop_says_what_can_be_reached():
@@ -106,9 +100,8 @@ def test_a_refused_hop_says_what_can_be_reached():
     with pytest.raises(ConfigurationError) as caught:
         new_car("one", "sedan", StatedNumbers(wheel_hop_rear=25.0))
     found = re.match(
-        r"--wheel-hop-rear 25 Hz: cannot be reached, must be ([0-9.]+) to ([0-9.]+) Hz, with "
-        r"rear.bushings.tyre.stiffness.z from ([0-9.e+]+) to ([0-9.e+]+) N/m \(static deflection of 50 to 6 mm\)\. "
-        r"Lighter wheels and brakes raise it, heavier wheels lower it",
+        r"--wheel-hop-rear 25 Hz: .* ([0-9.]+) to ([0-9.]+) Hz, with rear.bushings.tyre.stiffness.z from ([0-9.e+]+) "
+        r"to ([0-9.e+]+) N/m \(static deflection of 50 to 6 mm\)",
         str(caught.value),
     )
     assert found, str(caught.value)
@@ -116,7 +109,6 @@ def test_a_refused_hop_says_what_can_be_reached():
     load = sum(Car.load("sedan").static.tyre_load[wheel] for wheel in ("rr", "rl")) / 2.0
     assert (load / softest, load / stiffest) == pytest.approx((0.05, 0.006), rel=1e-3)
     for end in (low * 1.01, high * 0.99):
-        checks = {
-            check.name: check.value for check in new_car("one", "sedan", StatedNumbers(wheel_hop_rear=end)).checks
-        }
-        assert checks["wheel_hop_rear"] == pytest.approx(end, rel=1e-2)
+        made = new_car("one", "sedan", StatedNumbers(wheel_hop_rear=end))
+        (value,) = (check.value for check in made.checks if check.name == "wheel_hop_rear")
+        assert value == pytest.approx(end, rel=1e-2)

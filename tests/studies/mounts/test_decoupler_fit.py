@@ -147,17 +147,13 @@ def test_a_previous_solution_does_not_change_the_result(points):
 
 
 def test_a_fit_finds_the_decoupler_in_noise(points):
-    worst, stiffness, angle = 0.0, 0.0, 0.0
-    for seed in range(2):
-        data = noisy(points, seed)
-        best, second, *_ = fit_mount(data)
-        assert best.law.name == "decoupler" and best.criterion < second.criterion - 100.0
-        found = errors(best.stiffness(data.frequency, data.amplitude), points[2])
-        stiffness, angle = max(stiffness, found[0]), max(angle, found[1])
-        assert best.determined[[*range(7), 9]].all(), "all but damping and membrane of the decoupler"
-        deviations = (np.abs(best.values - VALUES) / best.errors)[best.determined]
-        worst = max(worst, float(np.max(deviations)))
-    source = "closed form: parameters of the points, which are integrated in time; two seeds"
+    data = noisy(points, 0)
+    best, second, *_ = fit_mount(data)
+    assert best.law.name == "decoupler" and best.criterion < second.criterion - 100.0
+    stiffness, angle = errors(best.stiffness(data.frequency, data.amplitude), points[2])
+    assert best.determined[[*range(7), 9]].all(), "all but damping and membrane of the decoupler"
+    worst = float(np.max((np.abs(best.values - VALUES) / best.errors)[best.determined]))
+    source = "closed form: parameters of the points, which are integrated in time"
     noise = "decoupler fitted to 48 points at three amplitudes with 3 % noise"
     validated(SUBJECT, f"{noise}: largest error of the stiffness", stiffness, 0.0, abs=0.05, source=source)
     validated(SUBJECT, f"{noise}: largest error of the loss angle", angle, 0.0, abs=3.0, unit="deg", source=source)
@@ -178,7 +174,7 @@ def test_a_decoupler_needs_two_amplitudes(points):
     large = amplitude == AMPLITUDE[2]
     data = MeasuredStiffness(frequency=frequency[large], amplitude=amplitude[large], stiffness=exact[large])
     assert [fit.law.name for fit in fit_mount(data)] == ["hydromount", "rubber"]
-    with pytest.raises(DataError, match="law 'decoupler': found points at a single amplitude"):
+    with pytest.raises(DataError, match=r"law 'decoupler': .*single amplitude"):
         fit_mount(data, ["decoupler"])
-    with pytest.raises(ConfigurationError, match="law 'gap': must be rubber, hydromount, decoupler"):
+    with pytest.raises(ConfigurationError, match=r"law 'gap': .*rubber, hydromount, decoupler"):
         fit_mount(data, ["gap"])

@@ -40,42 +40,28 @@ def test_wishes_over_inputs():
 @pytest.mark.parametrize(
     ("minimise", "limits", "said"),
     [
-        ([], [], "no objective; add --minimise unweighted, or another quantity, once or more"),
-        (
-            ["unweighted"],
-            [],
-            "--minimise unweighted: there are 2 inputs; choose one of unweighted@smooth, unweighted@rough, "
-            "unweighted@mean, unweighted@worst",
-        ),
-        (
-            ["unweighted@wet"],
-            [],
-            "--minimise unweighted@wet: no input 'wet'; use one of smooth, rough, mean, worst after @",
-        ),
-        (
-            ["unweighted@mean", "unweighted@mean"],
-            [],
-            "unweighted@mean: specified more than once; remove the repetition",
-        ),
-        (["x@mean"], ["travel<0.1"], "--limit travel<0.1: must be NUMBER<=VALUE or NUMBER>=VALUE, as travel<=0.06"),
-        (["x@mean"], ["travel<=nan"], "--limit travel<=nan: must be NUMBER<=VALUE or NUMBER>=VALUE, as travel<=0.06"),
+        ([], [], "--minimise unweighted"),
+        (["unweighted"], [], "--minimise unweighted: .*unweighted@smooth, .*@rough, .*@mean, .*@worst"),
+        (["unweighted@wet"], [], "--minimise unweighted@wet: .*smooth, rough, mean, worst"),
+        (["unweighted@mean", "unweighted@mean"], [], "unweighted@mean: "),
+        (["x@mean"], ["travel<0.1"], "--limit travel<0.1: .*NUMBER<=VALUE"),
+        (["x@mean"], ["travel<=nan"], "--limit travel<=nan: .*NUMBER<=VALUE"),
     ],
 )
 def test_bad_wishes(minimise, limits, said):
-    with pytest.raises(ConfigurationError) as caught:
+    with pytest.raises(ConfigurationError, match=said):
         parsed_criteria(minimise, [], limits, ROADS)
-    assert str(caught.value) == said
 
 
 def test_tolerances():
     assert parsed_tolerance("a=15%").value_at(200.0, -0.5) == pytest.approx(185.0)
     assert parsed_tolerance("a=15").value_at(200.0, -0.5) == pytest.approx(192.5)
-    with pytest.raises(ConfigurationError, match=r"^--tolerance a=0: must be PATH=NUMBER in the unit"):
+    with pytest.raises(ConfigurationError, match=r"^--tolerance a=0: .*PATH=NUMBER"):
         parsed_tolerance("a=0")
     sedan = Car.load("sedan").vehicle
     ((tolerance, values),) = toleranced(sedan, [parsed_tolerance("strut_top.z=0.002")])
     assert tolerance.value_at(values["front.hardpoints.strut_top.z"], 1.0) == pytest.approx(1.172)
-    with pytest.raises(ConfigurationError, match=r"strut_top.z=1%: a percentage of a coordinate .* strut_top.z=0.002"):
+    with pytest.raises(ConfigurationError, match=r"strut_top.z=1%: .* strut_top.z=0.002"):
         toleranced(sedan, [parsed_tolerance("strut_top.z=1%")])
 
 

@@ -107,7 +107,7 @@ def test_a_seed_determines_the_search_and_stored_generations_are_reused():
     assert np.array_equal(run(6), whole) and not np.array_equal(run(6, seed=6), whole)
     first = search(problem, attempt, population=12, generations=4, seed=5)
     assert np.array_equal(run(6, first), whole) and len(kept) == 2
-    with pytest.raises(DataError, match=r"^generation 1 belongs to another search; start again with --force$"):
+    with pytest.raises(DataError, match=r"^generation 1 .*--force"):
         run(6, first, seed=6)
 
 
@@ -128,12 +128,9 @@ def test_message_without_a_front():
     limit = Criterion(number="x", input_name="road", limit=-1.0, unit="m")
     problem, points = box((0.0, 1.0), goals=1, limits=(limit,)), np.array([[0.5], [0.2]])
     cars = tried(points, points[:, 0], points[:, 0])
-    with pytest.raises(SimulationError) as caught:
+    with pytest.raises(SimulationError, match=r"^none of 2 cars .*x@road<=-1 .*0\.2 m"):
         outcome(problem, cars, [cars])
-    assert str(caught.value) == (
-        "0 of 2 cars satisfy all limits; the nearest car violates x@road<=-1 is 0.2 m; widen the limits or the bounds"
-    )
-    with pytest.raises(SimulationError, match=r"^all 2 cars failed; the first: broken$"):
+    with pytest.raises(SimulationError, match=r"all 2 cars .*: broken$"):
         outcome(problem, cars, [tried(points, points[:, 0], points[:, 0], reasons=["broken", "too"])])
 
 
@@ -142,6 +139,5 @@ def test_a_missing_library_names_its_extra(monkeypatch):
         raise ImportError(name)
 
     monkeypatch.setattr(importlib, "import_module", missing)
-    with pytest.raises(MissingPartError) as caught:
+    with pytest.raises(MissingPartError, match=r"'optimisation' \(pip install pymoo\)"):
         search(box((0.0, 1.0)), bowl, population=8, generations=1, seed=1)
-    assert str(caught.value) == "optimise: needs pymoo of the extra 'optimisation' (pip install pymoo)"

@@ -44,10 +44,10 @@ RANGES = (
 
 def test_change_against_a_grid_of_cars(sedan):
     """Of 21 x 21 cars on the same road, none that is allowed has a change smaller than 0.98 of the one found."""
-    ride = road("C", 80, duration=4)
+    ride = road("C", 80, duration=3)
     run = sedan.run(ride, engine="reduced")
     limit = 0.95 * run.comfort().weighted.overall
-    found = meet_targets(sedan, targets(limit, 0.1), RANGES, duration=4.0)
+    found = meet_targets(sedan, targets(limit, 0.1), RANGES, duration=3.0)
     assert found.change.feasible and found.after[0] <= limit
     axes = [np.geomspace(each.low, each.high, 21).tolist() for each in RANGES]
     start = np.array([each.start for each in found.ranges])
@@ -61,44 +61,38 @@ def test_change_against_a_grid_of_cars(sedan):
     again = found.car.run(ride, engine="reduced")
     assert found.after[0] == pytest.approx(again.comfort().weighted.overall, rel=1e-5)
     assert found.before[0] == pytest.approx(run.comfort().weighted.overall, rel=1e-5)
-    assert "The smallest change that meets all 2 targets: " in str(found) and "decisive is the ride" in found.sentence
+    assert found.change.active == (0,) and "the ride" in found.sentence
 
 
 def test_targets_that_exclude_each_other(sedan):
     shares: list[float] = []
-    found = meet_targets(sedan, targets(0.5, 0.1), RANGES, duration=3.0, progress=shares.append)
+    found = meet_targets(sedan, targets(0.5, 0.1), RANGES, duration=2.2, progress=shares.append)
     # The cars of the sample are counted one task after the other, so the bar tells early how long they take.
     assert len(shares) >= 5 and shares == sorted(shares) and shares[1] < 0.1 and shares[-1] == 1.0
     assert not found.change.feasible and found.change.active == (0,)
-    assert "No car within these bounds meets all 2 targets: the ride misses its limit by" in found.sentence
-    assert "the bound of" in found.sentence and "front.bushings.tyre.stiffness.z" in found.sentence
+    assert "the ride" in found.sentence and "front.bushings.tyre.stiffness.z" in found.sentence
 
 
 def test_a_coordinate_is_changed_by_a_length(sedan):
     """The change of a coordinate through 0 has a size and a text in mm."""
     car = sedan.with_({"hardpoints.seat_rail.y": 0.0})
-    limit = 0.999 * car.run(road("C", 80, duration=3), engine="reduced").comfort().weighted.overall
-    ranges = [Range(path="hardpoints.seat_rail.y", low=-0.4, high=0.4), RANGES[0]]
-    found = meet_targets(car, targets(limit, 0.1), ranges, duration=3.0)
+    limit = 0.999 * car.run(road("C", 80, duration=2.2), engine="reduced").comfort().weighted.overall
+    ranges = [Range(path="hardpoints.seat_rail.y", low=-0.4, high=0.4)]
+    found = meet_targets(car, targets(limit, 0.1), ranges, duration=2.2)
     assert found.change.feasible and found.ranges[0].is_linear
     assert found.values[0] == pytest.approx(0.05 * found.change.position[0])
     assert next(line for line in found.lines() if "seat_rail.y" in line).split()[4] == "mm"
 
 
-def test_a_car_that_meets_its_targets(sedan):
-    found = meet_targets(sedan, targets(2.0, 0.1), RANGES, duration=3.0)
-    assert found.sentence == "sedan meets all 2 targets as it is." and found.change.cost == 0.0
-
-
 @pytest.mark.parametrize(
     ("figure", "ranges", "message"),
     [
-        ({"road": ""}, RANGES, "weighted: a search needs the input of the target"),
-        ({"speed": None}, RANGES, r"weighted: speed \[km/h\] is missing"),
+        ({"road": ""}, RANGES, "weighted: .*road"),
+        ({"speed": None}, RANGES, r"weighted: speed \[km/h\]"),
         ({"channels": ("seat rail q",)}, RANGES, "weighted: "),
         ({"unit": "g"}, RANGES, "weighted: unit: found 'g'"),
-        ({}, (), "--vary: 0 parameters; must be 1 to 8"),
-        ({}, (Range(path="rear.damper.viscous", low=2000.0, high=3000.0),), "the car has 1500; the bounds must"),
+        ({}, (), "--vary: .*0 .*8"),
+        ({}, (Range(path="rear.damper.viscous", low=2000.0, high=3000.0),), "2000:3000: .*1500"),
     ],
 )
 def test_what_is_refused(sedan, figure, ranges, message):
@@ -117,9 +111,9 @@ def test_command(tmp_path, capsys, monkeypatch):
     words = ["--vehicle", "sedan", "--targets", "targets.toml", "--vary", "front.bushings.tyre.stiffness.z=1.6e5:2.4e5"]
     assert main([*words, "--duration", "3", "--output", "change"]) == 0
     said = capsys.readouterr().out
-    assert "front.bushings.tyre.stiffness.z" in said and "targets: " in said
+    assert "front.bushings.tyre.stiffness.z" in said
     # Before the first run: how many cars, and what makes it shorter.
-    assert said.startswith("note        64 cars, then steps of 2 cars from up to 3 starts, on 1 input; roads of 3 s: ")
+    assert said.startswith("note        64 cars") and "3 starts" in said.splitlines()[0]
     summary = json.loads((tmp_path / "change" / "summary.json").read_text(encoding="utf-8"))
     changed = Car.load(tmp_path / "change" / "vehicle.toml")
     # The error is that of the targets page: of the figure of a single run of this car, on the screen twice it.
@@ -128,21 +122,21 @@ def test_command(tmp_path, capsys, monkeypatch):
     lines = weighted_lines(run.recording.timestep, weighted[None], [1.0])
     error, figure = float(overall_error(lines[None])[0]), summary["figures"]["ride"]
     assert figure["after_error"] == pytest.approx(error * figure["after"], rel=1e-4)
-    assert f"{number(figure['after'])} +- {number(2.0 * figure['after_error'], 2)}  met within +-" in said
+    assert f"{number(figure['after'])} +- {number(2.0 * figure['after_error'], 2)}  met" in said
     path = "front.bushings.tyre.stiffness.z"
     assert changed[path].value == pytest.approx(summary["parameters"][path]["after"])
     for more, message in (
-        (["--minimise", "weighted"], "leave out --minimise"),
-        (["--road", "C", "--speed", "80"], "leave out --input and --road"),
-        (["--cost", "a"], "--cost a: must be PATH=C"),
+        (["--minimise", "weighted"], "--minimise"),
+        (["--road", "C", "--speed", "80"], "--road"),
+        (["--cost", "a"], "--cost a: "),
     ):
         assert main([*words, *more, "--output", "wrong"]) == 2
         assert message in capsys.readouterr().err
 
 
-def test_an_exact_figure_has_no_standard_error(sedan):
+def test_a_car_that_meets_its_targets_and_an_exact_figure_without_an_error(sedan):
     """A natural frequency has no column of errors, which ended in a KeyError."""
     heave = Target(quantity="frequency", motion="heave", unit="Hz", at_most=5.0, **ON_ROAD)
-    found = meet_targets(sedan, targets(2.0, 0.1) | {"heave": heave}, RANGES[:1], duration=3.0)
+    found = meet_targets(sedan, targets(2.0, 0.1) | {"heave": heave}, RANGES[:1], duration=2.2)
     assert found.change.cost == 0.0 and np.isnan(found.after_error[2]) and found.after_error[0] > 0.0
     assert "+-" not in found.rows()[2][4] and found.rows()[2][5] == "met"

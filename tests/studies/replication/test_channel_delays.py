@@ -45,8 +45,7 @@ def test_a_late_sensor_is_named_and_taken_out(tmp_path):
     first = replicate_drive(car, file, NAMES, **options)
     delay = first.delays[1]
     texts = [text for each in first.delays for text in each.advice(1.0 / RATE)]
-    (text,) = [text for text in texts if text.startswith("seat_rail_acc_z lags the other channels by ")]
-    assert "--delay seat_rail_acc_z=1" in text
+    assert any("--delay seat_rail_acc_z=1" in text for text in texts)
     # Friction of 125 N: the FRFs have the mean damping of a run with a drive that is far off (error 60 %).
     assert RATE * delay.delay == pytest.approx(12.3, abs=0.6)
     second = replicate_drive(car, file, NAMES, delay={"seat_rail_acc_z": delay.delay}, **options)
@@ -55,5 +54,5 @@ def test_a_late_sensor_is_named_and_taken_out(tmp_path):
         RATE * second.delays[1].delay, 12.3, abs=0.1, source="closed form: shift of the spectrum of a run",
     )  # fmt: skip
     assert second.error < 0.2 * first.error
-    with pytest.raises(ConfigurationError, match="a delay of all channels only shifts the drive signals"):
+    with pytest.raises(ConfigurationError, match="--delay seat_rail_acc_z="):
         replicate_drive(car, file, NAMES, delay={"record": 0.1}, **options)

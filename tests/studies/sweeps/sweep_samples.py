@@ -1,5 +1,6 @@
 """Objects that worker processes import: a cheap measure, inputs that kill a worker, a user-defined executor."""
 
+import csv
 import os
 import signal
 import time
@@ -35,6 +36,12 @@ class ShortRoad:
 
     def identity(self):
         return asdict(self)
+
+
+def rows_of(path):
+    """Return the rows of a table by the heads of its columns."""
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
 
 
 def grid(variations, inputs, **options):

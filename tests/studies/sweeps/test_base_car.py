@@ -20,7 +20,7 @@ def test_variations_of_different_parameters_get_the_car_itself_as_base():
     assert changes_of([*SINGLE, {}])[0] == tuple(changes_of(SINGLE)[1])
     # Variations of one parameter, or of the same ones, are compared with the first of them.
     assert len(changes_of([{"damper.viscous": 1500.0}, {"damper.viscous": 2000.0}])) == 2
-    with pytest.raises(ConfigurationError, match="vary: no variation"):
+    with pytest.raises(ConfigurationError, match="vary: "):
         changes_of([{}])
 
 
@@ -53,14 +53,12 @@ def test_equal_cars_have_no_best_one():
     same = sweep(Car.load("focus"), {"gravity": [9.81, 9.81 * (1.0 + 1e-15)]}, [ShortRoad()], engine="reduced")
     cars = ranked_cars(same)
     assert cars is not None and cars.alike
-    sentence = "2 cars are equally comfortable: the varied parameters have no effect here"
-    assert ranking_lines(cars)[-1] == f"all {sentence}"
-    assert best_sentences(cars)[0] == f"All {sentence}."
+    assert ranking_lines(cars)[-1].startswith("all 2 cars ") and best_sentences(cars)[0].startswith("All 2 cars ")
 
 
 def test_a_sweep_without_any_effect_is_refused():
     """The front dampers of the sedan are tables, so their constants have no effect."""
-    with pytest.raises(ConfigurationError, match=r"every run would be the same car: front\.damper\.viscous=1500\.0"):
+    with pytest.raises(ConfigurationError, match=r"vary: .* front\.damper\.viscous=1500\.0"):
         sweep(Car.load("sedan"), {"front.damper.viscous": [1500.0, 2000.0]}, [ShortRoad()], engine="reduced")
     # On all axles they have an effect at the rear.
     plan = plan_sweep(

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import csv
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from tests.studies.sweeps.sweep_samples import rows_of
 from vehicle import Car, road
 from vehicle.commands.sweep import main
 from vehicle.errors import ConfigurationError
@@ -69,13 +70,12 @@ def test_one_event_has_no_random_error(tmp_path, capsys, monkeypatch):
     )
     here = ["--engine", "reduced", "--executor", "tests.studies.sweeps.sweep_samples:threads"]
     assert main(["--cases", "cases.toml", *here, "--output", "out"]) == 0
-    tables = {name: read(tmp_path / "out" / f"{name}.csv") for name in ("cases", "differences", "table")}
+    tables = {name: rows_of(tmp_path / "out" / f"{name}.csv") for name in ("cases", "differences", "table")}
     road, cleat = (row for row in tables["cases"] if row["car"] == "soft")
     assert float(road["half_width_95 [%]"]) > 0.0 and cleat["half_width_95 [%]"] == ""
     mean, width = np.mean([float(row["change [%]"]) for row in (road, cleat)]), float(road["half_width_95 [%]"]) / 2.0
     said = capsys.readouterr().out
-    assert f"{mean:+.1f} +- {width:.1f} %" in said
-    assert f"{mean:+.1f} % against no variant{', not more than its error' if -mean <= width else ''}." in said
+    assert f"{mean:+.1f} +- {width:.1f} %" in said and ("within the error" in said) == (-mean <= width)
     road, cleat = (row for row in tables["differences"] if row["rear.damper.viscous"])
     assert cleat["cars differ on"] == "one event: no random error" and cleat["weighted_difference [m/s2]"]
     for column in ("standard_error", "half_width_95", "weighted_standard_error", "weighted_half_width_95"):
@@ -89,12 +89,7 @@ def test_one_event_has_no_random_error(tmp_path, capsys, monkeypatch):
     words = ["--road", "cleat:20x50", "--speed", "30", "--vehicle", "sedan", *here, "--output", "one"]
     assert main([*words, "--each", "20%", "--vary", "rear.damper.viscous"]) == 0
     said = capsys.readouterr().out
-    assert "no +-: one event has no random error" in said and " -\n" in said
-
-
-def read(path):
-    with path.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
+    assert "no +-" in said and " -\n" in said
 
 
 def test_command(tmp_path, capsys, monkeypatch):
@@ -103,12 +98,10 @@ def test_command(tmp_path, capsys, monkeypatch):
     (tmp_path / "cases.toml").write_text(FILE, encoding="utf-8")
     words = ["--cases", "cases.toml", "--engine", "reduced", "--output", "out"]
     assert main([*words, "--report"]) == 0
-    said = capsys.readouterr().out
+    said, rows = capsys.readouterr().out, rows_of(tmp_path / "out" / "cases.csv")
     assert "8 runs, 0 failed" in said and "laden, soft" in said
     # A laden state is no choice: its variant is compared with the laden car, and no state is the smoothest.
     assert "as it is: over all inputs" in said and "laden: over all inputs" in said and "'laden" not in said
-    with (tmp_path / "out" / "cases.csv").open(encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
     assert [(row["input"], row["car"]) for row in rows][:5] == [
         ("road_A_60", UNCHANGED), ("road_A_60", "soft"), ("road_A_60", "laden"), ("road_A_60", "laden, soft"),
         ("road_B_60", UNCHANGED),
@@ -136,16 +129,16 @@ def test_command(tmp_path, capsys, monkeypatch):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "roads: no input"),
-        ('roads = ["C"]', "set roads and speeds"),
-        ('roads = ["C", "D"]\nspeeds = {C = [80]}', "speeds: no speed on 'D'; add 'D' = [80], in km/h"),
-        ('roads = ["C"]\nspeeds = {C = []}', "speeds: no speed on 'C'"),
-        ('roads = ["C"]\nspeeds = {C = [80], D = [80]}', "speeds: 'D' is not among roads; add it there, or remove it"),
-        ('roads = ["C"]\nspeeds = {C = 80}', "speeds.C: found 80, must be a list"),
-        ('roads = ["C"]\nspeeds = [80]\nspeed = 3', "speed: unknown parameter"),
-        ('roads = "C"\nspeeds = [80]', "roads: found 'C', must be a list"),
-        ('roads = ["C"]\nspeeds = [80]', "no states and no variants: add one, as [variants.soft]"),
-        ("roads = [", "not a TOML file"),
+        ("", "roads: "),
+        ('roads = ["C"]', "speeds: "),
+        ('roads = ["C", "D"]\nspeeds = {C = [80]}', "'D' = [80]"),
+        ('roads = ["C"]\nspeeds = {C = []}', "'C' = [80]"),
+        ('roads = ["C"]\nspeeds = {C = [80], D = [80]}', "speeds: 'D'"),
+        ('roads = ["C"]\nspeeds = {C = 80}', "speeds.C: found 80"),
+        ('roads = ["C"]\nspeeds = [80]\nspeed = 3', "speed: "),
+        ('roads = "C"\nspeeds = [80]', "roads: found 'C'"),
+        ('roads = ["C"]\nspeeds = [80]', "[variants.soft]"),
+        ("roads = [", "TOML"),
     ],
 )
 def test_wrong_files(tmp_path, text, message):
@@ -180,24 +173,34 @@ def test_states_alone_have_no_best(tmp_path, capsys, monkeypatch):
     (tmp_path / "cases.toml").write_text(FILE.partition("[variants")[0], encoding="utf-8")
     assert main(["--cases", "cases.toml", "--engine", "reduced", "--output", "out"]) == 0
     said = capsys.readouterr().out
-    assert "laden states are not a choice, so none is named the smoothest" in said and "%)" not in said
+    assert "no variants" in said and "smoothest" not in said and "%)" not in said
 
 
 def test_equal_cars_and_other_options_are_refused(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "cases.toml").write_text(FILE + '[variants.same]\n"rear.damper.viscous" = 1200\n', encoding="utf-8")
     assert main(["--cases", "cases.toml"]) == 2
-    assert "cases 'soft' and 'same' are the same car" in capsys.readouterr().err
+    assert "cases 'soft' and 'same'" in capsys.readouterr().err
     assert main(["--cases", "cases.toml", "--vary", "damper.viscous=1,2"]) == 2
-    assert "leave out --vary" in capsys.readouterr().err
+    assert "--vary" in capsys.readouterr().err
 
 
-def test_another_measure_than_comfort_is_refused_before_the_first_run(tmp_path, capsys, monkeypatch):
-    """In Python it ended in a StopIteration after all runs."""
+def test_cars_are_compared_by_one_figure(tmp_path, capsys, monkeypatch):
+    """Another figure than comfort has its name, unit and error; several ones are refused before the first run."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "cases.toml").write_text(FILE, encoding="utf-8")
-    assert main(["--cases", "cases.toml", "--measure", "weighted"]) == 2
-    assert "measure: the cars of a file are compared by comfort; leave out --measure" in capsys.readouterr().err
-    for measure in ("travel", ["travel", "weighted"]):
-        with pytest.raises(ConfigurationError, match="compared by comfort"):
-            read_cases(tmp_path / "cases.toml").plan(Car.load("sedan"), (), SweepSettings(measure=measure))
+    words = ["--cases", "cases.toml", "--engine", "reduced", "--quiet", "--report", "--output"]
+    for name in ("weighted", "travel"):
+        assert main([*words, name, "--measure", name]) == 0
+    comfort, travel = (rows_of(tmp_path / name / "cases.csv") for name in ("weighted", "travel"))
+    assert main([*words, "comfort"]) == 0
+    for row, ranked in zip(comfort, rows_of(tmp_path / "comfort" / "cases.csv"), strict=True):
+        assert row.items() <= ranked.items()
+    car = Car.load("sedan").with_({"body.mass": 1500, "rear.damper.viscous": 1200})
+    expected = car.run(road("A", 60, duration=3), engine="reduced").figure("travel")
+    (row,) = (row for row in travel if (row["input"], row["car"]) == ("road_A_60", "laden, soft"))
+    assert float(row["travel [m]"]) == pytest.approx(expected, rel=1e-4)
+    page = (tmp_path / "travel" / "report.html").read_text(encoding="utf-8")
+    assert re.search("lower travel|lowest travel", page) and "road_A_60 [m]" in page and "acceleration" not in page
+    with pytest.raises(ConfigurationError, match=r"--measure: .*travel, weighted"):
+        read_cases(tmp_path / "cases.toml").plan(Car.load("sedan"), (), SweepSettings(measure=["travel", "weighted"]))

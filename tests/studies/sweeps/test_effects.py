@@ -2,11 +2,13 @@
 
 import csv
 import io
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from scenarios.signals.bump import bump
 from vehicle import Car, road
 from vehicle.commands.sweep import main
 from vehicle.errors import ConfigurationError, DataError
@@ -14,12 +16,7 @@ from vehicle.studies.sweeps.case import parameter_cells
 from vehicle.studies.sweeps.case_result import Result
 from vehicle.studies.sweeps.differences import DifferencesWriter
 from vehicle.studies.sweeps.effects import Effect, Effects, effect_sentence, write_effects
-from vehicle.studies.sweeps.parameter_effects import (
-    effects_of,
-    parameter_effects,
-    single_changes,
-    varied_parameters,
-)
+from vehicle.studies.sweeps.parameter_effects import effects_of, parameter_effects, single_changes, varied_parameters
 from vehicle.studies.sweeps.plan import plan_sweep
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
 
@@ -29,9 +26,11 @@ NAN = float("nan")
 @pytest.mark.parametrize(
     ("name", "ride", "groups"),
     [
-        ("sedan", road("B", 80, duration=3), ("rear.damper", "front.main_spring.stiffness")),
-        ("focus", "bump_7p5mm.csv", ("damper.coulomb_friction", "body.mass")),
-        ("focus_road_seated", road("A", 60, duration=3), ("driver.bushings.cushion.stiffness", "front.damper.viscous")),
+        ("sedan", road("B", 80, duration=2.5), ("rear.damper.viscous", "front.main_spring.stiffness")),
+        ("focus", bump(amplitude=7.5e-3, wheel="fr", duration=1.5, start=0.3),
+         ("damper.coulomb_friction", "body.mass")),
+        ("focus_road_seated", road("A", 60, duration=2.5),
+         ("driver.bushings.cushion.stiffness", "front.damper.viscous")),
     ],
 )  # fmt: skip
 def test_changes_are_those_of_single_runs_and_ranked_by_brute_force(name, ride, groups):
@@ -59,7 +58,7 @@ def test_error_of_a_change_is_that_of_the_differences_of_the_sweep():
     parameters = varied_parameters(car.vehicle, ("rear.damper.viscous",))
     changes, without = single_changes(car.vehicle, parameters, 0.2)
     assert without == () and changes[0] == ()
-    table = plan_sweep(car, changes, road("B", 80, duration=6), SweepSettings(engine="reduced")).run()
+    table = plan_sweep(car, changes, road("B", 80, duration=3), SweepSettings(engine="reduced")).run()
     file, paths = io.StringIO(), table.paths()
     writer = DifferencesWriter(file, paths, table.units)
     for case, row in zip(table.cases, table.rows(), strict=True):
@@ -81,7 +80,7 @@ def test_each_input_counts_by_its_relative_change():
     assert [both.effects[0].change_low] == pytest.approx(expected, abs=2e-3)
     # The ratio of the means would be that of the loud road.
     loud = alone[1].effects[0].change_low
-    assert abs(expected[0] - loud) > 0.05 and "means of 2 inputs" in str(both)
+    assert abs(expected[0] - loud) > 0.05 and both.inputs == 2
 
 
 def test_groups():
@@ -94,10 +93,10 @@ def test_groups():
     assert set(varied_parameters(vehicle, ("coulomb_friction",))) == {
         "front.damper.coulomb_friction", "rear.damper.coulomb_friction"
     }  # fmt: skip
-    with pytest.raises(ConfigurationError, match=r"--vary rear.damber: no parameter that is a number"):
+    with pytest.raises(ConfigurationError, match=r"--vary rear.damber: .*--search rear.damber"):
         varied_parameters(vehicle, ("rear.damber",))
     for share in (0.0, 1.0, -0.1, NAN):
-        with pytest.raises(ConfigurationError, match="must be above 0 and below 100 %"):
+        with pytest.raises(ConfigurationError, match=r"--each .* below 100 %"):
             single_changes(vehicle, every, share)
 
 
@@ -119,7 +118,7 @@ def test_parameters_without_effect_are_named():
     parameters = varied_parameters(vehicle, ("damper.stribeck_friction", "damper.viscous"))
     changes, without = single_changes(vehicle, parameters, 0.2)
     assert without == ("front.damper.stribeck_friction",) and len(changes) == 3
-    with pytest.raises(ConfigurationError, match=r"no parameter has an effect on this car: front.damper.stribeck"):
+    with pytest.raises(ConfigurationError, match=r"--vary: .*front.damper.stribeck_friction"):
         single_changes(vehicle, varied_parameters(vehicle, ("damper.stribeck_friction",)), 0.2)
 
 
@@ -128,19 +127,20 @@ def test_of_an_undefined_figure_there_is_no_change_in_percent():
     car = Car.load("sedan")
     parameters = varied_parameters(car.vehicle, ("rear.damper.viscous", "front.main_spring.stiffness"))
     changes, _ = single_changes(car.vehicle, parameters, 0.2)
-    plan = plan_sweep(car, changes, road("B", 80, duration=3), SweepSettings(engine="reduced", measure="travel"))
-    table = plan.run()
+    table = plan_sweep(
+        car, changes, road("B", 80, duration=2.5), SweepSettings(engine="reduced", measure="travel")
+    ).run()
 
     def of_values(*values):
         results = [Result(values={"travel": value}) for value in values]
         return effects_of(replace(table, results=results), parameters, 0.2)
 
-    for base, found in ((NAN, r"has no value \(it is undefined\)"), (0.0, "is 0")):
-        with pytest.raises(DataError, match=f"--each: travel of the unchanged car on road_B_80 {found}, so no change"):
+    for base, found in ((NAN, "undefined"), (0.0, "is 0")):
+        with pytest.raises(DataError, match=f"--each: travel .* road_B_80 .*{found}"):
             of_values(*[base] * len(changes))
     found = of_values(1.0, *[NAN] * (len(changes) - 1))
     assert len(found.effects) == len(parameters) and found.without == ()
-    assert effect_sentence(found) == "No changed car has travel: see the reasons in table.csv."
+    assert "travel" in effect_sentence(found) and "table.csv" in effect_sentence(found)
     assert of_values(*[1.0] * len(changes)).without == tuple(parameters)
 
 
@@ -148,9 +148,8 @@ def test_parameters_are_ranked_by_one_figure(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     words = ["--input", "bump_7p5mm.csv", "--vary", "damper.viscous", "--each", "10%"]
     assert main([*words, "--measure", "travel", "--measure", "tyre_load"]) == 2
-    message = "--each ranks by one figure; give one --measure, not 2"
-    assert message in capsys.readouterr().err
-    with pytest.raises(ConfigurationError, match=message):
+    assert "--measure 2 times" in capsys.readouterr().err
+    with pytest.raises(ConfigurationError, match="--measure 2 times"):
         parameter_effects(Car.load(), "bump_7p5mm.csv", measure=["travel", "tyre_load"])
 
 
@@ -173,12 +172,10 @@ def test_a_coordinate_is_moved_by_a_length_whatever_its_origin():
     texts = [each[0].split("=") for each in changes[1:]]
     assert [path for path, _ in texts] == ["hardpoints.body_front.x"] * 2 + ["hardpoints.body_front.y"] * 2
     assert [float(value) for _, value in texts] == pytest.approx([0.34, 0.36, -0.01, 0.01])
-    with pytest.raises(ConfigurationError, match="--each 300 mm: must be above 0 and at most 100 mm"):
+    with pytest.raises(ConfigurationError, match=r"--each 300 mm: .* at most 100 mm"):
         single_changes(vehicle, parameters, 0.2, 0.3)
-    found = parameter_effects(
-        Car.load("sedan"), road("B", 80, duration=3), groups=("seat_rail", "rear.damper.viscous"), shift=0.005,
-        engine="reduced",
-    )  # fmt: skip
+    groups, ride = ("seat_rail", "rear.damper.viscous"), road("B", 80, duration=2.5)
+    found = parameter_effects(Car.load("sedan"), ride, groups=groups, shift=0.005, engine="reduced")
     assert {each.path: each.ends for each in found.effects} == {
         "rear.damper.viscous": ("-20 %", "+20 %"), "hardpoints.seat_rail.x": ("-5 mm", "+5 mm"),
         "hardpoints.seat_rail.y": ("-5 mm", "+5 mm"), "hardpoints.seat_rail.z": ("-5 mm", "+5 mm"),
@@ -186,21 +183,26 @@ def test_a_coordinate_is_moved_by_a_length_whatever_its_origin():
     assert str(found).splitlines()[0].split() == ["parameter", "value", "step", "down", "up", "+-"]
 
 
-def test_sentence():
-    assert effect_sentence(of(effect("a", -4.0, 3.0), effect("b", 1.0, -1.0), effect("c", 0.1, 0.0))) == (
-        "a matters most: -20 % makes the ride 4 % smoother, +20 % makes the ride 3 % rougher; then come b and c."
-    )
-    assert effect_sentence(of(effect("a", NAN, 3.0))) == "a matters most: +20 % makes the ride 3 % rougher."
-    assert effect_sentence(of(effect("a", -1.0, 0.9, 1.2))).startswith("No effect is larger than its error")
-    # 3.0 and 2.5 differ by less than sqrt(0.5^2 + 0.4^2); 2.5 and 0.9 by more than sqrt(0.4^2 + 0.3^2).
-    close = of(effect("a", -9.0, 9.0, 1.0), effect("b", 3.0, -1.0, 0.5), effect("c", 2.5, -1.0, 0.4))
-    assert effect_sentence(close).endswith("then come b and c; not decided within the errors: rank of b and c.")
-    decided = of(effect("a", -9.0, 9.0, 1.0), effect("b", 2.5, -1.0, 0.4), effect("c", 0.9, -0.3, 0.3))
-    assert effect_sentence(decided).endswith("then come b and c.")
-    # An effect inside its error does not come next, but may be larger than the one that does.
-    noise = of(effect("a", -3.0, 3.0, 0.5), effect("b", 2.8, -1.0, 3.5))
-    assert effect_sentence(noise).endswith("3 % rougher; not decided within the errors: rank of a.")
-    assert effect_sentence(of()) == "No varied parameter changes the comfort here."
+@pytest.mark.parametrize(
+    ("effects", "parts"),
+    [
+        ((effect("a", -4.0, 3.0), effect("b", 1.0, -1.0), effect("c", 0.1, 0.0)),
+         ["a matters most: -20 % makes the ride 4 % smoother, +20 % makes the ride 3 % rougher", "next come b and c."]),
+        ((effect("a", NAN, 3.0),), ["a matters most: +20 % makes the ride 3 % rougher."]),
+        ((effect("a", -1.0, 0.9, 1.2),), ["No effect exceeds its error"]),
+        # 3.0 and 2.5 differ by less than sqrt(0.5^2 + 0.4^2); 2.5 and 0.9 by more than sqrt(0.4^2 + 0.3^2).
+        ((effect("a", -9.0, 9.0, 1.0), effect("b", 3.0, -1.0, 0.5), effect("c", 2.5, -1.0, 0.4)),
+         ["9 % rougher", "next come b and c", "ranks of b and c may change"]),
+        ((effect("a", -9.0, 9.0, 1.0), effect("b", 2.5, -1.0, 0.4), effect("c", 0.9, -0.3, 0.3)),
+         ["9 % rougher", "next come b and c."]),
+        # An effect inside its error does not come next, but may be larger than the one that does.
+        ((effect("a", -3.0, 3.0, 0.5), effect("b", 2.8, -1.0, 3.5)), ["3 % rougher", "rank of a may change"]),
+        ((), ["No varied parameter changes the comfort here."]),
+    ],
+)  # fmt: skip
+def test_sentence(effects, parts):
+    said = effect_sentence(of(*effects)).split("; ")
+    assert len(said) == len(parts) and all(part in text for part, text in zip(parts, said, strict=True)), said
 
 
 def test_effects_without_a_sense_are_marked():
@@ -220,7 +222,7 @@ def test_table_file_and_picture(tmp_path):
         "c,,,,,0,0,",
     ]
     text = str(effects)
-    assert "no value" in text and "without effect here: 1 parameters (c)" in text and "-4.00 %" in text
+    assert "no value" in text and "1 parameter (c)" in text and "-4.00 %" in text
     axes = effects.plot()
     labels = [label.get_text() for label in axes.get_yticklabels()]
     assert labels == ["a  10 N", "b  10 N"]
@@ -247,15 +249,19 @@ def test_command(tmp_path, capsys, monkeypatch):
     table = (tmp_path / "each" / "effects.csv").read_text(encoding="utf-8")
     assert table.splitlines()[1].startswith("front.damper.coulomb_friction,N,")
     assert (tmp_path / "each" / "effects.png").is_file()
-    assert "front.damper.coulomb_friction matters most" in (tmp_path / "each" / "report.html").read_text(
-        encoding="utf-8"
-    )
+    page = (tmp_path / "each" / "report.html").read_text(encoding="utf-8")
+    assert "front.damper.coulomb_friction matters most" in page and "front damper Coulomb friction" in page
     assert main([*words, "--each", "10", "--output", "each", "--resume", "--quiet"]) == 0
     assert (tmp_path / "each" / "effects.csv").read_text(encoding="utf-8") == table
+    # Another figure has its name and its unit, in table, file and report.
+    measured = [*words[:6], "--each", "10%", "--measure", "travel", "--output", "travel", "--report"]
+    assert main(measured) == 0 and "change in 'travel'" in capsys.readouterr().out
+    page = (tmp_path / "travel" / "report.html").read_text(encoding="utf-8")
+    assert "'travel'" in page and re.search(r"unchanged car: [0-9.]+ m\)", page)
     for wrong, message in (
-        (["--each", "much"], "--each 'much': must be a percentage"),
-        (["--each", "120%"], "--each 120 %: must be above 0 and below 100 %"),
-        (["--each", "10%", "--sobol", "8"], "leave out --table and --sobol"),
+        (["--each", "much"], "--each 'much': "),
+        (["--each", "120%"], "--each 120 %: "),
+        (["--each", "10%", "--sobol", "8"], "--sobol"),
     ):
         assert main([*words, *wrong, "--output", "wrong"]) == 2
         assert message in capsys.readouterr().err

@@ -142,15 +142,15 @@ def test_no_worker_is_said_and_waited_for():
     executor = Cluster([0, 0, 0, 2])
     assert not sweep(many(2), Peak(), executor=lambda: executor, notice=notices.append).failed
     (notice,) = notices
-    assert notice.startswith("no worker for 0 s, waiting for at most 300 s; start its workers")
+    assert "0 s" in notice and "300 s" in notice
 
 
 @pytest.mark.usefixtures("impatient")
 def test_no_worker_for_too_long_and_a_lost_scheduler_are_errors(monkeypatch):
-    with pytest.raises(SimulationError, match=r"lost the scheduler of the cluster \(connection lost\); finished rows"):
+    with pytest.raises(SimulationError, match=r"\(connection lost\).*--resume"):
         sweep(many(2), Peak(), executor=lambda: Cluster([0, None]))
     monkeypatch.setattr(dispatcher, "NO_WORKER_LIMIT_S", 0.05)
-    with pytest.raises(SimulationError, match=r"no worker for 0\.05 s; start its workers\. Finished rows are stored"):
+    with pytest.raises(SimulationError, match=r"0\.05 s.*--resume"):
         sweep(many(2), Peak(), executor=lambda: Cluster([0]))
 
 
@@ -167,7 +167,7 @@ def test_a_full_disk_of_a_worker_stops_the_sweep(monkeypatch):
         raise OSError(errno.ENOSPC, "No space left on device", "/scratch/road.npz")
 
     monkeypatch.setattr(worker, "evaluate", full)
-    with pytest.raises(OutputError, match=r"worker .*No space left on device: '/scratch/road.npz'; free space there"):
+    with pytest.raises(OutputError, match=r"worker .*No space left on device: '/scratch/road.npz'"):
         sweep(many(3), Peak(), executor=lambda: ThreadPoolExecutor(1))
 
 
@@ -175,7 +175,7 @@ def test_a_full_disk_of_the_sweep_stops_it(tmp_path):
     rows = StoredRows(tmp_path / "rows.jsonl", 1)
     with (
         largest_file(10),
-        pytest.raises(OutputError, match=r"cannot be written after 0 rows: File too large.*continue with --resume"),
+        pytest.raises(OutputError, match=r"0 rows: File too large.*--resume"),
     ):
         rows.append(np.arange(1), Block.of(many(1), ["k" * 64], [Result()]))
 
@@ -195,7 +195,7 @@ def test_no_file_of_rows_stays_open(tmp_path):
 
 
 def test_a_time_limit_needs_processes():
-    with pytest.raises(ConfigurationError, match="in the process of the sweep, where a run cannot be stopped"):
+    with pytest.raises(ConfigurationError, match=r"time limit: .*--jobs"):
         sweep(many(1), Peak(), executor=lambda: ThreadPoolExecutor(1), time_limit=60.0)
     for limit in (0.0, -1.0, math.nan, math.inf):
         with pytest.raises(ConfigurationError, match=r"--time-limit .*: must be above 0"):
@@ -239,11 +239,11 @@ def test_an_interruption_keeps_the_rows(tmp_path):
 def test_a_worker_with_another_program_is_rejected():
     cases = many(1)
     assert not carry_out(cases, [""], Peak(), program_digest()).failed
-    with pytest.raises(ConfigurationError, match="the workers have another program"):
+    with pytest.raises(ConfigurationError, match=r"program .*\(another\)"):
         carry_out(cases, [""], Peak(), "another")
     # An error of the worker, not of the run, is not a row.
-    with pytest.raises(ConfigurationError, match="another program"):
-        sweep(cases, Peak(), executor=Fails(ConfigurationError("another program")))
+    with pytest.raises(ConfigurationError, match="of the worker"):
+        sweep(cases, Peak(), executor=Fails(ConfigurationError("of the worker")))
 
 
 def test_processes_that_do_not_start_are_an_error(monkeypatch):

@@ -84,7 +84,7 @@ def test_errors_and_intervals_at_the_minimum_base():
     assert 0.89 < np.mean(errors <= widths) < 0.98
     assert sum(bool(each.contradictions) for each in found) <= 6  # 5 % of 60, and three
     for base in (1, 2, 4, 32):
-        with pytest.raises(ConfigurationError, match=f"found {base}, must be at least 64"):
+        with pytest.raises(ConfigurationError, match=f"found {base}, .* 64"):
             sobol_sample(CUBE, base)
 
 
@@ -94,7 +94,7 @@ def test_a_contradiction_is_named():
     y = g_function(points).reshape(64, 6)
     y[:, 1] = y[:, 0] - (y[:, 5] - y[:, 0].mean())
     (words, *_) = sobol_indices(CUBE, y.ravel()).contradictions
-    assert words.startswith("x0: S1 is below 0 beyond the error (S1 -")
+    assert words.startswith("x0: S1 is below 0") and "(S1 -" in words
 
 
 def test_a_small_sample_has_a_wide_interval():
@@ -107,11 +107,11 @@ def test_a_small_sample_has_a_wide_interval():
 def test_bad_arguments():
     with pytest.raises(ConfigurationError, match="must be ascending"):
         Range(path="a", low=1.0, high=1.0)
-    with pytest.raises(ConfigurationError, match="found 100, must be a power of two"):
+    with pytest.raises(ConfigurationError, match=r"found 100, .*power of two"):
         sobol_sample(UNIT, 100)
-    with pytest.raises(DataError, match="found 7, must be a multiple of 5"):
-        sobol_indices(UNIT, np.arange(7.0))
-    with pytest.raises(DataError, match="1 of 2 base points have a failed run or no value, must be at most half"):
-        sobol_indices(UNIT, [1.0, 2.0, np.nan, 3.0, 4.0, *range(5)])
-    with pytest.raises(DataError, match="all values are equal"):
-        sobol_indices(UNIT, np.ones(5))
+    for values, found in (
+        (np.arange(7.0), "found 7, .*multiple of 5"), ([1.0, 2.0, np.nan, 3.0, 4.0, *range(5)], "1 of 2 base points"),
+        (np.ones(5), "equal"),
+    ):  # fmt: skip
+        with pytest.raises(DataError, match=found):
+            sobol_indices(UNIT, values)

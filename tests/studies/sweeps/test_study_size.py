@@ -65,8 +65,8 @@ def test_memory_follows_length_engine_inputs_and_processes(machine, capsys):
         run_size._said.clear()
         state(cases(1.0, engine=engine)[:1])
         said = capsys.readouterr().err
-        assert f"64 runs of up to 3.6e+06 samples in one process need about {expected / 1e9:.2g} GB of memory" in said
-        assert said.count("\n") == 1 and "shorten the inputs, or set a lower solver.record_rate" in said
+        assert "64 runs of up to 3.6e+06 samples" in said and f" {expected / 1e9:.2g} GB of memory" in said
+        assert said.count("\n") == 1 and "solver.record_rate" in said
     state(cases(1.0, engine="auto")[:1])
     assert capsys.readouterr().err == ""  # once in a process
     state(cases(1.0)[:1], jobs=8)
@@ -85,14 +85,10 @@ def test_memory_follows_length_engine_inputs_and_processes(machine, capsys):
 
 def test_what_exceeds_the_free_memory_is_refused_with_the_processes_that_fit(machine, tmp_path):
     machine(memory=5e9)
-    with pytest.raises(
-        ConfigurationError, match=r"need 10\.9 GB of memory, must be at most the memory of .* 5 GB; .*--jobs 3,"
-    ):
+    with pytest.raises(ConfigurationError, match=r"10\.9 GB of memory, .* 5 GB; .*--jobs 3,"):
         state(cases(1.0)[:1], jobs=8)
     machine(memory=1e9)
-    with pytest.raises(
-        ConfigurationError, match=r"need 1\.36 GB of memory, must be at most the memory of .* 1 GB; for less, s"
-    ):
+    with pytest.raises(ConfigurationError, match=r"1\.36 GB of memory, .* 1 GB; .*solver.record_rate"):
         sweep_cases(cases(1.0), MEASURE, RunSettings(folder=tmp_path))
     assert not (tmp_path / "table.csv").exists()
 
@@ -112,7 +108,7 @@ def test_the_case_that_needs_most_counts(machine):
 def test_workers_elsewhere_have_their_own_memory(machine, tmp_path):
     machine(memory=1e9, disk=1e6)
     state(cases(1.0)[:1], executor=ThreadPoolExecutor)
-    with pytest.raises(ConfigurationError, match=r"1000 runs need 0\.00174 GB on the disk, must .* vary fewer values"):
+    with pytest.raises(ConfigurationError, match=r"1000 runs need 0\.00174 GB on the disk"):
         state(cases(1.0)[:1], 1000, executor=ThreadPoolExecutor, folder=tmp_path)
     state(cases(1.0)[:1], 1000, executor=ThreadPoolExecutor)  # stores nothing
 
@@ -155,7 +151,7 @@ def test_a_search_is_refused_before_its_first_car(machine, tmp_path, capsys, mon
     words = ["--vary", "damper.viscous=1000:2000", "--minimise", "weighted", "--road", "C", "--speed", "80"]
     assert optimise.main([*words, "--duration", "5", "--cars", "8", "--population", "8", "--quiet"]) == 2
     said = capsys.readouterr().err
-    assert "8 runs of up to 5e+03 samples in one process need 0.1" in said and "memory of this machine, 0.1 GB" in said
+    assert "8 runs of up to 5e+03 samples in one process need 0.1" in said and "0.1 GB" in said
     assert not (tmp_path / "runs" / "optimise").exists()
     machine(disk=1e3)
     assert optimise.main([*words, "--duration", "5", "--cars", "2000", "--quiet"]) == 2
@@ -166,7 +162,7 @@ def test_orders_and_fits_are_refused_before_their_first_run(machine, capsys):
     machine(memory=1e8)
     words = ["--vehicle", "sedan", "--set", "front.imbalance.mass=0.01", "--set", "front.imbalance.radius=0.2"]
     assert orders.main([*words, "--speed", "100:120:10", "--duration", "600"]) == 2
-    assert "error: runs of 600 s need 0.368 GB of memory, must be" in capsys.readouterr().err
+    assert "runs of 600 s need 0.368 GB of memory" in capsys.readouterr().err
     signal = SimpleNamespace(duration=3600.0)
     data = SimpleNamespace(response=np.zeros((2, 1000)))
     measured: Any = SimpleNamespace(signal=signal, target=SimpleNamespace(recorded=("seat_rail_acc_z",), data=data))

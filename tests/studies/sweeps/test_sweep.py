@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -45,12 +46,8 @@ def in_threads():
 
 def test_grid_and_table_put_the_cases_in_order():
     cases = grid({"a.b": [1.0, 2.0], "c": ["x"]}, [ShortRoad(name="one"), ShortRoad(name="two")], fixed=["d=4"])
-    assert [case.label for case in cases] == [
-        "one, d=4, a.b=1.0, c=x",
-        "one, d=4, a.b=2.0, c=x",
-        "two, d=4, a.b=1.0, c=x",
-        "two, d=4, a.b=2.0, c=x",
-    ]
+    labels = [f"{name}, d=4, a.b={value}, c=x" for name in ("one", "two") for value in (1.0, 2.0)]
+    assert [case.label for case in cases] == labels
     assert cases[1].overrides == ("d=4", "a.b=2.0", "c=x")
     pairs = table_cases(["a", "b"], [(1.0, 2.0), (3.0, 4.0)], [ShortRoad()], engine="mujoco")
     assert [case.overrides for case in pairs] == [("a=1.0", "b=2.0"), ("a=3.0", "b=4.0")]
@@ -74,8 +71,7 @@ def test_numbers_are_those_of_the_run():
     first = run.time[abs(run["damper_fr_velocity"]) > limit][0]
     assert values["first_slip_fr"] == pytest.approx(float(first), abs=1e-12) and first < 1.0
     # Comfort excludes the first second, so it is near but not equal to the comfort of the whole run.
-    assert values["unweighted"] == pytest.approx(run.comfort().unweighted.overall, rel=0.3)
-    assert values["unweighted"] != pytest.approx(run.comfort().unweighted.overall, rel=1e-3)
+    assert 1e-3 < abs(values["unweighted"] / run.comfort().unweighted.overall - 1.0) < 0.3
     squares = sum(values[f"unweighted_{axis}"] ** 2 for axis in "xyz")
     assert values["unweighted"] == pytest.approx(math.sqrt(squares), rel=1e-12)
     assert 0.0 < values["unweighted_error"] < 0.2
@@ -133,36 +129,26 @@ def test_failed_rows_are_kept_or_tried_again(tmp_path):
         assert len((tmp_path / "rows.jsonl").read_text(encoding="utf-8").splitlines()) == lines
 
 
-@pytest.mark.parametrize(
-    "line",
-    [
-        "{",
-        "[" * 3000 + "]" * 3000,
-        "\0" * 50,
-        '{"key": "00000000000000000000", "values": {"peak": NaN}, "engine": "", "reason": "", "seconds": 1.0}',
-        '{"key": "00000000000000000000", "values": {"peak": 1e999}, "engine": "", "reason": "", "seconds": 1.0}',
-        '{"key": "00000000000000000000", "values": {"peak": "nan"}, "engine": "", "reason": "", "seconds": 1.0}',
-        '{"key": "0", "values": {"peak": 1.0}, "engine": "", "reason": "", "seconds": 1.0}',
-        '{"key": "00000000000000000000", "values": {}, "engine": "", "reason": "", "seconds": 1.0}',
-    ],
-)
-def test_whole_rows_are_taken_and_those_of_a_damaged_line_computed_again(tmp_path, capsys, line):
-    cases = two_by_two()[:2]
+def row_line(key="0" * 20, values='{"peak": 1.0}'):
+    return f'{{"key": "{key}", "values": {values}, "engine": "", "reason": "", "seconds": 1.0}}'
+
+
+DAMAGED = ["{", "[" * 3000 + "]" * 3000, "\0" * 50, row_line(key="0"), row_line(values="{}")]
+DAMAGED += [row_line(values=f'{{"peak": {value}}}') for value in ("NaN", "1e999", '"nan"')]
+
+
+def test_whole_rows_are_taken_and_those_of_a_damaged_line_computed_again(tmp_path, capsys):
+    cases, rows = two_by_two()[:2], tmp_path / "rows.jsonl"
     whole = sweep(cases, Peak(), executor=in_threads, folder=tmp_path).text()
-    rows = tmp_path / "rows.jsonl"
-    text = rows.read_text(encoding="utf-8")
-    rows.write_text(text[:-20], encoding="utf-8")
-    again = sweep(cases, Peak(), executor=in_threads, folder=tmp_path)
-    assert again.text() == whole
-    assert len(rows.read_text(encoding="utf-8").splitlines()) == 2
-    first, second = text.splitlines()
-    rows.write_text(f"{first}\n{line}\n", encoding="utf-8")
+    first, second = rows.read_text(encoding="utf-8").splitlines()
+    rows.write_text(f"{first}\n{second}"[:-20], encoding="utf-8")
     assert sweep(cases, Peak(), executor=in_threads, folder=tmp_path).text() == whole
-    assert "1 damaged rows, the first in line 2 (" in capsys.readouterr().err
-    assert rows.read_text(encoding="utf-8").splitlines()[:2] == [first, line]
-    assert rows.read_text(encoding="utf-8").count("\n") == 3 and second.split('"')[3] in rows.read_text(
-        encoding="utf-8"
-    )
+    assert len(rows.read_text(encoding="utf-8").splitlines()) == 2 and not capsys.readouterr().err
+    rows.write_text("\n".join([first, *DAMAGED, ""]), encoding="utf-8")
+    assert sweep(cases, Peak(), executor=in_threads, folder=tmp_path).text() == whole
+    assert f"{len(DAMAGED)} damaged rows, the first in line 2 (" in capsys.readouterr().err
+    *kept, added = rows.read_text(encoding="utf-8").splitlines()
+    assert kept == [first, *DAMAGED] and second.split('"')[3] in added
 
 
 def test_the_key_tells_car_input_engine_and_measure(tmp_path):
@@ -172,15 +158,10 @@ def test_the_key_tells_car_input_engine_and_measure(tmp_path):
     other = tmp_path / "car.toml"
     other.write_bytes((ROOT / "vehicle/model/vehicles/focus/vehicle.toml").read_bytes())
     signal = random_road(rms=1e-4, seed=1, wheel="fr", duration=1.0)
-    variants = [
-        case,
-        *grid({"damper.viscous": [2001.0]}, [ShortRoad()]),
-        *grid({"damper.viscous": [2000.0]}, [ShortRoad(seed=2)]),
-        *grid({"damper.viscous": [2000.0]}, [ShortRoad()], engine="mujoco"),
-        *grid({"damper.viscous": [2000.0]}, [ShortRoad()], vehicle=other),
-        *grid({"damper.viscous": [2000.0]}, [SignalFile(path=file, wheel="fr")]),
-        *grid({"damper.viscous": [2000.0]}, [signal]),
-    ]
+    sources = [ShortRoad(seed=2), SignalFile(path=file, wheel="fr"), signal]
+    variants = [case, *grid({"damper.viscous": [2001.0]}, [ShortRoad()])]
+    variants += [replace(case, engine="mujoco"), replace(case, vehicle=other)]
+    variants += [replace(case, source=source) for source in sources]
     keys = case_keys(variants, Peak())
     assert len(set(keys)) == len(keys)
     assert case_keys([case], Peak()) == keys[:1]
@@ -188,18 +169,21 @@ def test_the_key_tells_car_input_engine_and_measure(tmp_path):
     other.write_text(other.read_text(encoding="utf-8") + "\n# changed\n", encoding="utf-8")
     file.write_text("time [s],displacement [m]\n0,1\n", encoding="utf-8")
     changed = case_keys(variants, Peak())
-    assert [a == b for a, b in zip(keys, changed, strict=True)] == [True, True, True, True, False, False, True]
+    assert [a == b for a, b in zip(keys, changed, strict=True)] == [True, True, True, False, True, False, True]
 
 
-def test_a_killed_worker_takes_nothing_with_it(tmp_path):
+def test_a_killed_worker_and_a_run_that_hangs_take_nothing_with_them(tmp_path):
     once = ShortRoad(name="once", kill=str(tmp_path / "flag"))
     always = ShortRoad(name="always", kill=str(tmp_path / "flag.always"))
-    cases = grid({"damper.coulomb_friction": [125.0]}, [ShortRoad(), once, always, ShortRoad(seed=5)], engine="reduced")
-    folder = tmp_path / "sweep"
+    roads = [ShortRoad(), once, always, ShortRoad(name="hanging", wait=10.0 * HANG), ShortRoad(seed=5)]
+    cases, folder = grid({"damper.coulomb_friction": [125.0]}, roads, engine="reduced"), tmp_path / "sweep"
     folder.mkdir()
-    table = sweep(cases, Peak(), jobs=2, folder=folder)
-    assert [result.reason for result in table.results] == ["", "", DIED, ""]
-    assert len((folder / "rows.jsonl").read_text(encoding="utf-8").splitlines()) == 4
+    limit, reasons = 4.0, [""]
+    while reasons != ["", "", DIED, overdue(limit), ""]:  # a busy machine may take any time for the runs that end
+        assert limit < HANG, reasons
+        limit, settings = 2.0 * limit, {"jobs": 2, "folder": folder, "retry_failed": True}
+        reasons = [result.reason for result in sweep(cases, Peak(), time_limit=limit, **settings).results]
+    assert len({line.split('"')[3] for line in (folder / "rows.jsonl").read_text(encoding="utf-8").splitlines()}) == 5
 
 
 SCRIPT = """
@@ -210,7 +194,7 @@ from vehicle.studies.sweeps.plan import plan_sweep
 from vehicle.studies.sweeps.sweep import sweep
 
 if __name__ == "__main__":
-    roads = [ShortRoad(seed=s, wait=0.1) for s in range(40)]
+    roads = [ShortRoad(seed=s, wait=0.2) for s in range(40)]
     cases = grid({"damper.coulomb_friction": [125.0]}, roads, engine="reduced")
     sweep(cases, Peak(), jobs=2, folder=Path(FOLDER))
 """
@@ -250,10 +234,8 @@ def test_a_killed_sweep_keeps_its_rows_leaves_no_worker_and_goes_on(tmp_path):
     assert running(marker) == []
     kept = rows.read_bytes().count(b"\n")
     assert 3 <= kept < 40
-    cases = grid(
-        {"damper.coulomb_friction": [125.0]}, [ShortRoad(seed=s, wait=0.1) for s in range(kept + 1)], engine="reduced"
-    )
-    counted: list[float] = []
+    roads, counted = [ShortRoad(seed=s, wait=0.2) for s in range(kept + 1)], list[float]()
+    cases = grid({"damper.coulomb_friction": [125.0]}, roads, engine="reduced")
     table = sweep(cases, Peak(), executor=in_threads, folder=folder, progress=counted.append)
     # Two workers finish in any order: at most the submitted tasks and the additional case are missing.
     assert 1 <= len(counted[1:]) <= kept
@@ -269,27 +251,20 @@ def test_a_user_defined_executor():
 
 
 @pytest.mark.parametrize(("text", "message"), [
-    ("dusk://host:1", "must be dask://host:port or module:factory"),
+    ("dusk://host:1", "dask://host:port or module:factory"),
     ("nowhere.at_all:make", "No module named 'nowhere'"),
     ("tests.studies.sweeps.sweep_samples:missing", "has no attribute 'missing'"),
-    ("threads", "must be dask://host:port or module:factory"),
+    ("threads", "dask://host:port or module:factory"),
+    ("tests.studies.sweeps.sweep_samples:no_executor", r"str, .*concurrent\.futures\.Executor"),
 ])  # fmt: skip
 def test_bad_executors(text, message):
     with pytest.raises(ConfigurationError, match=message):
-        executor_factory(text)
-
-
-def test_a_factory_must_return_an_executor():
-    with pytest.raises(ConfigurationError, match=r"returned str, must be a concurrent\.futures\.Executor"):
-        sweep(two_by_two(), Peak(), executor=executor_factory("tests.studies.sweeps.sweep_samples:no_executor"))
+        executor_factory(text)()
 
 
 def test_without_dask_the_extra_is_named(monkeypatch):
-    def without(name):
-        raise ImportError(name)
-
-    monkeypatch.setattr("importlib.import_module", without)
-    with pytest.raises(MissingPartError, match=r"needs Dask of the extra 'cluster' \(pip install distributed\)"):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(MissingPartError, match=r"'cluster' \(pip install distributed\)"):
         executor_factory("dask://host:8786")
 
 
@@ -321,7 +296,7 @@ def test_a_worker_that_joins_a_running_sweep_is_used(cluster):
             joined.append(time.time())
 
     make = executor_factory(cluster.scheduler_address.replace("tcp", "dask"))
-    roads = [ShortRoad(seed=seed, wait=0.3) for seed in range(40)]
+    roads = [ShortRoad(seed=seed, wait=0.3) for seed in range(30)]
     table = sweep(grid({"damper.viscous": [2000.0]}, roads, engine="reduced"), Worker(), executor=make, progress=join)
     assert not table.failed
     processes, times = table.column("process"), table.column("time")
@@ -338,17 +313,6 @@ def test_a_dask_cluster_makes_the_same_table(cluster):
     assert not table.failed
 
 
-def test_a_run_that_hangs_is_a_failed_row(tmp_path):
-    hanging = ShortRoad(name="hanging", wait=10.0 * HANG)
-    cases = grid({"damper.viscous": [2000.0]}, [ShortRoad(), hanging, ShortRoad(seed=2)], engine="reduced")
-    limit, reasons = 1.0, ["not yet tried"]
-    while reasons[0] or reasons[-1]:  # a busy machine may take any time for the two that do not hang
-        limit = 4.0 * limit
-        assert limit < HANG
-        reasons = [result.reason for result in sweep(cases, Peak(), jobs=1, time_limit=limit).results]
-    assert reasons == ["", overdue(limit), ""]
-
-
 def test_a_cluster_without_response_is_named(monkeypatch):
     distributed = pytest.importorskip("distributed")
 
@@ -356,7 +320,7 @@ def test_a_cluster_without_response_is_named(monkeypatch):
         raise OSError("Timed out trying to connect")
 
     monkeypatch.setattr(distributed, "Client", nobody)
-    with pytest.raises(ConfigurationError, match="dask://nowhere:1: no response from a scheduler"):
+    with pytest.raises(ConfigurationError, match=r"dask://nowhere:1: .*Timed out"):
         executor_factory("dask://nowhere:1")()
 
 

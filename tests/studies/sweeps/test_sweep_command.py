@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import csv
 import re
 from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
 
+from tests.studies.sweeps.sweep_samples import rows_of
 from vehicle import Car, Road
 from vehicle.commands.sweep import main, parser, settings_of
 from vehicle.runs.output.destination import Destination, ReportChoice
@@ -40,8 +40,7 @@ def signal(tmp_path):
 
 
 def table_of(folder):
-    with (folder / "table.csv").open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
+    return rows_of(folder / "table.csv")
 
 
 @pytest.mark.parametrize(
@@ -107,8 +106,7 @@ def test_variations_make_a_table(signal, tmp_path, capsys):
     assert {row["damper.viscous"] for row in rows} == {"2000"} and {row["input"] for row in rows} == {"road"}
     assert float(rows[0]["unweighted [m/s2]"]) != float(rows[1]["unweighted [m/s2]"]) > 0.0
     assert {row["engine"] for row in rows} == {"reduced"}
-    with (output / "differences.csv").open(encoding="utf-8", newline="") as file:
-        first, second = csv.DictReader(file)
+    first, second = rows_of(output / "differences.csv")
     assert (first["difference [m/s2]"], first["half_width_95 [m/s2]"]) == ("0", "0")
     comfort = [float(row["unweighted [m/s2]"]) for row in rows]
     assert float(second["difference [m/s2]"]) == pytest.approx(comfort[1] - comfort[0], rel=1e-4)
@@ -118,7 +116,8 @@ def test_variations_make_a_table(signal, tmp_path, capsys):
     # A second call is rejected, or continues with --resume.
     again = [*arguments, "--vary", "bushings.suspension_mount.stiffness.z=7e5"]
     assert main(again) == 2
-    assert "holds finished runs; continue them with --resume, or start again with --force" in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert "--resume" in said and "--force" in said
     assert main([*again, "--resume", "--quiet"]) == 0
     assert "# 0 runs computed" in (output / "timing.csv").read_text(encoding="utf-8")
     assert table_of(output) == rows
@@ -147,7 +146,7 @@ def test_a_table_of_variations(tmp_path):
         (["--vary", "damper.viscous=1000", "--jobs", "0"], "--jobs 0: must be at least 1", 2),
         (
             ["--vary", "damper.viscous=1000", "--set", "damper.vicsous=1"],
-            ("the most similar path is front.damper.viscous"),
+            ("did you mean front.damper.viscous"),
             2,
         ),
         (
@@ -160,6 +159,7 @@ def test_a_table_of_variations(tmp_path):
         (["--table", "missing.csv"], "cannot be read", 3),
         (["--vary", "damper.viscous=1000", "--executor", "..:x"], "--executor ..:x: TypeError", 2),
         (["--vary", "damper.viscous=1000", "--executor", "json:nothing"], "has no attribute 'nothing'", 2),
+        (["--vary", "damper.viscous=1000", "--executor", "json:loads"], "--executor json:loads: TypeError", 2),
         (["--vary", "bushings.tyre.stiffness=1e5"], "is a vector; set all components as [x, y, z]", 2),
     ],
 )
@@ -209,23 +209,20 @@ def test_the_engine_and_its_reason_are_told_before_the_runs():
     roads = [Road("A", speed=80.0, duration=4.0), Road("C", speed=50.0, duration=4.0)]
     assert plan_sweep(car, change, roads).range_notes() == ()  # no damper has a range
     (note,) = plan_sweep(car, change, roads).engine_notes()
-    assert note.startswith("engine mujoco on road_C_50 (1 of 2 inputs), at least for the first car: ")
-    assert re.search(
-        r"is valid up to 0\.05 rad; --engine reduced takes about \d+ s for all 2 runs \(on class C comfort", note
-    )
+    assert note.startswith("engine mujoco on road_C_50 (1 of 2 inputs)") and "first car" in note
+    assert re.search(r"2\.86 deg; --engine reduced .* about \d+ s for all 2 runs \(on class C comfort", note)
     assert plan_sweep(car, change, roads[:1]).engine_notes() == ()
     (note,) = plan_sweep(car, change, roads, SweepSettings(engine="reduced")).engine_notes()
-    assert note.startswith("outside the valid range of the reduced engine on road_C_50, at least for the first car: ")
-    assert "is valid up to 0.05 rad (on class C comfort within" in note
+    assert re.search(r"reduced engine on road_C_50, .*first car: .* 2\.86 deg \(on class C comfort within", note)
     # Where a linear tyre pulls, no difference from MuJoCo is stated.
     rough = [Road("D", speed=100.0, duration=4.0)]
     (note,) = plan_sweep(car, change, rough, SweepSettings(engine="reduced")).engine_notes()
-    assert "so the result is invalid; to let it lift off: --set AXLE" in note and "class C" not in note
+    assert "lift off: --set AXLE" in note and "class C" not in note
     assert plan_sweep(car, change, roads[:1], SweepSettings(engine="reduced")).engine_notes() == ()
-    # Whoever asks for MuJoCo hears what the other engine costs, and whether it applies.
-    for inputs, means in ((roads[:1], "inside its valid range (comfort within 0.1 %)"), (roads, "outside its valid")):
+    # With MuJoCo the time of the other engine is stated, and whether it is valid.
+    for inputs, means in ((roads[:1], "within its valid range (comfort within 0.1 %)"), (roads, "outside its valid")):
         (note,) = plan_sweep(car, change, inputs, SweepSettings(engine="mujoco")).engine_notes()
-        assert note.startswith("engine mujoco as asked; --engine reduced takes about ") and means in note
+        assert note.startswith("engine mujoco, ") and "--engine reduced " in note and means in note
     # The stated difference, and the engine that the note names.
     (chosen,), (reduced,) = (
         plan_sweep(car, change, roads[1], SweepSettings(engine=engine)).run().results for engine in ("auto", "reduced")
@@ -251,7 +248,7 @@ def test_a_car_that_fails_has_no_note_on_the_engine():
     assert plan_sweep(Car.load("sedan"), friction[-2.0], road).engine_notes() == ()
     # The last car needs MuJoCo, too, and it can be run.
     (note,) = plan_sweep(Car.load("sedan"), friction[100.0], road).engine_notes()
-    assert note.startswith("engine mujoco on road_C_50 (1 of 1 inputs), at least for the last car: ")
+    assert note.startswith("engine mujoco on road_C_50 (1 of 1 inputs)") and "last car" in note
 
 
 def test_two_sweeps_in_one_folder(signal, tmp_path, capsys):
@@ -295,14 +292,8 @@ def test_an_interrupted_force_keeps_the_old_sweep_and_goes_on(signal, tmp_path, 
     assert sorted(path.name for path in tmp_path.iterdir()) == ["out", "road.csv"]
 
 
-def test_an_executor_that_cannot_be_made(signal, tmp_path, capsys):
-    arguments = ["--input", str(signal), "--output", str(tmp_path / "out"), "--vary", "damper.viscous=2000"]
-    assert main([*arguments, "--executor", "json:loads"]) == 2
-    assert "--executor json:loads: TypeError" in capsys.readouterr().err
-
-
 def test_a_varied_parameter_without_effect_is_noted():
     car, road = Car.load("sedan"), Road("B", speed=80, duration=6)
     (note,) = plan_sweep(car, {"front.damper.viscous": [1000, 2000], "rear.damper.viscous": [1000]}, road).notes
-    assert note.startswith("front.damper.viscous=1000: has no effect; it acts only with front.damper.viscous_law")
+    assert note.startswith("front.damper.viscous=1000: has no effect") and "front.damper.viscous_law" in note
     assert not plan_sweep(car, {"front.damper.coulomb_friction": [40, 80]}, road).notes

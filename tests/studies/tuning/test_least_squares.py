@@ -1,5 +1,7 @@
 """Least squares, standard errors and identifiability on a system with closed-form FRFs."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -158,10 +160,7 @@ def test_of_a_pair_with_one_common_effect_one_parameter_is_held():
     assert result.values[held.path] == held.held_at
     assert np.isnan(result.standard_errors[held.path])
     assert held.path not in result.free and result.correlation.shape == (3, 3)
-    assert (
-        f"{held.path}: the data do not determine this parameter apart from {held.partners[0]}: its standard"
-        in held.message()
-    )
+    assert held.path in held.message() and held.partners[0] in held.message()
     # The springs in series are identifiable.
     total = 1.0 / (1.0 / result.values["lower"] + 1.0 / result.values["rim"])
     assert total == pytest.approx(2.5e5, rel=0.02)  # about three standard errors
@@ -200,32 +199,29 @@ def test_progress_is_called():
 
 
 def test_invalid_parameters_and_targets_are_rejected():
-    with pytest.raises(ConfigurationError, match="the parameters to fit are missing"):
-        fit([], [MeasuredMasses()], dict)
-    with pytest.raises(ConfigurationError, match="targets: the measurement is missing"):
-        fit(PARAMETERS, [], dict)
-    with pytest.raises(ConfigurationError, match="lower: given 2 times"):
-        fitted(MeasuredMasses(), (*PARAMETERS, PARAMETERS[0]))
-    with pytest.raises(ConfigurationError, match="colour: has no start"):
-        fitted(MeasuredMasses(), (*PARAMETERS, Range(path="colour", low=1.0, high=9.0)))
-    with pytest.raises(ConfigurationError, match="the data determine no parameter: colour"):
-        fit([Range(path="colour", low=1.0, high=9.0, start=2.0)], [MeasuredMasses()], lambda _: TRUE)
+    colour: dict[str, Any] = {"path": "colour", "low": 1.0, "high": 9.0}
+    one = [MeasuredMasses()]
+    for parameters, targets, message in (
+        ([], one, "parameters"), (PARAMETERS, [], "targets: "), ((*PARAMETERS, PARAMETERS[0]), one, "lower: .*2"),
+        ((*PARAMETERS, Range(**colour)), one, "colour: "),
+    ):  # fmt: skip
+        with pytest.raises(ConfigurationError, match=message):
+            fit(parameters, targets, dict)
+    with pytest.raises(ConfigurationError, match=" colour"):
+        fit([Range(**colour, start=2.0)], one, lambda _: TRUE)
 
 
-def test_a_model_with_bad_residuals_is_rejected():
-    class Broken(MeasuredMasses):
-        def residuals(self, values):
-            return np.full((4, 3), np.nan)
-
-    with pytest.raises(SimulationError, match=r"no finite result at lower=1.6e\+05"):
-        fitted(Broken())
-
-    class Short(MeasuredMasses):
-        def residuals(self, values):
-            return np.ones((1, 2))
-
-    with pytest.raises(ConfigurationError, match="found 2 measured values for 3 parameters"):
-        fitted(Short())
+@pytest.mark.parametrize(
+    ("residuals", "error", "message"),
+    [
+        (np.full((4, 3), np.nan), SimulationError, r"lower=1.6e\+05"),
+        (np.ones((1, 2)), ConfigurationError, "found 2 .*3 parameters"),
+    ],
+)
+def test_a_model_with_bad_residuals_is_rejected(residuals, error, message, monkeypatch):
+    monkeypatch.setattr(MeasuredMasses, "residuals", lambda target, values: residuals)
+    with pytest.raises(error, match=message):
+        fitted(MeasuredMasses())
 
 
 @pytest.mark.parametrize(

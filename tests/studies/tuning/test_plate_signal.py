@@ -55,9 +55,7 @@ def test_a_signal_file_is_read_as_inspect_reads_it(files, run, tmp_path, capsys)
                  "knuckle_fl_acc_z=knuckle_fl_acc_z", "--engine", "reduced", "--quiet", "--json"]  # fmt: skip
     assert tune([*arguments, "--output", str(tmp_path / "unnamed")]) == 3
     said = capsys.readouterr().err
-    assert (
-        f"the names of the columns state no plate; set --map '{MAP[1]}' --map '{MAP[3]}' (columns: 'Stößel VR', "
-    ) in said
+    assert f"--map '{MAP[1]}' --map '{MAP[3]}' (columns: 'Stößel VR', " in said
     assert tune([*arguments, *MAP, "--output", str(tmp_path / "named")]) == 0
     (parameter,) = json.loads(capsys.readouterr().out)["parameters"]
     # The files have nine digits; the filter of the fit does the rest.
@@ -102,7 +100,7 @@ def test_a_head_above_named_columns_is_no_obstacle(run, tmp_path):
     file.write_text("\n".join(["Rig 4", "time [s]\tdisplacement_fl [mm]", *rows]) + "\n")
     np.testing.assert_allclose(read_signal(file).displacement["fl"], run["plate_fl_displacement"], atol=1e-11)
     file.write_text("\n".join(["Rig 4", "time [s]\tstroke_fl [mm]", *rows]) + "\n")
-    with pytest.raises(DataError, match="unknown column 'Rig 4'"):
+    with pytest.raises(DataError, match="'Rig 4'"):
         read_signal(file)
 
 
@@ -112,7 +110,7 @@ def test_plates_beyond_a_shaker_are_accepted_on_request(tmp_path):
     np.savetxt(file, np.column_stack([time, plate, np.cos(time)]), delimiter=",", comments="",
                header="time [s],plate_fl_displacement [m],knuckle_fl_acc_z [m/s2]")  # fmt: skip
     car = Car.load("focus")
-    with pytest.raises(DataError, match="plate fl is displaced by"):
+    with pytest.raises(DataError, match="plate fl "):
         measured_histories(car, file)
     target = measured_histories(car, file, choice=Choice(any_level=True))
     assert target.signal is not None

@@ -71,21 +71,15 @@ def test_emulator_is_exact_for_its_polynomials_and_states_the_error_of_others():
         SUBJECT, "left-out error of an emulator", emulator.left_out[1], np.sqrt(np.mean(np.square(left))), rel=1e-9,
         source="second derivation: fit repeated without each car",
     )  # fmt: skip
-    with pytest.raises(ConfigurationError, match="--samples 7: must be at least 8 for 2 parameters"):
-        fitted_emulator(points[:7], other[:7, None])
-    with pytest.raises(ConfigurationError, match="--samples 4: must be at least 5 for 1 parameters"):
-        fitted_emulator(points[:4, :1], other[:4, None])
+    for count, parameters in ((7, 2), (4, 1)):
+        with pytest.raises(ConfigurationError, match=f"--samples {count}: .* {count + 1} for {parameters} "):
+            fitted_emulator(points[:count, :parameters], other[:count, None])
     assert fitted_emulator(points[:5, :1], other[:5, None]).powers.tolist() == [[0], [1]]  # 2.5 cars a term
 
 
 def linear_car(noise=0.2, left_out=0.0):
     """Return an emulator whose cells are linear in two parameters."""
-    cells = ResponseCells(
-        targets=(),
-        weights=(),
-        data=SLOPES @ [0.1, -0.2],
-        noise=np.full(len(SLOPES), noise),
-    )
+    cells = ResponseCells(targets=(), weights=(), data=SLOPES @ [0.1, -0.2], noise=np.full(len(SLOPES), noise))
     emulator = Emulator(
         powers=np.array([[1, 0], [0, 1]]), coefficients=SLOPES.T.copy(), left_out=np.full(len(SLOPES), left_out)
     )
@@ -177,20 +171,20 @@ def test_errors_of_emulator_and_model_widen_the_intervals():
 
 
 def test_intervals_cover_hidden_values():
-    """Noise and a discrepancy of known size in 16 synthetic cars drawn from the prior."""
+    """Noise and a discrepancy of known size in 10 synthetic cars drawn from the prior."""
     pytest.importorskip("emcee")
     random = np.random.default_rng(3)
     car, inside = linear_car(0.05), []
-    for seed in range(16):
+    for seed in range(10):
         hidden = random.uniform(-1.0, 1.0, 2)
         data = SLOPES @ hidden + random.standard_normal(len(SLOPES)) * np.hypot(0.05, 0.1)
         low, _, high = posterior_of(car, data=data, discrepancy=0.1, seed=seed).interval()
         truth = values_at(PARAMETERS, hidden[None])[0]
         inside.append((low <= truth) & (truth <= high))
     validated(
-        SUBJECT, "share of hidden values in the 90 % intervals of 16 posteriors, both parameters", np.mean(inside), 0.9,
-        # Three binomial standard deviations of 32 values.
-        abs=3.0 * np.sqrt(0.9 * 0.1 / 32.0), source="closed form: probability of the intervals",
+        SUBJECT, "share of hidden values in the 90 % intervals of 10 posteriors, both parameters", np.mean(inside), 0.9,
+        # Three binomial standard deviations of 20 values.
+        abs=3.0 * np.sqrt(0.9 * 0.1 / 20.0), source="closed form: probability of the intervals",
     )  # fmt: skip
 
 
@@ -199,13 +193,14 @@ def test_evidence_decides_only_above_ten():
     right = posterior_of(linear_car(0.1))
     closer = dataclasses.replace(right, log_evidence=(right.log_evidence[0] - 1.0, 0.01))
     wrong = dataclasses.replace(right, log_evidence=(right.log_evidence[0] - 3.0, 0.01))
-    assert verdict(("a", right), ("b", closer)).startswith(
-        "the data do not decide between a and b: a 2.72 times as probable as b"
-    )
-    assert verdict(("a", wrong), ("b", right)) == "b 20.1 times as probable as a"
-    assert "evidence: the data do not" in posterior_sentences([("a", right), ("b", closer)])[-1]
-    far = posterior_of(linear_car(0.1), data=np.array([1.0, 1.0, -1.0, -1.0, 1.0, 1.0]), discrepancy=0.0)
-    assert any("standard deviations (RMS), more than" in text for text in posterior_sentences([("a", far)]))
+    undecided, decided = verdict(("a", right), ("b", closer)), verdict(("a", wrong), ("b", right))
+    assert "a is 2.72 times" in undecided and "10 times" in undecided
+    assert "b is 20.1 times" in decided and "10 times" not in decided
+    assert undecided in posterior_sentences([("a", right), ("b", closer)])[-1]
+    far = dataclasses.replace(right, misfit=3.0)
+    assert [any("--discrepancy" in text for text in posterior_sentences([("a", each)])) for each in (far, right)] == [
+        True, False
+    ]  # fmt: skip
 
 
 def frf_target(coherence):
@@ -230,13 +225,13 @@ def test_cells_and_their_noise():
     one = (1.0 - 0.9) / (2.0 * 0.9 * 9.0) + 0.005**2
     assert cells.noise[0] == pytest.approx(np.sqrt(one / lines))
     np.testing.assert_allclose(cells.of([100.0 * np.ones_like(cells.targets[0].data.response)]), np.log(100.0))
-    with pytest.raises(DataError, match="the FRFs have neither coherence nor random error"):
+    with pytest.raises(DataError, match="coherence"):
         response_cells([frf_target(1.0)])
-    with pytest.raises(DataError, match="--posterior needs measured FRFs; add --frf FILE"):
+    with pytest.raises(DataError, match=r"--posterior .*--frf FILE"):
         response_cells([])
 
 
 def test_missing_emcee_is_named(monkeypatch):
     monkeypatch.setitem(sys.modules, "emcee", None)
-    with pytest.raises(MissingPartError, match=r"posterior needs emcee, .*vehicle-on-shaker\[posterior\]"):
+    with pytest.raises(MissingPartError, match=r"emcee.*vehicle-on-shaker\[posterior\]"):
         posterior_of(linear_car())

@@ -31,10 +31,7 @@ BOUNDS = (
     "front.damper.viscous=1000:5000",
     "front.bushings.tyre.stiffness.z=1.5e5:4e5",
 )
-CHANNELS = {
-    "knuckle_fl_acc_z": ("Rad VL z", "g", 9.80665),
-    "seat_rail_acc_z": ("Sitzschiene z", "m/s2", 1.0),
-}
+CHANNELS = {"knuckle_fl_acc_z": ("Rad VL z", "g", 9.80665), "seat_rail_acc_z": ("Sitzschiene z", "m/s2", 1.0)}
 MAP = [word for name, (label, *_) in CHANNELS.items() for word in ("--map", f"{name}={label}")]
 NOISE, SPEED, LENGTH = 0.03, 72.0, 11.0
 SUBJECT = "Sweeps, tuning and optimisation"
@@ -165,32 +162,25 @@ def test_classes_of_a_linear_response():
         source="closed form: known noise, 396 lines of two classes",
     )  # fmt: skip
     assert np.mean(target.data.random_error[0]) > 2.0 * np.mean(target.data.random_error[1])
-    with pytest.raises(DataError, match=r"20 classes need 160, 80.5 s: use a longer record"):
-        level_target(histories, "x", x, x[None], levels=20, window=1.0, band=(5.0, 45.0), spacing=1.0)
-    with pytest.raises(ConfigurationError, match="--levels 1: must be at least 2"):
-        level_target(histories, "x", x, x[None], levels=1, window=1.0, band=(5.0, 45.0), spacing=1.0)
+    for classes, error, message in ((20, DataError, r"20 .*160, 80.5 s"), (1, ConfigurationError, "--levels 1: .*2")):
+        with pytest.raises(error, match=message):
+            level_target(histories, "x", x, x[None], levels=classes, window=1.0, band=(5.0, 45.0), spacing=1.0)
 
 
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["--speed", "80"], "--speed: belongs to --road; add --road FILE"),
-        (["--road", "C"], "--road C: the speed is missing; add --speed KM/H"),
-        (["--road", "C", "--speed", "80", "--signal", "low.csv"], "--road C and --signal low.csv exclude each other"),
-        (["--road", "nowhere", "--speed", "80"], "--road nowhere: unknown; give a class of ISO 8608"),
-        (["--reference", "knuckle_fl_acc_z"], "belongs to --levels N"),
-        (
-            ["--road", "PROFILE", "--speed", "72", "--levels", "2"],
-            "9.001 s contain 3 windows of 4 s; 2 classes need 16",
-        ),
-        (
-            ["--road", "PROFILE", "--speed", "72", "--levels", "2", "--window", "1", "--reference", "plate_xx"],
-            "--reference plate_xx: must be one of plate_fr_displacement",
-        ),
+        ("--speed 80", "--speed: "),
+        ("--road C", "--road C: "),
+        ("--road C --speed 80 --signal low.csv", "--road C and --signal low.csv"),
+        ("--road nowhere --speed 80", "--road nowhere: "),
+        ("--reference knuckle_fl_acc_z", "--levels N"),
+        ("--road PROFILE --speed 72 --levels 2", "9.001 s contain 3 windows of 4 s; 2 classes need 16"),
+        ("--road PROFILE --speed 72 --levels 2 --window 1 --reference plate_xx", "--reference plate_xx: "),
     ],
 )
 def test_refused_by_name(folder, tmp_path, capsys, arguments, message):
-    words = [str(folder / "profile.csv") if word == "PROFILE" else word for word in arguments]
+    words = [str(folder / "profile.csv") if word == "PROFILE" else word for word in arguments.split()]
     options = [*MAP, "--parameters", BOUNDS[0], "--engine", "reduced", "--output", str(tmp_path / "tune")]
     assert main(["focus_road", "--record", str(folder / "drive.mf4"), *words, *options]) in (2, 3)
     assert message in capsys.readouterr().err

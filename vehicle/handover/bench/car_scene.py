@@ -28,7 +28,6 @@ class CarScene:
 
     Args:
         server: viser server.
-        car: the car.
         rig: draw plates, shakers and stands.
     """
 
@@ -45,7 +44,7 @@ class CarScene:
         """Show another car with the same parts; only shapes that differ are sent.
 
         Returns:
-            True if its geometry differs from that of the last car.
+            True if its geometry differs from the last car.
         """
         if car.geometry is self._car:
             return False

@@ -160,9 +160,6 @@ def excerpt(signal: Signal, begin: float, seconds: float) -> tuple[Signal, float
     Args:
         begin: begin of the evaluated part [s].
         seconds: length of the evaluated part [s]; less at the end of the signal.
-
-    Raises:
-        ConfigurationError: less than `SHORTEST` is left after `begin`.
     """
     last = min(begin + seconds, signal.duration)
     if not 0.0 <= begin <= signal.duration - SHORTEST + 1e-9:

@@ -51,7 +51,6 @@ def table_figures(vehicle: Vehicle, *, obstacle: bool) -> dict[str, str]:
     """Return the rows of the table, names to figures of the catalogue.
 
     Args:
-        vehicle: the car.
         obstacle: True for the crossing of an obstacle.
     """
     rows = {}

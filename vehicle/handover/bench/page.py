@@ -72,9 +72,9 @@ class Page:
                     self.add_slider(path)
         self._added = gui.add_folder("Any parameter", expand_by_default=False)
         with self._added:
-            search = gui.add_text("search", "", hint="words in path or meaning, for example strut top")
+            search = gui.add_text("search", "", hint="words of the path or the meaning, e.g. strut top")
             paths = gui.add_dropdown(
-                "parameter", self._matches(""), hint="points and stiffnesses end with an axis, for example .z"
+                "parameter", self._matches(""), hint="points and stiffnesses end with an axis, e.g. .z"
             )
             add = gui.add_button("Add slider")
         with gui.add_folder("Picture"):
@@ -96,7 +96,7 @@ class Page:
             button.on_click(lambda _, write=write: self._guarded(lambda: self._write(write)))
 
     def _on(self, handle: Any, act: Callable[[], None]) -> None:
-        """Call a function after each change of an element in a browser, not after those of this program."""
+        """Call a function after each change of an element in a browser, not after changes by this program."""
         handle.on_update(lambda event: None if event.client_id is None else self._guarded(act))
 
     def _matches(self, text: str) -> tuple[str, ...]:
@@ -224,10 +224,7 @@ class Page:
             self._note.content = ""
             if present.warnings:
                 warnings = "; ".join(text.removesuffix(REMEDY) for text in present.warnings)
-                self._say(
-                    f"the fast model is not valid here: {warnings}; save the vehicle file and run it with "
-                    "--engine mujoco"
-                )
+                self._say(f"outside the valid range: {warnings}; save the vehicle file and run it with --engine mujoco")
 
     def _words(self, row: str) -> str:
         """Return the name of a row; a damper without friction is fast, and does not slip, so its velocity is named."""

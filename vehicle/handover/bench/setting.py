@@ -48,8 +48,8 @@ class Setting:
 def settings(car: Car) -> dict[str, Setting]:
     """Return the numbers of a car that a slider can change, by path, in the order of the vehicle file.
 
-    Vectors with three components, as points, stiffnesses and damping, are three settings. Tables of curves, names,
-    counts, truth values and steps of the solver have none.
+    A vector of three components (e.g. a point) is three settings. Tables of curves, names, counts, truth
+    values and steps of the solver have none.
     """
     return {
         setting.path: setting

@@ -32,11 +32,6 @@ LARGER = EXAGGERATION
 class Stage:
     """Scene of a car on a viser server.
 
-    Args:
-        server: viser server.
-        car: the car.
-        drive: input of the bench.
-
     Attributes:
         car_scene: nodes of the car.
         slower: the motion is shown this many times slower.

@@ -18,7 +18,7 @@ MOST_FOUND = 50
 
 
 class BenchState:
-    """Car under sliders, its numbers B, and those of the reference A.
+    """Car under sliders with its numbers B, and the numbers of the reference A.
 
     Args:
         car: the car; the numbers are relative to it.
@@ -28,7 +28,7 @@ class BenchState:
     Attributes:
         car: base car, with the overrides of the drive.
         drive: input of the bench.
-        settings: all numbers that a slider can change, by path; without those that the input sets, as the speed.
+        settings: all numbers that a slider can change, by path; without those that the input sets (the speed).
         changes: path to value of the changed parameters.
         present, reference: car and numbers of B and A.
         message: error of the last change; empty without an error.
@@ -69,9 +69,6 @@ class BenchState:
         """Return a setting, whose range at its first use is narrowed to values with which the car can be built.
 
         A moment of inertia, for example, cannot exceed the sum of the two others.
-
-        Raises:
-            ConfigurationError: an unknown path, or a number of which the car accepts no other value.
         """
         if path not in self.settings:
             raise ConfigurationError(f"bench: found {path[:80]!r}, must be the path of a number of the car")
@@ -110,11 +107,7 @@ class BenchState:
         return rounded if between and rounded != setting.value else inside
 
     def change(self, path: str, value: float) -> None:
-        """Change a number of the car; `update` computes.
-
-        Raises:
-            ConfigurationError: an unknown path, or a value outside the range of its slider.
-        """
+        """Change a number of the car; `update` computes."""
         setting = self.setting(path)
         if not setting.accepts(value):
             raise ConfigurationError(

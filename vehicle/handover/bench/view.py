@@ -69,9 +69,6 @@ class View:
         """Compute and show the chosen motion of a car; the caller holds the lock of the callbacks of MuJoCo.
 
         Another car keeps the chosen mode: that with the largest modal assurance criterion to the last.
-
-        Raises:
-            ConfigurationError: an unknown choice, or a car without modes.
         """
         if self.kind.value != RUN and self.kind.value not in STATES:
             raise ConfigurationError(f"picture of {self.kind.value[:80]!r}: must be {', '.join((RUN, *STATES))}")

@@ -1,6 +1,6 @@
 """A car as the file of its FMU: the record Embedded of the core, with the tables that the reduced engine marches.
 
-The layout is that of `vehicle/core/source/layout.h`; runtime/car_data.c reads it. The tables belong to a car at rest at
+Layout: `vehicle/core/source/layout.h`; runtime/car_data.c reads it. The tables belong to a car at rest at
 a fixed time step; rows over the states at rest and over laws let the runtime start over plates at any height.
 """
 
@@ -23,14 +23,7 @@ from vehicle.engines.reduced.pole_model import PoleModel, pole_model
 from vehicle.engines.reduced.step_factors import CarFactors, car_factors
 from vehicle.engines.reduced.table_layout import DOUBLE, TILE, aligned_table
 from vehicle.errors import ConfigurationError
-from vehicle.handover.fmu.output_rows import (
-    Output,
-    OutputRows,
-    Watched,
-    car_outputs,
-    joined_rows,
-    watched_outputs,
-)
+from vehicle.handover.fmu.output_rows import Output, OutputRows, Watched, car_outputs, joined_rows, watched_outputs
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.model.parameters.semi_active_damper import FMU
 
@@ -132,9 +125,6 @@ def numbers_with(
         read: the outputs and their rows.
         watched: quantities that must stay within limits.
         pushed: pole model whose inputs are applied forces, and these forces, see `input_forces`; none by default.
-
-    Raises:
-        ConfigurationError: the car has no damper, a law of the user's own, or a controller in an FMU.
     """
     composition = car.vehicle.composition.dampers
     laws = [damper.law for damper in composition]

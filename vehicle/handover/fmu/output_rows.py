@@ -91,9 +91,6 @@ def car_outputs(car: Car, channels: Sequence[str], model: PoleModel | None = Non
     Args:
         channels: names of channels; those that are inputs are left out.
         model: pole model of the car whose inputs are applied forces; without forces by default.
-
-    Raises:
-        ConfigurationError: no output is left.
     """
     vehicle, model = car.vehicle, model or car.poles.without_forces()
     system, d = model.matrices.system, len(vehicle.composition.dampers)
@@ -245,7 +242,7 @@ def motion_rows(car: Car, rows: Vector) -> OutputRows:
 def watched_outputs(car: Car, model: PoleModel | None = None) -> Watched:
     """Return the watched motions of a car, their limits, and a notice for each: linear tyres, then rotations.
 
-    The limits are those of `vehicle.engines.reduced.validity`, for each axis of a rotation.
+    The limits are from `vehicle.engines.reduced.validity`, for each axis of a rotation.
 
     Args:
         model: see `car_outputs`.

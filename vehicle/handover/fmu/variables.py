@@ -1,6 +1,6 @@
 """Variables of an FMU: names, units, value references, first values.
 
-Value references are those of runtime/instance.c.
+Value references are defined in runtime/instance.c.
 """
 
 from collections.abc import Sequence

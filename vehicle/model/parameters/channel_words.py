@@ -29,7 +29,7 @@ def channel_named(text: str, names: Iterable[str]) -> str:
     """Return the channel with a name, or the channel whose name contains all words and the fewest further words.
 
     Args:
-        text: name of a channel, or words in any order, as "seat rail z" or "knuckle front left vertical".
+        text: name of a channel, or words in any order, for example "seat rail z" or "knuckle front left vertical".
         names: names of the channels.
 
     Raises:

@@ -1,4 +1,4 @@
-"""Channels that a run records besides those of every run."""
+"""Channels that a run records on request."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def recorded_channels(text: str, vehicle: Vehicle) -> tuple[str, ...]:
-    """Return the channels that a run records: the default channels, then those of a text.
+    """Return the channels that a run records: the default channels, then the channels of a text.
 
     Args:
         text: "loads", "all", or names separated by commas.

@@ -29,8 +29,8 @@ def vehicle_file(path: Path | str) -> Path:
     path = Path(path)
     if path.suffix == ".json":
         raise ConfigurationError(
-            f"{path}: is no vehicle file: read are TOML files of cars, their folders and the names of shipped cars "
-            f"({', '.join(CARS)}), and in a vehicle file property files of Adams Car, for example curve = FILE.dpr"
+            f"{path}: is not a vehicle file; give a TOML file of a car, its folder, or a shipped car "
+            f"({', '.join(CARS)}). A property file of Adams Car belongs in a vehicle file, for example curve = FILE.dpr"
         )
     if path.is_dir() and (path / "vehicle.toml").is_file():
         return path / "vehicle.toml"

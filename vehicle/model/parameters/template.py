@@ -16,7 +16,7 @@ from typing import Any
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.quantity import NAME_PATTERN
 from vehicle.model.parameters.template_file import LISTS, read_template_file
-from vehicle.model.parameters.toml_file import build, nearest
+from vehicle.model.parameters.toml_file import build, did_you_mean
 from vehicle.model.parameters.topology import RolePart, SteeringAxis, Template, Wheel
 
 SHIPPED = Path(str(resources.files("vehicle.model"))) / "templates"
@@ -37,7 +37,7 @@ def read_template(name: str, options: Iterable[str], folders: Iterable[Path]) ->
     Args:
         name: name of the file, without its extension.
         options: tables of the vehicle file that enable a `use` with `when`.
-        folders: folders searched before that of the package.
+        folders: folders searched before the package.
 
     Raises:
         ConfigurationError: a missing template, an unknown key, or a name that does not exist; with file and table.
@@ -48,12 +48,7 @@ def read_template(name: str, options: Iterable[str], folders: Iterable[Path]) ->
 
 
 def own_templates(names: Iterable[str], folders: Iterable[Path]) -> list[Path]:
-    """Return the user files of templates and of the templates that they include.
-
-    Args:
-        names: names of the templates.
-        folders: see `read_template`.
-    """
+    """Return the user files of templates and of the templates that they include."""
     files, listed = dict[str, Path](), list(names)
     for name in listed:
         path = next(folder / f"{name}.toml" for folder in (*folders, SHIPPED) if (folder / f"{name}.toml").is_file())
@@ -106,8 +101,7 @@ def _merged(name: str, options: frozenset[str], searched: tuple[Path, ...], abov
             else "the file is neither in the folder of the vehicle file nor in the package"
         )
         raise ConfigurationError(
-            f"template {name!r}: {reason}; the most similar name is {nearest(name, set(names) - {name})}; "
-            f"templates are {', '.join(names)}"
+            f"template {name!r}: {reason}{did_you_mean(name, set(names) - {name})} Templates are {', '.join(names)}"
         )
     template = read_template_file(path)
     chosen = [use for use in template.pop("use") if use.get("when") is None or use["when"] in options]
@@ -193,9 +187,7 @@ def _check(template: Template, raw: Mapping[str, Any]) -> None:
     for port, part in template.port_defaults.items():
         for word, allowed in ((port, {*template.ports}), (part, parts - {port})):
             if word not in allowed:
-                raise ConfigurationError(
-                    f"port_defaults.{port}: unknown name {word!r}; the most similar is {nearest(word, allowed)}"
-                )
+                raise ConfigurationError(f"port_defaults.{port}: unknown name {word!r}{did_you_mean(word, allowed)}")
     used: set[str] = set()
     names_of: dict[str, Collection[str]] = {"joint": joints, **dict.fromkeys(_PARTS, parts)}
     names_of |= dict.fromkeys(_POINTS, template.hardpoints)
@@ -213,10 +205,9 @@ def _check(template: Template, raw: Mapping[str, Any]) -> None:
                         f"{where}.name: found {word!r}, must consist of letters, digits, '_', '.', '-'"
                     )
                 if allowed is not None and head not in allowed:
-                    besides = f"; every template also has {', '.join(FREE_PORTS)}" if allowed is parts else ""
-                    raise ConfigurationError(
-                        f"{where}.{key}: unknown name {word!r}; the most similar is {nearest(head, allowed)}{besides}"
-                    )
+                    besides = f" Every template also has {', '.join(FREE_PORTS)}" if allowed is parts else ""
+                    near = did_you_mean(head, allowed)
+                    raise ConfigurationError(f"{where}.{key}: unknown name {word!r}{near}{besides}")
                 if allowed is not None and side not in ("", "left", "right", "middle"):
                     raise ConfigurationError(f"{where}.{key}: found side {side!r}, must be left, right or middle")
                 if allowed is template.hardpoints:

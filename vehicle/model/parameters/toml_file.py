@@ -64,8 +64,7 @@ def build(cls: type[T], table: Mapping[str, Any], path: str = "") -> T:
     hints, fields = type_hints(cls), _fields(cls)  # type: ignore[arg-type]
     for key in table:
         if key not in fields:
-            near = f"the most similar known name is {nearest(key, fields)}"
-            raise ConfigurationError(f"{_join(path, key)}: unknown parameter; {near}")
+            raise ConfigurationError(f"{_join(path, key)}: unknown parameter{did_you_mean(key, fields)}")
     values: dict[str, Any] = {}
     missing: list[dataclasses.Field[Any]] = []
     for name, entry in fields.items():
@@ -214,9 +213,9 @@ def _number(value: Any, path: str) -> float:
         raise ConfigurationError(f"{path}: found a whole number beyond 1.8e308, must be a finite number") from None
 
 
-def nearest(name: str, known: Iterable[str]) -> str:
-    """Return the known name with the most similar spelling; "nothing" if no name is known."""
-    return next(iter(difflib.get_close_matches(name, list(known), n=1, cutoff=0.0)), "nothing")
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """Return "; did you mean KNOWN?" with the known name of the most similar spelling; empty if no name is known."""
+    return "".join(f"; did you mean {near}?" for near in difflib.get_close_matches(name, list(known), n=1, cutoff=0.0))
 
 
 def copy_table(table: Mapping[str, Any]) -> dict[str, Any]:

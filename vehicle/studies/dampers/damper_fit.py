@@ -6,9 +6,9 @@
 k_g: over the parameter itself). A law grows by one part at a time (`DamperLaw.larger`), and is pursued while its error
 on tests left out falls: each candidate is fitted without one test in turn, and judged by that test. In the end the law
 with the fewest parameters within one standard error of the best is chosen, by the logarithms of the ratios of their
-errors, so that all tests count alike. With less than three tests, parts of the records are left out in place of tests.
+errors, so that all tests count alike. With less than three tests, parts of the records are left out instead of tests.
 
-The standard errors are those of White's estimator with blocks of a cycle (residuals within a block may be correlated in
+The standard errors are from White's estimator with blocks of a cycle (residuals within a block may be correlated in
 any way), or of independent residuals of equal size in each test where these are larger:
 
     cov = H^-1 (sum over blocks of g_b g_b') H^-1 B/(B - 1),   H = J'J,   g_b = J_b' r_b.
@@ -51,7 +51,7 @@ BLOCKS = 8
 """Blocks of a test in the comparison of two laws."""
 
 FLOOR = 0.01
-"""Error over the standard deviation of the force that is added in quadrature to that of each block: laws that describe
+"""Error over the standard deviation of the force, added in quadrature to the error of each block: laws that describe
 a damper within this are alike."""
 
 LARGEST = 1e6
@@ -75,29 +75,22 @@ RANGES = {
     "series_stiffness": (1e4, 1e9),
     "gas_force": (-1e5, 1e5),
 }
-"""Ranges of the parameters in SI units, within those of the vehicle file."""
+"""Ranges of the parameters in SI units, within the ranges of the vehicle file."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class DamperFit:
-    """A law fitted to tests.
+    """A law fitted to tests."""
 
-    Attributes:
-        law: parts of the law.
-        parameters: in the order of `law.parameters`, SI units, velocities as widths of segments; (p,).
-        errors: standard errors of `values`; (p,).
-        fitted: RMS error over the standard deviation of the force, settled part of each test by its weights; (tests,).
-        whole: that of all samples of the record; (tests,).
-        left_out: the same of the settled part of each test, by the fits without that test; NaN if not computed.
-        blocks: mean squares of the errors left out and of `FLOOR`, by blocks; (b,).
-    """
-
-    law: DamperLaw
-    parameters: Vector
-    errors: Vector = field(default_factory=lambda: np.zeros(0))
+    law: DamperLaw  # parts of the law
+    parameters: Vector  # in the order of `law.parameters`, SI units, velocities as widths of segments; (p,)
+    errors: Vector = field(default_factory=lambda: np.zeros(0))  # standard errors of `values`; (p,)
+    # RMS error over the standard deviation of the force, settled part of each test by its weights; (tests,)
     fitted: Vector = field(default_factory=lambda: np.zeros(0))
-    whole: Vector = field(default_factory=lambda: np.zeros(0))
+    whole: Vector = field(default_factory=lambda: np.zeros(0))  # error over all samples of the record; (tests,)
+    # the same of the settled part of each test, by the fits without that test; NaN if not computed
     left_out: Vector = field(default_factory=lambda: np.zeros(0))
+    # mean squares of the errors left out and of `FLOOR`, by blocks; (b,)
     blocks: Vector = field(default_factory=lambda: np.zeros(0))
 
     @property
@@ -287,9 +280,6 @@ def choose_law(
 
     Args:
         progress: called with the number of compared laws.
-
-    Raises:
-        DataError: no test.
     """
     if not tests:
         raise DataError("the tests are missing; name at least one file with a damper test")
@@ -322,7 +312,7 @@ def choose_law(
 
 
 def _better(fit: DamperFit, other: DamperFit, tests: int) -> bool:
-    """True if the errors of a fit on what was left out are smaller than those of another by over one standard error.
+    """True if the errors of a fit on left-out data are smaller than in another fit by over one standard error.
 
     A difference below `RELEVANT` does not count.
 

@@ -40,19 +40,14 @@ FASTEST_GROWTH = 2.0
 
 
 class Motion(NamedTuple):
-    """Motion of a damper.
+    """Motion of a damper."""
 
-    Attributes:
-        time, displacement, velocity: [s], [m], [m/s]; (n,).
-        first_force: force at the first sample [N].
-        parts: steps of the solution of a series stiffness from each sample to the next, on the cubic through
-            displacements and velocities; (n - 1,), or 1 for all.
-    """
-
-    time: Vector
+    time: Vector  # time, displacement, velocity: [s], [m], [m/s]; (n,)
     displacement: Vector
     velocity: Vector
-    first_force: float
+    first_force: float  # force at the first sample [N]
+    # steps of the solution of a series stiffness from each sample to the next, on the cubic through displacements and
+    # velocities; (n - 1,), or 1 for all
     parts: Counts | int = 1
 
     def refined(self) -> tuple[Motion, Counts]:

@@ -27,7 +27,7 @@ SMOOTHING = 1e4
 """Smoothing eps [s/m] of Coulomb and Stribeck friction in the lines: full friction from 0.16 mm/s."""
 
 SOFT_STEP = np.pi / (2.0 * SMOOTHING)
-"""Velocity [m/s] at which friction reaches its limit in a fit without a series stiffness, that of the lines."""
+"""Velocity [m/s] at which friction reaches its limit in a fit without a series stiffness, as in the lines."""
 
 STEP = 1e-6
 """The same with a series stiffness. With 0.16 mm/s the damper would creep by a tenth of the deflection of a machine of
@@ -45,23 +45,14 @@ SIDES = ("rebound", "bump")
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class DamperLaw:
-    """Parts of a law.
+    """Parts of a law."""
 
-    Attributes:
-        bends: breakpoints of the curve on each side.
-        own_sides: bump and rebound have different slopes and breakpoints.
-        friction: "", "coulomb", "stribeck" or "presliding".
-        elements: Jenkins elements of presliding.
-        series: a stiffness in series with the damper.
-        gas_stiffness: a stiffness parallel to the damper.
-    """
-
-    bends: int = 0
-    own_sides: bool = False
-    friction: str = ""
-    elements: int = 0
-    series: bool = False
-    gas_stiffness: bool = False
+    bends: int = 0  # breakpoints of the curve on each side
+    own_sides: bool = False  # bump and rebound have different slopes and breakpoints
+    friction: str = ""  # "", "coulomb", "stribeck" or "presliding"
+    elements: int = 0  # Jenkins elements of presliding
+    series: bool = False  # a stiffness in series with the damper
+    gas_stiffness: bool = False  # a stiffness parallel to the damper
 
     @property
     def sides(self) -> tuple[str, ...]:
@@ -121,26 +112,16 @@ class DamperLaw:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class DamperValues:
-    """Parameters of a law as numbers of its parts.
+    """Parameters of a law as numbers of its parts."""
 
-    Attributes:
-        slopes: c_j of rebound and bump, from rest outwards [N s/m]; (2, k + 1).
-        widths: widths of the inner segments [m/s]; (2, k).
-        stiffness, limit: Jenkins elements [N/m], [N]; (m,).
-        friction: Coulomb or Stribeck friction, its limit at rest [N], and vs [m/s].
-        offset: F_0 [N].
-        gas_stiffness: k_g [N/m].
-        series: K [N/m]; infinite without.
-    """
-
-    slopes: Vector
-    widths: Vector
-    stiffness: Vector
+    slopes: Vector  # c_j of rebound and bump, from rest outwards [N s/m]; (2, k + 1)
+    widths: Vector  # widths of the inner segments [m/s]; (2, k)
+    stiffness: Vector  # stiffness, limit: Jenkins elements [N/m], [N]; (m,)
     limit: Vector
-    friction: tuple[float, float, float]
-    offset: float
-    gas_stiffness: float
-    series: float
+    friction: tuple[float, float, float]  # Coulomb or Stribeck friction, its limit at rest [N], and vs [m/s]
+    offset: float  # F_0 [N]
+    gas_stiffness: float  # k_g [N/m]
+    series: float  # K [N/m]; infinite without
 
 
 def values_of(law: DamperLaw, parameters: Vector) -> DamperValues:
@@ -165,7 +146,7 @@ def values_of(law: DamperLaw, parameters: Vector) -> DamperValues:
 
 
 def plain_parameters(law: DamperLaw, parameters: Vector) -> Vector:
-    """Return the parameters with velocities of breakpoints in place of the widths of their segments; (p,)."""
+    """Return the parameters with velocities of breakpoints instead of the widths of their segments; (p,)."""
     plain = parameters.copy()
     names = list(law.parameters)
     for side in law.sides:

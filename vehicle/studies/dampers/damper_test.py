@@ -63,27 +63,17 @@ LEAST_SAMPLES = 50
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DamperTest:
-    """Record of a test, positive in extension.
+    """Record of a test, positive in extension."""
 
-    Attributes:
-        name: name of the file without its ending.
-        time: times [s]; (n,).
-        displacement, velocity, force: measured motion [m], [m/s] and force [N]; (n,).
-        waveform: of the displacement, with the samples that are fitted.
-        conditions: name of a condition to its value.
-        notices: messages on what was done to the record.
-        coarse: True for means over samples, see `averaged`.
-    """
-
-    name: str
-    time: Vector
-    displacement: Vector
+    name: str  # name of the file without its ending
+    time: Vector  # times [s]; (n,)
+    displacement: Vector  # displacement, velocity, force: measured motion [m], [m/s] and force [N]; (n,)
     velocity: Vector
     force: Vector
-    waveform: Waveform
-    conditions: Mapping[str, float]
-    notices: tuple[str, ...]
-    coarse: bool = False
+    waveform: Waveform  # of the displacement, with the samples that are fitted
+    conditions: Mapping[str, float]  # name of a condition to its value
+    notices: tuple[str, ...]  # messages on what was done to the record
+    coarse: bool = False  # True for means over samples, see `averaged`
 
     @cached_property
     def motion(self) -> Motion:
@@ -170,7 +160,7 @@ def read_test(path: Path, choice: Choice | None = None, *, compression: bool = F
             a channel is the channel with its name, or the only channel of its quantity.
         compression: displacement, velocity and force of the file are positive in compression.
         conditions: name of a condition to a number, or to "channel:NAME", whose mean value is taken.
-        pattern: pattern of the file name with conditions in braces, as "*Hz{current}A".
+        pattern: pattern of the file name with conditions in braces, for example "*Hz{current}A".
 
     Raises:
         ConfigurationError: the file does not exist, a wrong condition or pattern.
@@ -226,7 +216,7 @@ def _headless(measurement: Measurement, choice: Choice, notices: list[str]) -> C
             largest = float(np.max(np.abs(columns[int(channels["displacement"]) - 1].values)))
             if largest <= LONGEST_STROKE:
                 raise DataError(
-                    f"{measurement.path}: is the displacement, up to {number(largest)}, in m or mm? The file has "
+                    f"{measurement.path}: the displacement, up to {number(largest)}, may be in m or mm: the file has "
                     "no header; set --unit displacement=m or --unit displacement=mm"
                 )
         units = assumed | units
@@ -238,7 +228,7 @@ def _headless(measurement: Measurement, choice: Choice, notices: list[str]) -> C
 
 
 def _units_by_role(measurement: Measurement, channels: Mapping[str, str], units: Mapping[str, str]) -> dict[str, str]:
-    """Return the units by the roles of the channels, those of the number or the name of a column among them."""
+    """Return the units by the roles of the channels; a column may be given by its role, number or name."""
     by_role = dict(units)
     for role, column in channels.items():
         index = pick(measurement, column)
@@ -264,14 +254,14 @@ def _complete(measurement: Measurement, choice: Choice) -> Choice:
         elif role != "velocity":
             listed = ", ".join(f"{i + 1} {each.name!r} [{each.unit}]" for i, each in enumerate(measurement.channels))
             raise DataError(
-                f"{measurement.path}: which channel is the {role}? {len(matches) or 'no'} channels fit; set "
-                f"--channel {role}=NAME, and --unit {role}=UNIT if the file has no unit; the file has {listed}"
+                f"{measurement.path}: {len(matches) or 'no'} channels can be the {role}; choose one with --channel "
+                f"{role}=NAME, and --unit {role}=UNIT if the file has no unit. The file has {listed}"
             )
     units = _units_by_role(measurement, channels, choice.units)
     unknown = next((name for name in units if name not in ("", "time", *ROLES)), None)
     if unknown is not None:
         raise ConfigurationError(
-            f"--unit {unknown}={units[unknown]}: {unknown!r} is neither a column of the test nor one of time, "
+            f"--unit {unknown}={units[unknown]}: no channel {unknown!r}; choose a column of the test, or time, "
             f"{', '.join(ROLES)}"
         )
     return dataclasses.replace(choice, channels=channels, units=units)

@@ -13,10 +13,10 @@ from vehicle.studies.dampers.damper_law import EXPONENT, SMOOTHING, values_of
 from vehicle.studies.dampers.fitted_damper import FittedDamper
 
 SLIP = 0.006
-"""Velocity above which a damper counts as slipping [m/s], that of the shipped cars; no test shows it."""
+"""Velocity above which a damper counts as slipping [m/s], as in the shipped cars; no test shows it."""
 
 POOR = 0.2
-"""RMS error over the standard deviation of the force above which a fit is called poor: twice that of a good law."""
+"""RMS error over the standard deviation of the force above which a fit is called poor: twice that in a good law."""
 
 SHOWN_LAWS = 5
 """Number of laws in the summary."""
@@ -74,7 +74,7 @@ def vehicle_lines(fitted: FittedDamper) -> str:
             "# eye, oil and machine together. It belongs to the mount of the rod, 1/K = 1/K_mount + 1/K_series:",
             f"# [AXLE.bushings.MOUNT] stiffness.z = {_short(values.series)} where the eye of the test is the mount",
         ]
-    return "\n".join(lines + [f"# {sentence}" for sentence in fitted.left_open()]) + "\n"
+    return "\n".join(lines + [f"# not determined: {text}" for text in fitted.left_open()]) + "\n"
 
 
 def _curve_lines(fitted: FittedDamper, spread: dict[str, float]) -> list[str]:

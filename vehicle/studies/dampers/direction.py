@@ -39,20 +39,13 @@ ERRORS = 5.0
 
 
 class Direction(NamedTuple):
-    """Witnesses of the direction of a test.
+    """Witnesses of the direction of a test."""
 
-    Attributes:
-        gas: F_gas with its standard error [N].
-        rebound, bump: forces without gas at `velocity` [N].
-        velocity: velocity at which they are compared [m/s].
-        by_gas, by_damping: 1 for extension positive, -1 for compression positive, 0 for no decision.
-    """
-
-    gas: tuple[float, float]
-    rebound: float
+    gas: tuple[float, float]  # F_gas with its standard error [N]
+    rebound: float  # rebound, bump: forces without gas at `velocity` [N]
     bump: float
-    velocity: float
-    by_gas: int
+    velocity: float  # velocity at which they are compared [m/s]
+    by_gas: int  # by_gas, by_damping: 1 for extension positive, -1 for compression positive, 0 for no decision
     by_damping: int
 
     @property
@@ -110,9 +103,6 @@ def require_direction(tests: Sequence[DamperTest], compression: bool | None) -> 
     Args:
         tests: the tests, turned to extension positive.
         compression: direction of the files that was specified; None for the default, extension.
-
-    Raises:
-        DataError: some tests, or all, have the other direction.
     """
     directions = {test.name: direction_of(test) for test in tests}
     wrong = {name: each for name, each in directions.items() if each.by_gas < 0 and each.by_damping <= 0}

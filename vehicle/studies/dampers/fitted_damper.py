@@ -45,12 +45,12 @@ class FittedDamper:
 
     @property
     def name(self) -> str:
-        """Conditions in words for file names, as "_current_1"; empty without conditions."""
+        """Conditions in words for file names, for example "_current_1"; empty without conditions."""
         return "".join(f"_{name}_{value:g}" for name, value in self.conditions.items())
 
     @property
     def condition_words(self) -> str:
-        """Conditions in words, as "current 1, clicks 4"; empty without conditions."""
+        """Conditions in words, for example "current 1, clicks 4"; empty without conditions."""
         return ", ".join(f"{name} {value:g}" for name, value in self.conditions.items())
 
     @property
@@ -93,21 +93,21 @@ class FittedDamper:
         sentences = []
         if slowest > SLOW:
             sentences.append(
-                f"the friction at rest is not determined, because the slowest test reaches {1e3 * slowest:.3g} "
-                f"mm/s, must be below {1e3 * SLOW:.0f} mm/s"
+                f"friction at rest: the slowest test reaches {1e3 * slowest:.3g} mm/s, must be below "
+                f"{1e3 * SLOW:.0f} mm/s"
             )
-        sentences.append(f"the tests reach {fastest:.3g} m/s; above, the curve is extended with its last slope")
+        sentences.append(f"forces above {fastest:.3g} m/s, the fastest test: the curve continues with its last slope")
         if len(self.tests) == 1:
-            sentences.append("with a single test it is unknown whether the law holds for other strokes and frequencies")
+            sentences.append("other strokes and frequencies: there is a single test")
         low, high = limits_of(law)
         for name, value, lowest, highest, determined in zip(
             law.parameters, fit.parameters, low, high, fit.determined, strict=True
         ):
             if name not in LINEAR and not lowest * AT_LIMIT < value < highest / AT_LIMIT:
                 quantity = kind_of(name).replace("_", " ")
-                sentences.append(f"{name} is at the limit of its range: the tests do not determine the {quantity}")
+                sentences.append(f"{quantity}: {name} is at the limit of its range")
             elif not determined and name not in LINEAR:
-                sentences.append(f"{name} has a standard error above half of its value")
+                sentences.append(f"{name}: its standard error is above half of its value")
         return sentences
 
 
@@ -123,7 +123,7 @@ def fit_damper(
         compression: True if the files are positive in compression, False in extension; None for extension, unless bump
             damps more than rebound.
         conditions: name of a condition to a number, to numbers of all files as "0,0.5,1", or to "channel:NAME".
-        pattern: pattern of the file names with conditions in braces, as "*Hz{current}A".
+        pattern: pattern of the file names with conditions in braces, for example "*Hz{current}A".
         progress: called with the finished fraction.
 
     Returns:
@@ -164,8 +164,8 @@ def _typed(conditions: Mapping[str, str], files: int) -> list[dict[str, str]]:
         values = [text] if text.startswith("channel:") else text.split(",")
         if len(values) not in (1, files):
             raise ConfigurationError(
-                f"--condition {name}={text}: found {len(values)} values for {files} files; give a single "
-                "value for all files, or a value for each file"
+                f"--condition {name}={text}: found {len(values)} values for {files} files; give one value for all "
+                "files, or one for each"
             )
         columns[name] = values * (files // len(values))
     return [{name: values[number] for name, values in columns.items()} for number in range(files)]

@@ -1,4 +1,4 @@
-"""Damping and friction over the conditions of the tests, as current: numbers of a semi-active damper.
+"""Damping and friction over the conditions of the tests, for example current: numbers of a semi-active damper.
 
 The damping is the constant with the work of the curve in the tests, sum F_c v / sum v^2; F_c = F_b + c v holds beyond
 the last bend, where F_b is the force that a magnetorheological damper has to yield at.
@@ -20,21 +20,13 @@ POINTS = 400
 
 
 class Setting(NamedTuple):
-    """Damping and friction of a damper at a condition.
+    """Damping and friction of a damper at a condition."""
 
-    Attributes:
-        words: condition, as "current 1".
-        damping: constant with the work of the curve in the tests [N s/m].
-        friction: sliding friction in addition to the curve [N].
-        bend_force: mean force of the curve beyond its last bend, extended to rest, of rebound and bump [N].
-        slope: mean slope there [N s/m].
-    """
-
-    words: str
-    damping: float
-    friction: float
-    bend_force: float
-    slope: float
+    words: str  # condition, for example "current 1"
+    damping: float  # constant with the work of the curve in the tests [N s/m]
+    friction: float  # sliding friction in addition to the curve [N]
+    bend_force: float  # mean force of the curve beyond its last bend, extended to rest, of rebound and bump [N]
+    slope: float  # mean slope there [N s/m]
 
 
 def settings_of(fits: Sequence[FittedDamper]) -> list[Setting]:
@@ -66,8 +58,8 @@ def control_lines(fits: Sequence[FittedDamper]) -> str:
     """Return lines for the table of a semi-active damper: its softest and firmest setting over the conditions."""
     settings = settings_of(fits)
     lines = [
-        "# damping: constant with the work of the curve in the tests; bend force and slope: the curve beyond its last",
-        "# bend is bend force + slope times velocity; friction: that beside the curve",
+        "# damping: constant with the work of the curve in the tests; beyond its last bend the curve is bend force +",
+        "# slope times velocity; friction acts in addition to the curve",
         "# condition           damping [N s/m]  friction [N]  bend force [N]  slope [N s/m]",
     ]
     for condition, damping, friction, force, slope in settings:
@@ -79,8 +71,8 @@ def control_lines(fits: Sequence[FittedDamper]) -> str:
     }
     lines += [
         "# values for the section [AXLE.damper.control]: the coefficient replaces the curve; friction, gas and stop",
-        f"# stay in the section of the damper, for example those in damper{fits[0].name}.toml; the range of all tests",
-        *(f"# there: {line}" for line in range_lines(tested)),
+        f"# stay in the section of the damper, e.g. as in damper{fits[0].name}.toml, with the range of all tests:",
+        *(f"# {line}" for line in range_lines(tested)),
         f"minimum_damping = {rounded(min(dampings), 5)!r}  # [N s/m]",
         f"maximum_damping = {rounded(max(dampings), 5)!r}  # [N s/m]",
     ]

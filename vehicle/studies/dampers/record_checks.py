@@ -39,9 +39,6 @@ def require_sensors(path: Path, values: Mapping[str, Vector], names: Mapping[str
         path: file of the test.
         values: displacement [m], force [N] and, if measured, velocity [m/s] by role; (n,) each.
         names: name of the channel of each role in the file.
-
-    Raises:
-        DataError: with the channel and the option that chooses another channel or unit.
     """
     for role in ("displacement", "force"):
         if is_dead(values[role]):
@@ -86,9 +83,6 @@ def usable_velocity(
 
     Displacement and integrated velocity are compared without their linear parts: an offset of the velocity sensor is
     a drift, and noise of the displacement counts less than in its derivative.
-
-    Raises:
-        DataError: the velocity has another unit than the displacement, or belongs to another motion.
     """
     path_of_velocity = scipy.integrate.cumulative_simpson(measured, x=time, initial=0.0)
     moved, travelled = (scipy.signal.detrend(each) for each in (x, path_of_velocity))
@@ -123,11 +117,7 @@ def usable_velocity(
 
 
 def require_damping(path: Path, force: Vector, velocity: Vector, names: Mapping[str, str]) -> None:
-    """Check that the damper moves in both directions, and that its force follows the velocity and has a usual size.
-
-    Raises:
-        DataError: with the option that chooses another channel or unit.
-    """
+    """Check that the damper moves in both directions, and that its force follows the velocity and has a usual size."""
     slowest, fastest = 1e3 * float(np.min(velocity)), 1e3 * float(np.max(velocity))
     if min(fastest, -slowest) < ONE_WAY * max(fastest, -slowest):
         raise DataError(
@@ -140,8 +130,8 @@ def require_damping(path: Path, force: Vector, velocity: Vector, names: Mapping[
     if abs(correlation) < DISSIPATED:
         raise DataError(
             f"{path}: the force, channel {names['force']!r}, does not follow the velocity: their correlation is "
-            f"{number(correlation, 2)}, of a damper above {DISSIPATED:g}; the sensor is dead, or set the channel with "
-            "--channel force=NAME or --channel displacement=NAME"
+            f"{number(correlation, 2)}, a damper has more than {DISSIPATED:g}; check the sensor, or choose another "
+            "channel with --channel force=NAME or --channel displacement=NAME"
         )
     if size < LEAST_DAMPING * speed:
         raise DataError(

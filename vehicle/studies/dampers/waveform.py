@@ -1,7 +1,7 @@
 """Waveform of a test of a damper: sine, triangle, velocity steps or random motion, from its swings between reversals.
 
 A swing is a half cycle of a sine if its displacement differs from that by at most `LIKE` of the swing (RMS); it is
-straight if its mean velocities over the inner 50 % and 16 % of the travel are equal within `LIKE`: those of a sine
+straight if its mean velocities over the inner 50 % and 16 % of the travel are equal within `LIKE`: for a sine they
 differ by 4 %, and a machine rounds the ends. Equal swings of equal duration are a periodic test, whose run-up and
 run-down are left out; straight swings of different velocities are velocity steps.
 """
@@ -34,19 +34,12 @@ NAMED_STEPS = 8
 
 
 class Waveform(NamedTuple):
-    """Waveform of a test.
+    """Waveform of a test."""
 
-    Attributes:
-        words: description, as "sine, 1 Hz".
-        periodic: True if all settled swings are equal and equally long.
-        steps: True for velocity steps.
-        settled: True for the samples without run-up and run-down of equal swings; (n,).
-    """
-
-    words: str
-    periodic: bool
-    steps: bool
-    settled: Mask
+    words: str  # description, for example "sine, 1 Hz"
+    periodic: bool  # True if all settled swings are equal and equally long
+    steps: bool  # True for velocity steps
+    settled: Mask  # True for the samples without run-up and run-down of equal swings; (n,)
 
 
 def reversals(x: Vector, velocity: Vector, share: float = 0.1) -> Indices:

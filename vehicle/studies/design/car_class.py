@@ -20,7 +20,7 @@ POWERTRAIN = "assumed: electric motor with reducer and inverter on rubber mounts
 
 
 def of_class(stated: StatedNumbers) -> StatedNumbers:
-    """Return stated numbers completed by those of the class of the car.
+    """Return stated numbers completed from the class of the car.
 
     Args:
         stated: stated numbers, which take precedence; both axle loads together are the kerb mass.

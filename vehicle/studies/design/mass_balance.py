@@ -2,7 +2,7 @@
 
     m_b = m - sum m_i,   m_b c_b = m c - sum m_i c_i,   I_b = I - sum (I_i + m_i (|r_i|^2 1 - r_i r_i'))   about c,
 
-and I_b is then taken about c_b. The parts are those of the compiled model: axles, engine, seats.
+and I_b is then taken about c_b. The parts (axles, engine, seats) come from the compiled model.
 """
 
 import math
@@ -49,12 +49,7 @@ def axle_loads(car: CarModel, template: TemplateCar) -> dict[str, float]:
 
 
 def balanced(table: dict[str, Any], template: TemplateCar, stated: StatedNumbers) -> tuple[dict[str, Any], Sources]:
-    """Return a vehicle table with a body of the stated masses, and the sources of the numbers of this body.
-
-    Raises:
-        ConfigurationError: a car that cannot be: lighter than its parts, centre of gravity outside the wheelbase,
-            moments of inertia below those of the parts.
-    """
+    """Return a vehicle table with a body of the stated masses, and the sources of the numbers of this body."""
     before = car_masses(template_model := kerb_model(template.table, template))
     loads = axle_loads(template_model, template)
     share = loads["rear"] / sum(loads.values())
@@ -86,9 +81,9 @@ def balanced(table: dict[str, Any], template: TemplateCar, stated: StatedNumbers
     if mass - parts.mass < LIGHTEST_BODY:
         minimum = LIGHTEST_BODY / (1.0 - parts.mass / mass) if parts.mass < mass else parts.mass + LIGHTEST_BODY
         raise ConfigurationError(
-            f"{option('kerb_mass')} {mass:g} kg: the axles, the engine and the other parts, scaled from "
-            f"{template.name}, weigh {parts.mass:.1f} kg so {mass - parts.mass:.1f} kg remain for the body, must "
-            f"be at least {LIGHTEST_BODY:g} kg; state a kerb mass of at least {math.ceil(minimum)} kg"
+            f"{option('kerb_mass')} {mass:g} kg: leaves {mass - parts.mass:.1f} kg for the body, must be at least "
+            f"{LIGHTEST_BODY:g} kg; axles, engine and other parts, scaled from {template.name}, weigh {parts.mass:.1f} "
+            f"kg: state a kerb mass of at least {math.ceil(minimum)} kg"
         )
     radius = stated.tyre_radius or template.tyre_radius
     ground = template.wheels["front"][0].center[2] - radius
@@ -110,7 +105,7 @@ def balanced(table: dict[str, Any], template: TemplateCar, stated: StatedNumbers
 
 
 def kerb_mass(stated: StatedNumbers, of_template: float) -> float:
-    """Return the kerb mass of a new car [kg]: stated, the sum of both axle loads, or that of the template."""
+    """Return the kerb mass of a new car [kg]: stated, the sum of both axle loads, or from the template."""
     front, rear = stated.front_axle_load, stated.rear_axle_load
     if stated.kerb_mass is not None:
         return stated.kerb_mass

@@ -1,8 +1,8 @@
 """Hardpoints of a new car: the axles of the template moved to another wheelbase, track and tyre radius.
 
 An axle moves as a whole: along x by the change of the wheelbase, each side outwards by half the change of the track. So
-the kinematics of a wheel against its body points are those of the template. The distance of a body point from the
-front axle is scaled with the wheelbase. Another tyre radius lowers or raises the ground under the car.
+a wheel keeps its kinematics relative to its body points. The distance of a body point from the front axle is scaled
+with the wheelbase. Another tyre radius lowers or raises the ground under the car.
 """
 
 from collections.abc import Mapping
@@ -22,11 +22,7 @@ DIGITS = 6
 
 
 def moved_points(template: TemplateCar, stated: StatedNumbers) -> tuple[dict[str, Any], Sources]:
-    """Return the table of the template with the lengths of the new car, and the sources of what has moved.
-
-    Raises:
-        ConfigurationError: a track so small that a point of one side reaches the middle of the car.
-    """
+    """Return the table of the template with the lengths of the new car, and the sources of what has moved."""
     table, sources = dict(template.table), Sources()
     along = (stated.wheelbase or template.wheelbase) - template.wheelbase
     radius = template.tyre_radius if stated.tyre_radius is None else stated.tyre_radius

@@ -65,17 +65,11 @@ KEPT = ("ride_frequency", "damping_ratio")
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Target:
-    """Target value of a quantity, and the parameters to be solved for.
+    """Target value of a quantity, and the parameters to be solved for."""
 
-    Attributes:
-        name: name of the quantity, a field of `StatedNumbers`.
-        value: value to be met.
-        paths: parameters that a common factor multiplies.
-    """
-
-    name: str
-    value: float
-    paths: tuple[str, ...]
+    name: str  # name of the quantity, a field of `StatedNumbers`
+    value: float  # value to be met
+    paths: tuple[str, ...]  # parameters that a common factor multiplies
 
 
 def quantities(car: Car, template: TemplateCar, *, roll: bool = True) -> dict[str, float]:
@@ -102,11 +96,7 @@ def new_car_of(table: Mapping[str, Any], template: TemplateCar) -> Car:
 
 
 def targets_of(template: TemplateCar, stated: StatedNumbers) -> list[Target]:
-    """Return the targets: the stated quantities, by default ride frequencies and damping ratios of the template.
-
-    Raises:
-        ConfigurationError: the template lacks the part that a target needs, or has a controlled damper.
-    """
+    """Return the targets: the stated quantities, by default ride frequencies and damping ratios of the template."""
     template_values = quantities(new_car_of(template.table, template), template)
     targets = []
     for word in AXLES:
@@ -149,7 +139,7 @@ def _parameters(template: TemplateCar, word: str) -> dict[str, list[str]]:
 
 
 def solved(table: Mapping[str, Any], template: TemplateCar, targets: Sequence[Target]) -> dict[str, Any]:
-    """Return the vehicle table whose quantities are those of the targets.
+    """Return the vehicle table whose quantities meet the targets.
 
     Raises:
         ConfigurationError: a target cannot be reached; the message has the interval that can be reached.
@@ -167,23 +157,17 @@ def solved(table: Mapping[str, Any], template: TemplateCar, targets: Sequence[Ta
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RideProblem:
-    """Targets of a new car and the parameters to be solved for.
+    """Targets of a new car and the parameters to be solved for."""
 
-    Attributes:
-        table: vehicle table with lengths, masses and loads of the new car.
-        template: the template car.
-        targets: quantities to be met.
-    """
-
-    table: Mapping[str, Any]
-    template: TemplateCar
-    targets: tuple[Target, ...]
+    table: Mapping[str, Any]  # vehicle table with lengths, masses and loads of the new car
+    template: TemplateCar  # the template car
+    targets: tuple[Target, ...]  # quantities to be met
 
     def values(self, factors: Vector, names: Sequence[str]) -> list[float]:
         """Return quantities of the car with factors on the parameters of the targets.
 
         Raises:
-            ConfigurationError: the car cannot be.
+            ConfigurationError: the car is impossible.
         """
         changed = scaled(self.table, self.targets, factors)
         _require_inertia(changed, self.targets)
@@ -239,9 +223,8 @@ class RideProblem:
             jacobian += np.outer(residual - last - jacobian @ step, step) / (step @ step)
         worst = int(np.argmax(np.abs(residual)))
         raise SimulationError(
-            f"{option(self.targets[worst].name)} {aims[worst]:g}: was not reached within {MOST_STEPS} steps, "
-            f"deviation {100.0 * residual[worst]:.2f} %; state a value nearer to that of {self.template.name}, "
-            "or leave it out"
+            f"{option(self.targets[worst].name)} {aims[worst]:g}: not reached within {MOST_STEPS} steps (deviation "
+            f"{100.0 * residual[worst]:.2f} %); state a value nearer to that in {self.template.name}, or leave it out"
         )
 
     def reachable_interval(self, index: int) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -46,11 +46,8 @@ def scaled_parts(
     """Return the vehicle table with scaled axles and powertrain, and the sources of the scaled values.
 
     Args:
-        ratio: kerb mass of the new car over that of the template.
-        powertrain: False for a powertrain that is not that of the template.
-
-    Raises:
-        ConfigurationError: a scaled part is outside the range of its parameter.
+        ratio: kerb mass of the new car over the template's.
+        powertrain: False for another powertrain than the template's.
     """
     sources, table = Sources(), copy_table(table)
     for path, exponent in _exponents(template, powertrain=powertrain):
@@ -67,7 +64,7 @@ def scaled_parts(
     except ConfigurationError as error:
         raise ConfigurationError(
             f"--kerb-mass: parts of {template.name}, scaled by {ratio:.3g}, are outside the range of cars: "
-            f"{error}; state a mass nearer to that of the template, or start from another car"
+            f"{error}; state a mass nearer to the template's, or start from another car"
         ) from None
     return table, sources
 

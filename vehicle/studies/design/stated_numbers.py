@@ -35,8 +35,8 @@ optional = partial(quantity, default=None)
 class StatedNumbers:
     """Numbers of a car; None: not stated. `option` returns its name on a command line.
 
-    `tyre_size` is the size of the tyres, as 205/55R16, instead of their radius. `of_class` has the names of the numbers
-    that are those of the class of the car.
+    `tyre_size`, e.g. 205/55R16, replaces the radius. `of_class` has the names of the numbers taken from the class
+    of the car.
     """
 
     kerb_mass: float | None = optional("kg", "mass of the car without driver and loads ([load])", at_most=2e4, **CAR)
@@ -47,11 +47,7 @@ class StatedNumbers:
         "kg", "axle load of the rear axle, without driver and loads ([load])", at_most=2e4, **AXLE
     )
     cog_x: float | None = optional(
-        "m",
-        "centre of gravity behind the front axle, instead of an axle load",
-        above=0.0,
-        at_most=8.0,
-        **METRES,
+        "m", "centre of gravity behind the front axle, instead of an axle load", above=0.0, at_most=8.0, **METRES
     )
     cog_height: float | None = optional(
         "m",
@@ -178,9 +174,6 @@ def stated_numbers(file: Path | None, more: Mapping[str, Any]) -> StatedNumbers:
     Args:
         file: TOML file with the names of `StatedNumbers` and tables [load.NAME]; None without a file.
         more: numbers by name, which may be None.
-
-    Raises:
-        ConfigurationError: an unknown name, a value out of range, or numbers that contradict each other.
     """
     table = {} if file is None else read_table(file)
     for name in ("damper_curve_front", "damper_curve_rear"):
@@ -197,7 +190,7 @@ def stated_numbers(file: Path | None, more: Mapping[str, Any]) -> StatedNumbers:
 
 
 def _load_of(name: str, table: Mapping[str, Any]) -> float:
-    """Return an axle load in percent of the kerb mass, as "57%", in kg."""
+    """Return an axle load in percent of the kerb mass, for example "57%", in kg."""
     text, mass = str(table[name]).strip(), table.get("kerb_mass")
     try:
         share = 0.01 * float(text.removesuffix("%"))
@@ -205,7 +198,7 @@ def _load_of(name: str, table: Mapping[str, Any]) -> float:
         share = math.nan
     if not (text.endswith("%") and math.isfinite(share)):
         raise ConfigurationError(
-            f"{option(name)} {table[name]!r}: must be a number in kg, or a share of the kerb mass as 57%"
+            f"{option(name)} {table[name]!r}: must be a number in kg, or a share of the kerb mass, e.g. 57%"
         )
     if not isinstance(mass, (int, float)):
         raise ConfigurationError(f"{option(name)} {text}: is a share of the kerb mass; state {option('kerb_mass')} too")

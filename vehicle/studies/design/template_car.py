@@ -22,23 +22,16 @@ from vehicle.studies.design.stated_numbers import AXLES
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class TemplateCar:
-    """Template of a new car, with a rigid body and without loads.
+    """Template of a new car, with a rigid body and without loads."""
 
-    Attributes:
-        name: name of the template car.
-        file: its vehicle file.
-        table: its parameters, with a rigid body, without [load] and without the names of other files of its folder.
-        vehicle: the same, composed.
-        wheels: wheels by the word of their axle, "front" or "rear"; right and left.
-        left_out: messages about parts of the template that are left out.
-    """
-
-    name: str
-    file: Path
+    name: str  # name of the template car
+    file: Path  # its vehicle file
+    # its parameters, with a rigid body, without [load] and without the names of other files of its folder
     table: Mapping[str, Any]
-    vehicle: Vehicle
+    vehicle: Vehicle  # the same, composed
+    # wheels by the word of their axle, "front" or "rear"; right and left
     wheels: Mapping[str, tuple[PlacedWheel, PlacedWheel]]
-    left_out: tuple[str, ...]
+    left_out: tuple[str, ...]  # messages about parts of the template that are left out
 
     def axle(self, word: str) -> str:
         """Return the table of an axle in the vehicle file."""
@@ -65,11 +58,7 @@ class TemplateCar:
         return self.wheels["front"][0].patch[2]
 
     def with_powertrain(self, engine: Mapping[str, Any] | None) -> TemplateCar:
-        """Return the template with another powertrain; itself for None.
-
-        Raises:
-            ConfigurationError: the template has no table `engine`.
-        """
+        """Return the template with another powertrain; itself for None."""
         if engine is None:
             return self
         if "engine" not in self.table:
@@ -110,9 +99,6 @@ def template_car(source: Path | str) -> TemplateCar:
 
     Args:
         source: name of a shipped car, or a vehicle file.
-
-    Raises:
-        ConfigurationError: the file is wrong, or the car has not two axles with two wheels each.
     """
     file = vehicle_file(source)
     table = copy_table(vehicle_table(file))

@@ -1,4 +1,4 @@
-"""Size of a tyre, as 205/55R16: its radius without load, and under the static load of a car."""
+"""Size of a tyre, for example 205/55R16: its radius without load, and under the static load of a car."""
 
 import dataclasses
 import re
@@ -26,14 +26,11 @@ def unloaded_radius(size: str) -> float:
     d is the diameter of the rim, S the nominal width, a the height of the section in percent of it.
 
     Args:
-        size: size of a radial tyre, as "205/55R16" or "205/55 R 16 91V".
-
-    Raises:
-        ConfigurationError: no size, or a number outside its range.
+        size: size of a radial tyre, for example "205/55R16" or "205/55 R 16 91V".
 
     Source: UN Regulation No. 30 (ISO 4000-1): outer diameter D = d + 2 H.
     """
-    form = "write width/height R rim, as 205/55R16: 205 mm wide, 55 % of it high, rim of 16 inch"
+    form = "write width/height R rim, e.g. 205/55R16: 205 mm wide, height 55 % of the width, rim of 16 inch"
     matched = SIZE.fullmatch(size.strip())
     if matched is None:
         raise ConfigurationError(f"--tyre-size {size!r}: not the size of a radial tyre; {form}")
@@ -54,11 +51,7 @@ def with_tyre_size(stated: StatedNumbers, template: TemplateCar, ratio: float) -
 
     Args:
         stated: stated numbers.
-        template: the template car.
-        ratio: kerb mass of the new car over that of the template [-]; 1 if its parts are not scaled.
-
-    Raises:
-        ConfigurationError: no tyre size, or a size and a radius.
+        ratio: kerb mass of the new car over the template's [-]; 1 if its parts are not scaled.
     """
     if stated.tyre_size is None:
         return stated

@@ -32,17 +32,11 @@ SAME_AMPLITUDE = 0.02
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class MeasuredStiffness:
-    """Dynamic stiffness of a mount at m points.
+    """Dynamic stiffness of a mount at m points."""
 
-    Attributes:
-        frequency: frequencies [Hz]; (m,).
-        amplitude: peak amplitudes of the displacement [m]; (m,).
-        stiffness: complex stiffness |K| exp(i angle) of the first harmonic [N/m]; (m,).
-    """
-
-    frequency: Vector
-    amplitude: Vector
-    stiffness: Complex
+    frequency: Vector  # frequencies [Hz]; (m,)
+    amplitude: Vector  # peak amplitudes of the displacement [m]; (m,)
+    stiffness: Complex  # complex stiffness |K| exp(i angle) of the first harmonic [N/m]; (m,)
 
     def levels(self) -> list[tuple[float, Indices]]:
         """Return mean amplitude [m] and indices of the points of each level, sorted by amplitude and frequency."""
@@ -92,7 +86,7 @@ def _index(header: Header, name: str) -> int:
     if len(columns) != 1:
         raise DataError(
             f"{header.where}: has {len(columns) or 'no'} column{'s' if columns else ''} {name!r}, must be a "
-            f"single column; found {header.found}; needed are {NEEDED}"
+            f"single column; found {header.found}; the table needs {NEEDED}"
         )
     unit = heads[columns[0]][1]
     if unit not in UNITS[name]:

@@ -53,22 +53,15 @@ def friction_stiffness(amplitude: Vector, force: float, stroke: float) -> Comple
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MountLaw:
-    """Law of a mount with positive parameters.
+    """Law of a mount with positive parameters."""
 
-    Attributes:
-        name: name of the law.
-        parameters: name to unit of each parameter.
-        stiffness: dynamic stiffness.
-        starts: function from angular frequencies, amplitudes and measured K to starting values of fits, (k, p).
-        approximation: faster approximation of `stiffness`, with which fits begin; None without.
-        refined: makes a function `stiffness` that starts from its previous solution; None without.
-    """
-
-    name: str
-    parameters: dict[str, str]
-    stiffness: Stiffness
+    name: str  # name of the law
+    parameters: dict[str, str]  # name to unit of each parameter
+    stiffness: Stiffness  # dynamic stiffness
+    # function from angular frequencies, amplitudes and measured K to starting values of fits, (k, p)
     starts: Callable[[Vector, Vector, Complex], Vector]
-    approximation: Stiffness | None = None
+    approximation: Stiffness | None = None  # faster approximation of `stiffness`, with which fits begin; None without
+    # makes a function `stiffness` that starts from its previous solution; None without
     refined: Callable[[], Stiffness] | None = None
 
 
@@ -154,12 +147,7 @@ LAWS = {
             stiffness=_rubber,
             starts=_rubber_starts,
         ),
-        MountLaw(
-            name="hydromount",
-            parameters=TRACK_PARAMETERS,
-            stiffness=_hydromount,
-            starts=_hydromount_starts,
-        ),
+        MountLaw(name="hydromount", parameters=TRACK_PARAMETERS, stiffness=_hydromount, starts=_hydromount_starts),
         MountLaw(
             name="decoupler",
             parameters=TRACK_PARAMETERS
@@ -177,4 +165,4 @@ LAWS = {
         ),
     )
 }
-"""Laws of mounts by name; their parameters are those of the vehicle file."""
+"""Laws of mounts by name, with the parameters of the vehicle file."""

@@ -118,13 +118,12 @@ def summary_lines(fits: Sequence[MountFit], caption: str) -> list[str]:
     if max(best.stiffness_error[0], best.angle_error[0]) > POOR:
         lines.append(
             f"poor fit: the RMS error is above {100.0 * POOR:.0f} % or {np.degrees(POOR):.0f} deg; check units, "
-            "amplitudes (half of peak to peak) and scatter of the points, or the mount follows none of these "
-            "laws"
+            "amplitudes (half of peak to peak) and scatter of the points: otherwise none of these laws fits"
         )
     criteria = {fit.law.name: fit.criterion for fit in fits}
     if best.law.name == "hydromount" and "decoupler" in criteria:
         lines.append(
-            "the points do not show a decoupler: its five parameters improve the fit too little (BIC larger by "
+            "these points show no decoupler: its five parameters do not improve the fit enough (BIC larger by "
             f"{criteria['decoupler'] - best.criterion:.1f})"
         )
     lines.append(f"{'parameter':<20}{'value':>12}   standard error")

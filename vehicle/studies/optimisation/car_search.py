@@ -45,26 +45,19 @@ from vehicle.studies.sweeps.sweep_inputs import Inputs, common_start, file_of, i
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class SearchPlan:
-    """Checked search, ready to run.
+    """Checked search, ready to run."""
 
-    Attributes:
-        trials: evaluation of the cars.
-        vehicle: parameters of the unmodified car.
-        skip: start of the evaluation [s].
-        settings: settings of the search.
-    """
-
-    trials: Trials
-    vehicle: Vehicle
-    skip: float
-    settings: SearchSettings
+    trials: Trials  # evaluation of the cars
+    vehicle: Vehicle  # parameters of the unmodified car
+    skip: float  # start of the evaluation [s]
+    settings: SearchSettings  # settings of the search
 
     def run(self, folder: Path, **changed: Any) -> FoundCars:
         """Run the search.
 
         Args:
             folder: existing folder in which every car is stored; an interrupted search in the folder is continued.
-            changed: settings in place of those of the plan.
+            changed: settings that replace settings of the plan.
 
         Raises:
             ConfigurationError: the folder contains another search.
@@ -168,11 +161,11 @@ def optimise(
 
     Args:
         car: loaded by `Car.load`.
-        vary: path to (lower, upper) bound in the unit of the parameter, as {"front.damper.viscous": (800, 4000)};
+        vary: path to (lower, upper) bound in the unit of the parameter, e.g. {"front.damper.viscous": (800, 4000)};
             "*.damper.viscous" sets all dampers alike.
         inputs: files, names of shipped files, roads, signals; one or several.
-        minimise: objectives, figures of the catalogue as "unweighted", "weighted", "tyre_load", "travel"; with several
-            inputs "weighted@NAME", "weighted@mean" or "weighted@worst".
+        minimise: objectives: figures of the catalogue, e.g. "unweighted", "tyre_load" or "travel"; with several inputs
+            "weighted@NAME", "weighted@mean" or "weighted@worst".
 
     Returns:
         The Pareto front and its named cars; `print` shows them, `write` writes all files.
@@ -199,18 +192,14 @@ def _ranges(vary: Mapping[str, Sequence[float]] | Sequence[Range]) -> Sequence[R
 
 
 def _quantile_and_samples(quantile: float | None, samples: int | None) -> tuple[float, int]:
-    """Return the quantile, NaN for the mean, and the number of cars within the tolerances for each car tried.
-
-    Raises:
-        ConfigurationError: there are too few cars for the quantile.
-    """
+    """Return the quantile, NaN for the mean, and the number of cars within the tolerances for each car tried."""
     chosen = math.nan if quantile is None else quantile
     needed = samples_for(chosen) if chosen < 1.0 else 2
     if samples is None:
         return chosen, max(8, needed)
     if samples < needed:
         raise ConfigurationError(
-            f"--quantile {chosen:g}: needs at least {needed} cars, found --samples {samples}; set "
-            f"--samples {needed}, a lower quantile, or --quantile 1 for the worst of {samples} cars"
+            f"--quantile {chosen:g}: needs at least {needed} cars, found --samples {samples}; set --samples {needed}, "
+            f"lower quantile, or --quantile 1 for the worst of {samples} cars"
         )
     return chosen, samples

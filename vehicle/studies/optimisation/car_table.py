@@ -38,9 +38,6 @@ class CarTable:
         path: the file. Existing generations are kept except the last, which may be incomplete after a killed process,
             and those from a damaged row on, with a notice.
         problem: parameters, objectives and limits.
-
-    Raises:
-        OutputError: the file cannot be written.
     """
 
     def __init__(self, path: Path, problem: Problem) -> None:
@@ -55,11 +52,7 @@ class CarTable:
         note(path)  # the file grows from now on
 
     def add(self, tried: TriedCars) -> None:
-        """Append a generation to the file.
-
-        Raises:
-            OutputError: the file cannot be written.
-        """
+        """Append a generation to the file."""
         try:
             with self.path.open("a", encoding="utf-8") as file:
                 file.write(_text(self._rows(tried, len(self.generations))))
@@ -99,7 +92,7 @@ class CarTable:
                 [_number(cell) for cell in row[2:-1]]
             except (ValueError, csv.Error) as error:
                 kept = max(len(generations) - 1, 0)
-                say(f"{self.path}, line {number}: damaged ({error}); the {kept} whole generations before it are taken")
+                say(f"{self.path}, line {number}: damaged ({error}); the {kept} whole generations before it are kept")
                 break
         return [
             TriedCars(

@@ -22,24 +22,15 @@ PARTS = (0.25, 0.5, 0.75)
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Outcome:
-    """A finished search.
+    """A finished search."""
 
-    Attributes:
-        problem: parameters, objectives and limits.
-        base: unmodified car.
-        tried: all other cars.
-        front_size: number of non-dominated cars.
-        front: rows of `tried` of at most `SHOWN` non-dominated cars, well spread, sorted by the first objective.
-        named: name to row of `tried`: best car of each objective, knee point.
-        reached: share of the final hypervolume after each of `PARTS` of the cars; empty for a front of one car.
-    """
-
-    problem: Problem
-    base: TriedCars
-    tried: TriedCars
-    front_size: int
-    front: Indices
-    named: Mapping[str, int]
+    problem: Problem  # parameters, objectives and limits
+    base: TriedCars  # unmodified car
+    tried: TriedCars  # all other cars
+    front_size: int  # number of non-dominated cars
+    front: Indices  # rows of `tried` of at most `SHOWN` non-dominated cars, well spread, sorted by the first objective
+    named: Mapping[str, int]  # name to row of `tried`: best car of each objective, knee point
+    # share of the final hypervolume after each of `PARTS` of the cars; empty for a front of one car
     reached: Mapping[float, float]
 
     @property
@@ -53,11 +44,7 @@ def outcome(problem: Problem, base: TriedCars, generations: Sequence[TriedCars])
 
     Args:
         problem: parameters, objectives and limits.
-        base: unmodified car.
         generations: cars of each generation.
-
-    Raises:
-        SimulationError: no car satisfies the limits, or no car could be run.
     """
     tried = joined(generations)
     kept = np.flatnonzero(tried.kept(problem))
@@ -96,11 +83,11 @@ def _no_front_message(problem: Problem, tried: TriedCars) -> str:
     nearest = int(np.argmin(np.max(excess, axis=1)))
     first, values = len(problem.goals), tried.values[ran][nearest]
     broken = [
-        f"{limit.expression} is {values[first + i]:.4g} {limit.unit}"
+        f"{limit.expression} ({values[first + i]:.4g} {limit.unit})"
         for i, limit in enumerate(problem.limits)
         if excess[nearest, i] > 0.0
     ]
     return (
-        f"0 of {ran.size} cars satisfy all limits; the nearest car violates {', '.join(broken)}; widen the limits or "
-        "the bounds"
+        f"none of {ran.size} cars satisfies all limits; the nearest one violates {', '.join(broken)}; widen the limits "
+        "or the bounds"
     )

@@ -20,21 +20,13 @@ FINEST = 1e-4
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Criterion:
-    """Objective or limit: a figure of the ride on an input or over all inputs.
+    """Objective or limit: a figure of the ride on an input or over all inputs."""
 
-    Attributes:
-        number: name of the figure, see `vehicle.runs.figures.chosen_figure`.
-        input_name: name of an input, `MEAN` or `WORST`; empty for a single input.
-        sense: 1 to minimise or for an upper limit, -1 to maximise or for a lower limit.
-        limit: limit of the quantity; NaN for an objective.
-        unit: unit of the quantity.
-    """
-
-    number: str
-    input_name: str = ""
-    sense: float = 1.0
-    limit: float = math.nan
-    unit: str = ""
+    number: str  # name of the figure, see `vehicle.runs.figures.chosen_figure`
+    input_name: str = ""  # name of an input, `MEAN` or `WORST`; empty for a single input
+    sense: float = 1.0  # 1 to minimise or for an upper limit, -1 to maximise or for a lower limit
+    limit: float = math.nan  # limit of the quantity; NaN for an objective
+    unit: str = ""  # unit of the quantity
 
     @property
     def option(self) -> str:
@@ -43,7 +35,7 @@ class Criterion:
 
     @property
     def label(self) -> str:
-        """Return quantity and input, as "unweighted@road_A_120"."""
+        """Return quantity and input, e.g. "unweighted@road_A_120"."""
         return f"{self.number}@{self.input_name}" if self.input_name else self.number
 
     @property
@@ -79,17 +71,11 @@ class Criterion:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Tolerance:
-    """Production tolerance of a parameter, uniformly distributed about its value.
+    """Production tolerance of a parameter, uniformly distributed about its value."""
 
-    Attributes:
-        path: path of the parameter.
-        width: half width of the band, as a share of the value or in the unit of the parameter.
-        relative: True if `width` is a share of the value.
-    """
-
-    path: str
-    width: float
-    relative: bool
+    path: str  # path of the parameter
+    width: float  # half width of the band, as a share of the value or in the unit of the parameter
+    relative: bool  # True if `width` is a share of the value
 
     def value_at(self, value: float, position: float) -> float:
         """Return the value at a position from -1 to 1 in the band, in the unit of the parameter."""
@@ -102,23 +88,15 @@ Tolerances = Mapping[str, float | str] | Sequence[Tolerance]
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Problem:
-    """Optimisation problem.
+    """Optimisation problem."""
 
-    Attributes:
-        ranges: parameters with bounds.
-        paths: full paths set by each parameter; several for "*.damper.viscous".
-        units: units of the parameters.
-        base: parameter values of the unmodified car; NaN for a parameter whose paths have different values.
-        criteria: objectives first, then limits.
-        inputs: names of the inputs.
-    """
-
-    ranges: tuple[Range, ...]
-    paths: tuple[tuple[str, ...], ...]
-    units: tuple[str, ...]
+    ranges: tuple[Range, ...]  # parameters with bounds
+    paths: tuple[tuple[str, ...], ...]  # full paths set by each parameter; several for "*.damper.viscous"
+    units: tuple[str, ...]  # units of the parameters
+    # parameter values of the unmodified car; NaN for a parameter whose paths have different values
     base: tuple[float, ...]
-    criteria: tuple[Criterion, ...]
-    inputs: tuple[str, ...]
+    criteria: tuple[Criterion, ...]  # objectives first, then limits
+    inputs: tuple[str, ...]  # names of the inputs
 
     @property
     def goals(self) -> tuple[Criterion, ...]:
@@ -170,19 +148,16 @@ def parsed_criteria(
         minimise, maximise: NUMBER or NUMBER@INPUT.
         limits: NUMBER<=VALUE, NUMBER@INPUT<=VALUE, or the same with >=.
         inputs: names of the inputs.
-
-    Raises:
-        ConfigurationError: bad syntax, an unknown input, or a repeated criterion.
     """
     criteria = [_criterion("--minimise", text, 1.0, math.nan, inputs) for text in minimise]
     criteria += [_criterion("--maximise", text, -1.0, math.nan, inputs) for text in maximise]
     if not criteria:
-        raise ConfigurationError("no objective; add --minimise unweighted, or another quantity, once or more")
+        raise ConfigurationError("no objective; add --minimise unweighted, or another figure")
     for text in limits:
         parts = re.fullmatch(r"(.+?)\s*(<=|>=)\s*(.+)", text)
         bound = _number(parts[3]) if parts else math.nan
         if parts is None or not math.isfinite(bound):
-            raise ConfigurationError(f"--limit {text}: must be NUMBER<=VALUE or NUMBER>=VALUE, as travel<=0.06")
+            raise ConfigurationError(f"--limit {text}: must be NUMBER<=VALUE or NUMBER>=VALUE, e.g. travel<=0.06")
         criteria.append(_criterion("--limit", parts[1], 1.0 if parts[2] == "<=" else -1.0, bound, inputs))
     keys = [(criterion.label, criterion.sense if criterion.is_limit else 0.0) for criterion in criteria]
     twice = next((criterion for criterion, key in zip(criteria, keys, strict=True) if keys.count(key) > 1), None)
@@ -206,17 +181,13 @@ def _criterion(option: str, text: str, sense: float, limit: float, inputs: Seque
 
 
 def parsed_tolerance(text: str) -> Tolerance:
-    """Parse a tolerance from the text of an option.
-
-    Raises:
-        ConfigurationError: the text is not PATH=NUMBER or PATH=NUMBER% with a number above 0.
-    """
+    """Parse a tolerance from the text of an option."""
     path, _, size = (part.strip() for part in text.partition("="))
     width = _number(size.removesuffix("%"))
     if not path or not (math.isfinite(width) and width > 0.0):
         raise ConfigurationError(
-            f"--tolerance {text}: must be PATH=NUMBER in the unit of the parameter, or PATH=NUMBER%, above 0: the half "
-            "width of the band, as front.damper.coulomb_friction=20%"
+            f"--tolerance {text}: must be PATH=NUMBER in the unit of the parameter, or PATH=NUMBER%, above 0: half the "
+            "width of the band, e.g. front.damper.coulomb_friction=20%"
         )
     relative = size.endswith("%")
     return Tolerance(path=path, width=width / 100.0 if relative else width, relative=relative)

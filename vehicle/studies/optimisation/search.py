@@ -16,22 +16,16 @@ from vehicle.errors import DataError, MissingPartError
 from vehicle.studies.optimisation.problem import Problem
 
 FAILED = 1e3
-"""Constraint violation assigned to a car that cannot be run: more than that of any other car."""
+"""Constraint violation assigned to a car that cannot be run: more than for any other car."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class TriedCars:
-    """Cars tried in a search, with their values.
+    """Cars tried in a search, with their values."""
 
-    Attributes:
-        points: values of the parameters; (n, p).
-        values: value of each criterion, NaN for a car that could not be run; (n, criteria).
-        reasons: error message for a car that could not be run, else ""; (n,).
-    """
-
-    points: Vector
-    values: Vector
-    reasons: tuple[str, ...]
+    points: Vector  # values of the parameters; (n, p)
+    values: Vector  # value of each criterion, NaN for a car that could not be run; (n, criteria)
+    reasons: tuple[str, ...]  # error message for a car that could not be run, else ""; (n,)
 
     def kept(self, problem: Problem) -> Vector:
         """Return a mask of the cars that could be run and satisfy all limits; (n,)."""
@@ -115,11 +109,7 @@ def _first(problem: Problem, population: int, seed: int) -> Vector:
 
 
 def pymoo(part: str) -> Any:
-    """Import a module of pymoo.
-
-    Raises:
-        MissingPartError: pymoo is not installed.
-    """
+    """Import a module of pymoo."""
     try:
         return importlib.import_module(f"pymoo.{part}")
     except ImportError:

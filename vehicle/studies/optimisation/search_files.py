@@ -27,23 +27,14 @@ FRONT = "front.csv"
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class OtherFront:
-    """Pareto front of another search with the same objectives.
+    """Pareto front of another search with the same objectives."""
 
-    Attributes:
-        folder: folder of the other search.
-        values: objectives of the other front; (f, goals).
-    """
-
-    folder: Path
-    values: Vector
+    folder: Path  # folder of the other search
+    values: Vector  # objectives of the other front; (f, goals)
 
 
 def read_other_front(folder: Path, problem: Problem) -> OtherFront:
-    """Read the Pareto front of another search.
-
-    Raises:
-        DataError: the folder contains no front with the objectives of the problem.
-    """
+    """Read the Pareto front of another search."""
     goals = columns(problem)[len(problem.ranges) :][: len(problem.goals)]
     try:
         with (folder / FRONT).open(encoding="utf-8", newline="") as file:

@@ -162,16 +162,16 @@ class FoundCars:
         if spread.tolerances:
             lines.append(f"values: {spread.statistic} within the tolerances")
         for name, shares in (self.reached or {}).items():
-            each = [f"{100 * share:.0f} % are as good in {label}" for label, share in shares.items()]
+            each = [f"{100 * share:.0f} % reach its {label}" for label, share in shares.items()]
             error = 100 * _share_error(spread.quantile, NEW_CARS)
-            lines.append(f"{name}: of {NEW_CARS} new cars {', '.join(each)} (standard error {error:.0f} %)")
+            lines.append(f"{name}: of {NEW_CARS} fresh cars {', '.join(each)} (standard error {error:.0f} %)")
         for name, differences in (self.checked or {}).items():
             texts = [f"{label} {100 * share:+.2f} %" for label, share in differences.items() if share is not None]
-            lines.append(f"MuJoCo, {name}: {', '.join(texts)}")
+            lines.append(f"{name} with MuJoCo: {', '.join(texts)}")
         last = max(outcome.reached.values(), default=1.0)
         if last < 1.0 - STILL:
             lines.append(
-                f"the front grew by {100 * (1 - last):.1f} % in the last quarter; continue with --resume, more --cars"
+                f"the front still grew by {100 * (1 - last):.1f} % in the last quarter: use --resume and more --cars"
             )
         for name in outcome.named:
             lines.append(f"{name}: " + " ".join(f"--set {shlex.quote(text)}" for text in self.cars[name].overrides))
@@ -179,14 +179,14 @@ class FoundCars:
         if beside is not None:
             difference = agreement(outcome, beside)
             lines.append(
-                f"front of {beside.folder}: hypervolume {100 * difference['hypervolume_change']:+.2f} % against this "
+                f"front of {beside.folder}: hypervolume {100 * difference['hypervolume_change']:+.2f} % from this "
                 f"front, mean distance {100 * difference['mean_distance']:.2f} % of the extents"
             )
         if self.notices:
             file = " in summary.json" if folder is not None else ""
             lines.append(
-                f"{len(self.notices)} notices{file}: outside the valid range of the reduced engine; --check shows the "
-                "error"
+                f"{len(self.notices)} notices{file}: named cars leave the valid range of the reduced engine; --check "
+                "shows the error"
             )
         return "\n".join(lines)
 

@@ -26,19 +26,19 @@ class SearchSettings(PoolSettings):
 
     maximise: Sequence[str] = setting("an objective to maximise", (), action="append", metavar="NUMBER[@INPUT]")
     limits: Sequence[str] = setting(
-        "constraint, as 'travel<=0.06' or 'lowest_load>=0.1', in the unit of the number; applies to every input by "
+        "constraint, e.g. 'travel<=0.06' or 'lowest_load>=0.1', in the unit of the figure; applies to every input by "
         "default; may be repeated",
         (),
         flag="--limit",
         action="append",
         metavar="NUMBER[@INPUT]<=VALUE",
     )
-    cars: int = setting("cars to try; %(default)s by default", 2000, within="[8, inf)", type=int, metavar="N")
+    cars: int = setting("cars to try; default: %(default)s", 2000, within="[8, inf)", type=int, metavar="N")
     population: int = setting(
-        "cars of a generation, at least 8; %(default)s by default", 64, within="[8, inf)", type=int, metavar="N"
+        "cars in a generation, at least 8; default: %(default)s", 64, within="[8, inf)", type=int, metavar="N"
     )
     seed: int = setting(
-        "one seed is one search; %(default)s by default",
+        "seed of the search: equal seeds give equal searches; default: %(default)s",
         1,
         flag="--search-seed",
         dest="search_seed",
@@ -47,27 +47,27 @@ class SearchSettings(PoolSettings):
         metavar="N",
     )
     tolerances: Tolerances = setting(
-        "path to half of the band of a parameter, varied or not: in its unit, or as '15%%'",
+        "path to half the width of the tolerance band of a parameter, varied or not: in its unit, or as '15%%'",
         (),
         flag="--tolerance",
         action="append",
         type=_tolerance,
         metavar="PATH=SIZE",
-        help="half of the band of a parameter, varied or not: in its unit, or in percent: 15%%; of a "
-        "coordinate in m: 0.002; may be repeated",
+        help="half the width of the tolerance band of a parameter, varied or not: in its unit, or in percent (15%%); "
+        "for a coordinate in m (0.002); may be repeated",
     )
     samples: int | None = setting(
-        "cars within the tolerances for each car tried; 8 by default, more where the quantile needs them",
+        "cars within the tolerances for each car tried; default: 8, more if the quantile needs them",
         type=int,
         metavar="K",
     )
     quantile: float | None = setting(
-        "of their numbers that counts, 0.5 to below 1; 1 is the worst of the K cars; their mean by default. A quantile "
-        "Q needs 1/(1 - Q) cars; with it, 64 new cars around each named one show what share reaches its numbers",
+        "quantile of the K cars that counts, 0.5 to below 1; 1: the worst car; default: their mean. A quantile Q needs "
+        "1/(1 - Q) cars; 64 fresh cars around each named car then show which share reaches its figures",
         within="[0.5, 1]",
         type=float,
         metavar="Q",
     )
     engine: str = engine_setting("reduced")
     skip: float | None = skip_setting()
-    check: bool = setting("run the named cars with MuJoCo too and report the difference", False, action="store_true")
+    check: bool = setting("also run the named cars with MuJoCo and report the difference", False, action="store_true")

@@ -33,25 +33,15 @@ ROWS = (CARS, SEARCH)
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SearchStudy:
-    """Study of a search for a Pareto front, see `optimise`.
+    """Study of a search for a Pareto front, see `optimise`."""
 
-    Attributes:
-        car: the car.
-        vary: path to bounds, or ranges.
-        inputs: files, names of shipped files, roads or signals.
-        minimise: objectives.
-        settings: settings of the search.
-        beside: folder of another search with these objectives, drawn with its distance.
-        destination: folder of the results.
-    """
-
-    car: CarChoice = CarChoice()
-    vary: Mapping[str, Sequence[float]] | Sequence[Range]
-    inputs: Inputs
-    minimise: Sequence[str]
-    settings: SearchSettings = part(SearchSettings)
-    beside: Path | None = None
-    destination: Destination = field(default_factory=Destination)
+    car: CarChoice = CarChoice()  # the car
+    vary: Mapping[str, Sequence[float]] | Sequence[Range]  # path to bounds, or ranges
+    inputs: Inputs  # files, names of shipped files, roads or signals
+    minimise: Sequence[str]  # objectives
+    settings: SearchSettings = part(SearchSettings)  # settings of the search
+    beside: Path | None = None  # folder of another search with these objectives, drawn with its distance
+    destination: Destination = field(default_factory=Destination)  # folder of the results
 
     def run(self, *, command: str = "", begin: Begin = unseen, note: Callable[[str], object] = unseen) -> str:
         """Run the search, write its files and return the printed table of its named cars.
@@ -77,25 +67,15 @@ class SearchStudy:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class TargetStudy:
-    """Study of the smallest change with which a car reaches targets, see `meet_targets`.
+    """Study of the smallest change with which a car reaches targets, see `meet_targets`."""
 
-    Attributes:
-        car: the car.
-        vary: ranges of at most 8 parameters.
-        targets: file of figures with limits and inputs.
-        cost: path and cost of the change of a parameter; 1 by default.
-        duration: length of a road class [s]; by default that of a run.
-        jobs: number of processes.
-        destination: folder of the results.
-    """
-
-    car: CarChoice = CarChoice()
-    vary: Sequence[Range]
-    targets: Path
-    cost: Sequence[tuple[str, float]] = ()
-    duration: float | None = None
-    jobs: int = 1
-    destination: Destination = field(default_factory=Destination)
+    car: CarChoice = CarChoice()  # the car
+    vary: Sequence[Range]  # ranges of at most 8 parameters
+    targets: Path  # file of figures with limits and inputs
+    cost: Sequence[tuple[str, float]] = ()  # path and cost of the change of a parameter; 1 by default
+    duration: float | None = None  # length of a road class [s]; by default the length of a run
+    jobs: int = 1  # number of processes
+    destination: Destination = field(default_factory=Destination)  # folder of the results
 
     def run(self, *, command: str = "", begin: Begin = unseen, note: Callable[[str], object] = unseen) -> str:
         """Run the search, write its files and return the printed result; arguments as in `SearchStudy.run`.

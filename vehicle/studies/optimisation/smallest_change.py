@@ -49,25 +49,15 @@ LARGEST = 1e3
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class SmallestChange:
-    """Result of the search.
+    """Result of the search."""
 
-    Attributes:
-        position: u of the car, (p,).
-        excess: relative excess of each figure at it, (figures,); at most 0 if all limits are met.
-        feasible: True if all limits are met.
-        cost: root of the sum of (c u)^2.
-        active: figures at their limit, or, for an infeasible problem, those that exclude each other.
-        at_bounds: parameters at a bound.
-        runs: number of cars that were run.
-    """
-
-    position: Vector
-    excess: Vector
-    feasible: bool
-    cost: float
-    active: tuple[int, ...]
-    at_bounds: tuple[int, ...]
-    runs: int
+    position: Vector  # u of the car, (p,)
+    excess: Vector  # relative excess of each figure at it, (figures,); at most 0 if all limits are met
+    feasible: bool  # True if all limits are met
+    cost: float  # root of the sum of (c u)^2
+    active: tuple[int, ...]  # figures at their limit, or, for an infeasible problem, those that exclude each other
+    at_bounds: tuple[int, ...]  # parameters at a bound
+    runs: int  # number of cars that were run
 
 
 class _Cars:
@@ -208,11 +198,7 @@ def _least_cost(with_slopes: WithSlopes, start: Vector, low: Vector, high: Vecto
         start,
         jac=lambda u: 2.0 * costs**2 * u,
         bounds=scipy.optimize.Bounds(low, high),
-        constraints={
-            "type": "ineq",
-            "fun": lambda u: -MARGIN - with_slopes(u)[0],
-            "jac": lambda u: -with_slopes(u)[1],
-        },
+        constraints={"type": "ineq", "fun": lambda u: -MARGIN - with_slopes(u)[0], "jac": lambda u: -with_slopes(u)[1]},
         method="SLSQP",
         options={"maxiter": STEPS, "ftol": 1e-6},
     )

@@ -40,11 +40,7 @@ def measures_of(
 
 
 def _checked(name: str, target: Target, run: Run) -> Target:
-    """Return a target with its channels by name.
-
-    Raises:
-        ConfigurationError: a channel is not recorded, the unit is wrong, or the input has no such figure.
-    """
+    """Return a target with its channels by name."""
     try:
         chosen = target.recorded_in(run.channels)
         chosen.channels_of(run.car.vehicle)

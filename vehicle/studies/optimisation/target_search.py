@@ -27,37 +27,24 @@ from vehicle.studies.sweeps.sweep_settings import SweepSettings
 MOST_PARAMETERS = 8
 """Maximum number of varied parameters: the quadratic surfaces need a sample of about their square."""
 
-ERROR_WORDS = (
-    "+-: two standard errors, over random roads of this class and length; within +-: another may decide otherwise"
-)
+ERROR_WORDS = "+-: two standard errors over random roads of this class and length; within +-: another road may differ"
 """Line below figures with errors."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class TargetSearch:
-    """Result of a search for the smallest change.
+    """Result of a search for the smallest change."""
 
-    Attributes:
-        car: changed car; of an infeasible problem the nearest one.
-        ranges: varied parameters with bounds and present values.
-        values: their values in the changed car.
-        figures: figures by name.
-        before, after: values of the figures of the unchanged and of the changed car.
-        before_error, after_error: their standard errors on random roads; NaN without one.
-        change: result of the search.
-        inputs: names of the inputs.
-    """
-
-    car: Car
-    ranges: tuple[Range, ...]
-    values: tuple[float, ...]
-    figures: Mapping[str, Target]
-    before: tuple[float, ...]
+    car: Car  # changed car; of an infeasible problem the nearest one
+    ranges: tuple[Range, ...]  # varied parameters with bounds and present values
+    values: tuple[float, ...]  # their values in the changed car
+    figures: Mapping[str, Target]  # figures by name
+    before: tuple[float, ...]  # before, after: values of the figures of the unchanged and of the changed car
     after: tuple[float, ...]
-    before_error: tuple[float, ...]
+    before_error: tuple[float, ...]  # before_error, after_error: their standard errors on random roads; NaN without one
     after_error: tuple[float, ...]
-    change: SmallestChange
-    inputs: tuple[str, ...]
+    change: SmallestChange  # result of the search
+    inputs: tuple[str, ...]  # names of the inputs
 
     def __str__(self) -> str:
         """Return the printed tables and the result in words."""
@@ -68,30 +55,32 @@ class TargetSearch:
         """Return the result in words."""
         named = [figure.words or name.replace("_", " ") for name, figure in self.figures.items()]
         bound = [self.ranges[index].path for index in self.change.at_bounds]
+        targets = {1: "the target", 2: "both targets"}.get(len(named), f"all {len(named)} targets")
         if self.change.feasible and self.change.cost == 0.0:
-            return f"{self.car.vehicle.name} meets all {len(named)} targets as it is."
+            return f"{self.car.vehicle.name} already meets {targets}."
         if self.change.feasible:
             changes = [
                 f"{each.path} {_change(each, value, '+.3g')}"
                 for each, value in zip(self.ranges, self.values, strict=True)
                 if abs(each.coordinate(value)) > 5e-4
             ]
-            decisive = [named[index] for index in self.change.active]
-            text = f"The smallest change that meets all {len(named)} targets: {', '.join(changes)}"
-            if not decisive:
-                return f"{text}."
+            binding = [named[index] for index in self.change.active]
+            text = f"The smallest change that meets {targets}: {', '.join(changes)}."
+            if not binding:
+                return text
+            limits, them = ("limit that binds is", "it") if len(binding) == 1 else ("limits that bind are", "them")
             return (
-                f"{text}; decisive is {' and '.join(decisive)}. There the car is just at the limit, and on another "
-                "road it may miss it: check it with report --targets, or search with a stricter limit."
+                f"{text} The {limits} {' and '.join(binding)}: the car only just meets {them} and may miss {them} on "
+                "another road; check with report --targets, or search with a stricter limit."
             )
         worst, *others = sorted(self.change.active, key=lambda index: -self.change.excess[index])
         text = (
-            f"No car within these bounds meets all {len(named)} targets: {named[worst]} misses its limit by "
-            f"{100.0 * self.change.excess[worst]:.3g} % at best"
+            f"No car within the bounds meets {targets}; the best one misses {named[worst]} by "
+            f"{100.0 * self.change.excess[worst]:.3g} %"
         )
         if others:
-            text += f"; there {' and '.join(named[index] for index in others)} is at the limit, too"
-        return text + (f"; the bound of {' and '.join(bound)} stops the search." if bound else ".")
+            text += f" and is at the limit of {' and '.join(named[index] for index in others)}"
+        return text + (f"; the search stops at the bound of {' and '.join(bound)}." if bound else ".")
 
     def rows(self) -> list[tuple[str, str, str, str, str, str]]:
         """Return name, input, limit with unit, both values with two standard errors, and the state as texts."""
@@ -175,7 +164,7 @@ def meet_targets(
         car: car loaded by `Car.load`.
         figures: figures with their limits and inputs, see `vehicle.runs.targets.verdict.read_targets`.
         ranges: parameters with their bounds, which contain the present values.
-        duration: length of a road class [s]; by default that of a run.
+        duration: length of a road class [s]; by default the length of a run.
         costs: path to cost c of a parameter; 1 by default.
         jobs: number of processes.
         progress: called with the finished fraction.
@@ -195,14 +184,14 @@ def meet_targets(
 
     def values(positions: Vector, executor: StandingExecutor) -> Vector:
         changes = [_texts(started, position) for position in positions]
-        # An exact figure, as a natural frequency, has no standard error.
+        # An exact figure, for example a natural frequency, has no standard error.
         columns = {f"{name}{ERROR}": np.full(len(changes), np.nan) for name in names}
         for index, (source, measure) in enumerate(measures.items()):
             settings = SweepSettings(engine="reduced", measure=measure, skip=measure.skip, executor=executor, jobs=jobs)
             plan = plan_sweep(car, changes, source, settings)
 
             def report(part: float, done: float = index / len(measures)) -> None:
-                # The cars of the sample take long; those of a step are few.
+                # The cars of the sample take long; the cars of a step are few.
                 if progress is not None and len(changes) >= SAMPLE:
                     progress(SAMPLE_SHARE * (done + part / len(measures)))
 
@@ -267,17 +256,13 @@ def _change(bounds: Range, value: float, digits: str) -> str:
 
 
 def _with_start(vehicle: Vehicle, bounds: Range) -> Range:
-    """Return bounds with the present value as their start.
-
-    Raises:
-        ConfigurationError: the value is neither positive nor a coordinate, or outside the bounds.
-    """
+    """Return bounds with the present value as their start."""
     start = float(parameter_value(vehicle, bounds.path))
     linear = is_coordinate(vehicle, bounds.path)
     if not (bounds.low <= start <= bounds.high and (linear or bounds.low > 0.0)):
         raise ConfigurationError(
-            f"--vary {bounds.path}={bounds.low:g}:{bounds.high:g}: the car has {start:g}; the bounds must "
-            f"{'' if linear else 'be above 0 and '}contain it, as the change is counted from it"
+            f"--vary {bounds.path}={bounds.low:g}:{bounds.high:g}: bounds must {'' if linear else 'be above 0 and '}"
+            f"contain the present value {start:g}, from which the change counts"
         )
     # A present value at a bound is allowed: the search then goes one way. A range needs a start strictly inside.
     slack = 1e-12 * (LENGTH_OF_ONE if linear else start)

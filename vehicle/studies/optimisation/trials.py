@@ -43,24 +43,15 @@ def on_executor(executor: Executor | StandingExecutor, measure: Measure) -> Eval
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Spread:
-    """Production tolerances, and the sample of k cars within the tolerances that is run for each car tried.
+    """Production tolerances, and the sample of k cars within the tolerances that is run for each car tried."""
 
-    Attributes:
-        tolerances: tolerances, each with full path to value of the unmodified car.
-        bands: positions of the cars in each band, -1 to 1; (k, tolerances).
-        quantile: quantile of the k values, counted from the good end; 1 for the worst, NaN for the mean.
-    """
-
+    # tolerances, each with full path to value of the unmodified car
     tolerances: tuple[tuple[Tolerance, Mapping[str, float]], ...]
-    bands: Vector
-    quantile: float = math.nan
+    bands: Vector  # positions of the cars in each band, -1 to 1; (k, tolerances)
+    quantile: float = math.nan  # quantile of the k values, counted from the good end; 1 for the worst, NaN for the mean
 
     def cars(self, changes: Mapping[str, float]) -> list[dict[str, float]]:
-        """Return path to value of each of the k cars within the tolerances of a car.
-
-        Args:
-            changes: path to value of the car.
-        """
+        """Return path to value of each of the k cars within the tolerances of a car."""
         sample = []
         for positions in self.bands:
             car = dict(changes)
@@ -81,7 +72,7 @@ class Spread:
 
     @property
     def statistic(self) -> str:
-        """Return the name of the statistic, as "quantile 0.9 of 16 cars"."""
+        """Return the name of the statistic, for example "quantile 0.9 of 16 cars"."""
         count = len(self.bands)
         if math.isnan(self.quantile):
             return f"mean of {count} cars"
@@ -111,9 +102,6 @@ def bands(tolerances: int, samples: int, seed: int) -> Vector:
         tolerances: number t of tolerances.
         samples: number of cars, a power of two.
         seed: seed of the scrambling.
-
-    Raises:
-        ConfigurationError: the number of samples is no power of two.
     """
     if samples < 2 or samples & (samples - 1):
         raise ConfigurationError(
@@ -124,27 +112,16 @@ def bands(tolerances: int, samples: int, seed: int) -> Vector:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Trials:
-    """Evaluation of cars: runs on all inputs within the tolerances, reduced to the criteria of the problem.
+    """Evaluation of cars: runs on all inputs within the tolerances, reduced to the criteria of the problem."""
 
-    Attributes:
-        problem: parameters, objectives and limits.
-        inputs: inputs of each car.
-        measure: measure with the quantities of all criteria.
-        evaluate: function that evaluates cases.
-        fixed: overrides of every car.
-        vehicle: vehicle file.
-        engine: simulation engine, see `Car.run`.
-        spread: sample of cars within the tolerances.
-    """
-
-    problem: Problem
-    inputs: Sequence[Input]
-    measure: Measure
-    evaluate: Evaluate
-    fixed: Sequence[str] = ()
-    vehicle: Path | None = None
-    engine: str = "reduced"
-    spread: Spread = field(default=NO_TOLERANCES)
+    problem: Problem  # parameters, objectives and limits
+    inputs: Sequence[Input]  # inputs of each car
+    measure: Measure  # measure with the quantities of all criteria
+    evaluate: Evaluate  # function that evaluates cases
+    fixed: Sequence[str] = ()  # overrides of every car
+    vehicle: Path | None = None  # vehicle file
+    engine: str = "reduced"  # simulation engine, see `Car.run`
+    spread: Spread = field(default=NO_TOLERANCES)  # sample of cars within the tolerances
 
     def cases(self, points: Vector) -> list[Case]:
         """Return the runs of points (n, p); the inputs vary fastest, then the cars within the tolerances."""

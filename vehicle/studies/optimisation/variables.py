@@ -17,12 +17,8 @@ def values_at(vehicle: Vehicle, option: str, path: str) -> dict[str, float]:
     """Return full path to value for all parameters that a path refers to.
 
     Args:
-        vehicle: the vehicle.
         option: name of the option with the path, for messages.
         path: path of a parameter, see `vehicle.model.parameters.paths`.
-
-    Raises:
-        ConfigurationError: the path is not a numeric parameter of the vehicle.
     """
     try:
         return {full: value_of(vehicle, full) for full in meant(as_table(vehicle), path)}
@@ -36,13 +32,9 @@ def problem_of(
     """Return the optimisation problem of a vehicle.
 
     Args:
-        vehicle: the vehicle.
         ranges: parameters with bounds.
         criteria: objectives and limits, with their units.
         inputs: names of the inputs.
-
-    Raises:
-        ConfigurationError: no parameter, a parameter is not a number of the vehicle, or two set the same value.
     """
     if not ranges:
         raise ConfigurationError("no parameter to vary; add --vary PATH=LOW:HIGH, once for each parameter")
@@ -59,18 +51,13 @@ def problem_of(
 
 
 def toleranced(vehicle: Vehicle, tolerances: Sequence[Tolerance]) -> tuple[tuple[Tolerance, Mapping[str, float]], ...]:
-    """Return tolerances, each with full path to value of the vehicle.
-
-    Raises:
-        ConfigurationError: a path is not a number of the vehicle, two tolerances refer to the same value, or one is a
-            percentage of a coordinate.
-    """
+    """Return tolerances, each with full path to value of the vehicle."""
     each = [values_at(vehicle, "--tolerance", tolerance.path) for tolerance in tolerances]
     for tolerance, values in zip(tolerances, each, strict=True):
         if tolerance.relative and any(is_coordinate(vehicle, path) for path in values):
             raise ConfigurationError(
                 f"--tolerance {tolerance.path}={100.0 * tolerance.width:g}%: a percentage of a coordinate depends on "
-                f"the origin; set a length in m, as {tolerance.path}=0.002"
+                f"the origin; set a length in m, e.g. {tolerance.path}=0.002"
             )
     _require_unique("--tolerance", each)
     return tuple(zip(tolerances, each, strict=True))
@@ -85,11 +72,7 @@ def _require_unique(option: str, each: Sequence[Mapping[str, float]]) -> None:
 
 
 def require_bounds(vehicle: Path | None, fixed: Sequence[str], problem: Problem) -> None:
-    """Check before any run that each bound of each parameter is a valid value of the vehicle.
-
-    Raises:
-        ConfigurationError: a bound is invalid; the message contains the parameter and the reason.
-    """
+    """Check before any run that each bound of each parameter is a valid value of the vehicle."""
     base = Car.load(vehicle, fixed)
     for bounds, paths in zip(problem.ranges, problem.paths, strict=True):
         for value in (bounds.low, bounds.high):

@@ -9,7 +9,7 @@ with Z the response of the car to its best drive, for which the P S Z of a linea
 sum of |r|^2 over the lines: a search channel by channel, then Gauss-Newton. A delay of all channels alike only moves
 the drive: delays are those against the (lower) median of all channels. The estimate is as
 accurate as the FRFs of the car: friction, of which H has the mean damping of the last run, moves it, and a second run
-with the delay taken out is nearer. Its standard error is that of stretches of lines as observations.
+with the delay taken out is nearer. Its standard error takes stretches of lines as observations.
 
 Source: Golub and Pereyra, SIAM J. Numerical Analysis 10(2), 1973, 413-432 (separable least squares: the drive is
 projected out).
@@ -41,19 +41,12 @@ SEARCHES, ROUNDS = 3, 20
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ChannelDelay:
-    """Delay of a channel of the target against the median of all channels.
+    """Delay of a channel of the target against the median of all channels."""
 
-    Attributes:
-        channel: channel of the car.
-        delay: delay in the file, with the part that was taken out [s].
-        error: standard error [s].
-        taken_out: part that was taken out [s].
-    """
-
-    channel: str
-    delay: float
-    error: float
-    taken_out: float
+    channel: str  # channel of the car
+    delay: float  # delay in the file, with the part that was taken out [s]
+    error: float  # standard error [s]
+    taken_out: float  # part that was taken out [s]
 
     def summary(self) -> dict[str, Any]:
         """Return the entry of `summary.json`."""

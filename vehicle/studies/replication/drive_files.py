@@ -30,12 +30,7 @@ FILES = {
 
 
 def save_drive(
-    drive: FoundDrive,
-    folder: Path | str,
-    *,
-    force: bool = False,
-    figures: bool = True,
-    protect: tuple[Path, ...] = (),
+    drive: FoundDrive, folder: Path | str, *, force: bool = False, figures: bool = True, protect: tuple[Path, ...] = ()
 ) -> dict[str, Any]:
     """Write the files of a drive: plate signals, response, iterations, pictures, parameters, summary.
 
@@ -124,11 +119,7 @@ def write_drive(folder: Path, drive: FoundDrive, *, figures: bool = True) -> dic
             for step in replication.steps
         ],
         "delays": [each.summary() for each in drive.delays],
-        "notices": [
-            *drive.notices,
-            *plant.ramp,
-            *run.recording.statistics.warnings,
-        ],
+        "notices": [*drive.notices, *plant.ramp, *run.recording.statistics.warnings],
         "files": files | write_own_files(folder, plant.car),
     }
     write_json(folder / FILES["summary"], summary)

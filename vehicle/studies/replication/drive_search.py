@@ -95,8 +95,9 @@ def replicate_drive(
     Args:
         car: the car.
         target: measured accelerations, of any format.
-        channels: channel of the car to channel of the file, as {"knuckle_fr_acc_z": "Dof 12 +Z"}; or a list of channels
-            of the car if the file uses the same names or has a single channel. At least as many channels as plates.
+        channels: channel of the car to channel of the file, e.g. {"knuckle_fr_acc_z": "Dof 12 +Z"}; or a list of
+            channels of the car if the file uses the same names or has a single channel. At least as many channels as
+            plates.
 
     Returns:
         The best drive with its error; `save_drive` writes all files.
@@ -141,15 +142,12 @@ def driven_wheels(asked: Sequence[str] | None, target: Target, shaker_wheel: str
 
     Args:
         asked: names of wheels; None for the wheels in the names of the channels, or else the wheel on the shaker.
-
-    Raises:
-        ConfigurationError: more plates than channels.
     """
     named = {part for name in target.channels for part in name.split("_") if part in CORNERS.values()}
     driven = in_order(set(asked) if asked else named or {shaker_wheel})
     if len(driven) > len(target.channels):
         raise ConfigurationError(
-            f"found {len(target.channels)} channel for {len(driven)} plates ({', '.join(driven)}); use at least "
-            "as many channels as plates"
+            f"channels: found {len(target.channels)} for {len(driven)} plates ({', '.join(driven)}); use at least as "
+            "many channels as plates"
         )
     return driven

@@ -24,9 +24,6 @@ class DrivenCar(Plant):
         wheels: wheels on driven plates, (p,).
         engine: simulation engine, see `Car.run`.
 
-    Raises:
-        ConfigurationError: the car lacks a wheel or a channel, or has forces that shake it.
-
     Attributes:
         settled: number of samples at the beginning in which a drive rises from rest; their errors are excluded.
         damping: equivalent viscous constants of the dampers [N s/m], (d,).

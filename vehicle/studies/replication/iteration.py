@@ -47,40 +47,24 @@ class Plant(ABC):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Step:
-    """Run of the iteration with its error.
+    """Run of the iteration with its error."""
 
-    Attributes:
-        number: number of the run, from 1.
-        gain: gain G of the step before the run [-].
-        error: root of the mean square of `errors` [-].
-        errors: RMS of target minus response over RMS of the target, in the band, (k,) [-].
-        kept: True if the error is below those of all runs before.
-    """
-
-    number: int
-    gain: float
-    error: float
-    errors: Vector
-    kept: bool
+    number: int  # number of the run, from 1
+    gain: float  # gain G of the step before the run [-]
+    error: float  # root of the mean square of `errors` [-]
+    errors: Vector  # RMS of target minus response over RMS of the target, in the band, (k,) [-]
+    kept: bool  # True if the error is smaller than in all runs before
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Replication:
-    """Result of the iteration: the best drive with its response, and all steps.
+    """Result of the iteration: the best drive with its response, and all steps."""
 
-    Attributes:
-        drive: best drive, (p, n).
-        response: response to the best drive, (k, n).
-        steps: all runs.
-        reached: True if the error fell below the tolerance.
-        outcome: reason for the end of the iteration.
-    """
-
-    drive: Vector
-    response: Vector
-    steps: tuple[Step, ...]
-    reached: bool
-    outcome: str
+    drive: Vector  # best drive, (p, n)
+    response: Vector  # response to the best drive, (k, n)
+    steps: tuple[Step, ...]  # all runs
+    reached: bool  # True if the error fell below the tolerance
+    outcome: str  # reason for the end of the iteration
 
     @property
     def error(self) -> float:
@@ -105,7 +89,7 @@ def replicate(plant: Plant, target: Vector, lines: Lines, settings: DriveSetting
     drive, response = np.zeros((plant.frf(lines.frequency[:1]).shape[1], target.shape[1])), np.zeros_like(target)
     inverse = regularised_inverse(plant.frf(lines.frequency), lines.frequency, sizes)
     smallest, current_gain, failures, steps = 1.0, settings.gain, 0, list[Step]()
-    outcome = f"maximum number of {iterations} iterations reached"
+    outcome = f"stopped after the maximum of {iterations} iterations"
     for number in range(1, iterations + 1):
         tried, obstacle = plant.possible(drive + current_gain * lines.correction(inverse, target - response))
         if obstacle:

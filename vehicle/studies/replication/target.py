@@ -36,29 +36,17 @@ OVERSAMPLING = 20.0
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Target:
-    """Accelerations to be replicated.
+    """Accelerations to be replicated."""
 
-    Attributes:
-        channels: channels of the car, (k,).
-        time: sampling times from 0 [s], (n,).
-        values: accelerations [m/s2], (k, n).
-        lines: spectral lines of the record, with the band.
-        band: lower and upper edge [Hz].
-        source: measurement file.
-        sha256: digest of the file.
-        notices: messages on the processing of the file.
-        delays: channel to delay that was taken out [s].
-    """
-
-    channels: tuple[str, ...]
-    time: Vector
-    values: Vector
-    lines: Lines
-    band: tuple[float, float]
-    source: Path
-    sha256: str
-    notices: tuple[str, ...]
-    delays: Mapping[str, float] = field(default_factory=dict)
+    channels: tuple[str, ...]  # channels of the car, (k,)
+    time: Vector  # sampling times from 0 [s], (n,)
+    values: Vector  # accelerations [m/s2], (k, n)
+    lines: Lines  # spectral lines of the record, with the band
+    band: tuple[float, float]  # lower and upper edge [Hz]
+    source: Path  # measurement file
+    sha256: str  # digest of the file
+    notices: tuple[str, ...]  # messages on the processing of the file
+    delays: Mapping[str, float] = field(default_factory=dict)  # channel to delay that was taken out [s]
 
 
 def read_target(path: Path, names: Mapping[str, str], choice: Choice, band: tuple[float, float], rate: float) -> Target:

@@ -35,17 +35,11 @@ class Input(Protocol):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SignalFile:
-    """Signal file as an input.
+    """Signal file as an input."""
 
-    Attributes:
-        path: absolute path of the file.
-        wheel: driven wheel for a file without wheel names; empty for `Vehicle.shaker_wheel` of the car.
-        accept_implausible: accept levels above those of any shaker.
-    """
-
-    path: Path
-    wheel: str = ""
-    accept_implausible: bool = False
+    path: Path  # absolute path of the file
+    wheel: str = ""  # driven wheel for a file without wheel names; empty for `Vehicle.shaker_wheel` of the car
+    accept_implausible: bool = False  # accept levels above those of any shaker
 
     @property
     def name(self) -> str:
@@ -80,21 +74,15 @@ def _signal(source: Input, changed: int) -> Signal:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Case:
-    """Case of a sweep: an input, a car and an engine.
+    """Case of a sweep: an input, a car and an engine."""
 
-    Attributes:
-        source: the input, for example a `Signal`.
-        overrides: texts "path=value" of two variations: the first `shared` texts by `Car.load`, the others of that car.
-        engine: simulation engine, see `Car.run`.
-        vehicle: vehicle file; by default the Focus of Bommer 2006.
-        shared: number of leading overrides common to the whole study: the car is modified from the car with these
-            overrides, which is fast if only laws and masses vary. Values may change in the ninth digit.
-    """
-
-    source: Input
+    source: Input  # the input, for example a `Signal`
+    # texts "path=value" of two variations: the first `shared` texts by `Car.load`, the others of that car
     overrides: tuple[str, ...] = ()
-    engine: str = "auto"
-    vehicle: Path | None = None
+    engine: str = "auto"  # simulation engine, see `Car.run`
+    vehicle: Path | None = None  # vehicle file; by default the Focus of Bommer 2006
+    # number of leading overrides common to the whole study: the car is modified from the car with these overrides,
+    # which is fast if only laws and masses vary. Values may change in the ninth digit.
     shared: int = 0
 
     @property

@@ -12,11 +12,10 @@ from typing import TypeVar
 
 import numpy as np
 
-from vehicle.engines.reduced.batch_simulation import COARSE_STEP, BatchRuns, simulate_batch
+from vehicle.engines.reduced.batch_simulation import BatchRuns, simulate_batch
 from vehicle.engines.reduced.table_layout import LANES
 from vehicle.engines.reduced.validity import REMEDY
 from vehicle.engines.simulation.judgement import require_finite, require_samples
-from vehicle.engines.simulation.recording import Recording
 from vehicle.errors import SimulationError, VehicleError
 from vehicle.model.parameters.force_elements import LIFTS
 from vehicle.model.parameters.vehicle import Vehicle
@@ -47,10 +46,6 @@ _ONE_AT_A_TIME = threading.Lock()
 def evaluate(cases: Sequence[Case], measure: Measure) -> list[Result]:
     """Evaluate the cases of a sweep in this process, in batches where the reduced engine supports it.
 
-    Args:
-        cases: the runs, in any order.
-        measure: measure of each run.
-
     Returns:
         Results in the order of the cases; a failed case has an error message instead of values. The values of a case
         are bitwise independent of the other cases.
@@ -71,12 +66,8 @@ def evaluate(cases: Sequence[Case], measure: Measure) -> list[Result]:
 def reason_for_mujoco(case: Case, measure: BatchMeasure) -> str | None:
     """Return the reason why "auto" runs a case with MuJoCo, from a run with the reduced engine.
 
-    Args:
-        case: the run.
-        measure: measure of the run.
-
     Returns:
-        The first warning of the reduced engine, and that on a tyre that would lift off; empty inside its valid range;
+        The first warning of the reduced engine, and the one on a tyre that would lift off; empty in its valid range;
         None if the run fails, whose row then has the error message.
     """
     try:
@@ -186,7 +177,7 @@ def _batch_results(cases: Sequence[Case], measure: BatchMeasure) -> list[Result]
 def cars_at_once(samples: float, channels: int) -> int:
     """Return the number of cars whose channels fit into `ROOM`, at least one; from `LANES` on in full vectors.
 
-    Figures of the car alone, as a natural frequency, read no channel.
+    Figures of the car alone, for example a natural frequency, read no channel.
     """
     size = int(max(ROOM / (8.0 * max(channels, 1) * (samples + 1.0)), 1.0))
     return size - (size % LANES if size > LANES else 0)
@@ -275,23 +266,6 @@ def _retry_each(items: Sequence[T], error: Exception, retry: Callable[[T], R]) -
     return [retry(item) for item in items] if len(items) > 1 else [_failed(error)]
 
 
-def recordings_of(cases: Sequence[Case], channels: Sequence[str]) -> list[Recording]:
-    """Return time histories of cars on one input, simulated as a batch with the reduced engine as in a sweep.
-
-    Args:
-        cases: runs on one input of cars with equal `batch_key`; the engine of a case is ignored.
-        channels: names of the recorded channels.
-
-    Raises:
-        VehicleError: see `Car.run`.
-    """
-    cars, signal = [_car_of(case) for case in cases], signal_of(cases[0].source)
-    simulated = _simulated(cars, signal, channels, COARSE_STEP)
-    for row in range(len(simulated)):
-        require_finite(simulated.recording(row))
-    return [simulated.recording(row) for row in range(len(simulated))]
-
-
 def _simulated(cars: Sequence[Car], signal: Signal, channels: Sequence[str], step: float) -> BatchRuns:
     """Simulate a batch of cars on a signal with the reduced engine."""
     return simulate_batch(
@@ -307,10 +281,10 @@ def _simulated(cars: Sequence[Car], signal: Signal, channels: Sequence[str], ste
 
 def _checked(values: dict[str, float]) -> dict[str, float]:
     """Check that no value of a run is infinite, and return the values."""
-    # NaN is an undefined value, as the first slip of a damper that never slips.
+    # NaN is an undefined value, for example the first slip of a damper that never slips.
     infinite = [name for name, value in values.items() if math.isinf(value)]
     if infinite:
-        raise SimulationError(f"{', '.join(infinite)}: infinite; the run overflowed: narrow the varied ranges")
+        raise SimulationError(f"{', '.join(infinite)}: infinite values (overflow); narrow the varied ranges")
     return values
 
 

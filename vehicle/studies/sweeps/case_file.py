@@ -20,11 +20,11 @@ from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
 from vehicle.signals.analysis.ride_comfort import UNWEIGHTED, WEIGHTED
 from vehicle.signals.formats.csv_table import RowWriter
-from vehicle.studies.sweeps.change_error import MEANING_OF_ERROR, NO_ERROR, change_errors, half_width
+from vehicle.studies.sweeps.change_error import MEANING_OF_ERROR, NO_ERROR, UNKNOWN_ERROR, change_errors, half_width
 from vehicle.studies.sweeps.evaluation import REPEAT, Evaluation, Part, runs_part
 from vehicle.studies.sweeps.plan import SweepPlan, plan_sweep
 from vehicle.studies.sweeps.sweep_inputs import Inputs
-from vehicle.studies.sweeps.sweep_ranking import RANKED_BY, SweptCases
+from vehicle.studies.sweeps.sweep_ranking import SweptCases, figure_names, is_comfort
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
 
 CASES = "cases.csv"
@@ -39,16 +39,13 @@ class CaseFile:
     """Cases of a file: every car on every input; a car is a laden state with a variant.
 
     Attributes:
-        roads: classes of ISO 8608 and obstacles, as "C" and "cleat:20x50".
-        speeds: speeds on each of them [km/h]; or a table of each road to its speeds, as {C = [80], D = [50]}.
+        roads: classes of ISO 8608 and obstacles, for example "C" and "cleat:20x50".
+        speeds: speeds on each of them [km/h]; or a table of each road to its speeds, for example {C = [80], D = [50]}.
         signals: signal files, or names of shipped files.
         duration: length of a class [s]; by default that of a run.
         vehicle: name or file of the car; by default that of the study.
         states: name of a laden state to its changed parameters.
         variants: name of a variant to its changed parameters.
-
-    Raises:
-        ConfigurationError: no input, or roads without speeds, or speeds of a road that is not among them.
     """
 
     roads: tuple[str, ...] = ()
@@ -75,12 +72,13 @@ class CaseFile:
         """Return the checked sweep of every car of the file, on its inputs; see `Design`.
 
         Raises:
-            ConfigurationError: a measure without comfort, by which the cars are compared.
+            ConfigurationError: a measure with several figures, or without a name for its values.
         """
         plan = plan_sweep(car, list(self.cars.values()), self.inputs, settings, self._evaluation)
-        name = next((each for each in RANKED_BY if each in plan.measure.units), "")
-        if name.replace(WEIGHTED, UNWEIGHTED) not in plan.measure.units:
-            raise ConfigurationError("measure: the cars of a file are compared by comfort; leave out --measure")
+        names = figure_names(plan.measure.units) if plan.measure.units else ()
+        if len(names) != 1:
+            figures = ", ".join(names) or "a function without names"
+            raise ConfigurationError(f"--measure: the cars of a file are compared by one figure; found {figures}")
         return plan
 
     def _evaluation(self, table: SweptCases, caption: str) -> Evaluation:
@@ -124,7 +122,7 @@ class CaseFile:
         named: dict[tuple[str, ...], str] = {}
         for name, texts in listed.items():
             if (other := named.setdefault(texts, name)) != name:
-                raise ConfigurationError(f"cases {other!r} and {name!r} are the same car: leave one out")
+                raise ConfigurationError(f"cases {other!r} and {name!r} are the same car: remove one of them")
         return listed
 
 
@@ -134,17 +132,12 @@ def _texts(tables: Mapping[str, Mapping[str, Any]], name: str) -> tuple[str, ...
 
 
 def read_cases(file: Path) -> CaseFile:
-    """Read the cases of a TOML file.
-
-    Raises:
-        ConfigurationError: the file is missing, a key is unknown or wrong, or there is neither a laden state nor a
-            variant; the message names file and key.
-    """
+    """Read the cases of a TOML file."""
     try:
         cases = build(CaseFile, read_table(file))
         if not cases.states and not cases.variants:
             raise ConfigurationError(
-                'no states and no variants: add one, as [variants.soft] with "damper.viscous" = 900'
+                'no states and no variants: add one, for example [variants.soft] with "damper.viscous" = 900'
             )
         return cases
     except ConfigurationError as error:
@@ -154,24 +147,18 @@ def read_cases(file: Path) -> CaseFile:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class CaseResults:
-    """Comfort of every car on every input; variants are compared within a laden state, which nobody chooses.
+    """Comfort of every car on every input; variants are compared within a laden state, which is no design choice."""
 
-    Attributes:
-        cars: names of the cars, the unchanged one first.
-        bases: number of the car without a variant in the state of each car.
-        inputs: names of the inputs.
-        name: comfort value, as "weighted".
-        weighted, unweighted: comfort [m/s2], NaN for a failed run; (inputs, cars).
-        errors: standard errors of the changes from the base of each car, 0 on one event [m/s2]; (inputs, cars).
-    """
-
-    cars: tuple[str, ...]
-    bases: tuple[int, ...]
-    inputs: tuple[str, ...]
-    name: str
-    weighted: Vector
-    unweighted: Vector
-    errors: Vector
+    cars: tuple[str, ...]  # names of the cars, the unchanged one first
+    bases: tuple[int, ...]  # number of the car without a variant in the state of each car
+    inputs: tuple[str, ...]  # names of the inputs
+    name: str  # name, unit: compared figure, for example "weighted", and its unit
+    unit: str
+    values: Vector  # the figure, NaN for a failed run; (inputs, cars)
+    # unweighted comfort [m/s2], NaN for a failed run, (inputs, cars); None for another figure
+    unweighted: Vector | None
+    errors: Vector  # standard errors of the changes from the base of each car, 0 on one event; (inputs, cars)
+    event: bool  # True if all inputs are single events
 
     @property
     def half_widths(self) -> Vector:
@@ -179,26 +166,27 @@ class CaseResults:
 
         The last row is that of the mean change.
         """
-        relative = 100.0 * (self.errors / self.weighted[:, list(self.bases)]).T
+        relative = 100.0 * (self.errors / np.abs(self.values[:, list(self.bases)])).T
         each = [half_width(relative[:, [number]]) for number in range(len(self.inputs))]
         return np.array([*each, half_width(relative)])
 
     @property
     def changes(self) -> Vector:
-        """Return the change of the weighted value from the base of each car on the same input [%], (inputs, cars)."""
-        return np.asarray(100.0 * (self.weighted / self.weighted[:, list(self.bases)] - 1.0))
+        """Return the change of the figure from the base of each car on the same input [%], (inputs, cars)."""
+        base = self.values[:, list(self.bases)]
+        return np.asarray(100.0 * np.sign(base) * (self.values / base - 1.0))
 
     def rows(self, sign: str = "+-") -> list[list[str]]:
-        """Return the head and a row for each car as texts: weighted value and change on each input, mean change.
+        """Return the head and a row for each car as texts: figure and change on each input, mean change.
 
         Args:
             sign: sign before the half width of the mean change.
         """
-        heads = ["car", *(f"{name} [m/s2]" for name in self.inputs), "mean change"]
+        heads = ["car", *(f"{name} [{self.unit}]" for name in self.inputs), "mean change"]
         rows, widths = [heads], self.half_widths[-1]
         for number, car in enumerate(self.cars):
             cells = []
-            for value, change in zip(self.weighted[:, number], self.changes[:, number], strict=True):
+            for value, change in zip(self.values[:, number], self.changes[:, number], strict=True):
                 cell = f"{value:.4g}" if math.isfinite(value) else "failed"
                 varied = self.bases[number] != number
                 cells.append(f"{cell} ({change:+.1f} %)" if varied and math.isfinite(change) else cell)
@@ -211,20 +199,21 @@ class CaseResults:
 
     def lines(self) -> list[str]:
         """Return the printed table, and the best car in words."""
-        meaning = f"{self.name}: RMS after the weightings of a seat (ISO 2631-1); {self.error_words}"
-        return [*aligned(self.rows()), meaning, self.sentence]
+        meaning = "" if self.unweighted is None else ": RMS with the weightings for a seat (ISO 2631-1)"
+        return [*aligned(self.rows()), f"{self.name}{meaning}; {self.error_words}", self.sentence]
 
     @property
     def error_words(self) -> str:
         """Meaning of the half widths, or the reason why an event has no error."""
-        return MEANING_OF_ERROR if np.any(self.half_widths > 0.0) else NO_ERROR
+        unknown = self.unweighted is None and not self.event
+        return MEANING_OF_ERROR if np.any(self.half_widths > 0.0) else UNKNOWN_ERROR if unknown else NO_ERROR
 
     @property
     def sentence(self) -> str:
         """Return text on the variant with the lowest mean change in each laden state."""
         states = dict.fromkeys(self.bases)
         if all(self.bases[number] == number for number in range(len(self.cars))):
-            return "The file has no variants; laden states are not a choice, so none is named the smoothest."
+            return "The file has no variants to compare: the load is not a design choice, so no state is ranked."
         return " ".join(self._best_in(base, several=len(states) > 1) for base in states)
 
     def _best_in(self, base: int, *, several: bool) -> str:
@@ -233,41 +222,47 @@ class CaseResults:
         state = f"{name}: " if several else ""
         variants = [number for number, each in enumerate(self.bases) if each == base and math.isfinite(means[number])]
         if not variants:
-            return f"{state or 'Result: '}no car ran on all inputs."
+            return f"{state or 'Result: '}no car completed the runs on all inputs."
         best = min(variants, key=lambda number: float(means[number]))
         over = "over all inputs" if len(self.inputs) > 1 else f"on {self.inputs[0]}"
         over = over if several else f"{over[0].upper()}{over[1:]}"
+        comfort = self.unweighted is not None
         if best == base:
-            return f"{state}{over} no variant is smoother than the car as it is."
-        doubt = ", not more than its error" if abs(means[best]) <= self.half_widths[-1, best] else ""
+            better = "is smoother" if comfort else f"has a lower {self.name}"
+            return f"{state}{over} no variant {better} than the car without a variant."
+        doubt = ", within the error" if abs(means[best]) <= self.half_widths[-1, best] else ""
         variant = self.cars[best].removeprefix(f"{name}, ")
-        return f"{state}{over} the smoothest variant is {variant!r}: {means[best]:+.1f} % against no variant{doubt}."
+        change = f"{means[best]:+.1f} % from the car without a variant"
+        named = "the smoothest variant is" if comfort else f"the variant with the lowest {self.name} is"
+        return f"{state}{over} {named} {variant!r}: {change}{doubt}."
 
 
 def case_results(table: SweptCases, cases: CaseFile) -> CaseResults:
-    """Return the comfort of a sweep over the cars of a file.
+    """Return the figure of a sweep over the cars of a file.
 
     Args:
         table: the table, the inputs varying slowest.
-        cases: the file.
     """
     cars = list(cases.cars)
     bases = [cars.index(name) for name in cases.base_names]
-    name = next(each for each in RANKED_BY if each in table.units)
+    name = figure_names(table.units)[0]
     inputs = dict.fromkeys(case.source.name for case in table.cases)
     rows, numbers = list(table.rows()), np.arange(len(table.cases)).reshape(len(inputs), -1).T.tolist()
-    errors = np.zeros((len(cars), len(inputs)))
+    errors, events = np.zeros((len(cars), len(inputs))), np.zeros(len(inputs))
     for base in dict.fromkeys(bases):
         in_state = [number for number, each in enumerate(bases) if each == base]
-        errors[in_state] = change_errors(rows, [numbers[number] for number in in_state], name)[0]
+        errors[in_state], events = change_errors(rows, [numbers[number] for number in in_state], name)
+    unweighted = name.replace(WEIGHTED, UNWEIGHTED) if is_comfort(table.units) else ""
     return CaseResults(
         cars=tuple(cars),
         bases=tuple(bases),
         inputs=tuple(inputs),
         name=name,
-        weighted=table.column(name).reshape(len(inputs), -1),
-        unweighted=table.column(name.replace(WEIGHTED, UNWEIGHTED)).reshape(len(inputs), -1),
+        unit=table.units[name],
+        values=table.column(name).reshape(len(inputs), -1),
+        unweighted=table.column(unweighted).reshape(len(inputs), -1) if unweighted else None,
         errors=errors.T,
+        event=bool(events.all()),
     )
 
 
@@ -280,16 +275,11 @@ def write_cases(path: Path, results: CaseResults) -> None:
     """
     with path.open("w", encoding="utf-8", newline="") as file:
         rows = RowWriter(file)
-        rows.writerow(
-            ["input", "car", f"{results.name} [m/s2]", "change [%]", "unweighted [m/s2]", "half_width_95 [%]"]
-        )
+        columns = {f"{results.name} [{results.unit}]": results.values, "change [%]": results.changes}
+        if results.unweighted is not None:
+            columns["unweighted [m/s2]"] = results.unweighted
+        columns["half_width_95 [%]"] = results.half_widths
+        rows.writerow(["input", "car", *columns])
         for number, source in enumerate(results.inputs):
-            for car, *values in zip(
-                results.cars,
-                results.weighted[number],
-                results.changes[number],
-                results.unweighted[number],
-                results.half_widths[number],
-                strict=True,
-            ):
+            for car, *values in zip(results.cars, *(column[number] for column in columns.values()), strict=True):
                 rows.writerow([source, car, *(f"{value:.6g}" if math.isfinite(value) else "" for value in values)])

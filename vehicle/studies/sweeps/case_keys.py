@@ -21,9 +21,6 @@ class CaseKeys:
     """Function of a case that returns a digest of all data that its values depend on.
 
     These data are car, input, engine, measure and program.
-
-    Args:
-        measure: measure of the cases.
     """
 
     def __init__(self, measure: Measure) -> None:

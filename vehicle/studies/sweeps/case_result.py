@@ -13,19 +13,12 @@ from vehicle.studies.sweeps.case import Case
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Result:
-    """Values of a run, or the error message of a failed run.
+    """Values of a run, or the error message of a failed run."""
 
-    Attributes:
-        values: name to value; empty for a failed run.
-        engine: engine of the run; empty for a failed run.
-        reason: error message of a failed run; else empty.
-        seconds: computing time including the building of the car [s]; runs of a batch share the time equally.
-    """
-
-    values: dict[str, float] = field(default_factory=dict)
-    engine: str = ""
-    reason: str = ""
-    seconds: float = 0.0
+    values: dict[str, float] = field(default_factory=dict)  # name to value; empty for a failed run
+    engine: str = ""  # engine of the run; empty for a failed run
+    reason: str = ""  # error message of a failed run; else empty
+    seconds: float = 0.0  # computing time including the building of the car [s]; runs of a batch share the time equally
 
     def row(self, case: Case, key: str) -> str:
         """Return the row of a case, a line of JSON; `key` is its digest, see `CaseKeys`."""
@@ -61,19 +54,12 @@ class Result:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Block:
-    """Rows of the cases of a task as text, so that the process of the sweep stores them without reading them.
+    """Rows of the cases of a task as text, so that the process of the sweep stores them without reading them."""
 
-    Attributes:
-        rows: a line for each case, see `Result.row`.
-        seconds: computing time of all cases [s].
-        failed: positions of the failed cases.
-        reduced: True if the reduced engine ran all cases.
-    """
-
-    rows: bytes
-    seconds: float
-    failed: tuple[int, ...] = ()
-    reduced: bool = False
+    rows: bytes  # a line for each case, see `Result.row`
+    seconds: float  # computing time of all cases [s]
+    failed: tuple[int, ...] = ()  # positions of the failed cases
+    reduced: bool = False  # True if the reduced engine ran all cases
 
     @classmethod
     def of(cls, cases: Sequence[Case], keys: Sequence[str], results: Sequence[Result]) -> Block:

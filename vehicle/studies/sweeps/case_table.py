@@ -14,7 +14,6 @@ class Cases(LazySequence[Case]):
 
     Args:
         changes: texts "path=value" of each variation.
-        inputs: the inputs.
         engine, vehicle: see `Case`.
         fixed: overrides of every case, before those of the input and of the variation.
     """
@@ -50,11 +49,7 @@ class Cases(LazySequence[Case]):
 
     def _case(self, source: Input, shared: tuple[str, ...], change: tuple[str, ...]) -> Case:
         return Case(
-            source=source,
-            overrides=shared + change,
-            engine=self.engine,
-            vehicle=self.vehicle,
-            shared=len(shared),
+            source=source, overrides=shared + change, engine=self.engine, vehicle=self.vehicle, shared=len(shared)
         )
 
 
@@ -63,7 +58,6 @@ class RowChanges(LazySequence[tuple[str, ...]]):
 
     Args:
         paths: parameter paths, the columns.
-        rows: values.
     """
 
     def __init__(self, paths: Sequence[str], rows: Sequence[Sequence[object]]) -> None:
@@ -79,11 +73,7 @@ class RowChanges(LazySequence[tuple[str, ...]]):
 
 
 class Combinations(LazySequence[tuple[str, ...]]):
-    """Every combination of the texts of several columns, the last column varying fastest.
-
-    Args:
-        columns: texts of each column.
-    """
+    """Every combination of the texts of several columns, the last column varying fastest."""
 
     def __init__(self, columns: Sequence[Sequence[str]]) -> None:
         self.columns = columns
@@ -118,7 +108,6 @@ def table_cases(
 
     Args:
         paths: parameter paths, the columns.
-        rows: values.
         inputs: the inputs, varying slowest.
         engine, vehicle, fixed: see `Cases`.
     """

@@ -1,8 +1,8 @@
 """Standard error of the change of a comfort value from the first car to each car of a sweep, on the same inputs.
 
-The error of the difference on one random road is that of `vehicle.signals.analysis.comfort_error`, with 2 `WAVES`
+The error of the difference on one random road is from `vehicle.signals.analysis.comfort_error`, with 2 `WAVES`
 degrees of freedom. The differences on n inputs are independent, so their mean has the variance sum var_i / n^2. One
-event, as an obstacle, is the same for every car: its differences have no random error, and add none.
+event, for example an obstacle, is the same for every car: its differences have no random error.
 """
 
 from collections.abc import Iterable, Sequence
@@ -15,9 +15,9 @@ from vehicle.signals.analysis.comfort_error import WAVES, difference_error
 from vehicle.signals.analysis.ride_comfort import wave_names
 from vehicle.studies.sweeps.case_result import Row
 
-MEANING_OF_ERROR = "+-: half width of the 95 % interval of a change, over random inputs like this"
-NO_ERROR = "no +-: one event has no random error"
-UNKNOWN_ERROR = "no +-: the error of the change of this figure is not known"
+MEANING_OF_ERROR = "+-: half-width of the 95 % interval of a change, for random inputs like these"
+NO_ERROR = "no +-: a single event has no random error"
+UNKNOWN_ERROR = "no +-: the error of a change in this figure is unknown"
 """Words of tables with and without errors."""
 
 
@@ -32,7 +32,7 @@ def change_errors(rows: Iterable[Row], cars: Sequence[Sequence[int]], name: str)
     Args:
         rows: all rows of a sweep, with numbers as texts of all digits.
         cars: numbers of the rows of each car on n inputs.
-        name: comfort value, as "weighted".
+        name: comfort value, for example "weighted".
 
     Returns:
         Errors, (cars, n), 0 on an input that is one event; NaN for a failed run, and for a car without n rows. 1 for

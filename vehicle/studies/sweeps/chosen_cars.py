@@ -19,14 +19,10 @@ from vehicle.studies.sweeps.sweep_table import read_variations
 
 @dataclass(frozen=True, slots=True)
 class EveryCombination:
-    """Cars with every combination of values, ranked by comfort.
-
-    Attributes:
-        values: path to values; or texts "PATH=A,B,C" or "PATH=A:B:N", N equally spaced values. The last path varies
-            fastest.
-    """
+    """Cars with every combination of values, ranked by comfort."""
 
     vehicle: ClassVar[str] = ""
+    # path to values; or texts "PATH=A,B,C" or "PATH=A:B:N", N equally spaced values. The last path varies fastest.
     values: Mapping[str, Sequence[Any]] | Sequence[str]
 
     def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
@@ -48,14 +44,10 @@ def every_combination(texts: Sequence[str]) -> Combinations:
 
 @dataclass(frozen=True, slots=True)
 class VariationTable:
-    """Cars of the rows of a table, ranked by comfort.
-
-    Attributes:
-        file: table whose columns are parameter paths; or the table of another sweep.
-    """
+    """Cars of the rows of a table, ranked by comfort."""
 
     vehicle: ClassVar[str] = ""
-    file: Path
+    file: Path  # table whose columns are parameter paths; or the table of another sweep
 
     def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
         """Return the checked sweep; see `Design`, and for the errors of the table `read_variations`."""

@@ -12,6 +12,7 @@ import numpy as np
 
 from vehicle.digits import number
 from vehicle.runs.car import Car
+from vehicle.runs.report.differences import parameter_words
 from vehicle.signals.analysis.ride_comfort import MEANING, SEAT_VALUE, UNWEIGHTED, WEIGHTED
 from vehicle.studies.sweeps.evaluation import REPEAT, Evaluation, Part, runs_part
 from vehicle.studies.sweeps.sweep_picture import PICTURE, can_be_drawn, draw_ranked
@@ -45,7 +46,7 @@ def measured_evaluation(table: SweptCases, caption: str) -> Evaluation:
 
 
 def _best(cars: RankedCars, table: SweptCases) -> str:
-    """Return the options of the most comfortable car; empty if states of the car vary, which nobody chooses."""
+    """Return the options of the most comfortable car; empty if states of the car vary, which are no design choice."""
     if not cars.paths or cars.state_sentences():
         return ""
     first, cells = table.cases[0], cars.cells[cars.best]
@@ -62,9 +63,10 @@ def best_sentences(cars: RankedCars) -> list[str]:
         return f"{names[0]} {cars.weighted[car]:.4g} m/s², {names[1]} {cars.unweighted[car]:.4g} m/s²"
 
     def parameters(car: int) -> str:
-        return ", ".join(f"{path} = {cell}" for path, cell in zip(cars.paths, cars.cells[car], strict=True))
+        names = map(parameter_words, cars.paths)
+        return ", ".join(f"{name} = {cell}" for name, cell in zip(names, cars.cells[car], strict=True))
 
-    base = f"Base car, the first of the sweep: {parameters(0)}: {values(0)}."
+    base = f"Base car (first of the sweep): {parameters(0)}; {values(0)}."
     if states := cars.state_sentences():
         return [*(f"{text[0].upper()}{text[1:]}." for text in states), base]
     if cars.alike and len(cars.order) > 1:
@@ -72,12 +74,12 @@ def best_sentences(cars: RankedCars) -> list[str]:
     if cars.best == 0:
         return [f"The base car is the most comfortable of {len(cars.order)} cars.", base]
     text = cars.change_text(cars.best).replace("+-", "±")
-    against = f", {text} % against the base car{cars.doubt}" if math.isfinite(cars.change(cars.best)) else ""
-    return [f"Most comfortable of {len(cars.order)} cars: {parameters(cars.best)}: {values(cars.best)}{against}.", base]
+    against = f", {text} % from the base car{cars.doubt}" if math.isfinite(cars.change(cars.best)) else ""
+    return [f"Most comfortable of {len(cars.order)} cars: {parameters(cars.best)}; {values(cars.best)}{against}.", base]
 
 
 def _cars_part(cars: RankedCars) -> Part:
-    heads = cars.headings()
+    heads = cars.headings(lambda path: f"{parameter_words(path)} ({path})")
     count = len(heads)
     with_errors = bool(np.any(cars.half_width > 0.0))
     heads += [f"{cars.prefix}{WEIGHTED} [m/s²]", "change [%]", *(["± 95 % [%]"] if with_errors else [])]

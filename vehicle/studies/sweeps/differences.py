@@ -3,7 +3,7 @@
 The values are the unweighted one, and after it the weighted one by which the cars are ranked. All cars drive on the
 same road, so the random errors of their comfort values are correlated, and the error of a difference
 (`vehicle.signals.analysis.comfort_error`) is far below the errors of both values. It is the standard error over
-Gaussian roads of the class; one event, as an obstacle, has none. Seeds of a generated road, whose lines have fixed
+Gaussian roads of the class; one event, e.g. an obstacle, has none. Seeds of a generated road, whose lines have fixed
 amplitudes, scatter less. For a road with two or more seeds the mean over the seeds is also given, with the error
 estimated from the scatter.
 """
@@ -69,7 +69,6 @@ class DifferencesWriter:
     """Writes the difference in comfort between every car and the first car on the same road as CSV, row by row.
 
     Args:
-        file: the open file.
         paths: the modified parameter paths of all cases.
         units: names of the values of the table.
     """

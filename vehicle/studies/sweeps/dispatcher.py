@@ -45,7 +45,7 @@ NO_WORKER_LIMIT_S = 300.0
 PACE_RESERVE = 10.0
 """Multiple of the expected computing time of a task that its time limit allows."""
 
-DIED = "the worker died in this run, twice (killed, or out of memory)"
+DIED = "the worker died twice during this run (killed or out of memory)"
 
 Keep = Callable[[Indices, Block], None]
 """Function that stores finished rows: numbers of the cases and their rows."""
@@ -55,14 +55,13 @@ Notice = Callable[[str], None]
 
 def overdue(limit: float) -> str:
     """Return the reason of a failed run that took longer than the time limit [s]."""
-    return f"took longer than the time limit of {limit:g} s; its worker was ended"
+    return f"exceeded the time limit of {limit:g} s; its worker was stopped"
 
 
 def in_groups(cases: Sequence[Case], numbers: Indices) -> Indices:
     """Return numbers of cases sorted by vehicle file and engine, then by car, in the order of first occurrence.
 
     Args:
-        cases: all cases.
         numbers: numbers of the cases to sort, ascending.
     """
     # Hashes instead of the cars: 8 byte a case. Two cars of equal hash would only be evaluated alternately.
@@ -82,15 +81,10 @@ def in_groups(cases: Sequence[Case], numbers: Indices) -> Indices:
 
 @dataclass(slots=True, eq=False)
 class Waiting:
-    """Numbers of the cases that wait for a worker.
+    """Numbers of the cases that wait for a worker."""
 
-    Attributes:
-        numbers: numbers of the cases, in the order of submission.
-        submitted: number of cases that were submitted.
-    """
-
-    numbers: Indices
-    submitted: int = 0
+    numbers: Indices  # numbers of the cases, in the order of submission
+    submitted: int = 0  # number of cases that were submitted
 
     def __len__(self) -> int:
         """Return the number of waiting cases."""
@@ -137,12 +131,8 @@ class Dispatcher:
         """Run cases; `keep` is called with finished rows.
 
         Args:
-            cases: the cases.
             keep: called with the numbers of finished cases and their rows.
             numbers: numbers of the cases to run, ascending; by default all.
-
-        Raises:
-            SimulationError: the executor broke and cannot be created again, or has no workers.
         """
         waiting = Waiting(in_groups(cases, np.arange(len(cases)) if numbers is None else numbers))
         suspects: deque[Indices] = deque()
@@ -164,7 +154,7 @@ class Dispatcher:
         except CancelledError:
             raise SimulationError(
                 "the runs were cancelled, possibly because the connection to the cluster (Dask) was lost; finished "
-                "runs are stored, continue with --resume"
+                "runs are stored: continue with --resume"
             ) from None
         finally:
             if self.make is not None and not isinstance(self.make, StandingExecutor):
@@ -174,8 +164,6 @@ class Dispatcher:
         """Run waiting cases until all are finished or a worker dies.
 
         Args:
-            waiting: the waiting cases.
-            cases: all cases.
             keep: called with finished rows.
             size: number of cases of a task; by default from the measured computing time.
 
@@ -240,11 +228,7 @@ class Dispatcher:
         return lost
 
     def _count_workers(self) -> int | None:
-        """Return the number of workers, counted again after `LOOK_AGAIN_S`: a cluster may grow; None if unknown.
-
-        Raises:
-            SimulationError: there was no worker for `NO_WORKER_LIMIT_S`.
-        """
+        """Return the number of workers, counted again after `LOOK_AGAIN_S`: a cluster may grow; None if unknown."""
         now = clock.monotonic()
         if now - self._counted >= LOOK_AGAIN_S:
             self._workers, self._counted = workers_of(self.executor), now
@@ -258,7 +242,7 @@ class Dispatcher:
             elif now - self._last_worker > NO_WORKER_NOTICE_S and not self._noticed and self.notice is not None:
                 self._noticed = True
                 self.notice(
-                    f"no worker for {now - self._last_worker:.0f} s, waiting for at most {NO_WORKER_LIMIT_S:g} s; "
+                    f"no worker for {now - self._last_worker:.0f} s; the sweep waits up to {NO_WORKER_LIMIT_S:g} s: "
                     f"{worker_remedy(self.executor)}"
                 )
         return self._workers
@@ -278,14 +262,7 @@ class Dispatcher:
         return task, task_cases
 
     def _size(self, waiting: Waiting, cases: Sequence[Case], first: Case, at_once: int) -> int:
-        """Return the number of cases of the next task.
-
-        Args:
-            waiting: the waiting cases.
-            cases: all cases.
-            first: first waiting case.
-            at_once: number of tasks submitted at once.
-        """
+        """Return the number of cases of the next task."""
         if self.pace is None:
             # Single runs of MuJoCo tell early how long the sweep takes; with a time limit they are limited exactly.
             paced = 1.0 if self.time_limit is not None or first.engine != "reduced" else float(FILL)

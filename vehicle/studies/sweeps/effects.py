@@ -14,6 +14,7 @@ import numpy as np
 from vehicle.arrays import Vector
 from vehicle.digits import aligned, number
 from vehicle.drawing.rendering.tornado_plot import draw_tornado, plot_tornado
+from vehicle.runs.report.differences import parameter_words
 from vehicle.signals.formats.csv_table import RowWriter
 from vehicle.studies.sweeps.change_error import MEANING_OF_ERROR, NO_ERROR, UNKNOWN_ERROR
 from vehicle.studies.sweeps.evaluation import REPEAT, Evaluation, Part
@@ -53,12 +54,12 @@ class Effect:
 
     @property
     def ends(self) -> tuple[str, str]:
-        """Names of the low and of the high value, as "-20 %" and "+20 %"."""
+        """Names of the low and of the high value, for example "-20 %" and "+20 %"."""
         return f"-{self.step}", f"+{self.step}"
 
     @property
     def mark(self) -> str:
-        """Words for an effect without a sense: not above its error, or equal signs at both ends; empty otherwise."""
+        """Words for an effect without a clear direction: within its error, or equal signs at both ends; or empty."""
         if self.largest <= self.half_width:
             return "within +-"
         return "same sign" if self.change_low * self.change_high > 0.0 else ""
@@ -85,7 +86,7 @@ class Effects:
 
     Attributes:
         effects: effects, sorted.
-        name: figure, as "weighted".
+        name: figure, for example "weighted".
         base: value of the unchanged car, mean over the inputs.
         without: parameters without effect.
         unit: unit of the figure.
@@ -139,7 +140,7 @@ class Effects:
             if self.of_comfort
             else f"{self.name}, {self.base:.3g} {self.unit}"
         )
-        title = f"{value}, against single parameters"
+        title = f"{value}: changes by single parameters"
         plot_tornado(path, *self.bars, title=title, caption=caption)
 
     @property
@@ -157,7 +158,7 @@ class Effects:
     @property
     def bars(self) -> tuple[list[str], Vector, Vector, list[tuple[str, str]]]:
         """Labels, changes at low and high value [%], (bars, 2), half widths [%], (bars,), and names of their ends."""
-        labels = [f"{each.path}  {number(each.value)} {each.unit}" for each in self.shown]
+        labels = [f"{parameter_words(each.path)}  {number(each.value)} {each.unit}" for each in self.shown]
         changes = np.array([(each.change_low, each.change_high) for each in self.shown])
         widths = np.array([each.half_width for each in self.shown])
         return labels, changes, widths, [each.ends for each in self.shown]
@@ -186,13 +187,13 @@ def effect_lines(effects: Effects) -> list[str]:
     ]
     lines = aligned([heads, *rows])
     if len(effects.effects) > len(rows):
-        lines.append(f"and {len(effects.effects) - len(rows)} parameters with smaller effects in {EFFECTS}")
-    over = f", means of {effects.inputs} inputs" if effects.inputs > 1 else ""
-    base = f"{effects.base:.4g} {effects.unit.strip('-')}".rstrip() + " of the unchanged car"
-    lines.append(f"change of {effects.name!r}, {base}{over}; {effects.error_words}")
-    if effects.without:
-        shown = ", ".join(effects.without[:3]) + (" ..." if len(effects.without) > 3 else "")
-        lines.append(f"without effect here: {len(effects.without)} parameters ({shown})")
+        lines.append(f"{len(effects.effects) - len(rows)} more parameters with smaller effects: see {EFFECTS}")
+    over = f", mean of {effects.inputs} inputs" if effects.inputs > 1 else ""
+    base = f"(unchanged car: {effects.base:.4g} {effects.unit.strip('-')}".rstrip() + ")"
+    lines.append(f"change in {effects.name!r} {base}{over}; {effects.error_words}")
+    if count := len(effects.without):
+        shown = ", ".join(effects.without[:3]) + (" ..." if count > 3 else "")
+        lines.append(f"no effect here: {count} parameter{'s' if count > 1 else ''} ({shown})")
     return [*lines, effect_sentence(effects)]
 
 
@@ -202,7 +203,7 @@ def effect_sentence(effects: Effects) -> str:
         return f"No varied parameter changes {'the comfort' if effects.of_comfort else effects.name} here."
     first, *others = effects.effects
     if math.isfinite(first.half_width) and first.largest <= first.half_width:
-        return "No effect is larger than its error: take a longer road, or a larger change."
+        return "No effect exceeds its error: use a longer road or a larger change."
     turns = [
         f"{end} makes the ride {number(abs(change), 2)} % {'rougher' if change > 0.0 else 'smoother'}"
         if effects.of_comfort
@@ -211,26 +212,22 @@ def effect_sentence(effects: Effects) -> str:
         if math.isfinite(change)
     ]
     if not turns:
-        return f"No changed car has {'comfort' if effects.of_comfort else effects.name}: see the reasons in table.csv."
+        return f"No changed car has a value of {effects.name}: see the reasons in table.csv."
     following = [each for each in others[:2] if not each.largest <= each.half_width]
     text = f"{first.path} matters most: {', '.join(turns)}"
     if following:
-        text += f"; then come {' and '.join(each.path for each in following)}"
+        text += f"; next come{'s' if len(following) == 1 else ''} {' and '.join(each.path for each in following)}"
     named = (first, *following)
     # A parameter that is not named counts too: it may be before a named one.
     unsure = [each.path for each in named if not all(each.is_apart(o) for o in effects.effects if o is not each)]
     if unsure:
-        text += f"; not decided within the errors: rank of {' and '.join(unsure)}"
+        plural = "s" if len(unsure) > 1 else ""
+        text += f"; the rank{plural} of {' and '.join(unsure)} may change: other effects differ by less than the errors"
     return f"{text}."
 
 
 def write_effects(path: Path, effects: Effects) -> None:
-    """Write a row for each parameter, the largest effect first, then those without effect.
-
-    Args:
-        path: CSV file.
-        effects: the effects.
-    """
+    """Write a row for each parameter, the largest effect first, then those without effect."""
     with path.open("w", encoding="utf-8", newline="") as file:
         rows = RowWriter(file)
         heads = ("value", "low", "high", "change_low [%]", "change_high [%]", "half_width_95 [%]")
@@ -253,7 +250,8 @@ def effects_evaluation(effects: Effects, caption: str) -> Evaluation:
 
 def _parts(effects: Effects, draw: Callable[[Path], object], notes: Sequence[str]) -> list[Part]:
     """Return the part of the report with the chart and all effects."""
-    heads = ["parameter", "unit", "value", "low", "high", "change at low [%]", "change at high [%]", "± 95 % [%]"]
+    heads = ["parameter", "path", "unit", "value", "low", "high"]
+    heads += ["change at low [%]", "change at high [%]", "± 95 % [%]"]
     rows = []
     for each in effects.effects:
         changes = (
@@ -261,8 +259,7 @@ def _parts(effects: Effects, draw: Callable[[Path], object], notes: Sequence[str
         )
         width = number(each.half_width if math.isfinite(each.half_width) else None, 2)
         width = ", ".join(filter(None, (width, each.mark.replace("+-", "±"))))
-        rows.append(
-            (each.path, each.unit, *(number(value, 4) for value in (each.value, each.low, each.high)), *changes, width)
-        )
-    values = {"sentence": effect_sentence(effects), "notes": notes, "heads": heads, "rows": rows, "effects": effects}
-    return [Part("Result", "result", "effects", values, draw, "Changes of comfort by single parameters"), REPEAT]
+        values = (number(value, 4) for value in (each.value, each.low, each.high))
+        rows.append((parameter_words(each.path), each.path, each.unit, *values, *changes, width))
+    contents = {"sentence": effect_sentence(effects), "notes": notes, "heads": heads, "rows": rows, "effects": effects}
+    return [Part("Result", "result", "effects", contents, draw, "Changes by single parameters"), REPEAT]

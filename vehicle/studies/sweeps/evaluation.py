@@ -16,36 +16,24 @@ MOST_ROWS = 2000
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Part:
-    """Part of a report.
+    """Part of a report."""
 
-    Attributes:
-        title, anchor: its heading, and the name of its link.
-        template: name of its template.
-        values: values of the template.
-        draw: writes the picture of the part to a path; None without one.
-        label: the picture in words.
-    """
-
-    title: str
+    title: str  # title, anchor: its heading, and the name of its link
     anchor: str
-    template: str
-    values: Mapping[str, Any]
-    draw: Callable[[Path], object] | None = None
-    label: str = ""
+    template: str  # name of its template
+    values: Mapping[str, Any]  # values of the template
+    draw: Callable[[Path], object] | None = None  # writes the picture of the part to a path; None without one
+    label: str = ""  # the picture in words
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Evaluation:
-    """Evaluation of the table of a sweep.
+    """Evaluation of the table of a sweep."""
 
-    Attributes:
-        lines: the printed table, and the result in words.
-        files: name of a further file to the function that writes it to a path.
-        parts: parts of the report, with `REPEAT`, for messages on side effects and on the engine.
-    """
-
-    lines: Sequence[str]
+    lines: Sequence[str]  # the printed table, and the result in words
+    # name of a further file to the function that writes it to a path
     files: Mapping[str, Callable[[Path], object]] = field(default_factory=dict)
+    # parts of the report, with `REPEAT`, for messages on side effects and on the engine
     parts: Callable[[Sequence[str]], list[Part]] = lambda notes: []
 
 

@@ -37,7 +37,7 @@ def executor_factory(text: str) -> Callable[[], Executor]:
 
 
 class ThisProcess(Executor):
-    """Executor that runs a task in this process as it is submitted: no start of a process, and own laws are known."""
+    """Executor that runs a task in this process when it is submitted: no new process, and your own laws are known."""
 
     _max_workers = 1
 
@@ -63,8 +63,8 @@ def process_pool(jobs: int) -> ProcessPoolExecutor:
         except BrokenExecutor:
             pool.shutdown(wait=False)
             raise ConfigurationError(
-                "the worker processes do not start; see their error above. A script with a sweep needs "
-                'if __name__ == "__main__": around its statements, because each process imports the script'
+                "the worker processes do not start; see their error above. A script must call a sweep below "
+                'if __name__ == "__main__":, because each process imports the script'
             ) from None
     return pool
 
@@ -109,19 +109,15 @@ def close(executor: Executor) -> None:
 
 
 def workers_of(executor: Executor) -> int | None:
-    """Return the present number of workers of an executor; None if unknown.
-
-    Raises:
-        SimulationError: the scheduler of a cluster does not respond.
-    """
+    """Return the present number of workers of an executor; None if unknown."""
     client = getattr(executor, "_client", None)
     if client is not None:
         try:
             return int(sum(client.nthreads().values()))
         except (OSError, ValueError, TimeoutError) as error:
             raise SimulationError(
-                f"lost the scheduler of the cluster ({error}); finished rows are stored. Start scheduler and workers "
-                "again and continue with --resume"
+                f"connection to the scheduler of the cluster lost ({error}); finished runs are stored. Start scheduler "
+                "and workers again and continue with --resume"
             ) from None
     # Both executors of the standard library have this attribute, and no public one.
     count = getattr(executor, "_max_workers", None)
@@ -132,7 +128,7 @@ def worker_remedy(executor: Executor) -> str:
     """Return the instruction that starts workers of an executor."""
     client = getattr(executor, "_client", None)
     address = "" if client is None or client.scheduler is None else client.scheduler.address
-    return f"start workers, as: dask worker {address} --nthreads 1" if address else "start its workers"
+    return f"start workers, for example: dask worker {address} --nthreads 1" if address else "start its workers"
 
 
 def _ready() -> None:
@@ -156,7 +152,7 @@ def _dask(address: str) -> Callable[[], Executor]:
         distributed: Any = importlib.import_module("distributed")
     except ImportError:
         raise MissingPartError(
-            "--executor dask://...: needs Dask of the extra 'cluster' (pip install distributed)"
+            "--executor dask://...: needs Dask from the extra 'cluster' (pip install distributed)"
         ) from None
 
     def make() -> Executor:
@@ -175,7 +171,7 @@ def _dask(address: str) -> Callable[[], Executor]:
 
 def _own(module: str, name: str) -> Callable[[], Executor]:
     """Return a function that calls a user-defined factory and checks its result."""
-    # Code of the user's, in which anything may go wrong.
+    # Code of the user, in which anything may go wrong.
     try:
         factory = getattr(importlib.import_module(module), name)
     except Exception as error:

@@ -16,12 +16,7 @@ def require_on_inputs(measure: Measure, car: Car, ends: Sequence[Sequence[str]],
 
     Args:
         measure: measure of the study.
-        car: the unchanged car.
         ends: variations, texts "path=value".
-        sources: the inputs.
-
-    Raises:
-        ConfigurationError: a settling time without an obstacle, or an order of a part that does not turn.
     """
     for chosen in figures_of(measure):
         for source in sources if chosen.figure.asks_input else ():

@@ -14,21 +14,15 @@ RunFunction = Callable[[Run], float | Mapping[str, float]]
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class FunctionMeasure:
-    """Measure by a function of a run.
+    """Measure by a function of a run."""
 
-    Attributes:
-        function: the function, or an object that is called like one; for worker processes one of a module.
-        skip: excluded time at the beginning [s], the `skip` of its runs.
-        channels: required channels; all.
-        units: empty: the table takes the names of its first finished run, with unit "?".
-        token: other for each measure. A function reads values that its text does not show, so rows that another
-            measure stored are not used again; a class of your own with a `repr` of all its values, see `Measure`, is.
-    """
-
-    function: RunFunction
-    skip: float = 0.0
-    channels: None = None
+    function: RunFunction  # a function or a callable object; for worker processes it must be defined in a module
+    skip: float = 0.0  # excluded time at the beginning [s], the `skip` of its runs
+    channels: None = None  # required channels; all
+    # empty: the table takes the names of its first finished run, with unit "?"
     units: Mapping[str, str] = field(default_factory=dict)
+    # unique. The text of a function does not show all values that it reads, so stored rows of another measure are not
+    # used again; with a class of your own with a `repr` of all its values, see `Measure`, they are.
     token: str = field(default_factory=lambda: uuid4().hex)
 
     def __call__(self, run: Run) -> dict[str, float]:

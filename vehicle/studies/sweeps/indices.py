@@ -8,9 +8,9 @@ With base points a and b, ab_i = a with coordinate i of b, y centred at its mean
     S1_i = mean(y(b) (y(ab_i) - y(a))) / V,     ST_i = mean((y(a) - y(ab_i))^2) / (2 V)
 
 The base points are R independent scramblings of the Sobol sequence. The points of one scrambling depend on each other,
-so a bootstrap over points does not give the error of the estimate; the scramblings are independent. The interval is
-that of Student's t with R - 1 degrees of freedom and the jackknife error over the scramblings (each left out once).
-A failed run costs its base point, with the p + 2 runs of that point.
+so a bootstrap over points does not give the error of the estimate; the scramblings are independent. The interval uses
+Student's t with R - 1 degrees of freedom and the jackknife error over the scramblings (each left out once). A failed
+run excludes its base point, with the p + 2 runs of this point.
 
 Sources: Saltelli et al., Comput. Phys. Commun. 181 (2010); L'Ecuyer, Randomized quasi-Monte Carlo (2018): independent
 replicates; Efron and Tibshirani, An Introduction to the Bootstrap (1993), chapter 11.
@@ -54,8 +54,8 @@ class SobolIndices:
         scramblings: number of independent scramblings.
         base: number of base points.
         left_out: number of excluded base points, which have a failed run.
-        contradictions: indices that violate 0 <= S1 <= ST <= 1 beyond their error, in words; the error of each
-            difference is that of the jackknife, at 95 % for all differences together.
+        contradictions: indices that violate 0 <= S1 <= ST <= 1 by more than their error (jackknife, at 95 % for all
+            differences together), in words.
     """
 
     paths: tuple[str, ...]
@@ -77,9 +77,6 @@ def sobol_sample(ranges: Sequence[Range], base: int, *, seed: int = 0) -> Vector
         ranges: parameters with bounds.
         base: number of base points, a power of two, at least `LEAST_BASE`.
         seed: seed of the scramblings.
-
-    Raises:
-        ConfigurationError: `base` is no power of two, or too small.
     """
     if base < 1 or base & (base - 1):
         raise ConfigurationError(
@@ -88,8 +85,8 @@ def sobol_sample(ranges: Sequence[Range], base: int, *, seed: int = 0) -> Vector
         )
     if base < LEAST_BASE:
         raise ConfigurationError(
-            f"base points: found {base}, must be at least {LEAST_BASE}: below, the error of an index, which lies "
-            "between 0 and 1, reaches 0.5 and more"
+            f"base points: found {base}, must be at least {LEAST_BASE}: with fewer, the error of an index (0 to 1) "
+            "can exceed 0.5"
         )
     count, size, blocks = _scramblings(base), len(ranges), []
     # Children of one seed are independent of each other and of those of every other seed.
@@ -111,7 +108,6 @@ def _contradictions(ranges: Sequence[Range], whole: Vector, without: Vector) -> 
     """Return the violations of 0 <= S1 <= ST <= 1 in words, see `SobolIndices.contradictions`.
 
     Args:
-        ranges: the parameters.
         whole: S1 and ST of the sample; (2, p).
         without: S1 and ST without each scrambling; (replicates, 2, p).
     """
@@ -126,7 +122,7 @@ def _contradictions(ranges: Sequence[Range], whole: Vector, without: Vector) -> 
     below = margin + scipy.stats.t.ppf(1.0 - level, len(without) - 1) * deviation < 0.0
     violations = ("S1 is below 0", "S1 is above ST", "ST is above 1")
     return tuple(
-        f"{ranges[at].path}: {violations[which]} beyond the error (S1 {whole[0, at]:.3f}, ST {whole[1, at]:.3f})"
+        f"{ranges[at].path}: {violations[which]} by more than its error (S1 {whole[0, at]:.3f}, ST {whole[1, at]:.3f})"
         for which, at in zip(*np.nonzero(below), strict=True)
     )
 
@@ -141,11 +137,7 @@ def sobol_indices(ranges: Sequence[Range], values: npt.ArrayLike) -> SobolIndice
     """Return the indices from the values at the points of `sobol_sample`.
 
     Args:
-        ranges: the parameters.
         values: value of the quantity at each point, NaN for a failed run.
-
-    Raises:
-        DataError: too many values are missing, or all are equal.
     """
     y = _table(values, len(ranges) + 2)
     base, count = len(y), _scramblings(len(y))
@@ -154,8 +146,8 @@ def sobol_indices(ranges: Sequence[Range], values: npt.ArrayLike) -> SobolIndice
     left = base - int(np.count_nonzero(finite))
     if left > (1.0 - LEAST_LEFT) * base or len(np.unique(group[finite])) < 2:
         raise DataError(
-            f"values: {left} of {base} base points have a failed run or no value, must be at most half; see the "
-            "reasons in table.csv, narrow the ranges, or repeat with --retry-failed"
+            f"values: {left} of {base} base points have a failed run or no value, must be at most half; table.csv "
+            "has the reasons: narrow the ranges, or repeat with --retry-failed"
         )
     y, group = y[finite], group[finite]
     whole = _indices(y)

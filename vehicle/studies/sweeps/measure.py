@@ -61,7 +61,7 @@ def of_one(measure: BatchMeasure, run: Run) -> dict[str, float]:
 
 
 STEP = LONGEST_STEP
-"""Default of the maximum step of a measure [s]: that of a single run, so that both have the same comfort."""
+"""Default of the maximum step of a measure [s], as in a single run, so that both have the same comfort."""
 
 FRONT = tuple(CORNERS.values())[:2]
 """Front wheels."""
@@ -74,23 +74,14 @@ def _require_skip(skip: float) -> None:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class FigureMeasure:
-    """Measure of figures of the catalogue.
+    """Measure of figures of the catalogue."""
 
-    Attributes:
-        figures: name of the value and figure, with channels by name.
-        channels: channels that the figures read.
-        skip: excluded time at the beginning [s].
-        timestep: maximum step of the reduced engine [s]; by default that of a single run.
-        errors: add the standard error of each value, in its unit and NaN where unknown.
-        random: False for values without standard errors.
-    """
-
-    figures: tuple[tuple[str, ChosenFigure], ...]
-    channels: tuple[str, ...]
-    skip: float = 0.0
-    timestep: float = STEP
-    errors: bool = True
-    random: bool = True
+    figures: tuple[tuple[str, ChosenFigure], ...]  # name of the value and figure, with channels by name
+    channels: tuple[str, ...]  # channels that the figures read
+    skip: float = 0.0  # excluded time at the beginning [s]
+    timestep: float = STEP  # maximum step of the reduced engine [s]; by default that of a single run
+    errors: bool = True  # add the standard error of each value, in its unit and NaN where unknown
+    random: bool = True  # False for values without standard errors
 
     def __post_init__(self) -> None:
         _require_skip(self.skip)
@@ -131,13 +122,9 @@ class FigureMeasure:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SingleMeasure:
-    """Measure of single runs in double precision.
+    """Measure of single runs in double precision."""
 
-    Attributes:
-        each: measure of a run.
-    """
-
-    each: FigureMeasure
+    each: FigureMeasure  # measure of a run
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -165,7 +152,6 @@ def measure_of(
     """Return the measure of named figures of a car.
 
     Args:
-        vehicle: the vehicle.
         figures: name of the value to figure, with channels by name.
         skip, errors, random: see `FigureMeasure`.
     """
@@ -246,10 +232,9 @@ class ComfortMeasure:
 
 
 def comfort_measure(vehicle: Vehicle, skip: float) -> ComfortMeasure:
-    """Return the measure of a vehicle: its front dampers, those behind if it has none in front.
+    """Return the measure of a vehicle: its front dampers, or the rear dampers if it has none in front.
 
     Args:
-        vehicle: the vehicle.
         skip: excluded time at the beginning [s].
     """
     damped = vehicle.damped_wheels
@@ -266,7 +251,6 @@ def chosen_measure(measure: MeasureChoice, vehicle: Vehicle, skip: float) -> Mea
 
     Args:
         measure: names of figures, a function of a run, or a measure; comfort by default.
-        vehicle: the vehicle.
         skip: excluded time at the beginning [s].
 
     Raises:
@@ -284,11 +268,7 @@ def chosen_measure(measure: MeasureChoice, vehicle: Vehicle, skip: float) -> Mea
 
 
 def _columns(figures: Sequence[ChosenFigure]) -> dict[str, ChosenFigure]:
-    """Return the figures by the names of their columns; frequencies of several orders have the order in their name.
-
-    Raises:
-        ConfigurationError: two figures have the same name.
-    """
+    """Return the figures by the names of their columns; frequencies of several orders have the order in their name."""
     frequencies = {(each.order, each.angle) for each in figures if each.quantity == ORDER_FREQUENCY}
     columns: dict[str, ChosenFigure] = {}
     for each in figures:

@@ -41,14 +41,10 @@ def varied_parameters(vehicle: Vehicle, groups: Sequence[str] = ()) -> dict[str,
     """Return path to value and unit of the parameters of groups; by default all with a unit of `UNITS`.
 
     Args:
-        vehicle: the car.
-        groups: paths or parts of paths, as "front.damper", "viscous" or "tyre".
+        groups: paths or parts of paths, for example "front.damper", "viscous" or "tyre".
 
     Returns:
         Path to value and unit; the forces of a curve are one parameter, whose value is the largest of them.
-
-    Raises:
-        ConfigurationError: a group has no parameter that is a number other than 0, or a coordinate.
     """
     numbers: dict[str, tuple[float, str]] = {}
     for each in parameter_list(vehicle, None):
@@ -61,7 +57,7 @@ def varied_parameters(vehicle: Vehicle, groups: Sequence[str] = ()) -> dict[str,
             numbers |= {
                 path: (float(part), each.unit) for path, part in components.items() if isinstance(part, int | float)
             }
-    # Of a zero there is no share; a coordinate is moved.
+    # A zero has no share; a coordinate is moved.
     nonzero = {path: pair for path, pair in numbers.items() if pair[0] != 0.0 or is_coordinate(vehicle, path)}
     if not groups:
         return {
@@ -73,8 +69,8 @@ def varied_parameters(vehicle: Vehicle, groups: Sequence[str] = ()) -> dict[str,
         members = {path: pair for path, pair in nonzero.items() if part in f".{path}."}
         if not members:
             raise ConfigurationError(
-                f"--vary {group}: no parameter that is a number other than 0; `vehicle show --search {group}` lists "
-                "the parameters"
+                f"--vary {group}: matches no numeric parameter other than 0; list parameters with `vehicle show "
+                f"--search {group}`"
             )
         chosen |= members
     return chosen
@@ -86,14 +82,9 @@ def single_changes(
     """Return the unchanged car and two cars for each parameter with effect, and the parameters without effect.
 
     Args:
-        vehicle: the car.
         parameters: see `varied_parameters`.
         share: relative change of each parameter [-].
         shift: change of each coordinate [m].
-
-    Raises:
-        ConfigurationError: a share that is not between 0 and 1, a shift that is not between 0 and 0.1 m, or no
-            parameter has an effect.
     """
     if not 0.0 < share < 1.0:
         raise ConfigurationError(f"--each {100.0 * share:g} %: must be above 0 and below 100 %")
@@ -114,18 +105,14 @@ def single_changes(
 
 
 def _require_one_figure(settings: SweepSettings) -> None:
-    """Check that parameters are ranked by one figure.
-
-    Raises:
-        ConfigurationError: names of several figures.
-    """
+    """Check that parameters are ranked by one figure."""
     names = settings.measure
     if isinstance(names, Sequence) and not isinstance(names, str) and len(names) > 1:
-        raise ConfigurationError(f"--each ranks by one figure; give one --measure, not {len(names)}")
+        raise ConfigurationError(f"--each ranks by one figure; found --measure {len(names)} times, give it once")
 
 
 def _is_curve(path: str, value: Any) -> bool:
-    """Return True for the forces of a curve, as `damper.force` over `damper.velocity`."""
+    """Return True for the forces of a curve, for example `damper.force` over `damper.velocity`."""
     return path.rpartition(".")[2] == "force" and isinstance(value, list | tuple)
 
 
@@ -140,7 +127,7 @@ def _scaled(vehicle: Vehicle, path: str, parameters: Mapping[str, tuple[float, s
 def parameter_effects(car: Car, inputs: Inputs, settings: EffectSettings) -> Effects:
     """Change each parameter of a car alone, down and up, and rank the parameters by their effect on comfort.
 
-    As `sweep`, a script must call this function below `if __name__ == "__main__":`.
+    Call this function below `if __name__ == "__main__":`, like `sweep`.
 
     Args:
         car: car loaded by `Car.load`.
@@ -151,7 +138,7 @@ def parameter_effects(car: Car, inputs: Inputs, settings: EffectSettings) -> Eff
 
     Raises:
         ConfigurationError: a group without parameters, a share out of range, several figures, and as in `sweep`.
-        DataError: the unchanged car has no value, or 0, of which there is no percentage.
+        DataError: the value of the unchanged car is missing or 0, so changes cannot be given in percent.
     """
     _require_one_figure(settings)
     changes, effects = SingleChanges(settings.groups, settings.share, settings.shift).of(car.vehicle)
@@ -160,14 +147,10 @@ def parameter_effects(car: Car, inputs: Inputs, settings: EffectSettings) -> Eff
 
 @dataclass(frozen=True, slots=True)
 class SingleChanges:
-    """Design of a sweep: each parameter of a car changed alone, down and up, ranked by the effects on comfort.
-
-    Attributes:
-        groups, share, shift: see `EffectSettings`.
-    """
+    """Design of a sweep: each parameter of a car changed alone, down and up, ranked by the effects on comfort."""
 
     vehicle: ClassVar[str] = ""
-    groups: Sequence[str] = ()
+    groups: Sequence[str] = ()  # groups, share, shift: see `EffectSettings`
     share: float = SHARE
     shift: float = SHIFT
 
@@ -196,14 +179,10 @@ def effects_of(
     """Return the effects of the parameters of a sweep over `single_changes`, the mean change over all inputs.
 
     Args:
-        table: the table.
         parameters: see `varied_parameters`.
         share: relative change of each parameter [-].
         without: parameters without effect, which have no run.
         shift: change of each coordinate [m].
-
-    Raises:
-        DataError: the unchanged car has no value on an input, or 0, of which there is no percentage.
     """
     inputs = len({id(case.source) for case in table.cases})
     name = figure_names(table.units)[0]
@@ -217,8 +196,8 @@ def effects_of(
         if not np.isfinite(value) or value == 0.0:
             fault = "is 0" if value == 0.0 else f"has no value ({table.results[row].reason or 'it is undefined'})"
             raise DataError(
-                f"--each: {name} of the unchanged car on {table.cases[row].source.name} {fault}, so no change has a "
-                "percentage; choose another figure or another input"
+                f"--each: {name} of the unchanged car on {table.cases[row].source.name} {fault}, so changes cannot be "
+                "given in percent; choose another figure or another input"
             )
     # Each input counts by its relative change, so that a loud one does not outweigh the others.
     changes = 100.0 * np.mean(np.sign(unchanged) * (values / unchanged - 1.0), axis=0)

@@ -47,24 +47,15 @@ MOST_NAMED = 3
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class SweepPlan:
-    """Checked sweep, ready to run.
+    """Checked sweep, ready to run."""
 
-    Attributes:
-        name: name of the car.
-        cases: the runs.
-        measure: measure of each run.
-        skip: start of the evaluation [s].
-        settings: settings of the runs.
-        notes: messages on side effects of the varied parameters.
-        evaluation_of: returns the evaluation of the table, for a caption with tyres and evaluated span.
-    """
-
-    name: str
-    cases: Cases
-    measure: Measure
-    skip: float
-    settings: SweepSettings
-    notes: tuple[str, ...]
+    name: str  # name of the car
+    cases: Cases  # the runs
+    measure: Measure  # measure of each run
+    skip: float  # start of the evaluation [s]
+    settings: SweepSettings  # settings of the runs
+    notes: tuple[str, ...]  # messages on side effects of the varied parameters
+    # returns the evaluation of the table, for a caption with tyres and evaluated span
     evaluation_of: Callable[[SweepTable, str], Evaluation]
 
     @property
@@ -94,11 +85,11 @@ class SweepPlan:
                     reasons[source.name] = which, reason
             # A vector of cars takes as long as one car; the last run found the program compiled.
             seconds += duration_s * math.ceil(count / FILL)
-        reduced = f"--engine reduced takes about {duration(max(seconds, 1.0))} for all {len(self.cases)} runs"
-        asked = f"engine mujoco as asked; {reduced}"
+        reduced = f"--engine reduced would take about {duration(max(seconds, 1.0))} for all {len(self.cases)} runs"
+        asked = f"engine mujoco, as requested; {reduced}"
         if not reasons:
             inside = engine == "mujoco" and None not in states
-            return (f"{asked}, inside its valid range ({ERROR_IN_RANGE})",) if inside else ()
+            return (f"{asked}, within its valid range ({ERROR_IN_RANGE})",) if inside else ()
         names = ", ".join(list(reasons)[:MOST_NAMED]) + (" ..." if len(reasons) > MOST_NAMED else "")
         which, reason = next(iter(reasons.values()))
         where = (
@@ -204,7 +195,7 @@ def sweep(car: Car, vary: Variations, inputs: Inputs, settings: SweepSettings) -
 
     Args:
         car: car loaded by `Car.load`; its overrides apply to every run.
-        vary: path to values, as {"damper.coulomb_friction": [62.5, 125]}, for every combination; or a list of
+        vary: path to values, for example {"damper.coulomb_friction": [62.5, 125]}, for every combination; or a list of
             variations, each path to value, in which {} is the car itself. If the variations of a list change different
             parameters, the car itself is the first row without being named, so that each is compared with it.
         inputs: files, names of shipped files, roads, signals; one or several.
@@ -221,11 +212,7 @@ def sweep(car: Car, vary: Variations, inputs: Inputs, settings: SweepSettings) -
 
 
 def changes_of(vary: Variations) -> Sequence[tuple[str, ...]]:
-    """Return the texts "path=value" of each variation, the last path varying fastest.
-
-    Raises:
-        ConfigurationError: no variation, or a value of an invalid type.
-    """
+    """Return the texts "path=value" of each variation, the last path varying fastest."""
     changes: Sequence[tuple[str, ...]]
     if isinstance(vary, Mapping):
         columns = [[text for value in each for text in assignments({path: value})] for path, each in vary.items()]
@@ -238,7 +225,7 @@ def changes_of(vary: Variations) -> Sequence[tuple[str, ...]]:
         if changes and not all(_values(changes[0]).keys() <= _values(each).keys() for each in changes):
             changes = [(), *changes] if () not in changes else changes
     if not any(changes):
-        raise ConfigurationError("vary: no variation; pass {PATH: [VALUE, ...]}, as {'damper.viscous': [1500, 2000]}")
+        raise ConfigurationError("vary: no variation; pass {PATH: [VALUE, ...]}, e.g. {'damper.viscous': [1500, 2000]}")
     return changes
 
 
@@ -251,9 +238,6 @@ def require_paths(vehicle: Path | None, overrides: Sequence[str], changes: Seque
         vehicle: vehicle file; by default that of the Focus.
         overrides: texts "path=value" of every run.
         changes: texts "path=value".
-
-    Raises:
-        ConfigurationError: a path does not exist, or a value cannot be parsed.
     """
     file = FOCUS_FILE if vehicle is None else vehicle_file(vehicle)
     overridden(file, overrides)

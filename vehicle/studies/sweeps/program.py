@@ -47,12 +47,9 @@ def require_same_program(digest: str) -> None:
     """Check that this process has the same program as the process of the sweep.
 
     A cluster may have another version installed.
-
-    Raises:
-        ConfigurationError: sources or libraries differ.
     """
     if digest != program_digest():
         raise ConfigurationError(
-            f"the workers have another program ({program_digest()} with {libraries()}) than this sweep ({digest}): "
+            f"the workers run a different program ({program_digest()} with {libraries()}) from this sweep ({digest}): "
             "install the same version of this package and its libraries on them; do not change it during a sweep"
         )

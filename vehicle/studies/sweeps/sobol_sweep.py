@@ -38,9 +38,8 @@ def sobol(
 
     Each input counts over its own mean over the sample.
 
-    S1: share of the variance that a parameter explains alone; ST: with all its interactions. It takes
-    base (p + 2) runs on each input, p the number of parameters. As `sweep`, a script must call this function below
-    `if __name__ == "__main__":`.
+    S1: share of the variance due to a parameter alone; ST: with all its interactions. It takes base (p + 2) runs on
+    each input, with p parameters. Call this function below `if __name__ == "__main__":`, like `sweep`.
 
     Args:
         car: car loaded by `Car.load`; its overrides apply to every run.
@@ -48,7 +47,7 @@ def sobol(
         inputs: files, names of shipped files, roads, signals; one or several.
 
     Returns:
-        Name of the comfort value, as "weighted", to its indices (`first`, `total`) and the half widths of their 95 %
+        Name of the comfort value, e.g. "weighted", to its indices (`first`, `total`) and the half-widths of their 95 %
         intervals (`first_error`, `total_error`), each (p,).
 
     Raises:
@@ -63,16 +62,11 @@ def sobol(
 
 @dataclass(frozen=True, slots=True)
 class SobolSample:
-    """Design of a sweep: the points of a sample of parameters uniform between bounds, for Sobol indices of comfort.
-
-    Attributes:
-        bounds: path to lower and upper bound; or texts "PATH=LOW:HIGH".
-        base: number of base points, a power of two, at least `indices.LEAST_BASE`.
-    """
+    """Design of a sweep: the points of a sample of parameters uniform between bounds, for Sobol indices of comfort."""
 
     vehicle: ClassVar[str] = ""
-    bounds: Mapping[str, tuple[float, float]] | Sequence[str]
-    base: int
+    bounds: Mapping[str, tuple[float, float]] | Sequence[str]  # path to lower and upper bound; or texts "PATH=LOW:HIGH"
+    base: int  # number of base points, a power of two, at least `indices.LEAST_BASE`
 
     def plan(self, car: Car, inputs: Inputs, settings: SweepSettings) -> SweepPlan:
         """Return the checked sweep; its sample is equal in every call, so that it can be resumed; see `Design`.
@@ -86,7 +80,7 @@ class SobolSample:
         def evaluation(table: SweptCases, caption: str) -> Evaluation:
             indices = comfort_indices(table, ranges)
             left_out = ", ".join(name for name in _columns_of(table.units) if name not in indices)
-            without = [f"no indices of {left_out}: all values are equal, or most are missing"] if left_out else []
+            without = [f"no indices for {left_out}: all values are equal, or most are missing"] if left_out else []
             return Evaluation([*index_lines(indices), *without], {SOBOL: lambda path: write_indices(path, indices)})
 
         return plan_sweep(car, sample, inputs, settings, evaluation)
@@ -105,14 +99,7 @@ class SobolSample:
 def comfort_indices(table: SweptCases, ranges: Sequence[Range]) -> dict[str, SobolIndices]:
     """Return the indices of each figure of a sweep over a `SobolSample`: mean of the inputs, each over its mean.
 
-    A figure that no parameter changes, as the frequency of an order, has no indices.
-
-    Args:
-        table: the table.
-        ranges: the parameters.
-
-    Raises:
-        DataError: no figure has indices: half of the base points have a failed run, or no parameter changes a figure.
+    A figure that no parameter changes, for example the frequency of an order, has no indices.
     """
     inputs = len({id(case.source) for case in table.cases})
     indices: dict[str, SobolIndices] = {}
@@ -169,11 +156,11 @@ def index_lines(indices: Mapping[str, SobolIndices]) -> list[str]:
     for i in (-each.total).argsort():
         first, total = (each.first[i], each.first_error[i]), (each.total[i], each.total_error[i])
         lines.append(f"{each.paths[i]:<{width}}  {first[0]:6.3f} {first[1]:6.3f}  {total[0]:6.3f} {total[1]:6.3f}")
-    left = f"; {each.left_out} of {each.base} base points have a failed run and are left out" if each.left_out else ""
-    warned = [f"warning: {fault}; use {2 * each.base} base points or more" for fault in each.contradictions]
+    left = f"; {each.left_out} of {each.base} base points excluded (failed runs)" if each.left_out else ""
+    warned = [f"warning: {fault}; use at least {2 * each.base} base points" for fault in each.contradictions]
     return [
         *lines,
         *warned,
-        f"shares of the variance of {name!r}: S1 of the parameter alone, ST with all its interactions; +-: half width",
+        f"share of the variance of {name!r}: S1 for the parameter alone, ST with all its interactions; +-: half-width",
         f"of the 95 % interval, from {each.scramblings} independent samples{left}",
     ]

@@ -44,9 +44,6 @@ class StoredRows(LazySequence[Result]):
 
     Attributes:
         failed: True for each case with a row of a failed run; (count,).
-
-    Raises:
-        OutputError: the file cannot be opened.
     """
 
     def __init__(self, path: Path | None, count: int) -> None:
@@ -86,10 +83,9 @@ class StoredRows(LazySequence[Result]):
     def use_stored(self, cases: Sequence[Case], key_of: Callable[[Case], str]) -> None:
         """Find the rows of cases among those that the file already contains; remove an incomplete last line.
 
-        A damaged line is passed over with a notice, and its run is computed again.
+        A damaged line is skipped with a notice, and its run is repeated.
 
         Args:
-            cases: the cases.
             key_of: function that returns the key of a case.
         """
         if not self._end:
@@ -109,15 +105,7 @@ class StoredRows(LazySequence[Result]):
                 self.failed[number] = failed[row]
 
     def append(self, numbers: Indices, block: Block) -> None:
-        """Append the rows of cases to the file.
-
-        Args:
-            numbers: numbers of the cases.
-            block: their rows.
-
-        Raises:
-            OutputError: the file cannot be written.
-        """
+        """Append the rows of cases to the file."""
         ends = np.flatnonzero(np.frombuffer(block.rows, dtype=np.uint8) == ord("\n")) + 1
         starts = np.concatenate([[0], ends[:-1]])
         try:
@@ -197,8 +185,8 @@ class StoredRows(LazySequence[Result]):
                 position += len(line)
         if damaged:
             say(
-                f"{self.path}: {len(damaged)} damaged rows, the first in {damaged[0]}; their runs are computed again, "
-                f"{len(starts)} whole rows are taken"
+                f"{self.path}: {len(damaged)} damaged rows, the first in {damaged[0]}; these runs are repeated, "
+                f"{len(starts)} whole rows are kept"
             )
         self._end = position
         return (

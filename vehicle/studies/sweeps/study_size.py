@@ -41,7 +41,7 @@ def state_size(
 
     busy = min(jobs, runs),    disk = size of a row times runs; 0 without a folder
 
-    Workers of an executor of the user may be on other machines: only the disk is judged then.
+    Workers of a user-defined executor may be on other machines: then only the disk is checked.
 
     Args:
         each: a case of each input, vehicle, engine and record rate.
@@ -61,13 +61,13 @@ def state_size(
     memory = busy * worker + (settings.jobs - busy) * BASE + CASE * runs if worker else 0.0
     disk = cars * (ROW_OF_CAR + VALUE_OF_CAR * numbers) if cars else runs * (ROW + VALUE * len(measure.units))
     disk = 0.0 if settings.folder is None else disk
-    remedy = "for less, shorten the inputs, or set a lower solver.record_rate"
+    remedy = "to reduce it, shorten the inputs, or set a lower solver.record_rate"
     if settings.jobs > 1 and worker:
         fit = max(int((free_memory() - CASE * runs) / worker), 1)
         fewer = f"--jobs {fit}" if fit < busy else "fewer processes (--jobs)"
-        remedy = f"for less, use {fewer}, shorten the inputs, or set a lower solver.record_rate"
+        remedy = f"to reduce it, use {fewer}, shorten the inputs, or set a lower solver.record_rate"
     if disk > memory:
-        remedy = "for less, vary fewer values, or use fewer inputs"
+        remedy = "to reduce it, vary fewer values, or use fewer inputs"
     subject = f"{runs} runs of up to {samples:.3g} samples on {settings.jobs} processes" if samples else f"{runs} runs"
     say_size(settings.folder or Path(), subject.replace("on 1 processes", "in one process"), memory, disk, remedy)
 

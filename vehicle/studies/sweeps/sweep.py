@@ -40,10 +40,6 @@ def sweep_cases(cases: Sequence[Case], measure: Measure, settings: RunSettings) 
     The time limit of a run includes its car and, for the first run of a worker, imports and compilation; the worker of
     a run that takes longer is ended.
 
-    Args:
-        cases: the runs.
-        measure: measure of each run.
-
     Returns:
         The table, in the order of the cases.
 

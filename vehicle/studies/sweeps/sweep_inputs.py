@@ -24,25 +24,16 @@ from vehicle.studies.sweeps.case import Input, SignalFile, signal_of
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class InputChoice(Settings):
-    """Inputs of a sweep or a search: files of signals, or roads.
+    """Inputs of a sweep or a search: files of signals, or roads."""
 
-    Attributes:
-        input: files, or the names of shipped files.
-        wheel: wheel that a column without a wheel in its name moves; by default that of the vehicle file.
-        any_level: accept levels beyond a shaker.
-        road: roads in the forms of `shaker`.
-        speed: speed on all roads, or on each [km/h].
-        seed: seeds of each random road.
-        settings: further settings of all roads.
-    """
-
-    input: tuple[str, ...] = ()
+    input: tuple[str, ...] = ()  # files, or the names of shipped files
+    # wheel moved by a column without a wheel in its name; by default the one in the vehicle file
     wheel: str | None = None
-    any_level: bool = False
-    road: tuple[str, ...] = ()
-    speed: tuple[float | str, ...] = ()
-    seed: tuple[int, ...] = ()
-    settings: RoadSettings = part(RoadSettings)
+    any_level: bool = False  # accept levels beyond a shaker
+    road: tuple[str, ...] = ()  # roads in the forms of `shaker`
+    speed: tuple[float | str, ...] = ()  # speed on all roads, or on each [km/h]
+    seed: tuple[int, ...] = ()  # seeds of each random road
+    settings: RoadSettings = part(RoadSettings)  # further settings of all roads
 
     def inputs(self) -> list[Road] | list[SignalFile]:
         """Return the inputs, those of files for the shaker wheel of any car.
@@ -56,8 +47,7 @@ class InputChoice(Settings):
         speeds: Sequence[float | str | None] = self.speed or (None,)
         if len(speeds) not in (1, len(self.road)):
             raise ConfigurationError(
-                f"--speed: given {len(speeds)} times for {len(self.road)} roads; give one speed, or "
-                "a speed for each road"
+                f"--speed: given {len(speeds)} times for {len(self.road)} roads; give one speed, or one for each road"
             )
         each = [*speeds] * len(self.road) if len(speeds) == 1 else speeds
         seeds: Sequence[int | None] = self.seed or (None,)
@@ -70,9 +60,7 @@ class InputChoice(Settings):
         ]
         profile = next((road.file for road in roads if road.file is not None), None)
         if len(seeds) > 1 and profile is not None:
-            raise ConfigurationError(
-                f"--seed: given {len(seeds)} times, and {profile} is a measured profile, without a seed; leave it out"
-            )
+            raise ConfigurationError(f"--seed: {profile} is a measured profile without a random seed; remove --seed")
         return roads
 
     def _files(self) -> list[SignalFile]:
@@ -97,15 +85,11 @@ def inputs_of(car: Car, sources: Inputs) -> list[Input]:
 
     Returns:
         Inputs in the order of the sources; the name of a road contains the seed if the road appears with several seeds.
-
-    Raises:
-        ConfigurationError: no input, a missing file, or a road that the car cannot drive on.
-        DataError: an input cannot be read, or was sampled below 125 Hz.
     """
     chosen = sources.inputs() if isinstance(sources, InputChoice) else sources
     listed = list(chosen) if isinstance(chosen, Sequence) and not isinstance(chosen, str) else [chosen]
     if not listed:
-        raise ConfigurationError("inputs: no input; pass a file, or a road, as road('C', 80)")
+        raise ConfigurationError("inputs: none given; pass a file or a road, for example road('C', 80)")
     inputs: list[Input] = []
     for source in listed:
         if isinstance(source, Road):
@@ -119,8 +103,8 @@ def inputs_of(car: Car, sources: Inputs) -> list[Input]:
     for entry in inputs:
         if isinstance(entry, SignalFile | Signal) and (highest := signal_of(entry).highest) is not None:
             raise DataError(
-                f"{entry.name}: contains vibration only up to {highest:g} Hz, comfort in 2 to 50 Hz needs a record of "
-                "at least 125 Hz; run `python -m vehicle shaker`, whose results end at that frequency"
+                f"{entry.name}: contains vibration only up to {highest:g} Hz; comfort in 2 to 50 Hz needs a record of "
+                "at least 125 Hz. `python -m vehicle shaker` accepts it: its results end at that frequency"
             )
     return [_tagged(entry, inputs) for entry in inputs]
 
@@ -151,7 +135,6 @@ def common_start(inputs: Sequence[Input], skip: float | None) -> float:
     """Return the common start of the evaluation for all inputs [s].
 
     Args:
-        inputs: the inputs.
         skip: requested start [s]; None for the latest default start of the roads, or 0 without a road,
             as in `Car.run`.
 
@@ -165,11 +148,7 @@ def common_start(inputs: Sequence[Input], skip: float | None) -> float:
 
 
 def file_of(car: Car) -> Path | None:
-    """Return the vehicle file of a car, which workers load again; None for the Focus.
-
-    Raises:
-        ConfigurationError: the car was not loaded from a file, or modified after loading.
-    """
+    """Return the vehicle file of a car, which workers load again; None for the Focus."""
     file = car.origin["file"]
     path = None if file is None else Path(str(file))
     if load_vehicle(path, car.overrides).table != car.vehicle.table:

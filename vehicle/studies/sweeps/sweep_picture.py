@@ -6,6 +6,7 @@ from typing import Any
 from vehicle.drawing.rendering.open_axes import open_axes
 from vehicle.drawing.rendering.sweep_plot import draw_sweep, plot_sweep
 from vehicle.errors import ConfigurationError
+from vehicle.runs.report.differences import parameter_words
 from vehicle.studies.sweeps.sweep_ranking import RankedCars
 
 PICTURE = "sweep.png"
@@ -23,15 +24,12 @@ def plotted(cars: RankedCars | None, ax: Any = None) -> Any:
     Args:
         cars: the cars; None for a sweep without comfort.
         ax: the axes; a new figure by default.
-
-    Raises:
-        ConfigurationError: the cars cannot be drawn.
     """
     parameters = cars.numbers() if can_be_drawn(cars) and cars is not None else None
     if cars is None or parameters is None:
         raise ConfigurationError("plot: needs two or more cars with comfort values whose varied parameters are numbers")
     axes = open_axes(ax, (7.6, 5.0))
-    draw_sweep(axes.item(), cars.headings(), parameters, cars.weighted, cars.unweighted)
+    draw_sweep(axes.item(), cars.headings(parameter_words), parameters, cars.weighted, cars.unweighted)
     return axes.item()
 
 
@@ -40,7 +38,6 @@ def draw_ranked(path: Path, cars: RankedCars, caption: str = "") -> None:
 
     Args:
         path: PNG or SVG file.
-        cars: the cars.
         caption: inputs, tyres and evaluated span.
     """
     parameters = cars.numbers()
@@ -49,7 +46,7 @@ def draw_ranked(path: Path, cars: RankedCars, caption: str = "") -> None:
     over = f"mean of {cars.inputs} inputs" if cars.inputs > 1 else "one input"
     plot_sweep(
         path,
-        cars.headings(),
+        cars.headings(parameter_words),
         parameters,
         cars.weighted,
         cars.unweighted,

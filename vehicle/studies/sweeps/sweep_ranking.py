@@ -1,7 +1,7 @@
 """Cars of a sweep ranked by comfort: mean over all inputs, best car, base car, and their printed table."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from typing import Any, Protocol
@@ -28,7 +28,7 @@ ROUNDING = 1e-6
 2e-7 if a parameter changes by the last digit."""
 
 STATES = ("load.", "driving.")
-"""Beginnings of paths that nobody chooses: loads and speeds. Cars are ranked within them."""
+"""Beginnings of paths that are no design choice: loads and speeds. Cars are ranked within them."""
 
 SHOWN = 12
 """Maximum number of cars in the printed table."""
@@ -65,36 +65,23 @@ class SweptCases(Protocol):
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class RankedCars:
-    """Cars of a sweep, ranked by the mean over all inputs of their weighted value over that of the first car.
+    """Cars of a sweep, ranked by the mean over all inputs of their weighted value over that of the first car."""
 
-    Attributes:
-        prefix: prefix of the columns: `seat_` for the cushion, empty for the seat rail.
-        paths: varied parameters.
-        cells: values of the parameters of each car, as texts; (cars, paths).
-        weighted: weighted RMS (ISO 2631-1) at the point, mean over the inputs [m/s2], NaN if a run of the car failed;
-            (cars,).
-        relative: mean over the inputs of the weighted value over that of the first car on the same input [-]; (cars,).
-        unweighted: unweighted RMS there, 2 to 50 Hz, mean over the inputs [m/s2]; (cars,).
-        seat_value: SEAT value [-]; (cars,), None for cars without a seat.
-        order: cars with a value, most comfortable first.
-        half_width: half width of the 95 % interval of each change from the first car [%], NaN without one; (cars,).
-        error_words: meaning of the half widths, or the reason why an event has no error; may be empty.
-        inputs: number of inputs.
-        units: varied parameter to its unit; empty for a text.
-    """
-
-    prefix: str
-    paths: Sequence[str]
-    cells: Sequence[Sequence[str]]
+    prefix: str  # prefix of the columns: `seat_` for the cushion, empty for the seat rail
+    paths: Sequence[str]  # varied parameters
+    cells: Sequence[Sequence[str]]  # values of the parameters of each car, as texts; (cars, paths)
+    # weighted RMS (ISO 2631-1) at the point, mean over the inputs [m/s2], NaN if a run of the car failed; (cars,)
     weighted: Vector
+    # mean over the inputs of the weighted value over that of the first car on the same input [-]; (cars,)
     relative: Vector
-    unweighted: Vector
-    seat_value: Vector | None
-    order: Sequence[int]
+    unweighted: Vector  # unweighted RMS there, 2 to 50 Hz, mean over the inputs [m/s2]; (cars,)
+    seat_value: Vector | None  # SEAT value [-]; (cars,), None for cars without a seat
+    order: Sequence[int]  # cars with a value, most comfortable first
+    # half width of the 95 % interval of each change from the first car [%], NaN without one; (cars,)
     half_width: Vector
-    error_words: str
-    inputs: int
-    units: Mapping[str, str]
+    error_words: str  # meaning of the half widths, or the reason why an event has no error; may be empty
+    inputs: int  # number of inputs
+    units: Mapping[str, str]  # varied parameter to its unit; empty for a text
 
     @property
     def point(self) -> str:
@@ -122,15 +109,15 @@ class RankedCars:
             return []
         if all(len(cars) == 1 for cars in grouped.values()):
             names = ", ".join(path for path in self.paths if path.startswith(STATES))
-            return [f"{names}: a state of the car is not a choice, so no car is named the most comfortable"]
+            return [f"{names}: load and speed are not design choices, so the cars are not ranked"]
         chosen = [column for column, path in enumerate(self.paths) if not path.startswith(STATES)]
         sentences = []
         for state, cars in grouped.items():
             first, best = min(cars), cars[0]
             text = ", ".join(f"{self.paths[at]} = {self.cells[best][at]}" for at in chosen)
             change = 100.0 * (float(self.relative[best]) / float(self.relative[first]) - 1.0)
-            against = "the first car of this state" if best == first else f"{change:+.2f} % weighted against the first"
-            sentences.append(f"most comfortable with {', '.join(state)}: {text} ({against})")
+            against = "the first in this state" if best == first else f"{change:+.2f} % weighted from the first"
+            sentences.append(f"{', '.join(state)}: the most comfortable car has {text} ({against})")
         return sentences
 
     @property
@@ -147,16 +134,16 @@ class RankedCars:
     def doubt(self) -> str:
         """Words for a best car whose change is not larger than its error; empty otherwise."""
         unsure = abs(self.change(self.best)) <= self.half_width[self.best]
-        return ", not more than its error: take a longer road" if unsure else ""
+        return ", within the error: use a longer road" if unsure else ""
 
     def change_text(self, car: int) -> str:
-        """Return the change from the first car [%] with its half width, as "-2.1 +- 0.4"; without one, "-2.10"."""
+        """Return the change from the first car [%] with its half-width, e.g. "-2.1 +- 0.4"; without one, "-2.10"."""
         width = self.half_width[car]
         return f"{self.change(car):+.2f}" + (f" +- {number_text(width, 2)}" if math.isfinite(width) else "")
 
-    def headings(self) -> list[str]:
-        """Return the varied parameters with their units."""
-        return [f"{path} [{self.units[path]}]" if self.units[path] else path for path in self.paths]
+    def headings(self, name_of: Callable[[str], str] = str) -> list[str]:
+        """Return the varied parameters with their units; `name_of` returns the name of a path."""
+        return [name_of(path) + (f" [{self.units[path]}]" if self.units[path] else "") for path in self.paths]
 
     def numbers(self) -> Vector | None:
         """Return the parameters as numbers, (cars, paths); None if a value is a text or a vector."""
@@ -265,8 +252,8 @@ def ranking_lines(cars: RankedCars) -> list[str]:
     lines = aligned([heads, *rows], left=0)
     left = len(cars.order) - len(shown)
     if left > 0:
-        lines.append(f"and {left} more cars in table.csv")
-    over = f", mean of {cars.inputs} inputs; change: mean of the changes on each" if cars.inputs > 1 else ""
+        lines.append(f"{left} more cars: see table.csv")
+    over = f", mean of {cars.inputs} inputs; change: mean of the changes on each input" if cars.inputs > 1 else ""
     definitions = ", ".join(f"{cars.prefix}{name}: {MEANING[name]}" for name in (WEIGHTED, UNWEIGHTED))
     lines.append("; ".join(filter(None, (definitions, f"{cars.point}{over}", cars.error_words))))
     best = ", ".join(f"{path} = {cell}" for path, cell in zip(cars.paths, cars.cells[cars.best], strict=True))
@@ -275,9 +262,10 @@ def ranking_lines(cars: RankedCars) -> list[str]:
     elif cars.alike and len(cars.order) > 1:
         lines.append(f"all {len(cars.order)} cars are equally comfortable: the varied parameters have no effect here")
     elif best and cars.best == 0:
-        lines.append(f"most comfortable is the first car: {best}")
+        lines.append(f"the first car is the most comfortable: {best}")
     elif best:
-        lines.append(f"most comfortable: {best} ({cars.change_text(cars.best)} % weighted{cars.doubt})")
+        change = f"{cars.change_text(cars.best)} % weighted from the first{cars.doubt}"
+        lines.append(f"most comfortable car: {best} ({change})")
     return lines
 
 
@@ -295,7 +283,7 @@ def measure_lines(table: SweptCases) -> list[str]:
     ]
     lines = aligned([["input", *paths, *(f"{name} [{units[name]}]" for name in columns)], *rows], left=1)
     left = len(table.cases) - len(rows)
-    return [*lines, f"and {left} more runs in table.csv"] if left else lines
+    return [*lines, f"{left} more runs: see table.csv"] if left else lines
 
 
 def _cell(value: float) -> str:
@@ -309,13 +297,10 @@ def is_comfort(units: Mapping[str, str]) -> bool:
 
 
 def figure_names(units: Mapping[str, str]) -> tuple[str, ...]:
-    """Return the columns of figures: of a table of comfort that by which cars are ranked, else all without errors.
+    """Return the columns of figures: in a table of comfort the one by which cars are ranked, else all without errors.
 
     Args:
         units: name of each value of a table to its unit.
-
-    Raises:
-        DataError: the table has no value.
     """
     if is_comfort(units):
         names = tuple(name for name in RANKED_BY if name in units)[:1]

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from vehicle.studies.sweeps.measure import MeasureChoice
 
 SHIFT = 0.01
-"""Default change of a coordinate [m], by which it is varied in place of a share: a share of it would depend on the
+"""Default change of a coordinate [m], by which it is varied instead of a share: a share of it would depend on the
 origin. Assumed: a usual step of a study of hardpoints; the sliders of the bench reach five of them."""
 
 
@@ -25,11 +25,7 @@ SHARE = 0.2
 
 
 def _jobs(text: str) -> int:
-    """Return the number of processes of the option.
-
-    Raises:
-        ConfigurationError: no whole number of at least 1.
-    """
+    """Return the number of processes of the option."""
     try:
         number = int(text)
     except ValueError:
@@ -50,24 +46,24 @@ class PoolSettings(Settings):
     """Settings of many runs on processes or a cluster; the results do not depend on them."""
 
     jobs: int = setting(
-        "processes for independent runs; %(default)s by default, which starts no other process",
+        "processes for independent runs; default %(default)s: no further process is started",
         1,
         within="[1, inf)",
         type=_jobs,
         metavar="N",
     )
     executor: Callable[[], Executor] | Executor | None = setting(
-        "function that returns an executor, in place of `jobs`; or an executor, which stays open and is not replaced "
-        "if it breaks",
+        "function that returns an executor, used instead of `jobs`; or an executor, which stays open and is not "
+        "replaced if it breaks",
         type=_executor,
         metavar="WHERE",
         help="dask://host:port, or module:factory for an executor of your own",
     )
     folder: Path | None = setting(
-        "existing folder in which finished runs are stored, for the next call to reuse; None stores none"
+        "existing folder in which finished runs are stored, so that the next call can use them; None: not stored"
     )
     progress: Callable[[float], None] | None = setting(
-        "called with the finished fraction, stored runs among them, before the first run and after each task"
+        "called with the finished fraction, including stored runs, before the first run and after each task"
     )
 
 
@@ -76,13 +72,10 @@ class RunSettings(PoolSettings):
     """Settings of the runs of a sweep."""
 
     time_limit: float | None = setting(
-        "maximum computing time of a run [s]; a run that takes longer is a failed row",
-        within="(0, inf)",
-        type=float,
-        metavar="S",
+        "maximum computing time of a run [s]; a run that takes longer fails", within="(0, inf)", type=float, metavar="S"
     )
     retry_failed: bool = setting("run failed rows again", False, action="store_true")
-    notice: Callable[[str], None] | None = setting("called with messages, as that a cluster has no workers")
+    notice: Callable[[str], None] | None = setting("called with messages, for example that a cluster has no workers")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -92,7 +85,7 @@ class SweepSettings(RunSettings):
     engine: str = engine_setting("auto")
     skip: float | None = skip_setting()
     measure: MeasureChoice = setting(
-        "figure in place of comfort and slip shares, as travel, tyre_load, peak:seat_rail_acc_z or "
+        "figure instead of comfort and slip shares, for example travel, tyre_load, peak:seat_rail_acc_z or "
         "order:1:seat_rail_acc_z; may be repeated",
         action="append",
         metavar="NAME",
@@ -111,7 +104,7 @@ class EffectSettings(SweepSettings):
     """Settings of the effects of single parameters."""
 
     share: float = setting("relative change of each parameter [-]; %(default)s by default", SHARE)
-    shift: float = setting("change of each coordinate [m], in place of a share; %(default)s by default", SHIFT)
+    shift: float = setting("change of each coordinate [m], instead of a share; %(default)s by default", SHIFT)
     groups: tuple[str, ...] | list[str] = setting(
-        "parameters, as front.damper or viscous; by default all stiffnesses, dampings, friction forces and masses", ()
+        "parameters, e.g. front.damper or viscous; by default all stiffnesses, dampings, friction forces and masses", ()
     )

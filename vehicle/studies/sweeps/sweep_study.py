@@ -35,25 +35,15 @@ def unseen(text: str, runs: int = 0) -> Callable[[float], None]:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SweepStudy:
-    """Study of a sweep, as the command runs it.
+    """Study of a sweep, as the command runs it."""
 
-    Attributes:
-        design: varied parameters, and evaluation of their table.
-        car: the car.
-        inputs: files, names of shipped files, roads or signals; those of a `CaseFile` are in it.
-        runs: settings of the runs.
-        destination: folder of the results.
-        report: report of the evaluation.
-        allow_failed: take a table with failed runs as success.
-    """
-
-    design: Design
-    car: CarChoice = CarChoice()
-    inputs: Inputs = ()
-    runs: SweepSettings = part(SweepSettings)
-    destination: Destination = field(default_factory=Destination)
-    report: ReportChoice = field(default_factory=ReportChoice)
-    allow_failed: bool = False
+    design: Design  # varied parameters, and evaluation of their table
+    car: CarChoice = CarChoice()  # the car
+    inputs: Inputs = ()  # files, names of shipped files, roads or signals; a `CaseFile` has its own
+    runs: SweepSettings = part(SweepSettings)  # settings of the runs
+    destination: Destination = field(default_factory=Destination)  # folder of the results
+    report: ReportChoice = field(default_factory=ReportChoice)  # report of the evaluation
+    allow_failed: bool = False  # accept a table with failed runs as success
 
     def run(
         self,
@@ -69,7 +59,7 @@ class SweepStudy:
             command: command line of the study, for the report.
             begin: shows the progress.
             note: called with the messages on side effects of the varied parameters and on the engine, before the runs.
-            notice: called with messages during the runs, as that a cluster has no workers.
+            notice: called with messages during the runs, for example that a cluster has no workers.
 
         Raises:
             VehicleError: as in `sweep`; a folder that cannot be written.
@@ -96,7 +86,7 @@ class SweepStudy:
             # Read before the folder of the rows gets its name.
             failed, differences = table.failed, (folder / DIFFERENCES).exists()
         files = ["table.csv", *([] if report is None else [str(report)]), *evaluation.files]
-        files += [f"{DIFFERENCES} (comfort against the first car)"] if differences else []
+        files += [f"{DIFFERENCES} (comfort relative to the first car)"] if differences else []
         counts = f"{len(plan.cases)} runs, {len(failed)} failed, {caption}"
         first = f"{output}: {counts}; {', '.join([*files, 'sweep.json, rows.jsonl, timing.csv'])}"
         reasons = (f"failed      {case.label}: {reason}" for case, reason in failed[:SHOWN])

@@ -165,7 +165,6 @@ class TableWriter:
     """Writes a table of a sweep as CSV, row by row, units in the header.
 
     Args:
-        file: the open file.
         paths: the modified parameter paths of all cases.
         units: name of each value to its unit.
     """
@@ -189,9 +188,6 @@ def read_variations(path: Path) -> tuple[list[str], list[tuple[str, ...]]]:
     """Read parameter paths and rows of values from a table of variations.
 
     In the table of a sweep only the columns of parameters are read, and repeated rows only once.
-
-    Raises:
-        DataError: the file cannot be read, has no rows, has a repeated column, or a row with missing cells.
     """
     if not path.is_file():
         raise DataError(f"--table {path}: cannot be read: no such file, or not a file")

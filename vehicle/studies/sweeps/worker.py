@@ -31,15 +31,10 @@ def process_name() -> str:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class TimeLimit:
-    """Time after which the process of a worker ends, which is the only way to stop compiled code that hangs.
+    """Time after which the process of a worker ends, which is the only way to stop compiled code that hangs."""
 
-    Attributes:
-        seconds: maximum computing time of a task [s].
-        sweep: `process_name` of the sweep, which must not end.
-    """
-
-    seconds: float
-    sweep: str = field(default_factory=process_name)
+    seconds: float  # maximum computing time of a task [s]
+    sweep: str = field(default_factory=process_name)  # `process_name` of the sweep, which must not end
 
 
 def carry_out(
@@ -48,7 +43,6 @@ def carry_out(
     """Run the cases of a task and return their rows, in the order of the cases.
 
     Args:
-        cases: the runs.
         keys: key of each case, see `vehicle.studies.sweeps.case_keys`.
         measure: measure of the runs.
         program: `program_digest` of the process that started the sweep.
@@ -72,18 +66,14 @@ def carry_out(
 
 @contextmanager
 def _ended_after(limit: TimeLimit | None) -> Iterator[None]:
-    """End this process if the body takes longer than a limit.
-
-    Raises:
-        ConfigurationError: this is the process of the sweep, or another thread of this process runs cases too.
-    """
+    """End this process if the body takes longer than a limit."""
     if limit is None:
         yield
         return
     if limit.sweep == process_name():
         raise ConfigurationError(
-            "time limit: the executor runs its tasks in the process of the sweep, where a run cannot be stopped; use "
-            "processes (--jobs) or a cluster"
+            "time limit: the executor runs in the process of the sweep, where a run cannot be stopped; use processes "
+            "(--jobs) or a cluster"
         )
     if not _WATCHED.acquire(blocking=False):
         raise ConfigurationError(

@@ -82,17 +82,11 @@ def _step(level: Vector, maximum: float) -> float:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Mixture:
-    """Mixture of t distributions, from which a sampler draws independent proposals.
+    """Mixture of t distributions, from which a sampler draws independent proposals."""
 
-    Attributes:
-        shares: share of each component, (k,).
-        means: centre of each component, (k, p).
-        factors: Cholesky factor of 1.5 times the covariance of each component, (k, p, p).
-    """
-
-    shares: Vector
-    means: Vector
-    factors: Vector
+    shares: Vector  # share of each component, (k,)
+    means: Vector  # centre of each component, (k, p)
+    factors: Vector  # Cholesky factor of 1.5 times the covariance of each component, (k, p, p)
 
     def log_density(self, points: Vector) -> Vector:
         """Return ln of the density at points, (points, p) -> (points,)."""

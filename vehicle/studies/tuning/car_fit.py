@@ -74,7 +74,7 @@ def tune(
 
 
 def delays_of(target: FrfTarget | LevelTarget | RecordTarget, number: int, start: Car) -> list[DelayRange]:
-    """Return the unknown delays of a measurement; each begins at that of best agreement with the car."""
+    """Return the unknown delays of a measurement; each begins at the delay of best agreement with the car."""
     lags = target.lags(start) if target.delays.groups else {}
     delays = []
     for group in target.delays.groups:
@@ -86,11 +86,7 @@ def delays_of(target: FrfTarget | LevelTarget | RecordTarget, number: int, start
 
 
 def ranges_of(vehicle: Vehicle, parameters: Mapping[str, Bounds] | Sequence[Range]) -> tuple[Range, ...]:
-    """Return the fitted parameters with bounds, see `tune`, and start values, by default those of a vehicle.
-
-    Raises:
-        ConfigurationError: a path is not a numeric parameter of the vehicle, or bounds are out of order.
-    """
+    """Return the fitted parameters with bounds, see `tune`, and start values, by default those of a vehicle."""
     if not isinstance(parameters, Mapping):
         return tuple(parameters)
     ranges = []
@@ -107,12 +103,7 @@ def ranges_of(vehicle: Vehicle, parameters: Mapping[str, Bounds] | Sequence[Rang
 
 
 def require_fittable(parameters: Sequence[Range], vehicle: Vehicle) -> None:
-    """Check that every parameter has an effect and that static friction cannot fall below sliding friction.
-
-    Raises:
-        ConfigurationError: a parameter belongs to a law that is switched off, or the bounds of static and sliding
-            friction overlap.
-    """
+    """Check that every parameter has an effect and that static friction cannot fall below sliding friction."""
     idle = idle_parameters(vehicle, [f"{parameter.path}={parameter.start!r}" for parameter in parameters])
     if idle:
         raise ConfigurationError(f"--parameters {idle[0]}; add --set")

@@ -12,7 +12,7 @@ from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
 
 CARS_PER_TERM = 2.5
-"""Minimum number of cars per coefficient. With fewer the leave-one-out error of a cubic exceeds that of a quadratic."""
+"""Minimum number of cars per coefficient. With fewer, the leave-one-out error of a cubic exceeds a quadratic's."""
 
 HIGHEST_DEGREE = 4
 """Maximum total degree."""
@@ -22,18 +22,13 @@ HIGHEST_DEGREE = 4
 class Emulator:
     """Least-squares polynomials y_k(x) = sum_j c_jk prod_i P_aij(x_i) in Legendre polynomials P on [-1, 1].
 
-    Attributes:
-        powers: degrees a of each term, (terms, parameters).
-        coefficients: c, (terms, outputs).
-        left_out: RMS of the leave-one-out errors of each output, (outputs,).
-
     Source of the leave-one-out error e_i / (1 - h_i) with the leverage h_i: Allen, Technometrics 16 (1974), 125-127;
     polynomials of a random input: Xiu and Karniadakis, SIAM J. Sci. Comput. 24 (2002), 619-644.
     """
 
-    powers: npt.NDArray[np.int64]
-    coefficients: Vector
-    left_out: Vector
+    powers: npt.NDArray[np.int64]  # degrees a of each term, (terms, parameters)
+    coefficients: Vector  # c, (terms, outputs)
+    left_out: Vector  # RMS of the leave-one-out errors of each output, (outputs,)
 
     def __call__(self, points: Vector) -> Vector:
         """Return the outputs at points in [-1, 1], (points, parameters) -> (points, outputs)."""
@@ -55,9 +50,6 @@ def fitted_emulator(points: Vector, outputs: Vector) -> Emulator:
     Args:
         points: parameters of the cars in [-1, 1], (cars, parameters).
         outputs: outputs of the cars, (cars, outputs).
-
-    Raises:
-        ConfigurationError: too few cars for a linear polynomial.
     """
     cars, size = points.shape
     degrees = [degree for degree in range(1, HIGHEST_DEGREE + 1) if cars >= CARS_PER_TERM * comb(size + degree, degree)]

@@ -33,24 +33,17 @@ LEAST_VALUES = 8
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RowStatistics:
-    """Statistics of the residuals of one row over the assumed standard deviation.
+    """Statistics of the residuals of one row over the assumed standard deviation."""
 
-    Attributes:
-        name: name of the row.
-        count: number of included values.
-        mean: mean of the residuals [-].
-        rms: RMS of the residuals, corrected for the degrees of freedom of the parameters; 1 if the assumed deviation
-            was right [-].
-        neighbours: correlation of neighbouring samples, 0 for independent samples [-].
-        inflation: samples per independent value, (1 + rho) / (1 - rho) for a significant correlation rho of all rows of
-            the target, else 1 [-].
-    """
-
-    name: str
-    count: int
-    mean: float
+    name: str  # name of the row
+    count: int  # number of included values
+    mean: float  # mean of the residuals [-]
+    # RMS of the residuals, corrected for the degrees of freedom of the parameters; 1 if the assumed deviation was right
+    # [-]
     rms: float
-    neighbours: float
+    neighbours: float  # correlation of neighbouring samples, 0 for independent samples [-]
+    # samples per independent value, (1 + rho) / (1 - rho) for a significant correlation rho of all rows of the target,
+    # else 1 [-]
     inflation: float
 
     @property
@@ -69,7 +62,7 @@ class TuningResult:
         standard_errors: path to standard error from noise alone, in the unit of the value: random residuals with the
             correlation of neighbours; NaN for an unknown held or at a bound.
         misfit_errors: path of a free unknown to its standard error with stretches of data as observations, which holds
-            noise and the varying part of the misfit of the model, at least that of noise alone; see `error_sources`.
+            noise and the varying part of the misfit of the model, at least from noise alone; see `error_sources`.
         lag_shifts: path of a free unknown to its largest shift if one channel, or all, lag by half a sample; NaN for
             an unknown sampling interval.
         free: paths that were fitted and are not at a bound: rows of `correlation`.

@@ -32,25 +32,17 @@ DISCREPANCY = 0.1
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MeasurementFile:
-    """Measurement file of a fit, and what belongs to it alone.
+    """Measurement file of a fit with its own settings."""
 
-    Attributes:
-        file: the file.
-        content: "frf" for FRFs, "record" for time histories.
-        signal: file of the plate displacement; by default the plate in the file.
-        stuck: of FRFs: the dampers stick at this level.
-        road, speed, contact: of time histories: road in the forms of `shaker`, speed [km/h], tyre contact.
-        levels, reference: of time histories: see `LevelSettings`.
-    """
-
-    file: Path
-    content: str
-    signal: str | None = None
-    stuck: bool = False
+    file: Path  # the file
+    content: str  # "frf" for FRFs, "record" for time histories
+    signal: str | None = None  # file of the plate displacement; by default the plate in the file
+    stuck: bool = False  # of FRFs: the dampers stick at this level
+    # road, speed, contact: of time histories: road in the forms of `shaker`, speed [km/h], tyre contact
     road: str | None = None
     speed: float | str | None = None
     contact: str | None = None
-    levels: int | None = None
+    levels: int | None = None  # levels, reference: of time histories: see `LevelSettings`
     reference: str | None = None
 
 
@@ -71,7 +63,7 @@ class ReadingSettings(Settings):
     fitted: Sequence[str] = setting("channels to fit; default: all except plates", ())
     delay: Delay = setting(
         "for time histories: start of the record after the start of the signal [s], or known delays of groups, "
-        "channels or patterns, for example {'record': 0.2, 'accelerations': 0.0123}; other delays are fitted",
+        "channels or patterns, for example {'record': 0.2, 'accelerations': 0.0123}; all others are fitted",
         0.0,
     )
 
@@ -83,7 +75,7 @@ class BandSettings(Settings):
     band: tuple[float, float] = setting(
         "range of the fitted frequencies [Hz]; default: %(default)s",
         BAND,
-        type=pair("--band", "LOW:HIGH in Hz, as 3:45"),
+        type=pair("--band", "LOW:HIGH in Hz, for example 3:45"),
         metavar="A:B",
     )
     spacing: float = setting(
@@ -127,11 +119,11 @@ class ResponseSettings(ReadingSettings, BandSettings):
 class HistorySettings(ReadingSettings):
     """Settings of measured time histories."""
 
-    drift: float = setting("how much the clock of the record is slow [-]", 0.0)
+    drift: float = setting("relative amount by which the clock of the record is slow [-]", 0.0)
     stretch: tuple[float, float] | None = setting(
-        "part of the record to fit, in times of the file, as --from and --to [s]; default: the whole record, on a "
-        "road from 2 s on",
-        type=pair("--stretch", "FROM:TO in s, as 4.9:6.5"),
+        "part of the record to fit, in times of the file, like --from and --to [s]; default: the whole record, or on "
+        "a road from 2 s on",
+        type=pair("--stretch", "FROM:TO in s, for example 4.9:6.5"),
         metavar="FROM:TO",
     )
     lowpass: float = setting(
@@ -183,7 +175,7 @@ class PosteriorSettings(Settings):
         help="expected relative error of the model in a third octave (standard deviation) [%%]; default: %(default)g",
     )
     rival: Sequence[str] = setting(
-        "compare the fitted law with a second one; give the settings of the second law, for example "
+        "compare the fitted law with a second law, given by its settings, for example "
         "damper.viscous_law=degressive, and its parameters with bounds, for example "
         "damper.degressive_viscous=2e3:1e4",
         (),

@@ -21,7 +21,6 @@ def state_fit_size(vehicle: Vehicle, measurements: Sequence[MeasuredTarget], par
 
     Args:
         vehicle: parameters of the car.
-        measurements: the measurements.
         parameters: number of fitted parameters.
         engine: engine of the last steps.
 
@@ -44,5 +43,5 @@ def state_fit_size(vehicle: Vehicle, measurements: Sequence[MeasuredTarget], par
         f"{len(measurements)} measurements of up to {longest:.3g} samples",
         memory + 8.0 * residuals * (1.0 + TABLES * parameters),
         0.0,
-        "for less, compare a shorter part, fewer channels, or set a lower solver.record_rate",
+        "to reduce it, compare a shorter part or fewer channels, or set a lower solver.record_rate",
     )

@@ -34,27 +34,20 @@ class FrfTarget:
     """Target of a fit: measured FRFs of one excitation level.
 
     Residuals have two rows for each channel: Re and Im of ln(H / Hm) over sigma(gamma^2), see `log_ratio`.
-
-    Attributes:
-        name: name of the level, for reports.
-        data: measured FRFs to plates that the signal drives, see `to_driven_plates`.
-        signal: displacements of the plates; None compares the linear car with stuck dampers, whose FRFs follow from its
-            matrices.
-        averages: number of independent averages of data without a random error; 1 if unknown.
-        window: length of the Hann windows of the H1 estimator [s]; None for an estimate on the whole record.
-            FRFs of the model use the same estimator, so its effect on a nonlinear car is in both.
-        delays: delays of the channels against the plate: the FRF of the model is turned by exp(-2 pi i f d).
-        sample: sampling interval of the measurement [s]; 0 if unknown.
-        motions: independent motions of the plates of the signal, see `motions_of`; those of the FRFs without a signal.
     """
 
-    name: str
-    data: FrfData
+    name: str  # name of the level, for reports
+    data: FrfData  # measured FRFs to plates that the signal drives, see `to_driven_plates`
+    # displacements of the plates; None compares the linear car with stuck dampers, whose FRFs follow from its matrices
     signal: Signal | None
-    averages: float = 1.0
+    averages: float = 1.0  # number of independent averages of data without a random error; 1 if unknown
+    # length of the Hann windows of the H1 estimator [s]; None for an estimate on the whole record. FRFs of the model
+    # use the same estimator, so its effect on a nonlinear car is in both.
     window: float | None = None
+    # delays of the channels against the plate: the FRF of the model is turned by exp(-2 pi i f d)
     delays: ResponseDelays = ResponseDelays()
-    sample: float = 0.0
+    sample: float = 0.0  # sampling interval of the measurement [s]; 0 if unknown
+    # independent motions of the plates of the signal, see `motions_of`; without a signal, of the FRFs
     motions: tuple[dict[str, float], ...] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -185,7 +178,7 @@ def scaled_ratio(measured: Complex, model: Complex, deviation: Vector) -> Vector
 
 
 def response_lags(data: FrfData, response: Complex, deviation: Vector) -> dict[str, PhaseDelay]:
-    """Return the lags of measured FRFs against those of a model whose phases agree with them after the lag.
+    """Return the lags of measured FRFs against a model whose phases agree with them after the lag.
 
     Args:
         response: FRFs of the model, (k, m).
@@ -222,11 +215,7 @@ def motions_of(signal: Signal) -> tuple[dict[str, float], ...]:
 
 
 def to_driven_plates(data: FrfData, motions: Sequence[Mapping[str, float]], where: str) -> FrfData:
-    """Return FRFs of which every input is one of the motions of the plates; an unknown input is the only one.
-
-    Raises:
-        DataError: an FRF names no plate and several move, or names a plate that does not move.
-    """
+    """Return FRFs of which every input is one of the motions of the plates; an unknown input is the only one."""
     driven = [plates_of(motion) for motion in motions]
     names = []
     for name in data.names:

@@ -19,29 +19,20 @@ MOST_ROUNDS = 4
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class FullSteps:
-    """Result of a fit after its final steps.
+    """Result of a fit after its final steps."""
 
-    Attributes:
-        result: the fit with values, errors and residuals of the full simulation.
-        first: root of the mean square of the weighted residuals of the full simulation at the values of the fast
-            models [-].
-        moved: path to change of the unknown in standard errors: the effect of the error of the fast models.
-        largest_steps: largest step of each round in standard errors; the last step is the final check, and is left out
-            if it is small.
-        settled: True if the last step was small.
-    """
-
-    result: TuningResult
+    result: TuningResult  # the fit with values, errors and residuals of the full simulation
+    # root of the mean square of the weighted residuals of the full simulation at the values of the fast models [-]
     first: float
+    # path to change of the unknown in standard errors: the effect of the error of the fast models
     moved: Mapping[str, float]
+    # largest step of each round in standard errors; the last step is the final check, and is left out if it is small
     largest_steps: tuple[float, ...]
-    settled: bool
+    settled: bool  # True if the last step was small
 
 
 def full_steps(
-    result: TuningResult,
-    targets: Sequence[Target],
-    simulate: Callable[[Mapping[str, float]], Sequence[Car | Run]],
+    result: TuningResult, targets: Sequence[Target], simulate: Callable[[Mapping[str, float]], Sequence[Car | Run]]
 ) -> FullSteps:
     """Continue a fit with the full simulation by Gauss-Newton steps with the Jacobian of the fast models.
 

@@ -20,29 +20,22 @@ PARTNER = 0.3
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Unidentified:
-    """Parameter that the data cannot identify, held at its start value.
+    """Parameter that the data cannot identify, held at its start value."""
 
-    Attributes:
-        path: path of the parameter.
-        held_at: start value of the parameter.
-        partners: parameters that are identifiable only in combination with this parameter; empty for a parameter
-            without effect.
-        spread: standard error of the common direction, in half widths of the bounds [-]; infinite for data without any
-            information on the direction.
-    """
-
-    path: str
-    held_at: float
+    path: str  # path of the parameter
+    held_at: float  # start value of the parameter
+    # parameters that are identifiable only in combination with this parameter; empty for a parameter without effect
     partners: tuple[str, ...]
+    # standard error of the common direction, in half widths of the bounds [-]; infinite for data without any
+    # information on the direction
     spread: float
 
     def message(self) -> str:
         """Return a message that names the parameter, its partners and the standard error."""
-        other = f" apart from {', '.join(self.partners)}" if self.partners else ""
+        other = f" separately from {', '.join(self.partners)}" if self.partners else ""
         return (
-            f"{self.path}: the data do not determine this parameter{other}: its standard error is "
-            f"{self.spread:.3g} times half the width of the bounds, must be at most {number(WIDEST, 2)}; it is "
-            f"kept at {self.held_at:g}"
+            f"these data do not determine {self.path}{other}: it stays at {self.held_at:g} (standard error "
+            f"{self.spread:.3g} times half the width of the bounds, limit {number(WIDEST, 2)})"
         )
 
 
@@ -59,7 +52,7 @@ def worst_direction(jacobian: Vector, parameters: Sequence[Range | DelayRange]) 
     Returns:
         The parameter, or None if the error of every direction is at most `WIDEST`.
 
-    Source: Belsley, Kuh, Welsch, Regression Diagnostics, 1980, chapter 3, with columns scaled by the bounds in place of
+    Source: Belsley, Kuh, Welsch, Regression Diagnostics, 1980, chapter 3, with columns scaled by the bounds instead of
     their length.
     """
     widths = np.array([parameter.half_width for parameter in parameters])

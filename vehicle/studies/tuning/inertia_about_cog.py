@@ -26,13 +26,9 @@ def about_cog(
 ) -> tuple[Car, tuple[Range, ...], Callable[[Mapping[str, float]], dict[str, float]]] | None:
     """Return car and ranges of a fit of I_C, and the function that gives the values about the origin of its values.
 
-    Args:
-        car: car at the start values.
-        ranges: the fitted parameters.
-
     Returns:
         None for a car whose tensor is about the centre of gravity, or of which no moment is fitted. The bounds of
-        I_C are as far from its start as those of I_O.
+        I_C are as far from its start as the bounds of I_O.
     """
     names = {entry.path: full_path(car.vehicle.table, entry.path).removeprefix("body.inertia.") for entry in ranges}
     moments = {path: name for path, name in names.items() if name in MOMENTS}

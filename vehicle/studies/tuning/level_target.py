@@ -54,24 +54,15 @@ class LevelTarget:
     leakage and the other wheels of a road act alike on both. Residuals: see `FrfTarget`. The random error of H is that
     of the part of the response that is coherent with no plate of the axle (multiple coherence, Bendat and Piersol,
     section 7.3): the other plates are no noise.
-
-    Attributes:
-        histories: the record, its signal and its road.
-        reference: input channel of the FRFs: a plate, or a measured channel of the record.
-        window: length of the windows [s].
-        starts: first sample of each window, (windows,).
-        classes: class of each window, (windows,).
-        lines: lines of the spectrum of a window, (m,).
-        data: measured FRFs; a channel for each channel of the record and class.
     """
 
-    histories: RecordTarget
-    reference: str
-    window: float
-    starts: Indices
-    classes: Indices
-    lines: Indices
-    data: FrfData
+    histories: RecordTarget  # the record, its signal and its road
+    reference: str  # input channel of the FRFs: a plate, or a measured channel of the record
+    window: float  # length of the windows [s]
+    starts: Indices  # first sample of each window, (windows,)
+    classes: Indices  # class of each window, (windows,)
+    lines: Indices  # lines of the spectrum of a window, (m,)
+    data: FrfData  # measured FRFs; a channel for each channel of the record and class
 
     @property
     def name(self) -> str:
@@ -205,10 +196,6 @@ def level_target(
         window: length of the windows [s].
         band: lowest and highest frequency [Hz].
         spacing: minimum distance of the frequencies [Hz].
-
-    Raises:
-        ConfigurationError: fewer than 2 classes, or a band without lines.
-        DataError: too few windows, or no coherent response.
     """
     if levels < 2:
         raise ConfigurationError(f"--levels {levels}: must be at least 2 classes; for one class use --frf")
@@ -256,13 +243,7 @@ def level_target(
         starts=starts,
         classes=classes,
         lines=lines,
-        data=FrfData(
-            frequency=lines / window,
-            names=names,
-            response=response,
-            coherence=coherence,
-            random_error=error,
-        ),
+        data=FrfData(frequency=lines / window, names=names, response=response, coherence=coherence, random_error=error),
     )
     if not np.isfinite(target.deviation).any():
         raise DataError(f"{histories.name}: no channel is coherent with the input {reference}; set another --reference")
@@ -310,7 +291,6 @@ def _random_error(x: Complex, y: Complex, inputs: Complex, chosen: Mask) -> Vect
     Args:
         x, y: spectra of the reference and of the response, (windows, m).
         inputs: spectra of the plates, (p, windows, m).
-        chosen: windows.
     """
     members = np.flatnonzero(chosen)
     neighbours = int(np.count_nonzero(np.diff(members) == 1))

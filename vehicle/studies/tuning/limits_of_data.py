@@ -1,4 +1,4 @@
-"""Statements on what the data of a fit leave open, and the reason why its values are not to be used."""
+"""Statements on what the data of a fit leave open, and the reason why its values must not be used."""
 
 from collections.abc import Sequence
 from itertools import combinations
@@ -17,13 +17,13 @@ UNSURE = 0.1
 production, so that the fit would not distinguish it from another specimen."""
 
 NO_MOTION = 100.0
-"""RMS error of a model that does not move, over the RMS of the measurement [%]: that of a mean of zero."""
+"""RMS error of a model that does not move, over the RMS of the measurement [%]."""
 
 LARGEST_ERROR = 20.0
 """Assumed limit of the RMS error of a channel after a fit, over the RMS of the measurement and beyond its known noise
 [%]: above it the parameters do not explain the measurement. At one frequency it is an error of 1.7 dB or 11 degrees,
-far above that of a calibrated sensor, so that something else of the car is wrong. The standard errors hold the scatter
-of the residuals, not the shift of the values by such an error."""
+far above the error of a calibrated sensor, so that something else in the car is wrong. The standard errors contain the
+scatter of the residuals, but not the shift of the values by such an error."""
 
 OFTEN_WRONG = (
     "suspension_mount.stiffness.z", "damper.viscous", "damper.coulomb_friction", "tyre.stiffness.z",
@@ -47,8 +47,8 @@ def what_data_leave_open(result: TuningResult) -> tuple[str, ...]:
         value = result.solution[path]
         side = "lower" if value - entry.low < entry.high - value else "upper"
         sentences.append(
-            f"{path} ran into your {side} limit of {value:.6g}, so without a standard error. Either the limit is too "
-            "tight, or the data do not fit this model"
+            f"{path} ended at your {side} bound of {value:.6g} and has no standard error: the bound is too tight, or "
+            "the model does not fit the data"
         )
     relative = {path: result.deviation_of_u(path, result.errors) for path in result.free}
     # A product, a ratio or a percentage of a delay or of a coordinate has no meaning.
@@ -58,16 +58,14 @@ def what_data_leave_open(result: TuningResult) -> tuple[str, ...]:
         if abs(rho) < CORRELATED:
             continue
         if {first, second} & linear:
-            sentences.append(
-                f"{first} and {second}: correlation {rho:+.2f}: an error in the first value shifts the second"
-            )
+            sentences.append(f"{first} and {second}: correlation {rho:+.2f}, so an error in one value shifts the other")
             continue
         a, b = relative[first], relative[second]
         both = np.sqrt(max(a**2 + b**2 - 2.0 * abs(rho) * a * b, 0.0))
         word = "ratio" if rho > 0.0 else "product"
         sentences.append(
-            f"{first} and {second}: correlation {rho:+.2f}: the data determine their {word} to "
-            f"{number(100 * both, 2)} %, but each value only to {number(100 * a, 2)} and {number(100 * b, 2)} %"
+            f"{first} and {second}: correlation {rho:+.2f}, so their {word} is known within {number(100 * both, 2)} %, "
+            f"but the values only within {number(100 * a, 2)} and {number(100 * b, 2)} %"
         )
     sentences += [
         f"{path}: standard error {number(100 * error, 2)} % of the value, above {100 * UNSURE:g} %"
@@ -95,12 +93,12 @@ def unexplained(errors: Sequence[tuple[str, float, float, float]], others: Seque
     if not left:
         return ""
     name, before, after, _ = max(left, key=lambda entry: entry[2])
-    example = f", for example {' or '.join(others)}" if others else ""
+    example = f" (for example {' or '.join(others)})" if others else ""
     return (
-        f"these parameters do not explain the measurement: {number(after)} % of the RMS of {name} remain as error "
-        f"(before the fit {number(before)} %, limit {LARGEST_ERROR:g} %). The standard errors hold only if the rest of "
-        f"the car is right and the remainder is noise. Check signs (--turn) and units (--unit) of the channels, then "
-        f"fit another parameter{example}: each alone, and together with these; the smallest remaining error counts"
+        f"these parameters do not explain the measurement: the error of {name} is still {number(after)} % of its RMS "
+        f"(before the fit {number(before)} %, limit {LARGEST_ERROR:g} %), so the standard errors are too small. Check "
+        f"signs (--turn) and units (--unit) of the channels, then fit other parameters{example}, alone and together "
+        "with these; the fit with the smallest error is the best"
     )
 
 
@@ -116,13 +114,13 @@ def refusal(result: TuningResult, errors: Sequence[tuple[str, float]]) -> str:
             if unknown in result.delays:
                 factor, unit = 1e3, " ms"
             return (
-                f"{unknown.path} ran into its limit of {factor * value:.5g}{unit}. Either the limit is too tight, or "
-                f"the data do not fit this model: {FIRST}"
+                f"{unknown.path} ended at its bound of {factor * value:.5g}{unit}: the bound is too tight, or the "
+                f"model does not fit the data; {FIRST}"
             )
     name, error = max(errors, key=lambda item: item[1], default=("", 0.0))
     if error > NO_MOTION:
         return (
-            f"the error of {name} stays at {error:.3g} % of the measurement, more than that of a car at rest (100 %): "
+            f"the error of {name} is {error:.3g} % of the measurement, more than for a car that does not move (100 %); "
             f"{FIRST}"
         )
     return ""

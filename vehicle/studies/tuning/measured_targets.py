@@ -45,7 +45,7 @@ AFTER = 5.0
 class MeasuredTarget:
     """Target of a fit with the plate signal of the measurement and the notices on the file.
 
-    Stuck dampers, whose FRFs are those of the linear car, need no signal.
+    Stuck dampers need no signal: their FRFs follow from the linear car.
     """
 
     target: FrfTarget | RecordTarget | LevelTarget
@@ -150,7 +150,7 @@ def measured_levels(car: Car, file: Path | str, settings: LevelSettings) -> Meas
         raise ConfigurationError(
             f"--reference {reference}: must be one of {', '.join([*plates, *target.record.channels])}"
         )
-    # The plates are those of the input, without noise: the same in a run of any car.
+    # The plates are the input, without noise: the same in a run of any car.
     if reference in target.record.channels:  # the delay of its group is not fitted
         reference_group = target.delays.fitted.get(reference)
         others = {name: group for name, group in target.delays.fitted.items() if group != reference_group}
@@ -199,7 +199,7 @@ def _histories(
         )
     window, more = (float(grid[inside[0]]), float(grid[inside[-1]])), list[str]()
     if stretch is not None:
-        # From the times of the file to those of the signal.
+        # From the times of the file to the times of the signal.
         asked_for = [float(times[0] + (t - held.time[0]) * (1.0 + settings.drift)) for t in stretch]
         if asked_for[0] >= window[1] or asked_for[1] <= window[0]:
             raise DataError(
@@ -237,12 +237,10 @@ def _histories(
 
 
 def _compared_channels(path: Path, record: Record | None, fitted: Sequence[str], keep: str | None) -> Record:
-    """Return a record with the channels that are compared: all but plates, or those of --channels."""
+    """Return a record with the channels that are compared: all but plates, or the ones chosen by --channels."""
     names = [] if record is None else [channel for channel in record.channels if not channel.startswith("plate_")]
     if record is None or not names:
-        raise DataError(
-            f"{path}: contains no time history except that of a plate; name channels with --map CHANNEL=NAME"
-        )
+        raise DataError(f"{path}: contains no time history except of plates; name channels with --map CHANNEL=NAME")
     chosen = [channel for channel in names if channel in (*fitted, keep)] if fitted else names
     if not chosen:
         raise DataError(f"{path}: contains no time history of --channels {','.join(fitted)}; found {', '.join(names)}")
@@ -297,7 +295,7 @@ def _read(
 ) -> Measured:
     """Return the chosen channels of a file under the names of the model."""
     model_channels = (*car.vehicle.channels, *car.vehicle.load_channels)
-    asked = replace(asked, delays={})  # the model is delayed in place of the measurement
+    asked = replace(asked, delays={})  # the model is delayed instead of the measurement
     return read_measured(file, model_channels, asked, inverted=inverted, window=window, histories_only=histories_only)
 
 

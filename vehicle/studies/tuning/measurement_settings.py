@@ -25,25 +25,16 @@ ROAD_ROLES = ("left", "right", "height")
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MeasurementSettings:
-    """Measurement files of a fit.
+    """Measurement files of a fit."""
 
-    Attributes:
-        files: the files, each with what belongs to it alone.
-        measured: channels, their directions, clock and delays.
-        record: units, times and filters.
-        responses: settings of FRFs.
-        histories: settings of time histories, and of their classes of the input level.
-        channels: channels of the model to fit; all without one.
-        any_level: accept plates and accelerations beyond a real shaker.
-    """
-
-    files: tuple[MeasurementFile, ...]
-    measured: MeasuredSettings = part(MeasuredSettings)
-    record: RecordSettings = part(RecordSettings)
-    responses: ResponseSettings = part(ResponseSettings)
+    files: tuple[MeasurementFile, ...]  # the files, each with its own settings
+    measured: MeasuredSettings = part(MeasuredSettings)  # channels, their directions, clock and delays
+    record: RecordSettings = part(RecordSettings)  # units, times and filters
+    responses: ResponseSettings = part(ResponseSettings)  # settings of FRFs
+    # settings of time histories, and of their classes of the input level
     histories: LevelSettings = part(LevelSettings)
-    channels: tuple[str, ...] = ()
-    any_level: bool = False
+    channels: tuple[str, ...] = ()  # channels of the model to fit; empty for all
+    any_level: bool = False  # accept plates and accelerations beyond a real shaker
 
     @property
     def protected(self) -> tuple[Path, ...]:
@@ -86,11 +77,7 @@ def _responses(car: Car, each: MeasurementFile, settings: ResponseSettings) -> M
 
 
 def _histories(car: Car, each: MeasurementFile, settings: LevelSettings, of_road: Choice) -> MeasuredTarget:
-    """Return the target of a file of time histories; `of_road` are the channels of a road recorded over time.
-
-    Raises:
-        ConfigurationError: a reference without levels.
-    """
+    """Return the target of a file of time histories; `of_road` are the channels of a road recorded over time."""
     settings = replace(settings, signal=_road(each, of_road) or each.signal)
     if each.levels is not None:
         settings = replace(settings, levels=each.levels, reference=each.reference)
@@ -102,11 +89,7 @@ def _histories(car: Car, each: MeasurementFile, settings: LevelSettings, of_road
 
 
 def _road(each: MeasurementFile, choice: Choice) -> Road | None:
-    """Return the road of a measurement file, and None without one.
-
-    Raises:
-        ConfigurationError: a road without a speed, a speed without a road, or a road and a signal.
-    """
+    """Return the road of a measurement file, and None without one."""
     if each.road is None:
         for name in ("speed", "contact"):
             if getattr(each, name) is not None:

@@ -58,45 +58,28 @@ begins at 10 to 20."""
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class EmulatedCar:
-    """Polynomials of the measured quantities and of the comfort over the parameters.
+    """Polynomials of the measured quantities and of the comfort over the parameters."""
 
-    Attributes:
-        parameters: fitted parameters with bounds.
-        cells: data.
-        emulator: means of ln|H|, a column for each cell.
-        comfort: logarithm of the comfort value on each signal [ln m/s2]; None without a signal.
-        signals: names of the signals.
-        cars: number of cars.
-    """
-
-    parameters: tuple[Range, ...]
-    cells: ResponseCells
-    emulator: Emulator
-    comfort: Emulator | None
-    signals: tuple[str, ...]
-    cars: int
+    parameters: tuple[Range, ...]  # fitted parameters with bounds
+    cells: ResponseCells  # data
+    emulator: Emulator  # means of ln|H|, a column for each cell
+    comfort: Emulator | None  # logarithm of the comfort value on each signal [ln m/s2]; None without a signal
+    signals: tuple[str, ...]  # names of the signals
+    cars: int  # number of cars
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Posterior:
-    """Samples of the parameters given the data.
+    """Samples of the parameters given the data."""
 
-    Attributes:
-        car: the emulator.
-        chains: samples of u, (walkers, n, parameters).
-        r_hat, effective: rank-normalised split R-hat and bulk effective sample size of each parameter.
-        log_evidence: ln of the evidence p(y), and its standard error.
-        discrepancy: standard deviation of the discrepancy [-].
-        misfit: root of the mean square of (y - e) / s at the sample with the highest likelihood [-].
-    """
-
-    car: EmulatedCar
-    chains: Vector
+    car: EmulatedCar  # the emulator
+    chains: Vector  # samples of u, (walkers, n, parameters)
+    # r_hat, effective: rank-normalised split R-hat and bulk effective sample size of each parameter
     r_hat: tuple[float, ...]
     effective: tuple[float, ...]
-    log_evidence: tuple[float, float]
-    discrepancy: float
-    misfit: float
+    log_evidence: tuple[float, float]  # ln of the evidence p(y), and its standard error
+    discrepancy: float  # standard deviation of the discrepancy [-]
+    misfit: float  # root of the mean square of (y - e) / s at the sample with the highest likelihood [-]
 
     def values(self) -> Vector:
         """Return the samples in the units of the parameters, (samples, parameters)."""
@@ -183,7 +166,7 @@ def posterior_of(
 
     Args:
         discrepancy: standard deviation of ln|H| between model and car in each band [-].
-        data: other data than those of the cells, (cells,).
+        data: data that replace the cells, (cells,).
 
     Raises:
         ConfigurationError: a negative discrepancy.
@@ -274,11 +257,11 @@ def verdict(first: tuple[str, Posterior], second: tuple[str, Posterior]) -> str:
     difference = first[1].log_evidence[0] - second[1].log_evidence[0]
     better, other = (first[0], second[0]) if difference > 0.0 else (second[0], first[0])
     ratio = float(np.exp(min(abs(difference), 600.0)))
-    statement = f"{better} {ratio:.3g} times as probable as {other}"
+    statement = f"{better} is {ratio:.3g} times as probable as {other}"
     if ratio < EVIDENCE_BOUND:
         return (
-            f"the data do not decide between {first[0]} and {second[0]}: {statement}, must be at least "
-            f"{EVIDENCE_BOUND:g} times for a decision"
+            f"the data do not separate {first[0]} and {second[0]}: {statement}, a decision needs at least "
+            f"{EVIDENCE_BOUND:g} times"
         )
     return statement
 

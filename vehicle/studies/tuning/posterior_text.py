@@ -52,9 +52,8 @@ def posterior_sentences(posteriors: Sequence[NamedPosterior]) -> list[str]:
     ]
     if posterior.misfit > UNEXPLAINED:
         sentences.append(
-            f"the best car still differs from the data by {number(posterior.misfit, 2)} standard deviations "
-            f"(RMS), more than {UNEXPLAINED:g}, so the intervals are too narrow; add parameters or set a larger "
-            "--discrepancy"
+            f"the best car differs from the data by {number(posterior.misfit, 2)} standard deviations (RMS, limit "
+            f"{UNEXPLAINED:g}), so the intervals are too narrow; add parameters or set a larger --discrepancy"
         )
     sentences += [f"evidence: {verdict(posteriors[0], rival)}" for rival in posteriors[1:]]
     return sentences
@@ -68,11 +67,7 @@ def posterior_summary(posteriors: Sequence[NamedPosterior]) -> dict[str, Any]:
         "parameters": [
             {"path": parameter.path, "low": low, "median": middle, "high": high, "r_hat": factor, "effective": count}
             for parameter, (low, middle, high), factor, count in zip(
-                posterior.car.parameters,
-                intervals,
-                posterior.r_hat,
-                posterior.effective,
-                strict=True,
+                posterior.car.parameters, intervals, posterior.r_hat, posterior.effective, strict=True
             )
         ],
         "comfort": {

@@ -30,14 +30,10 @@ class RoadCar:
 
     A variant is made from the car on the road: the terms of its matrices are computed once for all variants
     (`Car.varied`).
-
-    Attributes:
-        start: car at the start of the fit, with standing tyres or the speed of its file.
-        rolling: the same car with the parameters that the road sets, as driving.speed.
     """
 
-    start: Car
-    rolling: Car
+    start: Car  # car at the start of the fit, with standing tyres or the speed of its file
+    rolling: Car  # the same car with the parameters that the road sets, for example driving.speed
 
     def variant(self, car: Car) -> Car:
         """Return a variant, from `start.varied`, on the road."""
@@ -52,28 +48,20 @@ class RecordTarget:
     filter. The fit estimates the noise of a channel from the residuals. Without the filter an acceleration jumps
     between two samples at the end of stick: single samples would dominate the sum of squares, which would be rough
     where a jump moves across a sample.
-
-    Attributes:
-        name: name of the record, for reports.
-        signal: plate displacement, of a rig or of the road.
-        record: the measured channels, in the units and at the times of the recording of the car.
-        window: begin and end of the included part [s].
-        lowpass: -6 dB frequency of a Butterworth low-pass of order 4, forwards and backwards [Hz]; two samples are kept
-            for each period, so that the noise of neighbouring samples stays nearly independent.
-        road: car on the road of the record; None on a rig.
-        delays: delays of the channels against the signal: the run is compared at the earlier time t - d, so that the
-            noise of the measurement is not differentiated.
-        sample: sampling interval of the measurement [s]; that of the record by default.
     """
 
-    name: str
-    signal: Signal
-    record: Record
-    window: tuple[float, float]
+    name: str  # name of the record, for reports
+    signal: Signal  # plate displacement, of a rig or of the road
+    record: Record  # the measured channels, in the units and at the times of the recording of the car
+    window: tuple[float, float]  # begin and end of the included part [s]
+    # -6 dB frequency of a Butterworth low-pass of order 4, forwards and backwards [Hz]; two samples are kept for each
+    # period, so that the noise of neighbouring samples stays nearly independent
     lowpass: float = 100.0
-    road: RoadCar | None = None
+    road: RoadCar | None = None  # car on the road of the record; None on a rig
+    # delays of the channels against the signal: the run is compared at the earlier time t - d, so that the noise of the
+    # measurement is not differentiated
     delays: ResponseDelays = ResponseDelays()
-    sample: float = 0.0
+    sample: float = 0.0  # sampling interval of the measurement [s]; by default from the record
 
     def __post_init__(self) -> None:
         count, step = self.record.time.size, self.record.step
@@ -126,7 +114,7 @@ class RecordTarget:
         """Return the run of a car on the signal, on a road with turning wheels.
 
         Args:
-            channels: recorded channels; those of the record by default.
+            channels: recorded channels; by default all in the record.
         """
         return self._driven(car).run(self.signal, engine=engine, channels=tuple(channels) or self.recorded)
 
@@ -139,11 +127,7 @@ class RecordTarget:
         return car if self.road is None else self.road.variant(car)
 
     def response(self, model: Car | Run) -> Vector:
-        """Return filtered histories of a run of the signal, or of a car by the reduced engine; (channels, n).
-
-        Raises:
-            DataError: the run has other sampling times than the data.
-        """
+        """Return filtered histories of a run of the signal, or of a car by the reduced engine; (channels, n)."""
         names, time = self.recorded, self.record.time
         run = model if isinstance(model, Run) else self.fast(model)
         if run.time.size != time.size or abs(run.time[-1] - time[-1]) > 1e-6:

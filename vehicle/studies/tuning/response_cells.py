@@ -24,18 +24,12 @@ class ResponseCells:
     """Means of ln|H| over third-octave bands of measured FRFs.
 
     With weights w_i = 1 / sigma_i^2 of the lines, y = sum w_i ln|H_i| / sum w_i has the variance 1 / sum w_i.
-
-    Attributes:
-        targets: measured FRFs.
-        weights: for each target the normalised weights, (channels, bands, lines).
-        data: measured means, (cells,).
-        noise: standard deviations of the means from the coherence, (cells,).
     """
 
-    targets: tuple[FrfTarget, ...]
-    weights: tuple[Vector, ...]
-    data: Vector
-    noise: Vector
+    targets: tuple[FrfTarget, ...]  # measured FRFs
+    weights: tuple[Vector, ...]  # for each target the normalised weights, (channels, bands, lines)
+    data: Vector  # measured means, (cells,)
+    noise: Vector  # standard deviations of the means from the coherence, (cells,)
 
     def of(self, responses: Sequence[Complex]) -> Vector:
         """Return the means of FRFs of each target, (channels, lines) -> (cells,).
@@ -55,11 +49,7 @@ class ResponseCells:
 
 
 def response_cells(targets: Sequence[FrfTarget]) -> ResponseCells:
-    """Return the means of measured FRFs with coherence or random error in third-octave bands.
-
-    Raises:
-        DataError: no FRF, or FRFs without coherence and random error.
-    """
+    """Return the means of measured FRFs with coherence or random error in third-octave bands."""
     if not targets:
         raise DataError(
             "--posterior needs measured FRFs; add --frf FILE (the uncertainty of the parameters is computed "
@@ -88,12 +78,7 @@ def response_cells(targets: Sequence[FrfTarget]) -> ResponseCells:
             data.append(float(weights[row, column] @ np.log(size[row])))
             noise.append(float(1.0 / np.sqrt(sums[row, column, 0])))
         all_weights.append(weights)
-    return ResponseCells(
-        targets=tuple(targets),
-        weights=tuple(all_weights),
-        data=np.array(data),
-        noise=np.array(noise),
-    )
+    return ResponseCells(targets=tuple(targets), weights=tuple(all_weights), data=np.array(data), noise=np.array(noise))
 
 
 def evaluated_cars(

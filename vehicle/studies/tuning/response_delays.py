@@ -23,15 +23,10 @@ MILLISECOND = 1e-3
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ResponseDelays:
-    """Delays of the channels of a measurement.
+    """Delays of the channels of a measurement."""
 
-    Attributes:
-        known: channel to known delay [s].
-        fitted: channel to the group whose delay is an unknown of the fit.
-    """
-
-    known: Mapping[str, float] = field(default_factory=dict)
-    fitted: Mapping[str, str] = field(default_factory=dict)
+    known: Mapping[str, float] = field(default_factory=dict)  # channel to known delay [s]
+    fitted: Mapping[str, str] = field(default_factory=dict)  # channel to the group whose delay is an unknown of the fit
 
     @property
     def groups(self) -> tuple[str, ...]:
@@ -55,19 +50,12 @@ class ResponseDelays:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class DelayRange:
-    """Delay of a group of channels as an unknown of a fit, with the coordinate u = (value - start) / 1 ms.
+    """Delay of a group of channels as an unknown of a fit, with the coordinate u = (value - start) / 1 ms."""
 
-    Attributes:
-        path: name of the unknown, for messages.
-        group: group of channels.
-        target: index of the measurement.
-        start: delay at the start of the fit [s].
-    """
-
-    path: str
-    group: str
-    target: int
-    start: float
+    path: str  # name of the unknown, for messages
+    group: str  # group of channels
+    target: int  # index of the measurement
+    start: float  # delay at the start of the fit [s]
 
     @property
     def low(self) -> float:
@@ -97,7 +85,7 @@ class DelayRange:
         return MILLISECOND
 
     def option(self, delay: float) -> str:
-        """Return the option that takes a delay [s] out."""
+        """Return the option that removes a delay [s]."""
         return f"--delay {self.group}={1e3 * delay:.5g}ms"
 
 
@@ -120,17 +108,14 @@ def response_delays(
 
     Args:
         delays: group, channel or pattern to delay [s].
-        contained: the plates of the measurement are the input; else that of another file.
-
-    Raises:
-        ConfigurationError: a name specifies no channel, or plates with different delays.
+        contained: the plates of the measurement are the input; otherwise another file has the input.
     """
     every = [*(measured.record.channels if measured.record else ()), *(measured.frf.channels if measured.frf else ())]
     delay_of = channel_delays(tuple(dict.fromkeys([*every, *channels])), delays)
     plates = {delay_of.get(name, 0.0) for name in every if group_of(name) == PLATES} if contained else {0.0}
     if len(plates) > 1:
         raise ConfigurationError(
-            f"--delay: the plates have different delays {sorted(plates)} s, must be a single delay; set --delay "
+            f"--delay: the plates have different delays {sorted(plates)} s, but need a common one; set --delay "
             "plates=TIME"
         )
     base = max(plates, default=0.0)

@@ -30,45 +30,27 @@ from vehicle.threads import one_blas_thread
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Agreement:
-    """Error of the model against one channel of a measurement, before and after the fit.
+    """Error of the model against one channel of a measurement, before and after the fit."""
 
-    Attributes:
-        measurement: name of the measurement.
-        channel: channel; of an FRF its output.
-        plate: input of an FRF, as "plate_fr"; empty for a time history.
-        label: channel, with its plate if the measurement has FRFs to several.
-        measure: quantity: "magnitude", "phase" or "history".
-        unit: dB, deg, or % of the RMS of the measured history.
-        before, after: RMS of the error over the fitted frequencies or times.
-    """
-
-    measurement: str
-    channel: str
-    plate: str
-    label: str
-    measure: str
-    unit: str
-    before: float
+    measurement: str  # name of the measurement
+    channel: str  # channel; of an FRF its output
+    plate: str  # input of an FRF, for example "plate_fr"; empty for a time history
+    label: str  # channel, with its plate if the measurement has FRFs to several
+    measure: str  # quantity: "magnitude", "phase" or "history"
+    unit: str  # dB, deg, or % of the RMS of the measured history
+    before: float  # before, after: RMS of the error over the fitted frequencies or times
     after: float
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TunedCar:
-    """Car fitted to measurements.
+    """Car fitted to measurements."""
 
-    Attributes:
-        start: the car before the fit.
-        result: the fit: values, standard errors, correlation, residual statistics.
-        measurements: the measurements with the fitted delays.
-        engine: engine of the last steps; "reduced" if there were none.
-        final: the last steps with the complete model; None without them.
-    """
-
-    start: Car
-    result: TuningResult
-    measurements: tuple[MeasuredTarget, ...]
-    engine: str
-    final: FullSteps | None
+    start: Car  # the car before the fit
+    result: TuningResult  # the fit: values, standard errors, correlation, residual statistics
+    measurements: tuple[MeasuredTarget, ...]  # the measurements with the fitted delays
+    engine: str  # engine of the last steps; "reduced" if there were none
+    final: FullSteps | None  # the last steps with the complete model; None without them
 
     @cached_property
     def fitted(self) -> Car:
@@ -86,12 +68,12 @@ class TunedCar:
 
     @cached_property
     def refusal(self) -> str:
-        """Reason why the values are not to be used: a bound, or an error above that of no motion; empty without."""
+        """Reason why the values must not be used: at a bound, or an error above 100 %; otherwise empty."""
         return refusal(self.result, [(name, after) for name, _, after, _ in self._shares])
 
     @cached_property
     def unexplained(self) -> str:
-        """Statement that the fit leaves a large error, see `limits_of_data.unexplained`; empty if refused or small."""
+        """Statement on a large remaining error, see `limits_of_data.unexplained`; empty if small or refused."""
         return "" if self.refusal else unexplained(self._shares, _unfitted(self.start.vehicle, self.result.values))
 
     @property
@@ -298,8 +280,8 @@ def _model_errors(target: FrfTarget | LevelTarget | RecordTarget, car: Car) -> V
     """Return the errors of a car against a measurement.
 
     Returns:
-        Time histories: RMS of the error over that of the measurement [%], (channels, 1). FRFs: RMS over frequency of
-        the magnitude [dB], of the phase [deg], and of |H - Hm| over that of |Hm| [%], (channels, 3); NaN for a channel
+        Time histories: RMS error over the RMS of the measurement [%], (channels, 1). FRFs: RMS over frequency of the
+        magnitude [dB], of the phase [deg], and of |H - Hm| over the RMS |Hm| [%], (channels, 3); NaN for a channel
         without an included point.
     """
     if isinstance(target, RecordTarget):

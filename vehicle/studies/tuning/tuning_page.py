@@ -60,7 +60,7 @@ def tuning_page(
 
 
 def _driving(tuned: TunedCar) -> str:
-    """Return how the tyres stand or roll in the measurements."""
+    """Return the states of the tyres in the measurements: standing, or rolling at a speed."""
     states = []
     for each in tuned.measurements:
         road = None if isinstance(each.target, FrfTarget) else each.target.road
@@ -77,7 +77,7 @@ def _result(tuned: TunedCar, figures: Mapping[str, Callable[[Path], None]]) -> M
         unit = unit_of(vehicle, parameter.path)
         spread = f" ± {number(error, 2)}" if math.isfinite(error) else ""
         start = number(parameter.start, 4)
-        changes.append(f"{parameter_words(parameter.path)} of {number(value, 4)}{spread} {unit} instead of {start}")
+        changes.append(f"{parameter_words(parameter.path)} {number(value, 4)}{spread} {unit} (before {start})")
     if len(result.parameters) > MOST_NAMED:
         changes.append(f"{len(result.parameters) - MOST_NAMED} more")
     row = max(tuned.agreement, key=lambda row: row.before)
@@ -86,8 +86,8 @@ def _result(tuned: TunedCar, figures: Mapping[str, Callable[[Path], None]]) -> M
     texts = [
         *([f"Do not use this fit: {tuned.refusal}."] if tuned.refusal else []),
         *([_sentence(tuned.unexplained)] if tuned.unexplained else []),
-        f"The {'fit gives' if tuned.unexplained else 'measurement asks for'} {', '.join(changes)}.",
-        f"The largest error against the measurement ({channel_words(row.label)}, {row.measure}) "
+        f"Fitted: {', '.join(changes)}.",
+        f"The largest error ({channel_words(row.label)}, {row.measure}) "
         f"{word} from {number(row.before)} to {number(row.after)} {row.unit}"
         + (f"; the data leave open: {left_open[0]}" if left_open else "")
         + ("; the data determine every parameter." if tuned.determined else "."),
@@ -117,6 +117,7 @@ def _values(tuned: TunedCar) -> Markup:
         value, error = result.values[parameter.path], result.errors[parameter.path]
         rows.append(
             (
+                parameter_words(parameter.path),
                 parameter.path,
                 unit_of(vehicle, parameter.path),
                 number(value, 5),
@@ -146,11 +147,16 @@ def _posterior(
 ) -> Markup:
     posterior = posteriors[0][1]
     rows = [
-        (parameter.path, unit_of(tuned.start.vehicle, parameter.path), *(number(value, 4) for value in ends))
+        (
+            parameter_words(parameter.path),
+            parameter.path,
+            unit_of(tuned.start.vehicle, parameter.path),
+            *(number(value, 4) for value in ends),
+        )
         for parameter, ends in zip(posterior.car.parameters, posterior.interval().T.tolist(), strict=True)
     ]
     rows += [
-        (f"comfort on {name}", "m/s2", *(number(value, 4) for value in ends))
+        (f"comfort on {name}", "", "m/s2", *(number(value, 4) for value in ends))
         for name, ends in zip(posterior.car.signals, posterior.comfort().T.tolist(), strict=True)
     ]
     figure = drawing(figures[POSTERIOR], POSTERIOR)

@@ -32,27 +32,16 @@ Begin = Callable[[str], Callable[[float], None]]
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class TuningStudy:
-    """Study of a fit, as the command runs it.
+    """Study of a fit, as the command runs it."""
 
-    Attributes:
-        car: the car before the fit.
-        parameters: path to lower and upper bound, and optionally start value, see `vehicle.tune`.
-        measurements: measurement files and their settings.
-        engine: engine of the last steps.
-        posterior: also compute the distribution of the parameters.
-        uncertainty: settings of this distribution.
-        destination: folder of the results.
-        author, project: names in the head of the report.
-    """
-
-    car: CarChoice
-    parameters: Mapping[str, Bounds]
-    measurements: MeasurementSettings
-    engine: str = "mujoco"
-    posterior: bool = False
-    uncertainty: PosteriorSettings = part(PosteriorSettings)
-    destination: Destination = field(default_factory=Destination)
-    author: str = ""
+    car: CarChoice  # the car before the fit
+    parameters: Mapping[str, Bounds]  # path to lower and upper bound, and optionally start value, see `vehicle.tune`
+    measurements: MeasurementSettings  # measurement files and their settings
+    engine: str = "mujoco"  # engine of the last steps
+    posterior: bool = False  # also compute the distribution of the parameters
+    uncertainty: PosteriorSettings = part(PosteriorSettings)  # settings of this distribution
+    destination: Destination = field(default_factory=Destination)  # folder of the results
+    author: str = ""  # author, project: names in the head of the report
     project: str = ""
 
     def run(

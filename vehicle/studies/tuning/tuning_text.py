@@ -31,7 +31,7 @@ def value_lines(result: TuningResult, vehicle: Vehicle) -> list[str]:
 
 
 def known_digits(value: float, error: float) -> int:
-    """Return the significant digits of a value that its standard error leaves: with the decimals of the error."""
+    """Return the significant digits of a value with a standard error: up to the decimals of the error."""
     if not (math.isfinite(error) and error > 0.0 and value != 0.0):
         return 6
     return min(max(math.floor(math.log10(abs(value))) - math.floor(math.log10(error)) + 2, 2), 8)
@@ -45,11 +45,10 @@ def tuning_text(tuned: TunedCar) -> str:
     lines += value_lines(result, tuned.start.vehicle)
     lines += [settings or f"do not use this fit: {tuned.refusal}"]
     lines += [*delay_lines(tuned), *source_lines(result, tuned.start.vehicle)]
-    lines += [f"not determined: {text}" for text in what_data_leave_open(result)]
+    lines += [f"left open: {text}" for text in what_data_leave_open(result)]
     if tuned.determined:
         lines.append(
-            "the data determine every parameter: no standard error is above 10 %, no two parameters have a "
-            "correlation of 0.9 or more"
+            "the data determine every parameter: all standard errors are below 10 %, all correlations below 0.9"
         )
     lines += agreement_lines(tuned.agreement)
     return "\n".join([*lines, *fit_sentences(tuned)])
@@ -64,15 +63,12 @@ def delay_lines(tuned: TunedCar) -> list[str]:
         digits = min(max(1 - math.floor(math.log10(error)), 0), 4) if 0.0 < error < math.inf else 3
         spread = f"{abs(value):.{digits}f}" + (f" +- {error:.{digits}f}" if math.isfinite(error) else "") + " ms"
         large = abs(value) > max(SIGNIFICANT * error, 500.0 * SHARE_OF_STEP * 2.0 * target.half_sample)
+        sentence = f"the {delay.group} of {target.name} are {spread} {'early' if value < 0.0 else 'late'}"
         lines.append(
-            f"the {delay.group} of {target.name} {'lead' if value < 0.0 else 'lag'} the input by {spread}, fitted "
-            "with the parameters"
-            + (
-                ": wrong parameters of the car that are not fitted, or late sensors; only if the sensors are known to "
-                f"lag, set {delay.option(1e-3 * value)}"
-                if large
-                else ""
-            )
+            f"{sentence}: the sensors have a delay, or parameters that are not fitted are wrong; if you know the "
+            f"delay, set {delay.option(1e-3 * value)}"
+            if large
+            else f"{sentence}; the fit allows for it"
         )
     return lines
 
@@ -114,15 +110,15 @@ def fit_sentences(tuned: TunedCar) -> list[str]:
     result, final = tuned.result, tuned.final
     before, after = tuned.total_error
     sentences = [
-        f"{result.evaluations} cars computed; error over all channels {number(before)} % of RMS before, "
-        f"{number(after)} % after the fit (comparable between fits of one measurement)"
+        f"error over all channels: {number(before)} % of RMS before the fit, {number(after)} % after it (comparable "
+        f"between fits of the same measurement); {result.evaluations} cars computed"
     ]
     if not result.converged:
-        sentences.append(f"not converged: {result.message}; narrow the bounds, or start nearer with --set PATH=VALUE")
+        sentences.append(f"not converged: {result.message}; narrow the bounds, or start closer with --set PATH=VALUE")
     if final is None:
         if any(each.signal is not None for each in tuned.measurements):
             sentences.append(
-                "not checked with the complete model; with --engine mujoco the last steps of the fit use that model"
+                "not checked with the complete model: add --engine mujoco, which runs the last steps with it"
             )
     else:
         moved = max(final.moved.items(), key=lambda item: abs(item[1]), default=("", 0.0))
