@@ -14,11 +14,7 @@ from tests.patience import HANG
 from vehicle.errors import ConfigurationError
 from vehicle.handover.bench.guard import Guard
 from vehicle.handover.bench.state import BenchState
-<<<<<<< HEAD
 from vehicle.runs.report.modes_section import ride_share
-from vehicle.signals.excitation.input_files import find_input
-=======
->>>>>>> main
 
 viser = pytest.importorskip("viser", reason="viser is missing: pip install 'vehicle-on-shaker[bench]'")
 msgspec = pytest.importorskip("msgspec")
