@@ -232,11 +232,7 @@ def test_two_plates_are_told_apart(shaker, tmp_path):
     folder = tmp_path / "runs" / "both"
     summary = json.loads((folder / "summary.json").read_text())
     assert set(summary["input"]["plate_rms_m"]) == {"fr", "fl"} and min(summary["input"]["plate_rms_m"].values()) > 9e-6
-    said = (
-        "both plates move independently of each other: the FRFs are separated into responses to each of fr, fl; "
-        "the coherence is that of"
-    )
-    assert any(notice.startswith(said) for notice in summary["notices"])
+    assert any("independently" in notice and "each of fr, fl" in notice for notice in summary["notices"])
     assert [one["plates"] for one in summary["frf"]["to"]] == [{"fr": 1.0}, {"fl": 1.0}]
     table = np.genfromtxt(folder / "frf.csv", delimiter=",", skip_header=3)
     heads = (folder / "frf.csv").read_text().splitlines()[2].split(",")
@@ -260,7 +256,7 @@ def test_two_plates_that_move_alike_give_the_common_response():
     both = Signal(time=signal.time, displacement=dict.fromkeys(("fr", "fl"), signal.displacement["fr"]))
     run = Car.load().run(both)
     response = run.frf(["seat_rail_acc_z"])
-    assert response.reasons[0] == "both plates move alike: the FRFs are the responses to their common motion"
+    assert "move alike" in response.reasons[0] and "common motion" in response.reasons[0]
     assert response.response.shape[0] == 1
 
 

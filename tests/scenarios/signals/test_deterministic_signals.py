@@ -38,9 +38,9 @@ def test_bump_noise_has_its_rms_outside_and_runs_on_inside():
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"amplitude": -1.0}, "bump amplitude -1.0 m; allowed: positive and finite"),
+        ({"amplitude": -1.0}, "bump amplitude -1.0 m: must be above 0 and finite"),
         ({"start": 9.8}, "bump at 9.8 s; allowed: 0 to 9.66667 s, so that it ends within the record"),
-        ({"noise_rms": -1.0}, "noise RMS -1.0 m; allowed: positive and finite"),
+        ({"noise_rms": -1.0}, "noise RMS -1.0 m: must be above 0 and finite"),
         ({"reading": "tall"}, "reading 'tall' of the bump; allowed: 'height', 'literal'"),
     ],
 )

@@ -30,7 +30,7 @@ def test_the_comfort_value_of_sines_is_their_rms():
 
 
 def test_comfort_needs_three_axes():
-    with pytest.raises(DataError, match=r"found shape \(1, 2, 1000\), must be \(r, 3, n\): r signals"):
+    with pytest.raises(DataError, match=r"found shape \(1, 2, 1000\), must be \(r, 3, n\)"):
         comfort_values(STEP, np.ones((1, 2, 1000)))
 
 

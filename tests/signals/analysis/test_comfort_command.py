@@ -12,37 +12,28 @@ from vehicle.signals.analysis.weighting import weighted_record, weighting
 
 @pytest.fixture
 def ride(tmp_path):
-    """A file of 60 s at 1 kHz: z a unit sine of 8 Hz about the offset given, x and y smaller sines."""
+    """A file of 60 s at 500 Hz: z a unit sine of 8 Hz about the offset given, x and y smaller sines."""
 
-    def written(offset=0.0, y=0.2):
-        time = np.arange(60_000) * 1e-3
+    def written(offset=0.0):
+        time = np.arange(30_000) * 2e-3
         sine = np.sin(2 * np.pi * 8.0 * time)
-        path = tmp_path / "ride.csv"
-        np.savetxt(
-            path,
-            np.column_stack((time, 0.1 * sine, y * sine, sine + offset)),
-            fmt=("%.3f", "%.8f", "%.8f", "%.8f"),
-            delimiter=",",
-            header="time [s],x [m/s2],y [m/s2],z [m/s2]",
-            comments="",
-        )
-        return str(path)
+        return table(tmp_path / "ride.csv", time, 0.1 * sine, 0.2 * sine, sine + offset)
 
     return written
+
+
+def table(path, *columns):
+    head = "time [s],x [m/s2],y [m/s2],z [m/s2]"
+    np.savetxt(path, np.column_stack(columns), fmt="%.8f", delimiter=",", header=head, comments="")
+    return str(path)
 
 
 def test_json_holds_the_measures_of_each_axis(ride, capsys):
     assert main(["--input", ride(), "--json"]) == 0
     out, err = capsys.readouterr()
-    found = json.loads(out)
-    said = err.splitlines()
-    assert [line[:50] for line in said[:3]] == [
-        f"notice: {a}: MTVV and crest factor leave out the first"[:50] for a in "xyz"
-    ]
-    assert said[3:] == [
-        "notice: motion sickness dose (msdv): only a rough estimate; the record has 60 s, 6.0 periods of 0.1 Hz, "
-        "and ISO 2631-1, D.1, requires 240 s"
-    ]
+    found, said = json.loads(out), err.splitlines()
+    assert [line.split()[1:3] for line in said[:3]] == [[f"{axis}:", "MTVV"] for axis in "xyz"]
+    assert len(said) == 4 and "(msdv)" in said[3] and "6.0 periods of 0.1 Hz" in said[3] and "240 s" in said[3]
     for axis, name in zip("xyz", ("Wd", "Wd", "Wk"), strict=True):
         assert found[axis]["weighting"] == name
         assert {"weighted_rms", "mtvv", "crest_factor", "vdv", "msdv"} <= set(found[axis])
@@ -57,15 +48,13 @@ def test_channels_that_were_copied_and_a_clipped_sensor_are_named(ride, tmp_path
     time = np.arange(12_000) * 1e-3
     rough = np.cumsum(np.random.default_rng(3).standard_normal((2, 12_000)), axis=1)
     rough = 0.1 * (rough - np.apply_along_axis(np.convolve, 1, rough, np.ones(400) / 400.0, "same"))
-    path = tmp_path / "copied.csv"
-    table = np.column_stack((time, rough[0], np.clip(rough[1], -0.6, 0.6), rough[0]))
-    np.savetxt(path, table, fmt="%.6f", delimiter=",", header="time [s],x [m/s2],y [m/s2],z [m/s2]", comments="")
-    assert main(["--input", str(path), "--json"]) == 0
+    path = table(tmp_path / "copied.csv", time, rough[0], np.clip(rough[1], -0.6, 0.6), rough[0])
+    assert main(["--input", path, "--json"]) == 0
     out, err = capsys.readouterr()
-    assert "x and z have identical samples" in err and "--channel z=NAME" in err
+    assert "x and z" in err and "--channel z=NAME" in err
     assert "y: clipped?" in err and "x: clipped" not in err and "constant" not in err
     found = json.loads(out)["z"]
-    weighted = weighted_record(1e-3, np.round(rough[0], 6), "Wk")
+    weighted = weighted_record(1e-3, np.round(rough[0], 8), "Wk")
     settled = weighted[round(weighting("Wk").settling_s / 1e-3) :]
     expected = np.abs(settled).max() / np.sqrt(np.mean(settled**2))
     assert found["crest_factor"] == pytest.approx(expected, rel=1e-6)
@@ -100,8 +89,7 @@ def test_gravity_is_rejected_without_the_offset_option(ride, capsys):
     assert main(["--input", path, "--json"]) == 3
     out, err = capsys.readouterr()
     assert out == ""
-    assert err == f"error: {path}: z: gravity is in the mean (9.81 m/s2) and no motion; subtract it with --detrend\n"
-    assert err.count("\n") == 1
+    assert err.startswith(f"error: {path}: z: ") and "9.81 m/s2" in err and "--detrend" in err and err.count("\n") == 1
     assert main(["--input", path, "--json", "--offset", "remove"]) == 0
     removed = json.loads(capsys.readouterr().out)
     assert removed["z"]["vdv"] == pytest.approx(2.257, abs=0.0005)
@@ -114,26 +102,18 @@ def test_gravity_is_rejected_without_the_offset_option(ride, capsys):
 def test_bad_data_exits_3_and_a_bad_path_2(tmp_path, capsys):
     path = tmp_path / "bad.csv"
     path.write_text("time [s],x [m/s2],y [m/s2],z [m/s2]\n0,0,0,0\n0.001,0,nan,0\n0.002,0,0,0\n")
-    assert main(["--input", str(path)]) == 3
-    assert capsys.readouterr() == (
-        "",
-        f"error: {path}:3:3: column 'y [m/s2]' is 'nan', must be a finite number; repair the cell or cut the record\n",
-    )
-    assert main(["--input", str(tmp_path / "nix.csv")]) == 2
-    assert capsys.readouterr() == (
-        "",
-        (f"error: {tmp_path / 'nix.csv'}: the file does not exist; give the path of a CSV file\n"),
-    )
-    assert main(["--input", str(path), "--place", "sofa"]) == 2
-    assert "point of contact: found 'sofa', must be one of seat" in capsys.readouterr().err
+    for words, status, said in (
+        ([path], 3, f"error: {path}:3:3: column 'y [m/s2]' is 'nan'"),
+        ([tmp_path / "nix.csv"], 2, f"error: {tmp_path / 'nix.csv'}: "),
+        ([path, "--place", "sofa"], 2, "'sofa', must be one of seat"),
+    ):
+        assert main(["--input", *map(str, words)]) == status
+        out, err = capsys.readouterr()
+        assert out == "" and said in err and err.count("\n") == 1
 
 
 def test_the_module_runs_as_a_command_and_a_closed_pipe_is_quiet(ride):
-    path = ride()
-    command = [sys.executable, "-m", "vehicle.comfort", "--input", path, "--json"]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 0
-    assert json.loads(done.stdout)["input"] == path
+    command = [sys.executable, "-m", "vehicle.comfort", "--input", ride(), "--json"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
         assert process.stderr is not None

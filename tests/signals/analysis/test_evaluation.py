@@ -40,14 +40,8 @@ def test_the_seat_is_weighted_wd_wd_wk():
     )
     assert found["vector_sum"]["vdv"] == pytest.approx(sum(found[axis]["vdv"] ** 4 for axis in "xyz") ** 0.25)
     assert (found["duration_s"], found["place"]) == (pytest.approx(60.0), "seat")
-    assert found["reasons"][2].startswith(
-        "z: MTVV and crest factor leave out the first 3.5 s, in which weighting Wk settles. With"
-    )
-    assert found["reasons"][3] == (
-        "motion sickness dose (msdv): only a rough estimate; the record has 60 s, 6.0 periods of 0.1 Hz, and ISO "
-        "2631-1, D.1, requires 240 s"
-    )
-    assert len(found["reasons"]) == 4
+    assert len(found["reasons"]) == 4 and "z: MTVV" in found["reasons"][2] and "3.5 s" in found["reasons"][2]
+    assert all(word in found["reasons"][3] for word in ("msdv", "60 s", "6.0 periods of 0.1 Hz", "240 s"))
     # of a record that starts at rest the switching-on is real: 1.5 instead of 1.414
     rest = evaluate(STEP, [sine(1.0, 0.5), sine(4.0, 0.7), sine(8.0)], from_rest=True)
     assert 1.02 < rest["z"]["crest_factor"] / found["z"]["crest_factor"] < 1.1
@@ -65,8 +59,7 @@ def test_a_shock_within_the_settling_time_gives_no_impossible_ratio():
     assert found["z"]["weighted_rms"] > 5.0 * rms
     assert found["z"]["crest_factor"] == pytest.approx(np.max(np.abs(weighted)) / rms, rel=1e-9)
     assert found["z"]["mtvv_ratio"] == pytest.approx(found["z"]["mtvv"] / rms, rel=1e-9)
-    (said,) = [text for text in found["reasons"] if text.startswith("z: MTVV")]
-    assert "The weighted RMS is" in said and "with them and" in said
+    assert sum(text.startswith("z: MTVV") for text in found["reasons"]) == 1
 
 
 def test_motion_sickness_uses_wf():
@@ -84,10 +77,7 @@ def test_the_backrest_has_its_own_weightings_and_factors():
     rms = [found[axis]["weighted_rms"] for axis in "xyz"]
     assert rms[0] == pytest.approx(weighting("Wc").spectrum_factor(8.0) / np.sqrt(2), rel=5e-3)
     assert found["vector_sum"]["weighted_rms"] == pytest.approx(np.linalg.norm(np.multiply(rms, [0.8, 0.5, 0.4])))
-    assert found["vector_sum"]["health_weighted_rms"] is None
-    assert found["reasons"][-1] == (
-        "vector_sum.health_weighted_rms has no value: the standard has no health factors for backrest"
-    )
+    assert found["vector_sum"]["health_weighted_rms"] is None and "backrest" in found["reasons"][-1]
 
 
 def test_every_point_of_contact_evaluates_and_writes_json():
@@ -101,19 +91,20 @@ def test_every_point_of_contact_evaluates_and_writes_json():
 def test_an_axis_of_zeros_has_none_and_a_reason():
     found = evaluate(STEP, [0.0 * TIME, sine(4.0), sine(8.0)])
     assert found["x"]["weighted_rms"] == 0.0
-    assert found["x"]["crest_factor"] is None
-    assert found["x"]["vdv_ratio"] is None
-    assert found["reasons"][0] == "x: the acceleration is zero throughout, so crest factor and ratios are undefined"
+    assert found["x"]["crest_factor"] is found["x"]["vdv_ratio"] is None
+    assert found["reasons"][0].startswith("x: ")
 
 
 def test_bad_records_and_points_of_contact_are_rejected():
-    with pytest.raises(DataError, match="found 2 signals, must be the axes x, y, z"):
-        evaluate(STEP, np.ones((2, 100)))
-    with pytest.raises(DataError, match="all three axes are zero throughout"):
-        evaluate(STEP, np.zeros((3, 100)))
-    with pytest.raises(DataError, match="sampling rate: found 20 Hz, must be at least 25 Hz for Wd"):
-        evaluate(0.05, np.ones((3, 100)))
-    with pytest.raises(ConfigurationError, match="point of contact: found 'sofa', must be one of seat, backrest"):
+    for step, xyz, message in (
+        (STEP, np.ones((2, 100)), "2 signals, .* x, y, z"),
+        (STEP, np.zeros((3, 100)), "zero throughout"),
+        (0.05, np.ones((3, 100)), "found 20 Hz, .* 25 Hz for Wd"),
+        (SLOW_STEP, ride(3.0), r" 3 s, .* 3\.5 s .*--offset keep"),
+    ):
+        with pytest.raises(DataError, match=message):
+            evaluate(step, xyz)
+    with pytest.raises(ConfigurationError, match="'sofa', must be one of seat, backrest"):
         application("sofa")
 
 
@@ -178,23 +169,18 @@ def test_the_offset_of_a_long_record_shows_in_its_dose():
     assert offset_line(without_offset(xyz)) == pytest.approx(0.0, abs=1e-12)
 
 
-@pytest.mark.parametrize(("duration", "said"), [(20.0, "at least 43.2 s are needed"), (50.0, "D.1, requires 240 s")])
-def test_a_record_must_hold_the_lowest_frequency_of_its_weighting(duration, said):
+@pytest.mark.parametrize(("duration", "limit"), [(20.0, "43.2 s"), (50.0, "240 s")])
+def test_a_record_must_hold_the_lowest_frequency_of_its_weighting(duration, limit):
     found = evaluate(SLOW_STEP, ride(duration))
     assert (found["z"]["msdv"] is None) == (duration == 20.0)
-    assert f"the record has {duration:g} s, {duration / 10:.1f} periods of 0.1 Hz" in found["reasons"][-1]
-    assert said in found["reasons"][-1]
+    for words in ("msdv", f"{duration:g} s", f"{duration / 10:.1f} periods of 0.1 Hz", limit):
+        assert words in found["reasons"][-1]
+
+
+def test_a_record_is_an_event_a_ride_or_long_enough_for_sickness():
     short = evaluate(SLOW_STEP, ride(5.0))["reasons"]
-    assert any(
-        r.startswith("z: the record has only 2.5 periods of 0.5 Hz, where weighting Wk begins (5 s") for r in short
-    )
+    assert any(text.startswith("z: 5 s") and "2.5 periods of 0.5 Hz" in text for text in short)
     assert not any("msdv" in reason for reason in evaluate(SLOW_STEP, ride(240.0))["reasons"])
-    with pytest.raises(
-        DataError,
-        match=r"the record has 3 s, must be longer than the 3\.5 s in which "
-        r"weighting Wd settles; use a longer record",
-    ):
-        evaluate(SLOW_STEP, ride(3.0))
     assert evaluate(SLOW_STEP, ride(3.0), from_rest=True)["z"]["weighted_rms"] > 0.0
 
 
@@ -206,7 +192,5 @@ def test_the_skipped_time_is_not_evaluated():
     # 4 s of the large part have gone; 6 s later its decay is below 1e-4
     assert found["z"]["weighted_rms"] == pytest.approx(weighting("Wk").spectrum_factor(4.0) / np.sqrt(2), rel=1e-3)
     for skip in (-5.0, np.nan, np.inf, 60.0):
-        with pytest.raises(
-            ConfigurationError, match=r"^skip: found .* s, must be at least 0 s and shorter than the record, 60 s$"
-        ):
+        with pytest.raises(ConfigurationError, match=rf"^skip: found {skip:g} s, .* 60 s$"):
             evaluate(SLOW_STEP, xyz, skip=skip)

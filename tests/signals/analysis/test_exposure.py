@@ -111,13 +111,9 @@ def test_mtvv_is_the_largest_window_of_a_random_record():
 
 
 def test_the_dose_of_a_tiny_or_huge_record_neither_vanishes_nor_overflows():
-    assert vibration_dose_value(STEP, 1e-100 * SINE) == pytest.approx(1e-100 * (22.5) ** 0.25, rel=1e-12)
-    assert vibration_dose_value(STEP, 1e100 * SINE) == pytest.approx(1e100 * (22.5) ** 0.25, rel=1e-12)
-    assert vibration_dose_value(STEP, np.zeros(100)) == 0.0
-
-
-def test_a_record_of_zeros_has_no_crest_factor():
-    assert crest_factor(np.zeros(100)) is None
+    for size in (1e-100, 1e100):
+        assert vibration_dose_value(STEP, size * SINE) == pytest.approx(size * (22.5) ** 0.25, rel=1e-12)
+    assert vibration_dose_value(STEP, np.zeros(100)) == 0.0 and crest_factor(np.zeros(100)) is None
 
 
 def test_vector_sums():
@@ -127,20 +123,19 @@ def test_vector_sums():
         rel=1e-6, unit="m/s2", source="standard: ISO 2631-1:1997, 6.5",
     )  # fmt: skip
     assert vector_sum([1.0, 1.0], [1.0, 1.0], power=4.0) == pytest.approx(2.0**0.25)
-    with pytest.raises(
-        ConfigurationError, match="vector sum: found 2 values and 3 factors, must be a factor for each value"
-    ):
-        vector_sum([1.0, 1.0], [1.0, 1.0, 1.0])
 
 
-def test_bad_arguments_are_refused():
-    with pytest.raises(DataError, match="found nan at sample 0"):
-        weighted_rms([np.nan, 1.0])
-    with pytest.raises(DataError, match=r"must be one axis, shape \(n,\)"):
-        weighted_rms(np.ones((2, 10)))
-    with pytest.raises(ConfigurationError, match="running average: found 'fast', must be 'linear' or"):
-        mtvv(STEP, SINE, average="fast")  # type: ignore[arg-type]
-    with pytest.raises(ConfigurationError, match="integration_s: found 0 s"):
-        mtvv(STEP, SINE, integration_s=0.0)
-    with pytest.raises(ConfigurationError, match=r"eVDV: found RMS 1.0 m/s2, must be at least 0, and duration 0.0 s"):
-        estimated_vibration_dose_value(1.0, 0.0)
+@pytest.mark.parametrize(
+    ("call", "error", "message"),
+    [
+        (lambda: vector_sum([1.0, 1.0], [1.0, 1.0, 1.0]), ConfigurationError, "2 values and 3 factors"),
+        (lambda: weighted_rms([np.nan, 1.0]), DataError, "nan at sample 0"),
+        (lambda: weighted_rms(np.ones((2, 10))), DataError, r"one axis, shape \(n,\)"),
+        (lambda: mtvv(STEP, SINE, average="fast"), ConfigurationError, "'fast', must be 'linear' or"),  # type: ignore[arg-type]
+        (lambda: mtvv(STEP, SINE, integration_s=0.0), ConfigurationError, "integration_s: found 0 s"),
+        (lambda: estimated_vibration_dose_value(1.0, 0.0), ConfigurationError, "eVDV: .* duration 0.0 s"),
+    ],
+)
+def test_bad_arguments_are_refused(call, error, message):
+    with pytest.raises(error, match=message):
+        call()

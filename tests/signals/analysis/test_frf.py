@@ -83,9 +83,8 @@ def test_leakage_lowers_a_narrow_peak_as_predicted_and_a_longer_window_corrects_
         gammas.append(gamma)
     assert gammas == sorted(gammas)
     assert scatter < 0.05
-    assert abs(leaking_transmissibility(4.0, 28.0, 0.05) / transmissibility(28.0, 28.0, 0.05)) == pytest.approx(
-        0.99, abs=0.002
-    )
+    broad = leaking_transmissibility(4.0, 28.0, 0.05) / transmissibility(28.0, 28.0, 0.05)
+    assert abs(broad) == pytest.approx(0.99, abs=0.002)
 
 
 @pytest.mark.parametrize("ratio", [0.5, 1.0])
@@ -106,12 +105,12 @@ def test_coherence_shows_the_known_share_of_noise(ratio):
 
 
 def test_a_still_excitation_is_refused():
-    with pytest.raises(DataError) as refusal:
-        frequency_response(STEP, np.full(30_000, 0.1), noise(30_000))
-    assert str(refusal.value) == (
-        "excitation: constant at 0.1 over all 30000 samples, so there is no frequency response to it; use a "
-        "channel that moves"
-    )
+    for x, y, message in (
+        (np.full(30_000, 0.1), noise(30_000), "excitation: constant at 0.1"),
+        (noise(30_000), noise(29_999), "responses: found 29999 samples, .* 30000"),
+    ):
+        with pytest.raises(DataError, match=message):
+            frequency_response(STEP, x, y)
 
 
 def test_lines_without_excitation_are_nan_with_a_reason():
@@ -122,19 +121,16 @@ def test_lines_without_excitation_are_nan_with_a_reason():
     # a Hann window spreads a sine of whole periods over three lines
     assert found.frequency[known] == pytest.approx([9.75, 10.0, 10.25])
     assert found.response[0, known] == pytest.approx(np.full(3, 2.0), rel=1e-10)
-    assert found.reasons == ("194 lines between 1 and 50 Hz: the input has no power there, so the FRF is undefined",)
+    (reason,) = found.reasons
+    assert "194 lines of 1 to 50 Hz" in reason and "no power" in reason
 
 
 def test_too_few_averages_are_rejected_and_a_single_average_has_no_coherence():
     excitation = noise(4000)
-    with pytest.raises(DataError, match="record too short: 4 s give 1 averages with windows of 4 s and 50 % overlap"):
+    with pytest.raises(DataError, match=r"4 s give 1 averages .* 4 s and 50 %"):
         frequency_response(STEP, excitation, excitation)
     found = frequency_response(STEP, excitation, excitation, minimum_averages=1.0)
     assert found.response[0] == pytest.approx(np.ones(197))
     assert np.isnan(found.coherence).all()
-    assert found.reasons == ("the coherence is undefined with 1 averages: a single average always gives 1",)
-
-
-def test_records_of_different_length_are_refused():
-    with pytest.raises(DataError, match="responses: found 29999 samples, the excitation has 30000"):
-        frequency_response(STEP, noise(30_000), noise(29_999))
+    (reason,) = found.reasons
+    assert "coherence" in reason and "1 averages" in reason

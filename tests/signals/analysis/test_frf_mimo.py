@@ -73,13 +73,9 @@ def test_multiple_coherence_shows_the_known_share_of_noise(plates):
     ],
 )
 def test_fully_correlated_inputs_are_refused_by_name(plates, copy):
-    with pytest.raises(DataError) as refusal:
+    with pytest.raises(DataError, match=r"^excitations: copies: fr and fl \(coherence 1?[\d.]+\),") as refusal:
         frequency_responses(STEP, [plates[0], copy(plates[0]), plates[1]], plates[0], input_names=("fr", "fl", "rear"))
-    message = str(refusal.value)
-    assert message.startswith("excitations: ") and "so the responses to the inputs cannot be separated" in message
-    assert "copies: fr and fl (coherence " in message
-    assert "rear (" not in message
-    assert "Use one input alone (its FRF is the response to the common motion)" in message
+    assert "rear" not in str(refusal.value)
 
 
 def test_an_input_that_is_the_sum_of_two_others_is_rejected(plates):
@@ -95,12 +91,12 @@ def test_lines_where_the_inputs_coincide_are_nan_with_a_reason(plates):
     found = frequency_responses(STEP, inputs, inputs[0] + 2.0 * inputs[1])
     assert np.isnan(found[0].response[0, found[0].frequency < 4.5]).all()
     assert np.isfinite(found[1].response[0, found[0].frequency > 5.5]).all()
-    assert len(found[0].reasons) == 1
-    assert "the inputs are fully correlated there" in found[0].reasons[0]
+    (reason,) = found[0].reasons
+    assert "1 to 4.5 Hz" in reason and "fully correlated" in reason
 
 
 def test_a_constant_input_is_rejected_and_the_moving_input_is_named(plates):
-    with pytest.raises(DataError, match=r"fl: constant at 0 over all 200000 samples, .* response to it; use only fr"):
+    with pytest.raises(DataError, match=r"fl: constant at 0, .* use fr$"):
         frequency_responses(STEP, [plates[0], np.zeros(SAMPLES)], plates[0], input_names=("fr", "fl"))
 
 
@@ -109,4 +105,5 @@ def test_a_still_response_is_nan_with_a_reason(plates):
     assert np.isfinite(found[0].response[0]).all()
     assert np.isnan(found[1].response[1]).all()
     assert np.isnan(found[0].coherence[1]).all()
-    assert found[0].reasons == ("seat: constant, so its FRF and its coherence are undefined",)
+    (reason,) = found[0].reasons
+    assert reason.startswith("seat: constant")

@@ -58,7 +58,7 @@ def test_hand_holds_a_tone():
     assert values["vector_sum"]["vdv"] is None and values["z"]["msdv"] is None and values["z"]["vdv"] is None
     assert not any("msdv" in reason for reason in values["reasons"])
     limited = evaluate(1e-3, xyz[:, ::4], contact="hand")["reasons"]
-    assert any("up to 400 Hz" in reason and "to 1000 Hz in ISO 5349-1" in reason for reason in limited)
+    assert any("400 Hz" in reason and "1000 Hz of ISO 5349-1" in reason for reason in limited)
 
 
 def test_daily_exposure():
@@ -74,11 +74,9 @@ def test_daily_exposure():
     assert (found["hours"], found["action_value"], found["limit_value"]) == (4.0, 0.5, 1.15)
     assert exposure({**values, "place": "hand"}, 8.0)["a8"] == 1.0
     for hours in (0.0, -1.0, 25.0, np.nan):
-        with pytest.raises(ConfigurationError, match="h in a day; must be above 0 and at most 24"):
+        with pytest.raises(ConfigurationError, match=f"{hours:g} h in a day"):
             exposure(values, hours)
-    with pytest.raises(
-        ConfigurationError, match="the directive has no action value for feet; the point of contact must be hand, seat"
-    ):
+    with pytest.raises(ConfigurationError, match=r"feet; .* hand, seat"):
         exposure({**values, "place": "feet"}, 8.0)
     with pytest.raises(DataError, match="y missing"):
         exposure({**values, "y": None}, 8.0)
@@ -113,15 +111,14 @@ def test_quantile_of_the_intervals():
 
 
 def test_what_a_train_needs():
-    with pytest.raises(DataError, match=r"only 296.5 s are left after the first 3.5 s, must be at least 300 s"):
-        rail_comfort(0.005, np.stack([tone(2.0, 1.0, 300.0, 200.0)] * 3))
-    with pytest.raises(DataError, match="found 2 axes, must be the three axes x, y and z"):
-        rail_comfort(0.005, np.stack([tone(2.0, 1.0, 310.0, 200.0)] * 2))
+    for seconds, axes, message in ((300.0, 3, "296.5 s .* 3.5 s, .* 300 s"), (310.0, 2, "found 2 axes")):
+        with pytest.raises(DataError, match=message):
+            rail_comfort(0.005, np.stack([tone(2.0, 1.0, seconds, 200.0)] * axes))
 
 
 def test_command(tmp_path, capsys):
     """A hand at 2.9 m/s2 for half an hour; a train of 310 s."""
-    rate = 500.0
+    rate = 250.0
     time = np.arange(round(310.0 * rate)) / rate
     table = np.column_stack([time, *(3.0 * np.sin(2.0 * np.pi * f * time) for f in (20.0, 25.0, 31.5))])
     file = tmp_path / "grip.csv"

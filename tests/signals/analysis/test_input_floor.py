@@ -32,21 +32,21 @@ def test_a_band_limited_record_has_no_frf_outside_its_band(rounded):
     assert np.sum(told & ~inside) <= 2
     assert np.mean(told[inside]) > 0.99
     assert np.isnan(found.coherence[0, ~told]).all() and np.isnan(found.random_error[0, ~told]).all()
-    assert any("the input is weaker than its rounding errors and leakage" in text for text in found.reasons)
+    assert any("rounding" in text for text in found.reasons)
 
 
 @pytest.mark.parametrize("signal", [SINE, SINE * RAMP, np.round(SINE / 3e-7) * 3e-7], ids=["sine", "ramped", "rounded"])
 def test_a_sine_has_no_frf(signal):
     found, told = estimate(signal)
     assert not told.any()
-    assert any("the input has power at fewer than five lines, like a sine" in text for text in found.reasons)
+    assert any("sine" in text for text in found.reasons)
 
 
 def test_a_bump_at_the_beginning_cannot_be_separated_from_the_transient():
     bump = 0.02 * np.where(TIME < 0.02, 0.5 - 0.5 * np.cos(2.0 * np.pi * TIME / 0.02), 0.0)
     found, told = estimate(bump)
     assert not told.any()
-    assert any("the input is a single event such as a bump" in text for text in found.reasons)
+    assert any("bump" in text for text in found.reasons)
 
 
 def test_the_skirt_of_a_strong_band_is_silent():
@@ -55,7 +55,7 @@ def test_the_skirt_of_a_strong_band_is_silent():
     found, told = estimate(strong + weak)
     # White noise of 3e-6 m stands far above every floor, and 5e-5 below the band an octave down in power at 40 Hz.
     assert not told[(found.frequency > 31.0) & (found.frequency < 45.0)].any()
-    assert any("at most 1e-4 of the power within an octave" in text for text in found.reasons)
+    assert any("1e-4" in text and "octave" in text for text in found.reasons)
 
 
 def test_rounding_step():
@@ -87,9 +87,7 @@ def test_a_few_lines_without_input_are_said_as_few():
     silent = np.zeros(100, dtype=int)
     silent[41] = 5
     (text,) = cause_messages(frequency, silent)
-    assert text.startswith("no FRF at 42.00 Hz (1 of 100 lines): ") and text.endswith("; the other lines are good")
+    assert "42 Hz (1 of 100 lines)" in text and "other lines" in text
     silent[10:60] = 1
     text, *_ = cause_messages(frequency, silent)
-    assert text.startswith("no FRF at 11.00 to 60.00 Hz (50 of 100 lines): ") and text.endswith(
-        "; give the input more power there"
-    )
+    assert "11 to 60 Hz (50 of 100 lines)" in text and "more power" in text

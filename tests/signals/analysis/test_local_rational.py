@@ -79,26 +79,24 @@ def test_lines_without_excitation_are_undefined():
     silent = (found.frequency > 10.5) & (found.frequency < 19.5)
     assert silent.sum() > 50 and np.isnan(found.response[0, silent]).all()
     assert np.isnan(found.coherence[0, silent]).all() and np.isnan(found.random_error[0, silent]).all()
-    assert any(
-        t.startswith("no FRF at 10.20 to 19.80 Hz") and "weaker than its rounding" in t for t in found.reasons
-    ), found.reasons
+    assert any("10.2 to 19.8 Hz" in text and "rounding" in text for text in found.reasons), found.reasons
 
 
 def test_refusals_and_warnings():
     drive, answer = record(60.0)
-    with pytest.raises(DataError, match="is too short for an FRF up to 50 Hz"):
-        local_rational_response(1.0 / RATE, drive[:400], answer[:400])
-    with pytest.raises(DataError, match="sampled at 1 Hz, which is too slow for an FRF from 1 Hz on"):
-        local_rational_response(1.0, drive, answer, band=(1.0, 0.4))
-    with pytest.raises(DataError, match="excitation: is constant, at 0; an FRF needs a moving input"):
-        local_rational_response(1.0 / RATE, np.zeros_like(drive), answer)
+    for step, x, y, band, message in (
+        (1.0 / RATE, drive[:400], answer[:400], (1.0, 50.0), "0.8 s .* 50 Hz"),
+        (1.0, drive, answer, (1.0, 0.4), " 1 Hz .* too slow"),
+        (1.0 / RATE, np.zeros_like(drive), answer, (1.0, 50.0), "excitation: constant at 0"),
+    ):
+        with pytest.raises(DataError, match=message):
+            local_rational_response(step, x, y, band=band)
     short = local_rational_response(1.0 / RATE, drive[:5000], answer[:5000])
     assert short.resolution_hz == pytest.approx(0.4)
-    assert short.reasons[0].startswith("resonances narrower than 0.4 Hz between the half-power points")
-    assert "are not resolved by a record of 10 s" in short.reasons[0]
+    assert short.reasons[0].startswith("10 s ") and "0.4 Hz" in short.reasons[0]
     still = local_rational_response(1.0 / RATE, drive, [answer, np.full_like(answer, 0.1)], names=("seat", "roof"))
     assert np.isnan(still.response[1]).all() and np.isfinite(still.response[0]).any()
-    assert "roof: constant, so its FRF and its coherence are undefined" in still.reasons
+    assert any(text.startswith("roof: constant") for text in still.reasons)
 
 
 def test_random_error_and_averages_equal_the_scatter_of_repetitions():

@@ -87,20 +87,17 @@ def test_a_flat_top_is_one_peak():
 
 
 @pytest.mark.parametrize(
-    ("frequency", "magnitude", "coherence", "message"),
+    ("frequency", "magnitude", "coherence", "prominence", "message"),
     [
-        ([1.0, 2.0], [1.0], None, r"found shapes \(2,\) for frequency"),
-        ([1.0, 2.0], [1.0, 1.0], [1.0], "all must be"),
-        ([2.0, 1.0], [1.0, 1.0], None, "increase from line to line"),
-        ([1.0, 2.0], [0.0, 1.0], None, "above 0 and finite"),
-        ([1.0, 2.0], [np.inf, 1.0], None, "above 0 and finite"),
+        ([1.0, 2.0], [1.0], None, 1.0, r"\(2,\) for frequency"),
+        ([1.0, 2.0], [1.0, 1.0], [1.0], 1.0, r"\(1,\)"),
+        ([2.0, 1.0], [1.0, 1.0], None, 1.0, "frequency must .* increase"),
+        ([1.0, 2.0], [0.0, 1.0], None, 1.0, "magnitude must be above 0"),
+        ([1.0, 2.0], [np.inf, 1.0], None, 1.0, "magnitude must be above 0"),
+        ([1.0, 2.0], [1.0, 1.0], None, 0, "prominence: found 0 dB"),
     ],
 )
-def test_bad_arrays_are_refused(frequency, magnitude, coherence, message):
-    with pytest.raises(DataError, match=message):
-        resonance_peaks(frequency, magnitude, coherence)
-
-
-def test_a_prominence_of_zero_is_refused():
-    with pytest.raises(ConfigurationError, match="prominence: found 0 dB"):
-        resonance_peaks(LINES, np.ones(LINES.size), prominence_db=0)
+def test_bad_arrays_are_refused(frequency, magnitude, coherence, prominence, message):
+    with pytest.raises((DataError, ConfigurationError), match=message) as caught:
+        resonance_peaks(frequency, magnitude, coherence, prominence_db=prominence)
+    assert isinstance(caught.value, ConfigurationError) == (prominence == 0)

@@ -41,14 +41,14 @@ def test_an_oscillator_integrated_in_time_shows_its_analytic_response():
 
 def test_the_spread_over_periods_is_the_error_of_the_response():
     periods, noise, gaps, errors, unexplained = 8, 0.05, [], [], []
-    for seed in range(40):
+    for seed in range(20):
         excitation, response = settled(periods, noise, seed)
         (found,) = whole_record_responses(STEP, excitation[None], response)
         assert np.all(found.averages == periods)
         gaps.append(np.abs(found.response[0] - transmissibility(found.frequency)) ** 2 / 2.0)
         errors.append(found.random_error[0] ** 2)
         unexplained.append(1.0 - found.coherence[0])
-    # 40 x 99 lines: the mean square has a standard error of 1.6 %, and that of the estimate is 0.6 %.
+    # 20 x 99 lines: the mean square has a standard error of 2.3 %, and that of the estimate is 0.9 %.
     assert np.sqrt(np.mean(gaps) / np.mean(errors)) == pytest.approx(1.0, abs=0.05)
     # gamma^2 = P / (P + N) of a line in a single period: N is noise^2 of the total power, spread over all lines.
     line_power = np.abs(transmissibility(found.frequency)) ** 2
@@ -62,8 +62,7 @@ def test_a_response_that_has_not_settled_is_estimated_as_a_random_record():
     _, response, _ = lsim(state_space(damping=0.01), excitation, np.arange(excitation.size) * STEP)
     (found,) = whole_record_responses(STEP, excitation[None], response, names=["seat"])
     assert found.estimator.startswith("local rational")
-    assert "seat is not settled: it changes by" in found.reasons[0]
-    assert "record more periods" in found.reasons[0]
+    assert "seat changes by" in found.reasons[0] and "periods" in found.reasons[0]
 
 
 def test_a_nonlinear_response_is_estimated_as_a_random_record():
@@ -128,6 +127,7 @@ def test_a_sine_and_a_constant_response():
     assert found.estimator.startswith("local rational")  # a single line does not show that the response is linear
     excitation, response = settled(3)
     (found,) = whole_record_responses(STEP, excitation[None], [response, np.full_like(response, 0.2)], names=("a", "b"))
-    assert found.reasons == ("b: constant, so its FRF and its coherence are undefined",)
+    (reason,) = found.reasons
+    assert reason.startswith("b: constant")
     assert np.isfinite(found.response[0]).all()
     assert np.isnan(found.response[1]).all()

@@ -68,7 +68,6 @@ def test_error_of_a_nonlinear_system_is_its_scatter_over_seeds():
 
 
 def test_bad_records_are_refused():
-    with pytest.raises(DataError, match=r"found 3 s, must be longer than 4 s"):
-        phase_inputs(STEP, {"fr": record(3.0)})
-    with pytest.raises(DataError, match=r"no input moves"):
-        phase_inputs(STEP, {"fr": np.zeros(9000)})
+    for z, message in ((record(3.0), "3 s, .* 4 s"), (np.zeros(9000), "no input moves")):
+        with pytest.raises(DataError, match=message):
+            phase_inputs(STEP, {"fr": z})

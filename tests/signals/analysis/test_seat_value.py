@@ -59,7 +59,7 @@ def test_the_axes_of_the_seat_are_weighted_as_the_standard_has_them():
 
 
 def test_a_point_of_contact_other_than_a_seat_is_rejected():
-    with pytest.raises(ConfigurationError, match="found point of contact 'feet', must be seat or seat_bs6841"):
+    with pytest.raises(ConfigurationError, match="'feet', must be seat or seat_bs6841"):
         seat_value(STEP, SEAT, RAIL, contact="feet")
     with pytest.raises(DataError, match="acceleration of the seat rail is zero"):
         seat_value(STEP, SEAT, 0.0 * RAIL)
@@ -84,14 +84,8 @@ def test_a_run_reports_its_seat_value(tmp_path, monkeypatch, capsys):
     assert comfort(["--input", "seated/time.npz", *asked]) == 0
     assert f"notice: {NO_SEAT}" in capsys.readouterr().err
     for wrong, message in (
-        (
-            ["--rail", "x=1"],
-            ("--rail x=1: names no z acceleration, which the SEAT value needs; set z=NAME, or a point of a run"),
-        ),
-        (
-            ["--rail", "seat_rail", "--place", "feet"],
-            ("--place feet: --rail gives the SEAT value, which only a seat has"),
-        ),
+        (["--rail", "x=1"], "--rail x=1: "),
+        (["--rail", "seat_rail", "--place", "feet"], "--place feet: "),
     ):
         assert comfort(["--input", "seated/time.npz", "--channel", "seat", "--offset", "keep", *wrong]) == 2
         assert message in capsys.readouterr().err
@@ -101,11 +95,7 @@ def test_a_measured_file_names_the_channel_of_its_rail(tmp_path, capsys):
     table = np.column_stack([TIME, 0.1 * SEAT, 0.2 * SEAT, SEAT, RAIL])
     path, head = tmp_path / "ride.csv", "time [s],a [m/s2],b [m/s2],cushion [m/s2],floor [m/s2]"
     np.savetxt(path, table, delimiter=",", header=head, comments="", fmt="%.9g")
-    names = [
-        word
-        for axis, name in zip("xyz", ("a", "b", "cushion"), strict=True)
-        for word in ("--channel", f"{axis}={name}")
-    ]
+    names = [word for pick in ("x=a", "y=b", "z=cushion") for word in ("--channel", pick)]
     assert comfort(["--input", str(path), *names, "--rail", "z=floor", "--skip", "10"]) == 0
     expected = seat_value(STEP, SEAT, RAIL, skip=10.0)
     assert f"SEAT value (z, Wk)       {expected.rms:.4g}, of VDV {expected.vdv:.4g}" in capsys.readouterr().out
@@ -128,10 +118,8 @@ def test_a_rail_at_another_rate_needs_resampling(tmp_path, capsys):
     path.write_text("\n".join([*head, *rows, ""]))
     command = ["--input", str(path), "--channel", "z=seat", "--rail", "z=rail"]
     assert comfort(command) == 3
-    message = (
-        "the seat is at 200 Hz from 0 to 29.995 s, the rail at 100 Hz from 0 to 29.99 s; the SEAT value needs both"
-    )
-    assert message in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert "200 Hz from 0 to 29.995 s" in said and "100 Hz from 0 to 29.99 s" in said and "--resample" in said
     assert comfort([*command, "--resample", "100", "--to", "29"]) == 0
     assert "SEAT value (z, Wk)       0.5, of VDV 0.5" in capsys.readouterr().out
 

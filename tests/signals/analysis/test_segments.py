@@ -38,16 +38,11 @@ def test_without_overlap_every_segment_counts():
 
 
 def test_too_short_a_record_is_refused_with_the_length_needed():
-    with pytest.raises(DataError) as refusal:
-        cut_into_segments(12_000, 1e-3, window_s=4.0, overlap=0.5, minimum_averages=8.0)
-    assert str(refusal.value) == (
-        "record too short: 12 s give 4.79 averages with windows of 4 s and 50 % overlap, must be at least 8; record at "
-        "least 20 s, or use a shorter window (coarser frequency lines)"
-    )
     # the length named is enough, and one step less is not
     assert cut_into_segments(20_000, 1e-3, window_s=4.0, overlap=0.5, minimum_averages=8.0).averages >= 8.0
-    with pytest.raises(DataError):
-        cut_into_segments(19_999, 1e-3, window_s=4.0, overlap=0.5, minimum_averages=8.0)
+    for samples, message in ((12_000, "12 s give 4.79 averages .* 4 s and 50 %.* 8; .* 20 s"), (19_999, "20 s")):
+        with pytest.raises(DataError, match=message):
+            cut_into_segments(samples, 1e-3, window_s=4.0, overlap=0.5, minimum_averages=8.0)
 
 
 @pytest.mark.parametrize(("window_s", "overlap"), [(0.0, 0.5), (np.nan, 0.5), (-4.0, 0.5), (4.0, 1.0), (4.0, -0.1)])

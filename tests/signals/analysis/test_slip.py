@@ -39,12 +39,15 @@ def test_a_slip_velocity_out_of_range_is_refused(limit):
         slip_share(VELOCITY, limit)
 
 
-def test_bad_records_are_refused():
-    with pytest.raises(DataError, match="damper velocity: found nan at sample 1"):
-        slip_share([0.0, np.nan], 0.1)
-    with pytest.raises(DataError, match="damper velocity: found 2 signals, must be one damper"):
-        slip_share(np.ones((2, 5)), 0.1)
-    with pytest.raises(DataError, match="time: found 9 samples, the damper velocity has 10"):
-        first_slip(TIME[:-1], VELOCITY, 0.1)
-    with pytest.raises(DataError, match="time: found 0 s at sample 1, must increase"):
-        first_slip(np.zeros(10), VELOCITY, 0.1)
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: slip_share([0.0, np.nan], 0.1), "damper velocity: found nan at sample 1"),
+        (lambda: slip_share(np.ones((2, 5)), 0.1), "damper velocity: found 2 signals"),
+        (lambda: first_slip(TIME[:-1], VELOCITY, 0.1), "time: found 9 samples, .* 10"),
+        (lambda: first_slip(np.zeros(10), VELOCITY, 0.1), "time: found 0 s at sample 1"),
+    ],
+)
+def test_bad_records_are_refused(call, message):
+    with pytest.raises(DataError, match=message):
+        call()

@@ -75,9 +75,7 @@ def test_an_empty_band_is_refused(band):
 
 
 def test_a_record_without_a_line_in_the_band_is_refused():
-    with pytest.raises(
-        DataError, match=r"record too short: its frequency lines are 10 Hz apart, and none lies in 2 to 5 Hz"
-    ):
+    with pytest.raises(DataError, match=r"10 Hz apart, .* 2 to 5 Hz"):
         band_rms(1e-3, np.ones(100), (2.0, 5.0))
 
 

@@ -31,3 +31,8 @@ def with_row(index: int, text: str, count: int = 400) -> list[str]:
     lines = rows(count)
     lines[index] = text
     return [HEADER, *lines]
+
+
+def curve(time, z, decimals: int = 3) -> list[str]:
+    """Header and rows of times [s] and displacements [m]."""
+    return [HEADER, *(f"{a:.{decimals}f},{b:.9e}" for a, b in zip(time, z, strict=True))]

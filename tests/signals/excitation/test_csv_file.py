@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from scenarios.signals.random_road import random_road
-from tests.signals.excitation.csv_samples import HEADER, read_plain, rows, with_row, write
+from tests.signals.excitation.csv_samples import HEADER, curve, read_plain, rows, with_row, write
 from vehicle.errors import ConfigurationError, DataError, OutputError
 from vehicle.signals.excitation.input_files import find_input, shipped_inputs
 from vehicle.signals.excitation.rest import half_cosine
@@ -30,12 +30,9 @@ def test_clean_file(tmp_path):
 
 def test_a_plain_column_needs_a_wheel(tmp_path):
     path = write(tmp_path, [HEADER, *rows()])
-    remedy = "pass wheel='fl' (of a car: wheel=car.vehicle.shaker_wheel), or name the column displacement_fl"
-    with pytest.raises(DataError) as caught:
-        read_signal(path)
-    assert str(caught.value) == f"{path}:1:2: column 'displacement [m]' names no wheel; {remedy}"
-    with pytest.raises(DataError, match=r"the name of channel 'displacement' states no wheel; pass wheel='fl'"):
-        read_signal(path, choice=Choice(first=0.0, last=0.3))
+    for choice in (None, Choice(first=0.0, last=0.3)):
+        with pytest.raises(DataError, match=r"'displacement( .m.)?' .* no wheel; .*wheel='fl'.* displacement_fl$"):
+            read_signal(path, choice=choice)
 
 
 def test_a_written_signal_keeps_its_wheel(tmp_path):
@@ -108,22 +105,14 @@ def test_a_long_gap_is_not_interpolated(tmp_path):
     lines = [HEADER, *rows()]
     for index in range(101, 112):
         lines[index] = f"{(index - 1) / 1000:.6f},nan"
-    path = write(tmp_path, lines)
-    with pytest.raises(DataError) as caught:
-        read_plain(path, interpolate=True)
-    assert str(caught.value) == (
-        f"{path}:102:2: column 'displacement [m]' has no value for 0.012 s from this line on; interpolation can fill "
-        "at most "
-        "0.01 s; use the part before or after it"
-    )
+    with pytest.raises(DataError, match=r"signal\.csv:102:2: .*'displacement .m.' .* 0\.012 s .* 0\.01 s"):
+        read_plain(write(tmp_path, lines), interpolate=True)
 
 
 @pytest.mark.parametrize("index", [0, 399])
 def test_the_ends_are_not_extrapolated(tmp_path, index):
     path = write(tmp_path, with_row(index, f"{index / 1000:.6f},nan"))
-    with pytest.raises(
-        DataError, match=f":{index + 2}:2: column 'displacement .m.' has missing values at its beginning"
-    ):
+    with pytest.raises(DataError, match=f":{index + 2}:2: column 'displacement .m.' "):
         read_plain(path, interpolate=True)
 
 
@@ -135,15 +124,23 @@ def test_a_small_offset_gets_a_ramp_of_stated_length_and_is_not_subtracted(tmp_p
     expected = z * half_cosine(samples=2001, timestep=1e-3, length=0.2)
     np.testing.assert_allclose(signal.displacement["fr"], expected, rtol=1e-9, atol=1e-15)
     assert signal.displacement["fr"][0] == 0.0
-    assert signal.notices == (
-        f"plate fr begins at -0.0002 m instead of 0 (RMS {np.std(z):.6g} m), which is a step at t = 0; the motion "
-        "of all plates is faded in over the first 0.200 s (half-cosine ramp)",
-    )
+    (notice,) = signal.notices
+    assert "-0.2 mm" in notice and f"{1e3 * np.std(z):.3g} mm (RMS)" in notice and "first 0.2 s" in notice
 
 
 def test_ramp_is_half_a_second_on_long_records(tmp_path):
     lines = [f"{t},{float(z) - 2e-4!r}" for t, z in (row.split(",") for row in rows(6001))]
-    assert "over the first 0.500 s" in read_plain(write(tmp_path, [HEADER, *lines])).notices[0]
+    assert "first 0.5 s" in read_plain(write(tmp_path, [HEADER, *lines])).notices[0]
+
+
+def test_a_constant_of_one_plate_alone_is_named(tmp_path):
+    """The plate fl moves about 0, so nothing is subtracted; the notice has the offset and the motion in mm."""
+    t = np.arange(2001) / 1000.0
+    z = 2e-3 * np.sqrt(2.0) * np.sin(20.0 * np.pi * t)
+    lines = [f"{a:.3f},{b + 0.0753:.9e},{b:.9e}" for a, b in zip(t, z, strict=True)]
+    notices = read_plain(write(tmp_path, ["time [s],displacement_fr [m],displacement_fl [m]", *lines])).notices
+    assert any("75.3 mm" in text and "fl has none" in text for text in notices)
+    assert any("fr begins at 75.3 mm" in text and "2 mm (RMS)" in text and "--remove-mean" in text for text in notices)
 
 
 @pytest.mark.parametrize("ratio", [3.0, 20.0, 150.0])
@@ -153,12 +150,10 @@ def test_148_the_position_of_a_sensor_is_no_motion(tmp_path, ratio, begins):
     t = np.arange(8000) / 1000.0
     motion = 5e-4 * np.sqrt(2.0) * np.cos(2.0 * np.pi * 3.0 * t) * (t > (2.0 if begins == "at rest" else 0.0))
     motion[t <= 2.0] += motion[2001] if begins == "at rest" else 0.0
-    lines = [f"{a:.3f},{b:.9e}" for a, b in zip(t, motion + 5e-4 * ratio, strict=True)]
-    signal = read_plain(write(tmp_path, [HEADER, *lines]))
+    signal = read_plain(write(tmp_path, curve(t, motion + 5e-4 * ratio)))
     assert signal.rms("fr") == pytest.approx(np.std(motion), rel=0.03)
     (finding,) = (text for text in signal.notices if "position of the sensor" in text)
-    assert isinstance(finding, Finding) and finding.kind == "offset"
-    assert "not a motion of the plate; it was subtracted" in finding
+    assert isinstance(finding, Finding) and finding.kind == "offset" and "it was subtracted" in finding
     if begins == "at rest":
         np.testing.assert_allclose(signal.displacement["fr"], motion - motion[0], atol=1e-9)
 
@@ -172,24 +167,22 @@ def test_148_a_motion_from_zero_is_not_touched(tmp_path, shape):
         "bump": 0.05 * np.sin(np.pi * np.clip((t - 2.0) / 0.3, 0.0, 1.0)) ** 2,
         "hill": 0.05 * (1.0 - np.exp(-t / 0.5)) * np.clip(t / 0.1, 0.0, 1.0) ** 2,
     }[shape]
-    lines = [f"{a:.3f},{b:.9e}" for a, b in zip(t, z, strict=True)]
-    signal = read_plain(write(tmp_path, [HEADER, *lines]))
-    assert not any("subtracted, as" in text for text in signal.notices)
+    signal = read_plain(write(tmp_path, curve(t, z)))
+    assert not any("subtracted" in text for text in signal.notices if "--detrend" not in text)
     assert signal.displacement["fr"][-1] == pytest.approx(z[-1], abs=1e-9)
 
 
 def test_148_a_constant_beyond_any_sensor_is_a_wrong_unit(tmp_path):
     t = np.arange(8000) / 1000.0
-    lines = [f"{a:.3f},{75.0 + 0.5 * np.sin(20.0 * a):.9e}" for a in t]
-    with pytest.raises(DataError, match="are the values in mm"):
-        read_plain(write(tmp_path, [HEADER, *lines]))
+    with pytest.raises(DataError, match="values in mm"):
+        read_plain(write(tmp_path, curve(t, 75.0 + 0.5 * np.sin(20.0 * t))))
 
 
 def test_a_small_offset_is_removed_only_on_request(tmp_path):
     lines = [f"{t},{float(z) + 0.01!r}" for t, z in (row.split(",") for row in rows(2001, frequency=2.0))]
     signal = read_plain(write(tmp_path, [HEADER, *lines]), remove_mean=True)
-    assert signal.notices[0] == "mean 0.0104998 m of plate fr was subtracted, as requested"
-    assert "begins at -0.00049975 m" in signal.notices[1]  # the rest of the step, ramped
+    assert "10.5 mm of plate fr" in signal.notices[0]
+    assert "-0.5 mm" in signal.notices[1]  # the rest of the step, ramped
     assert abs(np.mean(signal.displacement["fr"][200:])) < 1e-4
 
 
@@ -197,10 +190,7 @@ def test_jump_of_velocity_gets_a_ramp(tmp_path):
     t = np.arange(2001) / 1000
     lines = [f"{a:.3f},{1e-3 * np.sin(20 * np.pi * a):.17g}" for a in t]
     signal = read_plain(write(tmp_path, [HEADER, *lines]))
-    assert signal.notices[0].startswith(
-        "plate fr begins with 0.0627905 m/s instead of 0, which is a jump of velocity at t = 0; the motion of "
-        "all plates is faded in"
-    )
+    assert "plate fr" in signal.notices[0] and "0.0628 m/s" in signal.notices[0]
     assert abs(signal.plate_motion([0.0]).velocity["fr"][0]) < 1e-4
 
 
@@ -209,12 +199,9 @@ def test_low_sampling_rates(tmp_path):
         return read_plain(write(tmp_path, [HEADER, *rows(400, rate=rate, frequency=2.0)]))
 
     assert read(250.0).notices == ()
-    assert read(200.0).notices == (
-        ("sampling rate 200 Hz: results are valid up to 80 Hz; with at least 250 Hz up to 100 Hz"),
-    )
-    assert read(125.0).notices == (
-        ("sampling rate 125 Hz: results are valid up to 50 Hz; with at least 250 Hz up to 100 Hz"),
-    )
+    for rate, highest in ((200.0, 80), (125.0, 50)):
+        (notice,) = read(rate).notices
+        assert f"{rate:g} Hz" in notice and f"up to {highest} Hz" in notice and "250 Hz" in notice
     assert read(125.0).highest is None
 
 
@@ -224,10 +211,7 @@ def test_content_near_nyquist_is_noticed(tmp_path):
     folded = Signal(time=uniform_time(samples=10001, timestep=2e-3), displacement={"fr": road.displacement["fr"][::4]})
     write_signal(tmp_path / "aliased.csv", folded)
     notices = read_plain(tmp_path / "aliased.csv", accept_implausible=True).notices
-    assert (
-        len([n for n in notices if "of the velocity variance lies above 200 Hz (0.8 of half the sampling rate" in n])
-        == 1
-    )
+    assert len([text for text in notices if "variance" in text and "above 200 Hz" in text]) == 1
     clean = random_road(rms=1e-4, seed=2, wheel="fr", duration=20.0, rate=500.0, upper_band_edge=100.0)
     write_signal(tmp_path / "clean.csv", clean)
     assert read_plain(tmp_path / "clean.csv").notices == ()
@@ -245,11 +229,8 @@ def test_resampling_keeps_the_band_and_removes_what_would_fold(tmp_path):
     kept = slice(600, -100)
     # 450 Hz would fold to 50 Hz with 1e-5 m; the filter leaves 1e-4 of it. Ripple of 80 dB on 1e-3 m: 1e-7.
     np.testing.assert_allclose(signal.displacement["fr"][kept], wanted[::4][kept], rtol=0, atol=2e-7)
-    assert signal.notices[-1] == (
-        "resampled from uniform times at 2000 Hz to 500 Hz by a spline of degree 7 through the samples at their "
-        "true times and a linear-phase anti-alias filter from 200 Hz on; amplitudes are correct within 0.1 % up "
-        "to 600 Hz and within 4 % up to 800 Hz"
-    )
+    for words in ("2000 Hz to 500 Hz", "degree 7", "filter from 200 Hz", "0.1 % up to 600 Hz", "4 % up to 800 Hz"):
+        assert words in signal.notices[-1]
 
 
 def test_non_uniform_time_is_resampled_on_request(tmp_path):
@@ -257,16 +238,13 @@ def test_non_uniform_time_is_resampled_on_request(tmp_path):
     t[0] = 0.0
     z = 0.5e-3 * (1 - np.cos(2 * np.pi * 10.0 * t))
     path = write(tmp_path, [HEADER, *(f"{a!r},{b!r}" for a, b in zip(t.tolist(), z.tolist(), strict=True))])
-    with pytest.raises(DataError, match=r"or set --resample 10\d\d"):
+    with pytest.raises(DataError, match=r"--resample 10\d\d"):
         read_plain(path)
     signal = read_plain(path, choice=Choice(resample=1000.0))
     uniform = 0.5e-3 * (1 - np.cos(2 * np.pi * 10.0 * signal.time))
     # Median rate a little off 1000 Hz may ask for a finer grid and the filter's ripple of 80 dB; ends apart.
     np.testing.assert_allclose(signal.displacement["fr"][100:-100], uniform[100:-100], rtol=0, atol=2e-7)
-    assert any(
-        n.startswith("resampled from irregular times (steps deviate from the median by up to ") and "to 1000 Hz" in n
-        for n in signal.notices
-    )
+    assert any("irregular times" in text and "to 1000 Hz" in text for text in signal.notices)
 
 
 def test_resampling_to_the_same_rate_changes_nothing(tmp_path):
@@ -277,16 +255,14 @@ def test_resampling_to_the_same_rate_changes_nothing(tmp_path):
 
 def test_resampling_limits(tmp_path):
     path = write(tmp_path, [HEADER, *rows(200), *(f"{float(r.split(',')[0]) + 1.0:.6f},0" for r in rows(200))])
-    with pytest.raises(DataError, match=r":202: gap of 0\.801 s after 0\.199 s; --resample fills at most 0\.01 s"):
+    with pytest.raises(DataError, match=r":202: gap of 0\.801 s, .* 0\.01 s; .*--to 0\.199.*--from 1"):
         read_plain(path, choice=Choice(resample=1000.0))
     path = write(tmp_path, [HEADER, *rows()])
-    with pytest.raises(DataError, match="gives 399000001 samples, must be at most 20000000; set a lower rate"):
+    with pytest.raises(DataError, match=r" 399000001 samples, .* 20000000"):
         read_plain(path, choice=Choice(resample=1e9))
-    for rate in (5.0, 0.5):  # 0.5 looked like a time in ms
-        with pytest.raises(ConfigurationError, match=rf"^--resample {rate:g} Hz: must be at least 10 Hz"):
-            read_plain(path, choice=Choice(resample=rate))
-    for rate in (-1.0, np.inf, np.nan):
-        with pytest.raises(ConfigurationError, match=rf"^--resample {rate:g} Hz: must be above 0"):
+    # 0.5 looked like a time in ms
+    for rate, limit in ((5.0, "10 Hz"), (0.5, "10 Hz"), (-1.0, "0"), (np.inf, "0"), (np.nan, "0")):
+        with pytest.raises(ConfigurationError, match=rf"^--resample {rate:g} Hz: .* {limit}$"):
             read_plain(path, choice=Choice(resample=rate))
 
 
@@ -308,11 +284,8 @@ def test_written_file_reads_back(tmp_path):
     road = random_road(rms=1e-4, seed=2, wheel="fr", duration=2.0, rate=1024.0)
     both = Signal(time=road.time, displacement={"fl": road.displacement["fr"], "fr": -road.displacement["fr"]})
     write_signal(tmp_path / "both.csv", both, ["one", "two"])
-    assert (
-        (tmp_path / "both.csv")
-        .read_text(encoding="utf-8")
-        .startswith("# one\n# two\ntime [s],displacement_fr [m],displacement_fl [m]\n0.000000000")
-    )
+    head = "# one\n# two\ntime [s],displacement_fr [m],displacement_fl [m]\n0.000000000"
+    assert (tmp_path / "both.csv").read_text(encoding="utf-8").startswith(head)
     again = read_plain(tmp_path / "both.csv")
     assert again.notices == ()  # 1/1024 s keeps enough digits to be uniform
     for wheel in ("fr", "fl"):
@@ -322,13 +295,14 @@ def test_written_file_reads_back(tmp_path):
 
 def test_nothing_half_written_stays(tmp_path):
     signal = random_road(rms=1e-4, seed=2, wheel="fr", duration=2.0)
-    with pytest.raises(OutputError, match=r"x\.csv: cannot be written \(No such file or directory\)"):
-        write_signal(tmp_path / "no" / "x.csv", signal)
     (tmp_path / "taken.csv").mkdir()
-    with pytest.raises(OutputError, match=r"taken\.csv: cannot be written"):
-        write_signal(tmp_path / "taken.csv", signal)
-    with pytest.raises(OutputError, match="a comment contains a line break"):
-        write_signal(tmp_path / "x.csv", signal, ["a\nb"])
+    for name, comment, fault in (
+        ("no/x.csv", "a", "No such file"),
+        ("taken.csv", "a", "cannot be written"),
+        ("x.csv", "a\nb", "line break"),
+    ):
+        with pytest.raises(OutputError, match=f"{name}: .*{fault}"):
+            write_signal(tmp_path / name, signal, [comment])
     assert [path.name for path in tmp_path.iterdir()] == ["taken.csv"]
 
 
@@ -337,11 +311,8 @@ def test_nothing_half_written_stays(tmp_path):
 def test_64_a_rounded_clock_is_recognised(rate, decimals, cut, tmp_path):
     t = np.arange(6000) / rate
     z = 5e-4 * (1.0 - np.cos(2.0 * np.pi * 10.0 * t))
-    lines = [f"{a:.{decimals}f},{b:.9e}" for a, b in zip(cut(t, decimals), z, strict=True)]
-    signal = read_plain(write(tmp_path, [HEADER, *lines]))
-    assert signal.notices[0].startswith(
-        f"time stamps are rounded to {decimals} decimals; the sampling rate is assumed to be "
-    )
+    signal = read_plain(write(tmp_path, curve(cut(t, decimals), z, decimals)))
+    assert f"rounded to {decimals} decimals" in signal.notices[0]
     # A whole number of Hz is exact; any other is known to a last digit over the record.
     assert 1.0 / signal.timestep == pytest.approx(rate, rel=1e-12 if rate.is_integer() else 10.0**-decimals / t[-1])
 
@@ -349,29 +320,21 @@ def test_64_a_rounded_clock_is_recognised(rate, decimals, cut, tmp_path):
 def test_64_a_jittering_clock_is_none(tmp_path):
     """The same number of decimals, but the stamps leave the clock by two of the last."""
     t = np.arange(6000) / 2048.0 + 2e-6 * np.random.default_rng(1).uniform(-1.0, 1.0, 6000)
-    lines = [f"{a:.6f},{1e-3 * np.sin(60.0 * a):.9e}" for a in t]
-    with pytest.raises(DataError, match="time steps are not uniform"):
-        read_plain(write(tmp_path, [HEADER, *lines]))
+    with pytest.raises(DataError, match="not uniform"):
+        read_plain(write(tmp_path, curve(t, 1e-3 * np.sin(60.0 * t), 6)))
 
 
 def test_64_pauses_and_drift_are_mentioned(tmp_path):
     t = np.arange(10_000) / 1000.0
-    z = 5e-4 * np.sin(2.0 * np.pi * 5.0 * t) * (t < 4.0) + 5e-4 * np.sin(2.0 * np.pi * 5.0 * t) * (t > 6.0)
-    shaking = [f"{a:.3f},{b:.9e}" for a, b in zip(t, z, strict=True)]
-    assert any("constant for 2" in text and "from 4 to 6" in text for text in _notices(tmp_path, shaking))
-    with pytest.raises(
-        DataError, match=r":4002: the record has a gap of 2\.001 s, from 3\.999 to 6 s, and gaps are not filled"
-    ):
-        read_plain(write(tmp_path, [HEADER, *shaking[:4000], *shaking[6000:]]))
-    drifting = [f"{a:.3f},{1e-3 * np.sin(30.0 * a) + 3e-4 * a:.9e}" for a in t]
-    (said,) = (text for text in _notices(tmp_path, drifting) if "drifts" in text)
-    assert said.startswith("plate fr drifts by ") and float(said.split()[4]) == pytest.approx(3.0, rel=0.05)
-
-
-def _notices(folder, lines):
-    return read_plain(write(folder, [HEADER, *lines])).notices
+    shaking = curve(t, 5e-4 * np.sin(2.0 * np.pi * 5.0 * t) * ((t < 4.0) | (t > 6.0)))
+    assert any("constant from 4 to 6 s" in text for text in read_plain(write(tmp_path, shaking)).notices)
+    with pytest.raises(DataError, match=r":4002: .* gap of 2 s, from 3\.999 to 6 s"):
+        read_plain(write(tmp_path, [*shaking[:4001], *shaking[6001:]]))
+    drifting = write(tmp_path, curve(t, 1e-3 * np.sin(30.0 * t) + 3e-4 * t))
+    (said,) = (text for text in read_plain(drifting).notices if "drifts" in text)
+    assert "plate fr" in said and float(said.split()[4]) == pytest.approx(3.0, rel=0.05)
 
 
 @pytest.mark.parametrize("name", shipped_inputs())
 def test_64_shipped_inputs_neither_drift_nor_pause(name):
-    assert not any("drifts" in text or "constant for" in text for text in read_plain(find_input(name)).notices)
+    assert not any("drifts" in text or "constant from" in text for text in read_plain(find_input(name)).notices)

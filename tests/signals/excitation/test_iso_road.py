@@ -138,8 +138,8 @@ def test_the_slope_of_cams_is_that_of_the_road_that_rises():
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"level": 0.0}, "level of the road 0.0 m3; allowed: positive"),
-        ({"coherence": 1.5}, "coherence 1.5; allowed: 0 to 1"),
+        ({"level": 0.0}, "level of the road 0.0 m3: .* 0 "),
+        ({"coherence": 1.5}, "coherence 1.5: .* 0 to 1"),
         ({"lowest": 2.0, "highest": 1.0}, "wavenumbers 2.0 to 1.0 cycles/m"),
         ({"patch": -0.1}, "contact patch -0.1 m"),
     ],

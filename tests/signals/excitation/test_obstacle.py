@@ -48,11 +48,11 @@ def test_texts_name_shape_sizes_side_and_place() -> None:
         ("cleat:20", "HEIGHTxLENGTH"),
         ("cleat:20x50:middle", "HEIGHTxLENGTH"),
         ("cleat:20x50@near", "METRES"),
-        ("cleat:20x0", "allowed: 1 to 50000"),
-        ("half_round:900", "radius 900; allowed: 1 to 500"),
-        ("cobbles:10x120x1.5", "found 1.5 stones, must be a whole number"),
-        ("speed_bump:100x100", "height 100 mm, must be at most 50 mm, half of the length"),
-        ("cobbles:20x39x10", "height 20 mm, must be at most 19.5 mm, half of the length"),
+        ("cleat:20x0", "length 0, must be 1 to 50000"),
+        ("half_round:900", "radius 900, must be 1 to 500"),
+        ("cobbles:10x120x1.5", "1.5 stones"),
+        ("speed_bump:100x100", "height 100 mm, .* 50 mm"),
+        ("cobbles:20x39x10", "height 20 mm, .* 19.5 mm"),
     ],
 )
 def test_wrong_texts_are_rejected_with_the_right_form(text, message) -> None:
@@ -108,14 +108,14 @@ def test_the_contact_is_chosen() -> None:
     assert "contact" not in rough.identity()
     ratio = np.std(enveloped.signal().displacement["fr"]) / np.std(rough.signal().displacement["fr"])
     assert ratio == pytest.approx(1.0, abs=0.02)
-    with pytest.raises(ConfigurationError, match="--contact patch --patch 0"):
-        replace(DRIVE, patch=0.0)
-    with pytest.raises(ConfigurationError, match="must be one of patch, cams"):
-        replace(DRIVE, contact="ring")
-    with pytest.raises(ConfigurationError, match="another place"):
-        replace(DRIVE, road="cleat:20x50@300", duration=5.0).signal()
-    with pytest.raises(ConfigurationError, match="coherence"):
-        replace(DRIVE, coherence=1.0)
+    for change, message in (
+        ({"patch": 0.0}, "--contact patch --patch 0"),
+        ({"contact": "ring"}, "'ring': must be one of patch, cams"),
+        ({"road": "cleat:20x50@300", "duration": 5.0}, "300 to .*@METRES"),
+        ({"coherence": 1.0}, "--coherence"),
+    ):
+        with pytest.raises(ConfigurationError, match=message):
+            replace(DRIVE, **change).signal()
 
 
 def test_the_settling_time_of_a_decaying_sine() -> None:

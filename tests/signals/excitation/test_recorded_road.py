@@ -130,12 +130,13 @@ def test_a_car_that_stands_goes_on_from_its_place():
 
 def test_what_is_no_speed_is_refused(tmp_path):
     path = recorded(tmp_path / "road.csv")
-    with pytest.raises(DataError, match="a displacement, must be a velocity"):
-        drive(path, channel="left").signal()
-    with pytest.raises(ConfigurationError, match="--duration 30 s: must be at most the length of the record"):
-        drive(path, duration=30.0).signal()
-    with pytest.raises(ConfigurationError, match="must be left, right or height for a recorded road"):
-        drive(path, choice=Choice(channels={"fr": "left"})).signal()
+    for options, error, message in (
+        ({"channel": "left"}, DataError, "a displacement, must be a velocity"),
+        ({"duration": 30.0}, ConfigurationError, r"--duration 30 s: .* 11\.99"),
+        ({"choice": Choice(channels={"fr": "left"})}, ConfigurationError, "--channel fr=.*left, right or height"),
+    ):
+        with pytest.raises(error, match=message):
+            drive(path, **options).signal()
     source = input_of(parser().parse_args(["--road", "C", "--speed", "channel:v"]))
     assert isinstance(source, DriveInput)
     with pytest.raises(ConfigurationError, match="belongs to a recorded road"):
@@ -245,10 +246,7 @@ def test_a_surface_is_read(tmp_path, form):
     channels = read_record(path).channels
     assert [one.name for one in channels] == ["distance", "v = -1.000 m", "v = 0.000 m", "v = 1.000 m"]
     # v goes to the left: the right track would need the missing point
-    with pytest.raises(
-        DataError,
-        match=r"the right wheels, -0.750 m to the left of the reference line, leave the road at 1 of 9 points, first",
-    ):
+    with pytest.raises(DataError, match=r"the right wheels .*-0\.75 m.* at 1 of 9 points"):
         read_road(path, 1.5)
     grid[4, 0] = 2.0
     road = read_road(crg(path, form, grid), 1.5)
@@ -259,27 +257,22 @@ def test_a_surface_is_read(tmp_path, form):
 
 def test_a_damaged_surface_is_refused(tmp_path):
     grid = 2.0 + 0.01 * np.random.default_rng(3).standard_normal((40, 3))
-    path = crg(tmp_path / "road.crg", "KRBI", grid)
-    whole = path.read_bytes()
-    path.write_bytes(whole[:-100])
-    with pytest.raises(DataError, match="its header states 480"):
-        read_surface(path)
+    path = tmp_path / "road.crg"
+    whole = crg(path, "KRBI", grid).read_bytes()
     start = whole.index(b"$$$$$$$$\n") + 9
-    path.write_bytes(whole[:start] + whole[start + 1 :] + b"\0")
-    with pytest.raises(DataError, match=r"has a height of 3.* m, must be at most 10000 m; .* line ends"):
-        read_road(path, 1.5)
-    path.write_bytes(whole.replace(b"$KD_Def", b"$ROAD_CRG_MODS\nSCALE_Z_GRID = 2\n$KD_Def"))
-    with pytest.raises(DataError, match=r"ROAD_CRG_MODS\) changes the surface"):
-        read_surface(path)
     # Lost bytes within a number: "2.002 2.014" became 6805 m in a surface of 2 m.
     lost = grid.copy()
     lost[20, 1] = 68.05
-    with pytest.raises(DataError, match=r"changes by 66.* m between rows 20 and 21 .*, 0.5 m apart, .* damaged"):
-        read_road(crg(path, "LRFI", lost), 1.5)
-    crg(path, "LRFI", grid)
-    path.write_text(path.read_text().rsplit("\n", 3)[0])
-    with pytest.raises(DataError, match="truncated or damaged"):
-        read_surface(path)
+    for data, message in (
+        (whole[:-100], "states 480"),
+        (whole[:start] + whole[start + 1 :] + b"\0", r"height of 3.* m, .* 10000 m"),
+        (whole.replace(b"$KD_Def", b"$ROAD_CRG_MODS\nSCALE_Z_GRID = 2\n$KD_Def"), r"scale_z_grid = 2 .*ROAD_CRG_MODS"),
+        (crg(path, "LRFI", lost).read_bytes(), r" 66.* m between rows 20 and 21 .* 0.5 m apart"),
+        (crg(path, "LRFI", grid).read_bytes().rsplit(b"\n", 3)[0], "truncated or damaged"),
+    ):
+        path.write_bytes(data)
+        with pytest.raises(DataError, match=message):
+            read_road(path, 1.5)
 
 
 @pytest.mark.parametrize("form", ["LRFI", "LDFI", "KRBI", "KDBI"])
@@ -318,13 +311,9 @@ def test_every_damage_is_named_with_the_file(tmp_path, form):
     # Missing numbers at the edge, which the right wheels would need; a narrow car drives beside them.
     grid[5:9, 0] = np.nan
     crg(path, form, grid)
-    refused(
-        path.read_bytes(),
-        r"the right wheels, -0.750 m to the left of the reference line, leave the "
-        r"road at 4 of 40 points, first after 102.5",
-    )
+    refused(path.read_bytes(), r"the right wheels .*-0\.75 m.* at 4 of 40 points, first after 102\.5 m")
     assert np.isfinite(read_surface(path).height(0.5)).all()
-    refused(whole, "leave the road at 40 of 40 points", track=2.4)
+    refused(whole, " at 40 of 40 points", track=2.4)
 
 
 def erd(path, samples=200, unit="mm", kind=5, count=2):
@@ -359,14 +348,13 @@ def test_an_erd_profile_is_a_road(tmp_path, unit):
 
 
 def test_a_damaged_or_binary_erd_is_refused(tmp_path):
-    path = erd(tmp_path / "section.erd", kind=1)
-    with pytest.raises(DataError, match=r"KEYNUM 1.*export the profile as text ERD"):
-        read_road(path, 1.5)
-    erd(path)
-    path.write_text(path.read_text().rsplit(" ", 2)[0])
-    with pytest.raises(DataError, match=r"39[89] numbers, but the header states 200 samples of 2 channels"):
-        read_road(path, 1.5)
-    erd(path)
-    path.write_text(path.read_text().replace("XUNITS  m", "XUNITS  s"))
-    with pytest.raises(DataError, match="over distance, not time"):
-        read_road(path, 1.5)
+    path = tmp_path / "section.erd"
+    whole = erd(path).read_text()
+    for text, message in (
+        (erd(path, kind=1).read_text(), "KEYNUM 1"),
+        (whole.rsplit(" ", 2)[0], r"39[89] numbers, .* 200 samples of 2 channels"),
+        (whole.replace("XUNITS  m", "XUNITS  s"), "XUNITS 's'|XUNITS s"),
+    ):
+        path.write_text(text)
+        with pytest.raises(DataError, match=message):
+            read_road(path, 1.5)

@@ -67,30 +67,14 @@ TORQUE = "\n".join(
     ]
 )
 
-LVM = "\n".join(
-    [
-        "LabVIEW Measurement\t",
-        "Writer_Version\t2",
-        "Separator\tTab",
-        "Decimal_Separator\t,",
-        "Multi_Headings\tYes",
-        "X_Columns\tNo",
-        "***End_of_Header***\t",
-        "\t",
-        "Channels\t2\t\t",
-        "Samples\t6\t6\t",
-        "Date\t2013/02/19\t2013/02/19\t",
-        "Time\t09:51:40,5\t09:51:40,5\t",
-        "Y_Unit_Label\tNewtons\tm/s^2\t",
-        "X_Dimension\tTime\tTime\t",
-        "X0\t0,0000000000000000E+0\t0,0000000000000000E+0\t",
-        "Delta_X\t3,906250E-5\t3,906250E-5\t",
-        "***End_of_Header***\t\t\t",
-        "X_Value\tExcitation\tResponse\tComment",
-        *(f"\t{0.5 * n:.6f}\t{1.0 + n:.6f}{'' if n else chr(9) + 'start'}".replace(".", ",") for n in range(6)),
-        "",
-    ]
-)
+LVM = "\n".join([
+    "LabVIEW Measurement\t", "Writer_Version\t2", "Separator\tTab", "Decimal_Separator\t,", "Multi_Headings\tYes",
+    "X_Columns\tNo", "***End_of_Header***\t", "\t", "Channels\t2\t\t", "Samples\t6\t6\t",
+    "Date\t2013/02/19\t2013/02/19\t", "Time\t09:51:40,5\t09:51:40,5\t", "Y_Unit_Label\tNewtons\tm/s^2\t",
+    "X_Dimension\tTime\tTime\t", "X0\t0,0000000000000000E+0\t0,0000000000000000E+0\t",
+    "Delta_X\t3,906250E-5\t3,906250E-5\t", "***End_of_Header***\t\t\t", "X_Value\tExcitation\tResponse\tComment",
+    *(f"\t{0.5 * n:.6f}\t{1.0 + n:.6f}{'' if n else chr(9) + 'start'}".replace(".", ",") for n in range(6)), "",
+])  # fmt: skip
 
 
 def lvm_segments(second_time: str, layout: str = "One") -> str:
@@ -105,41 +89,16 @@ def lvm_segments(second_time: str, layout: str = "One") -> str:
     return "\n".join(parts) + "\n"
 
 
-VBO = "\n".join(
-    [
-        "File created on 31/07/2006 at 09:55:20",
-        "",
-        "[header]",
-        *(
-            "satellites",
-            "time",
-            "latitude",
-            "longitude",
-            "velocity kmh",
-            "heading",
-            "height",
-            "long accel g",
-            "Yaw_Rate",
-        ),
-        "",
-        "[channel units]",
-        "g",
-        "deg/s",
-        "",
-        "[comments]",
-        "VBox II Version 4.5a",
-        "",
-        "[column names]",
-        "sats time lat long velocity heading height longacc Yaw_Rate",
-        "",
-        "[data]",
-        *(
-            f"008 {clock} +03119.09973 +00058.49277 {36.0 + n:.3f} 321.85 +00152.58 {0.1 * n:+.4f} {n:+.2f}"
-            for n, clock in enumerate(("235959.80", "235959.90", "000000.00", "000000.10", "000000.20"))
-        ),
-        "",
-    ]
-)
+VBO = "\n".join([
+    "File created on 31/07/2006 at 09:55:20", "", "[header]", "satellites", "time", "latitude", "longitude",
+    "velocity kmh", "heading", "height", "long accel g", "Yaw_Rate", "", "[channel units]", "g", "deg/s", "",
+    "[comments]", "VBox II Version 4.5a", "", "[column names]",
+    "sats time lat long velocity heading height longacc Yaw_Rate", "", "[data]",
+    *(
+        f"008 {clock} +03119.09973 +00058.49277 {36.0 + n:.3f} 321.85 +00152.58 {0.1 * n:+.4f} {n:+.2f}"
+        for n, clock in enumerate(("235959.80", "235959.90", "000000.00", "000000.10", "000000.20"))
+    ), "",
+])  # fmt: skip
 
 ASC = "\n".join(
     [

@@ -43,13 +43,11 @@ def test_a_cell_beyond_every_sensor(tmp_path):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         for accept in (False, True):
-            with pytest.raises(
-                DataError, match=r"big\.csv:41:2: column 'displacement \[m\]' is '1e200', must be a number up to"
-            ):
+            with pytest.raises(DataError, match=r"big\.csv:41:2: column 'displacement \[m\]' is '1e200'"):
                 read_signal(file, wheel="fl", accept_implausible=accept)
 
 
 def test_a_road_that_fits_into_no_memory_is_refused_at_once():
     road = IsoRoad(level=CLASSES["C"], seed=1, track=1.5)
-    with pytest.raises(ConfigurationError, match=r"need 1\.12e\+05 GB.* set a shorter --duration or a lower --rate"):
+    with pytest.raises(ConfigurationError, match=r"1\.12e\+05 GB.*--duration .*--rate"):
         drive(road, speed=20.0, wheels={"fr": (0.0, "right"), "fl": (0.0, "left")}, duration=1e9)

@@ -6,19 +6,13 @@ import numpy as np
 import pytest
 
 from tests.signals.formats.can_logs import Frame, blf
+from tests.signals.formats.channel_times import times
 from tests.signals.formats.logger_files import DBC, TEXTS
 from vehicle.commands.inspect import main as inspect
 from vehicle.errors import ConfigurationError, DataError, MissingPartError
 from vehicle.signals.formats import rpc_format
 from vehicle.signals.formats.channel import Channel, uniform_axis
 from vehicle.signals.formats.reader import read_record
-
-
-def times(channel):
-    """Times of a channel that must have them."""
-    assert channel.axis is not None
-    return channel.axis
-
 
 LOGS = ("bus.asc", "bus.log", "bus.trc", "bus2.trc")
 
@@ -46,17 +40,16 @@ def test_a_database_is_asked_for_and_checked(tmp_path):
     pytest.importorskip("asammdf")
     path = tmp_path / "bus.log"
     path.write_text(TEXTS["bus.log"])
-    with pytest.raises(ConfigurationError, match=r"--dbc .*none.dbc: file not found"):
-        read_record(path, [tmp_path / "none.dbc"])
     (tmp_path / "bad.dbc").write_text("nothing")
-    with pytest.raises(ConfigurationError, match=r"--dbc .*bad.dbc"):
-        read_record(path, [tmp_path / "bad.dbc"])
     other = tmp_path / "log.csv"
     other.write_text("t [s],a [g]\n" + "".join(f"{n}.0,{n}.5\n" for n in range(9)))
-    with pytest.raises(
-        ConfigurationError, match=r"--dbc decodes logs of a CAN bus \(MDF, BLF, \.asc, \.trc, candump\)"
+    for log, database, message in (
+        (path, tmp_path / "none.dbc", "--dbc .*none.dbc: "),
+        (path, tmp_path / "bad.dbc", "--dbc .*bad.dbc"),
+        (other, path, r"--dbc .*MDF, BLF, \.asc, \.trc, candump"),
     ):
-        read_record(other, [path])
+        with pytest.raises(ConfigurationError, match=message):
+            read_record(log, [database])
 
 
 def raw_mdf(path, with_signals):
@@ -87,9 +80,7 @@ def test_raw_frames_in_mdf_are_no_channels(tmp_path):
     path, database = tmp_path / "bus.mf4", tmp_path / "car.dbc"
     raw_mdf(path, with_signals=False)
     database.write_text(DBC)
-    with pytest.raises(
-        DataError, match="log of a CAN bus \\(raw frames in MDF 4\\.10\\) with 6 raw frames of 1 messages \\(0x64\\)"
-    ):
+    with pytest.raises(DataError, match=r"MDF 4\.10.* 6 raw frames of 1 messages \(0x64\)"):
         read_record(path)
     channels = {one.name: one for one in read_record(path, [database]).channels}
     np.testing.assert_allclose(channels["AccZ"].values, 0.01 * (256 + np.arange(6)) - 1.0)
@@ -153,9 +144,7 @@ def test_objects_of_matlab_7_3_are_refused_with_the_line_that_converts(tmp_path)
         file["T"].attrs.update({"MATLAB_class": np.bytes_("table"), "MATLAB_object_decode": np.int32(3)})
     with path.open("r+b") as raw:
         raw.write(b"MATLAB 7.3 MAT-file".ljust(128))
-    with pytest.raises(
-        DataError, match=r"cannot be read as a MAT file with tables .* for example writetable\(T, 'T.csv'\)"
-    ):
+    with pytest.raises(DataError, match=r"writetable\(T, 'T.csv'\)"):
         read_record(path)
 
 
@@ -175,9 +164,7 @@ def test_objects_of_matlab_5(tmp_path):
     head = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<H", 0x0100) + b"IM"
     path = tmp_path / "table.mat"
     path.write_bytes(head + table)
-    with pytest.raises(
-        DataError, match=r"cannot be read as a MAT file with tables .* for example writetimetable\(T, 'T.csv'\)"
-    ):
+    with pytest.raises(DataError, match=r"writetimetable\(T, 'T.csv'\)"):
         read_record(path)
     path.write_bytes(head + table + plain)
     found = read_record(path)
@@ -211,11 +198,11 @@ def test_blf_is_read_whole_or_refused(tmp_path, monkeypatch):
     pytest.importorskip("asammdf")
     path, database = tmp_path / "bus.blf", tmp_path / "car.dbc"
     database.write_text(DBC)
-    frames = [Frame(0.02 * n, 1, "Rx", 100, False, bytes([n % 256, 1, 0, 0])) for n in range(40000)]
+    frames = [Frame(0.02 * n, 1, "Rx", 100, False, bytes([n % 256, 1, 0, 0])) for n in range(8000)]
     blf(path, frames)
     found = read_record(path, [database])
-    assert found.format == "blf" and found["AccZ"].values.size == 40000
-    np.testing.assert_allclose(times(found["AccZ"]), 0.02 * np.arange(40000), atol=1e-6)
+    assert found.format == "blf" and found["AccZ"].values.size == 8000
+    np.testing.assert_allclose(times(found["AccZ"]), 0.02 * np.arange(8000), atol=1e-6)
     data = path.read_bytes()
     for broken in (data[:-50], data[: len(data) // 2], data[:200], data[:5000] + bytes(60) + data[5060:]):
         path.write_bytes(broken)

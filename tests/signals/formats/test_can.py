@@ -9,6 +9,7 @@ import pytest
 from tests.failing_inputs import SEAT as SEAT_Z
 from tests.failing_inputs import WITH_VALUES, comfort_of_seat, made
 from tests.signals.formats.can_logs import CONTAINERS, Frame, asc, mf4, write_log
+from tests.signals.formats.channel_times import times
 from tests.validation import validated
 from vehicle.commands.comfort import main as comfort
 from vehicle.errors import DataError
@@ -32,12 +33,6 @@ BO_ 2147484160 Wide: 24 ECU
 VAL_ 256 Z 32767 "SNA" 7 "NoError" 0 "standstill" -20001 "Overrun" ;
 VAL_ 256 State 0 "off" 1 "error" ;
 """
-
-
-def times(channel):
-    """Times of a channel that must have them."""
-    assert channel.axis is not None
-    return channel.axis
 
 
 def weighted(path, channels):
@@ -210,9 +205,7 @@ def test_messages_of_j1939_are_found_by_their_group(tmp_path):
     assert found.channels[2].values.tolist() == [5.0]
     assert "car.dbc does not describe 1 frames of 1 messages, which are left out: 0x18FE0133" in found.notices
     plain = J1939.replace('BA_ "ProtocolType" "J1939";', "")
-    with pytest.raises(
-        DataError, match="describes none of the messages of the log"
-    ):  # other extended identifiers are exact
+    with pytest.raises(DataError, match="none of the messages"):  # other extended identifiers are exact
         decode(tmp_path, plain, sent)
 
 
@@ -262,9 +255,7 @@ def test_lines_without_a_data_frame_are_counted_by_form(tmp_path):
         assert f"'{form}' 1" in notice
     dump = tmp_path / "bus.log"
     dump.write_text("(1.000000) can0 123#R\n(1.100000) can0 20000080#0000000000000000\n(1.2) can0 1F#00\n")
-    with pytest.raises(
-        DataError, match=r"without data frames; lines .*'remote frame' 1, 'error frame' 1, '\(1.2\) can0"
-    ):
+    with pytest.raises(DataError, match=r"'remote frame' 1, 'error frame' 1, '\(1.2\) can0"):
         read_record(dump, [tmp_path / "car.dbc"])
 
 

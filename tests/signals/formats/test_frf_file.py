@@ -26,17 +26,10 @@ def test_what_the_shaker_command_writes_comes_back(tmp_path):
     coherence = np.array([np.linspace(0.3, 1.0, 99), np.full(99, 0.8)])
     coherence[1, 3] = np.nan
     clean = FrequencyResponse(
-        frequency=frequency,
-        response=response,
-        coherence=coherence,
-        random_error=0.1 * np.abs(response),
-        averages=np.full(coherence.shape, 8.0),
-        segments=1,
-        window="none",
-        estimator="any",
-        resolution_hz=0.5,
+        frequency=frequency, response=response, coherence=coherence, random_error=0.1 * np.abs(response),
+        averages=np.full(coherence.shape, 8.0), segments=1, window="none", estimator="any", resolution_hz=0.5,
         reasons=(),
-    )
+    )  # fmt: skip
     path = tmp_path / "frf.csv"
     write_frf(path, {"plate_fr": clean}, CHANNELS, "frame")
     data = read_frf(path)
@@ -59,51 +52,44 @@ def test_selection_by_channel_band_and_spacing(tmp_path):
     np.testing.assert_allclose(part.response[0], 8.0j * part.frequency, atol=1e-12)
     assert np.all(part.coherence == 0.9)
     assert data.select(("a", "b"), band=(2.0, 12.0)).frequency.size == 41
-    with pytest.raises(DataError, match="no channel c; the file has b, a"):
-        data.select(("c",), band=(2.0, 12.0))
-    with pytest.raises(DataError, match="3 frequencies between 2 and 4 Hz with a spacing of 1 Hz, must be at least 8"):
-        data.select(("a",), band=(2.0, 4.0), spacing=1.0)
+    for channel, highest, message in (
+        ("c", 12.0, "no channel c; .* b, a$"),
+        ("a", 4.0, "3 .* 2 and 4 Hz .* 1 Hz, .* 8"),
+    ):
+        with pytest.raises(DataError, match=message):
+            data.select((channel,), band=(2.0, highest), spacing=1.0)
 
 
 @pytest.mark.parametrize(
     ("lines", "message"),
     [
-        ([HEADER, *ROWS[:3]], "3 rows of numbers"),
-        (["# only a comment"], "only comments; must have the columns 'frequency"),
+        ([HEADER, *ROWS[:3]], "3 rows"),
+        (["# only a comment"], "only comments.*'frequency"),
         (["f,a_magnitude,a_phase [deg],a_coherence", *ROWS], r"own\.csv:1: column 'frequency \[Hz\]' is missing"),
         (["frequency [Hz],a_magnitude,a_phase [rad],a_coherence", *ROWS], r"unknown column 'a_phase \[rad\]'"),
-        (["frequency [Hz],a_magnitude,a_phase [deg],b_coherence", *ROWS], r"no column 'a_coherence'"),
-        (["frequency [Hz],a_magnitude,a_phase [deg],a_magnitude", *ROWS], r"'a_magnitude' appears twice"),
+        (["frequency [Hz],a_magnitude,a_phase [deg],b_coherence", *ROWS], "no column 'a_coherence'"),
+        (["frequency [Hz],a_magnitude,a_phase [deg],a_magnitude", *ROWS], "'a_magnitude' appears twice"),
         (["frequency [Hz]", *[row.split(",")[0] for row in ROWS]], "no channel"),
-        (["# note", HEADER, *ROWS, "20,1,2"], r"own\.csv:13:3: the last row has 3 cells, but the header 4; the"),
-        (
-            [HEADER, *ROWS, "20,1,2,nan"],
-            r"own\.csv:12:4: column 'a_coherence' is 'nan', must be a finite number, or empty",
-        ),
-        ([HEADER, *ROWS, "20,inf,2,0.5"], r"own\.csv:12:2: column 'a_magnitude' is 'inf', must be"),
-        ([HEADER, *ROWS, "20,1,x,0.5"], r"own\.csv:12:3: column 'a_phase \[deg\]' is 'x', must be"),
-        (
-            [HEADER, *ROWS, ",1,2,0.5"],
-            r"own\.csv:12:1: column 'frequency \[Hz\]' is ''; a frequency is never interpolated",
-        ),
-        ([HEADER, *ROWS, "20,1,2,1.5"], r"own\.csv:12: column 'a_coherence' has the value 1\.5, must be 0 to 1"),
-        ([HEADER, *ROWS, "20,-1,2,0.5"], r"own\.csv:12: column 'a_magnitude' has the value -1, must be 0 and above"),
-        (
-            [HEADER, *ROWS, "3,1,2,0.5"],
-            r"own\.csv:12: column 'frequency \[Hz\]' has the value 3 after 10; .*must increase",
-        ),
-        ([HEADER, "0,1,2,0.5", *ROWS], r"own\.csv:2: column 'frequency \[Hz\]' has the value 0, must be above 0"),
+        (["# note", HEADER, *ROWS, "20,1,2"], r"own\.csv:13:3: .* 3 cells, .* 4"),
+        ([HEADER, *ROWS, "20,1,2,nan"], r"own\.csv:12:4: column 'a_coherence' is 'nan'"),
+        ([HEADER, *ROWS, "20,inf,2,0.5"], r"own\.csv:12:2: column 'a_magnitude' is 'inf'"),
+        ([HEADER, *ROWS, "20,1,x,0.5"], r"own\.csv:12:3: column 'a_phase \[deg\]' is 'x'"),
+        ([HEADER, *ROWS, ",1,2,0.5"], r"own\.csv:12:1: column 'frequency \[Hz\]' is ''"),
+        ([HEADER, *ROWS, "20,1,2,1.5"], r"own\.csv:12: column 'a_coherence' .* 1\.5, must be 0 to 1"),
+        ([HEADER, *ROWS, "20,-1,2,0.5"], r"own\.csv:12: column 'a_magnitude' .* -1, must be 0 "),
+        ([HEADER, *ROWS, "3,1,2,0.5"], r"own\.csv:12: column 'frequency \[Hz\]' .* 3 after 10"),
+        ([HEADER, "0,1,2,0.5", *ROWS], r"own\.csv:2: column 'frequency \[Hz\]' .* 0, must be above 0"),
+        (b"\xff\xfe\x00\x80", "UTF-16"),
     ],
 )
 def test_bad_files_are_refused_by_place(tmp_path, lines, message):
+    path = written(tmp_path, [] if isinstance(lines, bytes) else lines)
+    if isinstance(lines, bytes):
+        path.write_bytes(lines)
     with pytest.raises(DataError, match=message):
-        read_frf(written(tmp_path, lines))
-
-
-def test_what_is_no_text_file_is_refused(tmp_path):
-    with pytest.raises(ConfigurationError, match=r"own\.csv: the file does not"):
-        read_frf(tmp_path / "own.csv")
-    path = tmp_path / "own.csv"
-    path.write_bytes(b"\xff\xfe\x00\x80")
-    with pytest.raises(DataError, match="the file is UTF-16, must be UTF-8"):
         read_frf(path)
+
+
+def test_a_missing_file_is_refused(tmp_path):
+    with pytest.raises(ConfigurationError, match=r"own\.csv: .*does not exist"):
+        read_frf(tmp_path / "own.csv")

@@ -37,8 +37,8 @@ def draw(path: Path) -> None:
 
 
 def film(path: Path) -> None:
-    frames = np.random.default_rng(1).integers(0, 255, (30, 240, 320, 3), dtype=np.uint8)
-    write_film(path, frames, (240, 320))
+    frames = np.random.default_rng(1).integers(0, 255, (6, 120, 160, 3), dtype=np.uint8)
+    write_film(path, frames, (120, 160))
 
 
 WRITERS = {**{name: writer(name) for name in WRITTEN}, "png": draw, "svg": draw, "mp4": film}

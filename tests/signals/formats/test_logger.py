@@ -17,6 +17,7 @@ from vehicle.signals.records.record_settings import RecordSettings
 
 NAMES = ["Time", "Shaker FR", *(f"Acc {n}" for n in range(1, 9))]
 UNITS = ["s", "mm", *["g"] * 8]
+FIVE = "time [s],z [mm]\n0.1,1.5\n0.2,1.5\n0.3,1.5\n0.4,1.5\n0.5,1.5\n"
 
 
 def logger(path, *, pause=0.0, delimiter=";", decimal=",", seconds=8.0, rate=2048.0, drift=0.0, encoding="utf-8"):
@@ -25,13 +26,7 @@ def logger(path, *, pause=0.0, delimiter=";", decimal=",", seconds=8.0, rate=204
     time = 100.0 + np.arange(count) / rate
     time[count // 2 :] += pause
     z = 1e-3 * np.sin(2.0 * np.pi * 8.0 * time) + drift * np.arange(count) / count
-    lines = [
-        "Datalogger X-2000, Kanäle 10",
-        "",
-        "Start;2026-03-01 10:00:00",
-        delimiter.join(NAMES),
-        delimiter.join(UNITS),
-    ]
+    lines = ["Datalogger X-2000, Kanäle 10", "", "Start;2026-03-01 10:00:00", *map(delimiter.join, (NAMES, UNITS))]
     for t, value in zip(time, z, strict=True):
         cells = [f"{t:.6f}", f"{1e3 * value:.9f}", *(f"{0.1 * n * value * 1e3:.6f}" for n in range(1, 9))]
         lines.append(delimiter.join(cells).replace(".", decimal))
@@ -58,11 +53,8 @@ def test_a_logger_file_is_inspected(tmp_path, capsys):
     assert (first["quantity"], first["si_unit"]) == ("acceleration", "m/s2")
     assert first["max"] == pytest.approx(0.1 * 1e3 * z.max() * 9.80665, rel=1e-4)
     text = " ".join(found["notices"])
-    assert (
-        "1 pause: 103.999512 to 106.5 s; set --from 100 --to 103.999512 for the longest part" in text
-        and "decimal comma" in text
-    )
-    assert "Windows text" in text
+    for words in ("1 pause: 103.999512 to 106.5 s; set --from 100 --to 103.999512 ", "decimal comma", "Windows text"):
+        assert words in text
     assert inspect([str(path)]) == 0
     assert "--channel 'fr=Shaker FR' --from 100 --to 103.999512\n" in capsys.readouterr().out
 
@@ -70,19 +62,13 @@ def test_a_logger_file_is_inspected(tmp_path, capsys):
 def test_a_logger_file_drives_the_plate_with_four_options(tmp_path):
     path = tmp_path / "logger.txt"
     time, _ = logger(path, pause=2.5, drift=4e-3, seconds=16.0)
-    with pytest.raises(DataError, match=r"9 channels is the plate\? set --channel fl=NAME with"):
-        read_signal(path, choice=choice("--detrend"))
-    pause = r"gap of 2\.5\d* s, .* gaps are not filled; .* \(--to 107\.99\d+\) or after it \(--from 110\.5\)"
-    with pytest.raises(DataError, match=pause):
-        read_signal(path, choice=choice("--channel", "fr=Shaker*"))
+    pause = r"gap of 2\.5\d* s, .* \(--to 107\.99\d+\) or after it \(--from 110\.5\)"
+    for words, message in ((["--detrend"], "9 channels .*--channel fl=NAME"), (["--channel", "fr=Shaker*"], pause)):
+        with pytest.raises(DataError, match=message):
+            read_signal(path, choice=choice(*words))
     found = read_signal(path, choice=choice("--channel", "fr=Shaker FR", "--from", "101", "--to", "107.9", "--detrend"))
     said = " ".join(found.notices)
-    for part in (
-        "fr: channel 1 'Shaker FR' [mm]",
-        "excerpt from 101 to 107.9",
-        "assumed to be 2048 Hz",
-        "straight line from",
-    ):
+    for part in ("1 'Shaker FR' [mm]", "excerpt from 101 to 107.9", "assumed to be 2048 Hz", "straight line from"):
         assert part in said, said
     assert found.timestep == pytest.approx(1.0 / 2048.0, rel=1e-12)
     kept = (time >= 101.0) & (time <= 107.9)
@@ -102,10 +88,10 @@ def test_accelerations_and_velocities_are_integrated(tmp_path, order):
     path, unit = tmp_path / "plate.csv", {1: "m/s", 2: "m/s²"}[order]
     rows = "\n".join(f"{t:.3f}\t{v:.9e}" for t, v in zip(time, np.asarray(derived), strict=True))
     path.write_text(f"time [s]\tPlate ({unit})\n{rows}\n", encoding="utf-8")
-    with pytest.raises(DataError, match="the plate needs a displacement; to integrate it, set --highpass"):
+    with pytest.raises(DataError, match=r"displacement; .*--highpass"):
         read_signal(path, choice=choice("--channel", "fr=Plate"))
     found = read_signal(path, choice=choice("--channel", "fr=Plate", "--highpass", str(corner)))
-    assert "integrated in the frequency domain, high-pass 0.5 Hz, as requested" in " ".join(found.notices)
+    assert "integrated in the frequency domain, high-pass 0.5 Hz" in " ".join(found.notices)
     values = found.displacement["fr"][-time.size :]
     # What the filter makes of the two ends rings for some periods of its corner.
     validated(
@@ -118,20 +104,14 @@ def test_accelerations_and_velocities_are_integrated(tmp_path, order):
     ("text", "message"),
     [
         ("time [s],z\n" + "0.01,1.5\n" * 3, "no unit; set --unit fr=UNIT"),
-        ("time [s],z [furlong]\n" + "0.01,1.5\n" * 3, "the unknown unit 'furlong'; set --unit fr=UNIT"),
-        ("time,z [mm]\n" + "0.01,1.5\n" * 3, "has no times; set --rate HZ, or the channel of the times with"),
-        ("time [s],z [mm]\n" + "0.5,1.5\n" * 3, "times must increase"),
-        ("time [s],z [mm]\n0,0,1,5\n0,1,1,5\n0,2,1,5\n0,3,1,6\n", "are the commas decimal commas"),
-        (
-            "time [s],z [mm]\n0.1,1.5\n0.2,1.5\n0.3,1.5\n0.4,1.5\n0.5,1.5\n0.6,x\n",
-            r"1 missing values \('x' in line 7 is no number\)",
-        ),
-        ("time [s],z [mm]\n0.1,1.5\n0.2,1.5\n0.3,1.5\n0.4,1.5\n0.5,1.5\n0.6\n", "the file is truncated"),
+        ("time [s],z [furlong]\n" + "0.01,1.5\n" * 3, "'furlong'; set --unit fr=UNIT"),
+        ("time,z [mm]\n" + "0.01,1.5\n" * 3, "no times; set --rate HZ"),
+        ("time [s],z [mm]\n" + "0.5,1.5\n" * 3, "time 0.5 s after 0.5 s, must increase"),
+        ("time [s],z [mm]\n0,0,1,5\n0,1,1,5\n0,2,1,5\n0,3,1,6\n", "decimal commas"),
+        (f"{FIVE}0.6,x\n", r"1 missing values \('x' in line 7 is no number\)"),
+        (f"{FIVE}0.6\n", "truncated"),
         ("time [s];z [mm]\n0,1;1.000,5\n0,2;1,5\n0,3;1,5\n", "no table of numbers|separate thousands"),
-        (
-            "time [s],z [mm]\n0.1,x\n" + "0.2,1.5\n" * 6,
-            r"1 missing values \('x' in line 2 is no number\), the first at 0\.1 s",
-        ),
+        ("time [s],z [mm]\n0.1,x\n" + "0.2,1.5\n" * 6, r"1 missing values \('x' in line 2 .*\), the first at 0\.1 s"),
         ("nothing\nhere\n", "no table of numbers"),
     ],
 )
@@ -145,17 +125,15 @@ def test_what_is_open_is_refused_with_what_decides(tmp_path, text, message):
 def test_a_wrong_pick_lists_all_channels(tmp_path):
     path = tmp_path / "log.csv"
     logger(path, seconds=0.1)
-    for wanted, said in (
-        ("Shaker FL", "matches no "),
-        ("Acc*", r"matches 8 channels \(2, 3, 4"),
-        ("12", "matches no "),
+    for words, error, said in (
+        (["--channel", "fr=Shaker FL"], DataError, r"matches no .*1 'Shaker FR' \[mm\], 2 'Acc 1' \[g\]"),
+        (["--channel", "fr=Acc*"], DataError, r"matches 8 channels \(2, 3, 4.*1 'Shaker FR' \[mm\], 2 'Acc 1' \[g\]"),
+        (["--channel", "fr=12"], DataError, r"matches no .*1 'Shaker FR' \[mm\], 2 'Acc 1' \[g\]"),
+        (["--unit", "furlong"], ConfigurationError, "--unit furlong: unknown unit"),
+        (["--channel", "xx=1"], ConfigurationError, "--channel xx=.* fr, fl, rr, rl, time"),
     ):
-        with pytest.raises(DataError, match=rf"{said}.*1 'Shaker FR' \[mm\], 2 'Acc 1' \[g\]"):
-            read_signal(path, choice=choice("--channel", f"fr={wanted}"))
-    with pytest.raises(ConfigurationError, match=r"--unit furlong: unknown unit"):
-        choice("--unit", "furlong")
-    with pytest.raises(ConfigurationError, match=r"--channel xx=.*must be one of fr, fl, rr, rl, time"):
-        read_signal(path, choice=choice("--channel", "xx=1"))
+        with pytest.raises(error, match=said):
+            read_signal(path, choice=choice(*words))
 
 
 def test_units_and_rates_of_the_request_are_said(tmp_path):
@@ -165,10 +143,7 @@ def test_units_and_rates_of_the_request_are_said(tmp_path):
         path, choice=choice("--channel", "fr=1", "--unit", "um", "--rate", "1024"), accept_implausible=True
     )
     said = " ".join(found.notices)
-    assert (
-        "unit is [um], as requested; the file says" in said
-        and "rate 1024 Hz, as requested; the file has 2048 Hz" in said
-    )
+    assert "[um] as requested, not [mm]" in said and "rate 1024 Hz, as requested; the file has 2048 Hz" in said
     assert np.max(found.displacement["fr"]) == pytest.approx(1e-3 * z.max(), rel=1e-3)
     assert found.timestep == 1.0 / 1024.0
 
@@ -177,12 +152,10 @@ def test_a_chosen_channel_is_judged_by_its_own_unit_and_time(tmp_path):
     path, time = tmp_path / "log.csv", np.arange(400) / 512.0
     rows = (f"{t:.7f},{50.0 * np.sin(8.0 * np.pi * t):.6f}\n" for t in time)
     path.write_text("t,plate\n" + "".join(rows))
-    assert [one.remark for one in read_record(path).channels] == [
-        "the time column has no known unit; set --rate HZ, or --channel time=t --unit time=s",
-        "",
-    ]
+    first, second = (one.remark for one in read_record(path).channels)
+    assert first.endswith("set --rate HZ, or --channel time=t --unit time=s") and second == ""
     told = ("--channel", "time=t", "--unit", "time=s", "--channel", "plate", "--unit")
-    with pytest.raises(DataError, match=r"is the unit of the channel right\?; set another: --unit fr=UNIT"):
+    with pytest.raises(DataError, match="--unit fr=UNIT"):
         read_signal(path, choice=choice(*told, "m"))
     found = read_signal(path, choice=choice(*told, "mil"))
     assert found.notices[0] == "fr: channel 2 'plate' [mil]" and "known unit" not in "".join(found.notices)
@@ -200,11 +173,7 @@ def test_formats_that_are_not_read_are_named(tmp_path, head):
 def test_comfort_takes_any_channels(tmp_path, capsys):
     path = tmp_path / "logger.txt"
     logger(path, seconds=20.0, rate=512.0)
-    picks = [
-        word
-        for axis, name in zip("xyz", ("Acc 1", "3", "Acc 8"), strict=True)
-        for word in ("--channel", f"{axis}={name}")
-    ]
+    picks = [word for pick in ("x=Acc 1", "y=3", "z=Acc 8") for word in ("--channel", pick)]
     assert comfort(["--input", str(path), "--json", *picks, "--from", "102"]) == 0
     found = json.loads(capsys.readouterr().out)
     # 8 Hz, amplitude n/10 g: Wk(8 Hz) = 1.036, Wd(8 Hz) = 0.253 (ISO 2631-1, table 3)

@@ -6,9 +6,8 @@ import warnings
 import numpy as np
 import pytest
 
-from vehicle.arrays import Vector
+from tests.signals.formats.channel_times import times
 from vehicle.errors import DataError, MissingPartError
-from vehicle.signals.formats.channel import Channel
 from vehicle.signals.formats.reader import read
 from vehicle.signals.records.choice import Choice, choose
 
@@ -17,12 +16,6 @@ pandas = pytest.importorskip("pandas")
 
 TIME = np.arange(3000) / 512.0
 SEAT, PLATE = np.sin(2 * np.pi * 3.0 * TIME), 2.0 * np.cos(2 * np.pi * 5.0 * TIME)
-
-
-def times(channel: Channel) -> Vector:
-    """Return the times of a channel that must have them."""
-    assert channel.axis is not None
-    return channel.axis
 
 
 def saved(path, variables, version):

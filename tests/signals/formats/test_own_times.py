@@ -5,22 +5,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from vehicle.arrays import Vector
+from tests.signals.formats.channel_times import times
 from vehicle.errors import DataError
 from vehicle.signals.excitation.signal_file import read_signal
-from vehicle.signals.formats.channel import Channel
 from vehicle.signals.formats.reader import read
 from vehicle.signals.records.acceleration import read_acceleration
 from vehicle.signals.records.choice import Choice, choose
 
 FAST, SLOW = np.arange(3000) / 200.0, np.arange(1500) / 100.0
 SEAT, RAIL = np.sin(2 * np.pi * 3.0 * FAST), np.cos(2 * np.pi * 5.0 * SLOW)
-
-
-def times(channel: Channel) -> Vector:
-    """Return the times of a channel that must have them."""
-    assert channel.axis is not None
-    return channel.axis
 
 
 def table(path: Path, heads: str, *columns: np.ndarray, delimiter: str = ",") -> Path:
@@ -44,10 +37,8 @@ def table(path: Path, heads: str, *columns: np.ndarray, delimiter: str = ",") ->
         "Time_s,Seat Z [m/s2],Time_s,Rail Z [m/s2]",
     ],
 )
-@pytest.mark.parametrize("delimiter", [",", ";"])
-@pytest.mark.parametrize("lengths", [(3000, 1500), (1500, 1500), (900, 1500)])
-def test_each_pair_has_its_own_time(tmp_path, heads, delimiter, lengths):
-    fast, slow = lengths
+@pytest.mark.parametrize(("fast", "slow", "delimiter"), [(3000, 1500, ","), (1500, 1500, ";"), (900, 1500, ",")])
+def test_each_pair_has_its_own_time(tmp_path, heads, fast, slow, delimiter):
     heads = heads.replace(",", delimiter)
     columns = [FAST[:fast], SEAT[:fast], 0.004 + SLOW[:slow], RAIL[:slow]]
     found = read(table(tmp_path / "pairs.csv", heads, *columns, delimiter=delimiter))

@@ -46,12 +46,12 @@ def test_a_narrow_band_in_degrees_is_asked(part, scale):
         Channel(name=name, values=values, unit="", axis=FREQUENCY[part], kind="frequency", function="spectrum")
         for name, values in (("H magnitude", np.abs(response)), ("H phase", phase))
     ]
-    with pytest.raises(DataError, match=r"'H phase' has no unit, .* write the unit into the header, H phase \[deg\]"):
+    with pytest.raises(DataError, match=r"'H phase' has no unit, .*H phase \[deg\]"):
         joined("a.csv", columns)
 
 
 def test_unwrapped_radians_are_asked():
-    with pytest.raises(DataError, match=r"'H phase' has no unit, and its values, at most 24\.6, may be degrees or rad"):
+    with pytest.raises(DataError, match=r"'H phase' has no unit, .* 24\.6"):
         read(-np.linspace(0.1, 24.6, 400))
 
 

@@ -68,11 +68,12 @@ def rsp(path, limits):
 def test_limits_that_are_a_constant_of_the_writer(tmp_path, limits):
     found = read(rsp(tmp_path / "a.rsp", limits))
     assert np.abs(found["Plate FL"].values).max() == pytest.approx(10.0, rel=1e-3)
-    assert found.notices == (f"channel 1 reaches 10; the limit {limits[0][1]:g} in the header is that of all channels",)
+    (notice,) = found.notices
+    assert "channel 1 reaches 10" in notice and f"limit {limits[0][1]:g} " in notice
 
 
 def test_limits_of_each_channel_find_a_damaged_scale(tmp_path):
-    with pytest.raises(DataError, match="channel 1 reaches 10, but its limit in the header is 2; the keyword SCALE"):
+    with pytest.raises(DataError, match=r"channel 1 reaches 10, .* 2; .*SCALE"):
         read(rsp(tmp_path / "a.rsp", ((-2, 2), (-0.5, 0.5))))
 
 
@@ -104,10 +105,7 @@ def test_a_zip_archive_is_named_by_its_content(tmp_path, name, words):
         read(tmp_path / "file")
 
 
-@pytest.mark.parametrize(
-    ("unit", "words"),
-    [("(m/s2)^2/Hz", "without a phase, must be a frequency response"), ("(m/s2)/N", "a response to a force")],
-)
+@pytest.mark.parametrize(("unit", "words"), [("(m/s2)^2/Hz", "without a phase"), ("(m/s2)/N", "a response to a force")])
 def test_no_comparison_is_advised_for_a_density_or_a_force(tmp_path, unit, words):
     frequency = np.linspace(1.0, 40.0, 50)
     heads = f"Frequency [Hz],S [{unit}]" if "^" in unit else f"Frequency [Hz],S real [{unit}],S imag [{unit}]"

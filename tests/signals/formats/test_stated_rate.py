@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tests.signals.formats.channel_times import times
 from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.formats import hdf_format, mixed_sources
-from vehicle.signals.formats.channel import Channel
 from vehicle.signals.formats.reader import read
 from vehicle.signals.formats.stated_rate import number_of, stated_step
 
@@ -20,12 +20,6 @@ RATES = {
     "SamplingFreq": b"100", "dt_ms": 10.0, "sample_interval": np.array([0.01]), "SamplingPeriod": "10 ms",
     "time_step": 0.01, "Abtastrate": "100", "wf_increment": 0.01, "samples_per_second": 100,
 }  # fmt: skip
-
-
-def times(channel: Channel) -> Vector:
-    """Return the times of a channel that must have them."""
-    assert channel.axis is not None
-    return channel.axis
 
 
 @pytest.mark.parametrize("name", RATES)
@@ -50,10 +44,8 @@ def test_other_numbers_state_no_rate(numbers):
 
 def test_two_rates_that_contradict_each_other():
     assert stated_step({"fs": 100.0, "dt": 0.01}) == (0.01, "")
-    assert stated_step({"fs": 100.0, "dt": 0.02}) == (
-        None,
-        "'fs' = 100, 'dt' = 0.02 contradict each other; set --rate HZ",
-    )
+    step, remark = stated_step({"fs": 100.0, "dt": 0.02})
+    assert step is None and "'fs' = 100, 'dt' = 0.02" in remark and "--rate" in remark
 
 
 @pytest.mark.parametrize("place", ["array", "group", "file", "number", "starting_time"])
@@ -87,10 +79,9 @@ def test_attributes_of_length_one(tmp_path, kind):
     assert found.channels[0].unit == "g"
     if kind == "signed":
         assert found.channels[0].rate == pytest.approx(100.0)
-        assert "'delta' = 0.01 is read as the step of the samples, 0.01 s, 100 Hz; otherwise set" in found.notices[0]
+        assert "'delta' = 0.01 " in found.notices[0] and "100 Hz" in found.notices[0]
     else:
-        assert found.channels[0].axis is None
-        assert "if this is the step of the samples, set --rate 100" in found.notices[0]
+        assert found.channels[0].axis is None and "--rate 100" in found.notices[0]
 
 
 def test_a_long_text_is_no_number():
@@ -139,9 +130,7 @@ def test_a_long_table_of_parquet_is_refused_as_in_text(tmp_path, kind):
     elif kind == "numbers":
         columns["sensor"] = np.tile([4, 7, 9], 500)
     parquet.write_table(arrow.table(columns), tmp_path / "long.parquet")
-    with pytest.raises(
-        DataError, match=r"mixes rows of different sources: column 'sensor' alternates between '[x4]', "
-    ):
+    with pytest.raises(DataError, match=r"column 'sensor' alternates between '[x4]', "):
         read(tmp_path / "long.parquet")
 
 

@@ -79,17 +79,12 @@ def test_a_dense_file_is_refused_without_unpacking_it(tmp_path, ending):
 def test_the_limits():
     require_unpacked("a", 1e8, 0.0)
     require_unpacked("a", 1e9, 1e7)
-    with pytest.raises(
-        DataError,
-        match=r"^a: unpacked, its data need 2\.79 GiB, must be at most 2 "
-        r"GiB; cut the record",
-    ):
+    with pytest.raises(DataError, match=r"^a: .* 2\.79 GiB, .* 2 GiB"):
         require_unpacked("a", 3e9, 3e9)
     many = io.BytesIO()
     with zipfile.ZipFile(many, "w") as archive:
         for number in range(MOST_ENTRIES + 1):
             archive.writestr(str(number), b"")
-    with pytest.raises(DataError, match=r"^a: found 10001 files in the archive, must be at most 10000"):
-        require_archive("a", many)
-    with pytest.raises(DataError, match=r"^a: cannot be read as a ZIP archive"):
-        require_archive("a", io.BytesIO(b"PK"))
+    for file, message in ((many, " 10001 files .* 10000"), (io.BytesIO(b"PK"), "ZIP archive")):
+        with pytest.raises(DataError, match=f"^a: .*{message}"):
+            require_archive("a", file)

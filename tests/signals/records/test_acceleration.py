@@ -59,68 +59,39 @@ def test_columns_may_stand_in_any_order_and_units(write):
     assert xyz_of(record)[2] == pytest.approx(9.80665 * xyz_of(plain)[2])
 
 
-NEEDED = r"needed are time \[s\], x \[m/s2\], y \[m/s2\], z \[m/s2\] \(or \[g\]\)"
+def third(row):
+    """The rows with another third one."""
+    return lines(*ROWS[:2], row, ROWS[3])
 
 
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", r"ride.csv: the file is empty; must have a header line with units and one row per sample"),
-        (
-            "# nothing\n\n",
-            rf"ride.csv: contains only comments; {NEEDED.replace('needed are', 'must have the columns')}",
+        ("", r"ride\.csv: .*empty"),
+        ("# nothing\n\n", r"ride\.csv: .*only comments.*x \[m/s2\], y \[m/s2\], z \[m/s2\] \(or \[g\]\)"),
+        (lines(), r"ride\.csv:1: .*header"),
+        (lines(*ROWS[:2]), r"ride\.csv: .* 2 samples, .* 3"),
+        (lines(*ROWS, header=""), r"ride\.csv:2: column 'time \[s\]' .* '0', '0\.1', '0\.2', '0\.3', .*x \[m/s2\]"),
+        (lines(*ROWS, header=HEADER.replace("z", "w")), r"ride\.csv: column z .* x, y, w, .*z \[m/s2\]"),
+        (lines(*ROWS, header="time [s],x [m/s2],y [m/s2]"), r"ride\.csv:2:4: .* 4 cells, .* 3"),
+        (lines(*ROWS, header=HEADER.replace("y", "x")), r"ride\.csv:1: column 'x \[m/s2\]' .*twice"),
+        (lines(*ROWS, header=HEADER.replace("y [m/s2]", "x [g]")), r"ride\.csv:1: column 'x' .*twice"),
+        (lines(*ROWS, header="time,x,y,z"), r"ride\.csv:1: column 'time \[s\]' .* 'time', 'x', 'y', 'z', "),
+        (lines(*ROWS, header=HEADER.replace("x [m/s2]", "x [mm/s2]")), r"'x' .* 'mm/s2', .*\[m/s2\]"),
+        (third("0,002,0.2,-0.2,0.1"), r"ride\.csv:4:5: .* 5 cells, .* 4; .*';'"),
+        (third("0.002,0.2,-0.2"), r"ride\.csv:4:3: .* 3 cells, .* 4"),
+        (third("0.002,0.2,nan,0.1"), r"ride\.csv:4:3: column 'y \[m/s2\]' is 'nan'"),
+        *(
+            (third(f"0.002,{cell},0.2,0.1"), rf"ride\.csv:4:2: column 'x \[m/s2\]' is '{cell}'")
+            for cell in ("inf", "", "#N/A", "1e400", "1_0")
         ),
-        (lines(), r"ride.csv:1: the file ends after the header"),
-        (lines(*ROWS[:2]), r"ride.csv: contains 2 samples, must be at least 3"),
-        (
-            lines(*ROWS, header=""),
-            rf"ride.csv:2: column 'time \[s\]' is missing; found '0', '0.1', '0.2', '0.3'; {NEEDED}",
-        ),
-        (
-            lines(*ROWS, header=HEADER.replace("z", "w")),
-            rf"ride.csv: column z is missing; found x, y, w; {NEEDED}",
-        ),
-        (lines(*ROWS, header="time [s],x [m/s2],y [m/s2]"), r"ride\.csv:2:4: the row has 4 cells, but the header"),
-        (lines(*ROWS, header=HEADER.replace("y", "x")), r"ride.csv:1: column 'x \[m/s2\]' appears twice"),
-        (lines(*ROWS, header=HEADER.replace("y [m/s2]", "x [g]")), r"ride.csv:1: column 'x' appears twice"),
-        (
-            lines(*ROWS, header="time,x,y,z"),
-            rf"ride.csv:1: column 'time \[s\]' is missing; found 'time', 'x', 'y', 'z'; {NEEDED}",
-        ),
-        (lines(*ROWS, header=HEADER.replace("x [m/s2]", "x [mm/s2]")), r"'x' has the unit 'mm/s2', must be one of"),
-        (
-            lines(*ROWS[:2], "0,002,0.2,-0.2,0.1", ROWS[3]),
-            (
-                "ride\\.csv:4:5: the row has 5 cells, but the header 4; with decimal commas, separate "
-                "the columns by ';', in the header too, because"
-            ),
-        ),
-        (lines(*ROWS[:2], "0.002,0.2,-0.2", ROWS[3]), r"ride\.csv:4:3: the row has 3 cells, but the header"),
-        (
-            lines(*ROWS[:2], "0.002,0.2,nan,0.1", ROWS[3]),
-            r"ride.csv:4:3: column 'y \[m/s2\]' is 'nan', must be a finite number; repair",
-        ),
-        (lines(*ROWS[:2], "0.002,inf,0.2,0.1", ROWS[3]), r"ride\.csv:4:2: column 'x \[m/s2\]' is 'inf', must be"),
-        (lines(*ROWS[:2], "0.002,,0.2,0.1", ROWS[3]), r"ride\.csv:4:2: column 'x \[m/s2\]' is '', must be"),
-        (lines(*ROWS[:2], "0.002,#N/A,0.2,0.1", ROWS[3]), r"ride\.csv:4:2: column 'x \[m/s2\]' is '#N/A', must be"),
-        (lines(*ROWS[:2], "0.002,1e400,0.2,0.1", ROWS[3]), r"ride\.csv:4:2: column 'x \[m/s2\]' is '1e400', must be"),
-        (lines(*ROWS[:2], "0.002,1_0,0.2,0.1", ROWS[3]), r"ride\.csv:4:2: column 'x \[m/s2\]' is '1_0', must be"),
-        (lines(*ROWS, ROWS[0]), r"ride.csv:6: time 0 s is before the time 0.003 s of line 5; .* two logs"),
-        (lines(*ROWS, ROWS[3]), r"ride.csv:6: time 0.003 s repeats the time 0.003 s of line 5"),
-        (
-            lines(*ROWS, "0.0043,0,0,0"),
-            (
-                "ride\\.csv:6: time steps are not uniform: a step of 0\\.0013 s deviates from the median "
-                "0\\.001 s by the factor 0\\.3"
-            ),
-        ),
-        (
-            lines(*ROWS, "0.004,0,0,980"),
-            r"column 'z' deviates by 783\.9 m/s2 from its mean, must be at most 50; is the unit mm",
-        ),
-        (b"time [s]\xff", r"ride\.csv:1: column 'time \[s\]' is missing; found 'time \[s\]ÿ"),
-        (b"time [s]\n\0", r"ride\.csv:2:1: contains a NUL character, so this is a"),
-        (HEADER + "\n" + "1" * 1_000_001, r"ride\.csv:2: the line is longer than 1000000 characters"),
+        (lines(*ROWS, ROWS[0]), r"ride\.csv:6: time 0 s .* 0\.003 s of line 5, .* two logs"),
+        (lines(*ROWS, ROWS[3]), r"ride\.csv:6: time 0\.003 s repeats 0\.003 s of line 5"),
+        (lines(*ROWS, "0.0043,0,0,0"), r"ride\.csv:6: .* 0\.0013 s .* 0\.001 s .* 0\.3"),
+        (lines(*ROWS, "0.004,0,0,980"), r"'z' deviates by 784 m/s2 .* 50; .*mm/s2"),
+        (b"time [s]\xff", r"ride\.csv:1: column 'time \[s\]' .* 'time \[s\]ÿ"),
+        (b"time [s]\n\0", r"ride\.csv:2:1: .*NUL"),
+        (HEADER + "\n" + "1" * 1_000_001, r"ride\.csv:2: .* 1000000 characters"),
     ],
 )
 def test_a_damaged_file_is_refused_with_the_place(write, text, message):
@@ -129,19 +100,13 @@ def test_a_damaged_file_is_refused_with_the_place(write, text, message):
 
 
 def test_a_missing_file_and_a_folder_are_refused(tmp_path):
-    with pytest.raises(ConfigurationError, match=r"nix\.csv: the file does not"):
-        read_acceleration(tmp_path / "nix.csv")
-    with pytest.raises(ConfigurationError, match="the file does not exist"):
-        read_acceleration(tmp_path)
+    for path in (tmp_path / "nix.csv", tmp_path):
+        with pytest.raises(ConfigurationError, match=f"{path.name}: .*does not exist"):
+            read_acceleration(path)
 
 
 def test_a_dead_axis_and_aliased_content_are_noticed(write):
     time = np.arange(2000) * 1e-3
     rows = [f"{t:.3f},0.5,{np.sin(2 * np.pi * 450 * t):.6f},{np.sin(2 * np.pi * 8 * t):.6f}" for t in time]
-    assert read_acceleration(write(lines(*rows))).notices == (
-        "x: constant at 0.5 m/s2; is the sensor missing?",
-        (
-            "y: 100 % of the variance lies above 400 Hz (0.8 of half the sampling rate); was it recorded without an "
-            "anti-alias filter?"
-        ),
-    )
+    dead, aliased = read_acceleration(write(lines(*rows))).notices
+    assert dead.startswith("x: constant at 0.5 m/s2") and aliased.startswith("y: 100 % ") and "400 Hz" in aliased

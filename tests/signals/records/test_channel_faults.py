@@ -27,7 +27,7 @@ def test_a_clipped_record(level, digits):
     assert side == "largest value" and size == pytest.approx(level) and share == np.mean(values >= level - 1e-9)
     assert [one[0] for one in clipped(-values)] == ["smallest value"]
     (said,) = faults({"z": values}, TIME)
-    assert said.startswith("z: clipped?") and "--from S and --to S" in said
+    assert said.startswith("z: clipped?") and "--from, --to" in said
 
 
 @pytest.mark.parametrize("band", BANDS)
@@ -76,7 +76,7 @@ def test_a_stuck_sensor():
     values[8000:11000] = values[8000]
     assert stuck(values, TIME) == pytest.approx((8.0, 10.999))
     (said,) = faults({"z": values}, TIME)
-    assert said.startswith("z: constant for 2.999 s, from 8 to 10.999 s: a stuck sensor")
+    assert said.startswith("z: constant from 8 to 11 s")
     # At a few Hz, half a second is no sign by its length, but by the samples that repeat nowhere else.
     slow, time = noise(BANDS[0], 200.0, 3), np.arange(12_000) / 200.0
     slow[4000:4100] = slow[4000]
@@ -95,7 +95,7 @@ def test_a_channel_that_ends_while_another_goes_on():
     assert faults({"x": fading, "y": other}, TIME) == [] != faults({"x": fading, "y": other}, TIME, moving="xy")
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("held", ["last value", "zero"])
 def test_a_record_that_is_constant_at_an_end(seed, held):
     """It was accepted, and the third of a record without motion lowered its comfort by a fifth."""
@@ -103,7 +103,7 @@ def test_a_record_that_is_constant_at_an_end(seed, held):
     values[14000:] = values[14000] if held == "last value" else 0.0
     assert stuck(values, TIME) == pytest.approx((14.0, 19.999), abs=2e-3)
     (finding,) = faults({"z": values}, TIME)
-    assert finding.options == ("--to", "14") and "with --to 14" in finding
+    assert finding.options == ("--to", "14") and "--to 14" in finding
     assert stuck(values[::-1], TIME) == pytest.approx((0.0, 5.999), abs=2e-3)
     assert faults({"z": values[::-1]}, TIME)[0].options[0] == "--from"
     assert stuck(values[::-1], TIME, from_rest=True) is None  # a plate that is not yet moving
@@ -117,9 +117,8 @@ def test_copies_but_for_offset_and_sign():
 
 @pytest.mark.parametrize("name", shipped_inputs())
 def test_shipped_inputs_are_sound(name):
-    assert not any(
-        "clipped" in text or "constant for" in text for text in read_signal(find_input(name), wheel="fr").notices
-    )
+    notices = read_signal(find_input(name), wheel="fr").notices
+    assert not any("clipped" in text or "constant from" in text for text in notices)
 
 
 @pytest.mark.parametrize(("cell", "text"), [("1e200", "1e+200"), ("inf", "inf"), ("-inf", "-inf")])
@@ -134,5 +133,5 @@ def test_an_absurd_value_is_refused_for_what_it_is(tmp_path, capsys, command, ce
     assert importlib.import_module(f"vehicle.commands.{command}").main(arguments) == (0 if command == "inspect" else 3)
     shown = capsys.readouterr()
     if command == "comfort":
-        assert f"z: {text} at 2 s is too large for a measured value, must be at most 1e+30" in shown.err
+        assert f"z: {text} at 2 s " in shown.err and "1e+30" in shown.err
     assert "missing" not in shown.out + shown.err

@@ -27,7 +27,7 @@ def test_158_gravity_checks_unit_and_range(unit, mean, remedy):
     """The printed advice removed the mean: 2.615, 0.0272 and 0.5334 for 0.2667 m/s2."""
     (finding,) = gravity_findings({"z": mean}, {"z": 0.03}, {"z": unit})
     assert finding.kind == "unit" and finding.options == ("--unit", f"z={remedy}")
-    assert finding.endswith(f"or, if it is an offset of the sensor, set --unit z={unit}")
+    assert finding.endswith(f"offset of the sensor --unit z={unit}")
     assert gravity_findings({"z": mean}, {"z": 0.03}, {"z": unit}, stated=["z"]) == []
 
 
@@ -35,12 +35,7 @@ def test_158_gravity_checks_unit_and_range(unit, mean, remedy):
 def test_an_offset_or_a_tilt_of_one_axis_is_a_question(mean, remedy):
     """A seat sensor with an offset of 1.00 m/s2 and an engine sensor at 60 degrees were refused."""
     (finding,) = gravity_findings({"z": mean}, {"z": 0.5}, {"z": "m/s2"})
-    assert (
-        finding.kind == "doubt"
-        and not finding.options
-        and "if it is an offset or a tilt" in finding
-        and f"z={remedy}" in finding
-    )
+    assert finding.kind == "doubt" and not finding.options and "tilt" in finding and f"z={remedy}" in finding
     axes = {"x": 0.0, "y": 0.0, "z": mean}
     (finding,) = gravity_findings(axes, dict.fromkeys(axes, 0.5), dict.fromkeys(axes, "m/s2"))
     assert finding.kind == "unit"
@@ -68,7 +63,7 @@ def test_a_mean_that_drifts_is_not_gravity():
     time = np.arange(4000) / 100.0
     rising = np.linspace(0.0, 2.0 * G, time.size)
     assert channel_findings("", time, {"z": rising}, {"z": "m/s2"}) == []
-    with pytest.raises(FindingError, match=r"9\.81 m/s2, so the values are in g; set --unit z=g"):
+    with pytest.raises(FindingError, match=r"9\.81 m/s2, .*--unit z=g"):
         channel_findings("", time, {"z": 1.0 + 0.05 * np.sin(20.0 * time)}, {"z": "m/s2"})
 
 

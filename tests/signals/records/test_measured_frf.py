@@ -46,11 +46,11 @@ def test_all_motions_over_motions_become_accelerations_over_displacements(tmp_pa
 @pytest.mark.parametrize(
     ("unit", "message"),
     [
-        ("(m/s2)/N", "a response to a force, but the inputs of the model are plate displacements"),
-        ("g/N", "a response to a force"),
-        ("V/m", "must be a motion of a point divided by a motion of the plate, such"),
-        ("", "has no unit; set --unit knuckle_fr_acc_z=UNIT"),
-        ("qq", "has the unknown unit 'qq'"),
+        ("(m/s2)/N", r"\(m/s2\)/N, a response to a force"),
+        ("g/N", "g/N, a response to a force"),
+        ("V/m", "V/m, must be a motion .*--unit knuckle_fr_acc_z=UNIT"),
+        ("", "no unit; set --unit knuckle_fr_acc_z=UNIT"),
+        ("qq", "unit 'qq'"),
     ],
 )
 def test_others_are_refused(tmp_path, unit, message):
@@ -92,7 +92,7 @@ def test_columns_of_parts_are_one_response(tmp_path, parts):
 def test_a_magnitude_alone_is_refused(tmp_path):
     rows = "\n".join(f"{f!r};{abs(h)!r}" for f, h in zip(LINES.tolist(), TRUTH.tolist(), strict=True))
     (tmp_path / "x.csv").write_text(f"Frequency [Hz];H magnitude [g/m]\n{rows}\n")
-    with pytest.raises(DataError, match="is a spectrum without a phase, must be a frequency response"):
+    with pytest.raises(DataError, match="a spectrum without a phase"):
         read_measured(tmp_path / "x.csv", (NAME,), Choice(channels={NAME: "H*"}))
 
 

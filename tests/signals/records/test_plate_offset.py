@@ -14,12 +14,12 @@ def test_a_plate_that_stands_loses_its_position_too(stands):
     """It stayed at 80 mm beside a plate that was moved to 0: the car was twisted."""
     plates, (finding,) = without_offsets({"fl": 0.08 + MOTION, "fr": np.full(4000, stands)})
     assert np.mean(plates["fl"]) == pytest.approx(0.0, abs=1e-12) and np.all(plates["fr"] == 0.0)
-    assert finding.endswith("the position of the sensor, not a motion of the plate; it was subtracted")
+    assert "80 mm" in finding and finding.endswith("it was subtracted")
 
 
 def test_beside_a_plate_about_zero_nothing_is_subtracted():
     plates, (finding,) = without_offsets({"fl": 0.08 + MOTION, "fr": MOTION})
-    assert np.mean(plates["fl"]) == pytest.approx(0.08, rel=1e-3) and "not subtracted, because fr has none" in finding
+    assert np.mean(plates["fl"]) == pytest.approx(0.08, rel=1e-3) and "because fr has none" in finding
 
 
 def test_rounding_is_no_motion_and_no_drift():

@@ -61,9 +61,7 @@ def test_samples_are_taken_at_their_own_times(drop, error):
     near = np.abs(grid[inner][:, None] - np.array([(n + 0.0) / RATE for n in drop])[None, :]) < 6.0 / RATE
     assert off[~near.any(axis=1)].max() < 2e-3 if drop else True
     assert not drop or "19 gaps of up to 10 ms" in said
-    assert (
-        f"resampled from irregular times (steps deviate from the median by up to 1.4 %) {'with' if drop else 'at'}"
-    ) in said
+    assert "irregular times" in said and "1.4 %" in said
 
 
 def test_a_higher_rate_adds_no_images():
@@ -81,12 +79,10 @@ def test_a_higher_rate_adds_no_images():
 def test_a_gap_is_refused_and_the_advice_works(tmp_path):
     time = jittered(drop=(1000, 1001, 1002))
     path = written(tmp_path / "gap.csv", time, [("z", "m/s2", motion(time))])
-    with pytest.raises(
-        DataError, match=r"gap of 0\.0199887 s after 4\.9950256 s; --resample fills at most 0\.0125002 s; use"
-    ):
+    with pytest.raises(DataError, match=r"gap of 0\.02 s, --resample .* 0\.0125 s; .*--to 4\.9950256"):
         choose(read_record(path), Choice(channels={"z": "z"}, resample=RATE))
     assert clock_options(time)[:1] == ("--from",) and clock_options(time)[-2:] == ("--resample", "200")
-    assert f"set {shlex.join(clock_options(time))} for the longest part" in time_remarks(time)[0]
+    assert f"set {shlex.join(clock_options(time))} " in time_remarks(time)[0]
     assert comfort(["--input", str(path), "--offset", "keep", *clock_options(time)]) == 0
 
 
@@ -94,10 +90,10 @@ def test_the_advice_of_inspect_runs_in_every_command(tmp_path, capsys):
     time = jittered()
     path = written(tmp_path / "seat.csv", time, [(axis, "m/s2", motion(time + n)) for n, axis in enumerate(AXES)])
     assert inspect([str(path)]) == 0
-    assert "set --resample 200, or --rate HZ if" in capsys.readouterr().out
+    assert "--resample 200, or --rate HZ" in capsys.readouterr().out
     bad = Choice(channels={"seat_rail_acc_z": "z"})
     good = Choice(channels={"seat_rail_acc_z": "z"}, resample=RATE, highpass=0.3)
-    refusal = "times are not uniform, steps deviate from the median by up to 1\\.37 %; set --resample"
+    refusal = r"not uniform: .* 1\.37 %; set --resample"
     with pytest.raises(DataError, match=refusal):
         read_measured(path, ["seat_rail_acc_z"], bad)
     with pytest.raises(DataError, match=refusal):
@@ -128,9 +124,8 @@ def test_the_filter_acts_on_uniform_samples(tmp_path):
 def test_a_jittered_acceleration_drives_the_plate(tmp_path):
     time = jittered()
     amplitude, f = 5e-3, 3.0
-    path = written(
-        tmp_path / "a.csv", time, [("a", "m/s2", -amplitude * (2 * np.pi * f) ** 2 * np.sin(2 * np.pi * f * time))]
-    )
+    acceleration = -amplitude * (2 * np.pi * f) ** 2 * np.sin(2 * np.pi * f * time)
+    path = written(tmp_path / "a.csv", time, [("a", "m/s2", acceleration)])
     choice = Choice(channels={"fr": "a"}, resample=RATE, highpass=0.3)
     signal = read_signal(path, choice=choice)
     # full level in the middle of the record; the high-pass of 0.3 Hz leaves 1 - 1e-8 of 3 Hz
@@ -179,7 +174,7 @@ def test_a_slow_comfort_record_says_where_it_ends(tmp_path, capsys):
     assert comfort(["--input", str(path), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["highest_hz"] == pytest.approx(40.0)
-    assert any("contains vibration up to 40 Hz" in text for text in found["reasons"])
+    assert any("end at 40 Hz" in text for text in found["reasons"])
     # Wk(8 Hz)
     validated(
         "Comfort, ISO 2631", "weighted RMS of a sine of 8 Hz sampled at 100 Hz", found["z"]["weighted_rms"],

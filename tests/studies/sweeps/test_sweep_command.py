@@ -217,7 +217,7 @@ def test_the_engine_and_its_reason_are_told_before_the_runs():
     # Where a linear tyre pulls, no difference from MuJoCo is stated.
     rough = [Road("D", speed=100.0, duration=4.0)]
     (note,) = plan_sweep(car, change, rough, SweepSettings(engine="reduced")).engine_notes()
-    assert "lift off: --set AXLE" in note and "class C" not in note
+    assert "--set AXLE.bushings.tyre.one_sided=true" in note and "class C" not in note
     assert plan_sweep(car, change, roads[:1], SweepSettings(engine="reduced")).engine_notes() == ()
     # With MuJoCo the time of the other engine is stated, and whether it is valid.
     for inputs, means in ((roads[:1], "within its valid range (comfort within 0.1 %)"), (roads, "outside its valid")):

@@ -66,19 +66,14 @@ def comfort_values(
     """
     array = np.asarray(acceleration, dtype=np.float64)
     if array.ndim != 3 or array.shape[1] != 3:
-        raise DataError(
-            f"acceleration: found shape {array.shape}, must be (r, 3, n): r signals, the axes x, y and z, n samples"
-        )
+        raise DataError(f"acceleration: found shape {array.shape}, must be (r, 3, n), with the axes x, y and z")
     spectrum = band_periodogram(time_step, array.reshape(-1, array.shape[2]), band)
     axes = rms_of(spectrum).reshape(-1, 3)
     x, y, z = axes.T
     assert spectrum.lines is not None  # a periodogram
     lines = spectrum.lines.reshape(*axes.shape, -1)
     return ComfortValues(
-        axes=axes,
-        overall=np.sqrt(x * x + y * y + z * z),
-        error=overall_error(lines),
-        waves=overall_waves(lines),
+        axes=axes, overall=np.sqrt(x * x + y * y + z * z), error=overall_error(lines), waves=overall_waves(lines)
     )
 
 

@@ -78,21 +78,15 @@ class CumulativeSpectrum:
         return np.sqrt(np.maximum(self.mean_square(lowest, frequency), 0.0))
 
     def third_octaves(self, lowest: float, highest: float) -> ThirdOctaves:
-        """Return the RMS in the third octave bands whose nominal midbands are in [lowest, highest] Hz.
-
-        Raises:
-            DataError: no band in the range, or the range ends above the highest line of the record.
-        """
+        """Return the RMS in the third octave bands whose nominal midbands are in [lowest, highest] Hz."""
         numbers = np.array([n for n in range(-30, 51) if lowest * 0.999 <= nominal_midband(n) <= highest * 1.001])
         if not numbers.size:
-            raise DataError(
-                f"{lowest:g} to {highest:g} Hz: contains no centre frequency of a third octave; choose a wider range"
-            )
+            raise DataError(f"{lowest:g} to {highest:g} Hz: no centre of a third octave; choose a wider range")
         edges = 10.0 ** (np.append(numbers, numbers[-1] + 1) / 10.0) / HALF_BAND
         if edges[-1] > self._edges[-1]:
             raise DataError(
-                f"the highest third octave ends at {edges[-1]:.4g} Hz, above the {self._edges[-1]:.4g} Hz that "
-                "the sampling rate allows; choose a lower range, or a record with a higher sampling rate"
+                f"the highest third octave ends at {edges[-1]:.4g} Hz, must be at most {self._edges[-1]:.4g} Hz for "
+                "this sampling rate; choose a lower range, or sample faster"
             )
         width = np.diff(edges)
         resolved = width * self.duration >= 1.0

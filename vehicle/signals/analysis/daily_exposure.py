@@ -33,7 +33,7 @@ def daily_exposure(acceleration: float, hours: float) -> float:
 def exposure(values: Mapping[str, Any], hours: float) -> dict[str, Any]:
     """Return the daily exposure A(8) to the vibration of a record, with action value and limit value.
 
-    It is that of the vector sum for a hand, that of the largest of 1.4 a_x, 1.4 a_y and a_z for a body.
+    For a hand from the vector sum, for a body from the largest of 1.4 a_x, 1.4 a_y and a_z.
 
     Args:
         values: values of a record, see `evaluate`.

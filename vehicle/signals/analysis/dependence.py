@@ -98,11 +98,7 @@ def copy_of(time_step: float, first: Vector, second: Vector, band: tuple[float, 
 
 
 def refuse_copies(time_step: float, inputs: Vector, names: Sequence[str], band: tuple[float, float]) -> None:
-    """Raise an error if an input is a copy of another.
-
-    Raises:
-        DependentInputsError: copies, with delay and factor.
-    """
+    """Raise an error if an input is a copy of another."""
     for i, j in combinations(range(len(names)), 2):
         relation = copy_of(time_step, inputs[i], inputs[j], band)
         if relation.coherence >= DEPENDENT:
@@ -122,9 +118,6 @@ def common_motions(
 
     Returns:
         Groups in the order of their first inputs: index of each input to its factor; 1 for the first input.
-
-    Raises:
-        DependentInputsError: an input is a delayed or filtered copy, so no common motion exists.
     """
     groups: list[dict[int, float]] = []
     for j in range(len(names)):
@@ -166,24 +159,18 @@ def what_moves(motions: Sequence[Mapping[str, float]], chosen: int | None = None
     if len(motions) > 1 and chosen is None:
         subject += " independently of each other" if len(motions) == len(wheels) else ""
         shared = [f"; {', '.join(motion)} move {motion_words(motion)}" for motion in motions if len(motion) > 1]
-        message = (
-            f"{subject}{''.join(shared)}: the FRFs are separated into responses to each of "
-            f"{', '.join(next(iter(m)) for m in motions)}"
-        )
-        return f"{message}; the coherence is that of {every} plates together"
+        each = ", ".join(next(iter(motion)) for motion in motions)
+        return f"{subject}{''.join(shared)}: an FRF to each of {each}, one coherence with {every} plates together"
     motion = motions[chosen or 0]
     first = f"plate_{next(iter(motion))}_displacement"
     if len(motion) == 1:
-        return (
-            f"{subject}: the FRFs are the responses to {first} alone, the coherence is that of {every} plates together"
-        )
+        return f"{subject}: the FRFs are to {first} alone, the coherence is with {every} plates together"
     if len(motions) > 1:
         plates = ", ".join(f"plate_{wheel}_displacement" for wheel in motion)
         subject, every = f"{subject}, of them {plates}", "these"
     manner = motion_words(motion)
-    return f"{subject} {manner}: the FRFs are the responses to " + (
-        "their common motion" if manner == "alike" else f"{first} while {every} do"
-    )
+    motion_of_frfs = "their common motion" if manner == "alike" else f"{first} while {every} do"
+    return f"{subject} {manner}: the FRFs are to {motion_of_frfs}"
 
 
 def _refusal(first: str, second: str, relation: Copy) -> DependentInputsError:
@@ -192,9 +179,8 @@ def _refusal(first: str, second: str, relation: Copy) -> DependentInputsError:
     early = f", ahead by {-relation.delay:.4g} s" if relation.delay < 0.0 else ""
     scaling = "a filtered" if np.isnan(relation.factor) else f"{relation.factor:.4g} times"
     return DependentInputsError(
-        f"excitations: {second} is {scaling} {first}{late}{early} (coherence {relation.coherence:.4f}, must be "
-        f"below {DEPENDENT:g}). The responses to fully correlated inputs cannot be separated; drive the plates "
-        "with independent signals, or only one plate",
+        f"excitations: {second} is {scaling} {first}{late}{early} (coherence {relation.coherence:.4f}, must be below "
+        f"{DEPENDENT:g}), so their responses cannot be separated; drive the plates independently, or only one",
         relation.delay,
         relation.factor,
     )

@@ -128,9 +128,9 @@ def _axis(
     weighted, settled = span.whole(response), span.settled(response, name)
     if not settled.size:
         raise DataError(
-            f"acceleration: the record has {response.size * step:g} s, must be longer than the "
-            f"{weighting(name).settling_s:g} s in which weighting {name} settles; use a longer record, or set "
-            "--offset keep if the record starts at rest"
+            f"acceleration: the record has {response.size * step:.4g} s, must be longer than the "
+            f"{weighting(name).settling_s:g} s in which {name} settles; use a longer record, or set --offset keep if "
+            "it starts at rest"
         )
     duration = weighted.size * step
     rms = weighted_rms(weighted)
@@ -140,19 +140,18 @@ def _axis(
     settled_rms = weighted_rms(settled)
     remarks = []
     if duration < weighting(name).shortest_record_s * (1.0 - 1e-9):
+        lowest = weighting(name).lowest_frequency
         remarks.append(
-            f"the record has only {duration * weighting(name).lowest_frequency:.1f} periods of "
-            f"{weighting(name).lowest_frequency:g} Hz, where weighting {name} begins ({duration:g} s, for a ride "
-            f"at least {weighting(name).shortest_record_s:.3g} s): the values describe this event, not a ride"
+            f"{duration:.3g} s are too short for a ride: {duration * lowest:.1f} periods of {lowest:g} Hz, where "
+            f"{name} begins, for a ride at least {weighting(name).shortest_record_s:.3g} s; the values describe this "
+            "event"
         )
     peak, with_it = np.abs(settled).max(), np.abs(weighted).max()
     if rms > 0.0 and with_it > (1.0 + START_UP_EFFECT) * peak:
         remarks.append(
-            f"MTVV and crest factor leave out the first {weighting(name).settling_s:g} s, in which weighting "
-            f"{name} settles. With these seconds MTVV would be {mtvv(step, weighted, average=average):.3g} "
-            f"instead of {transient:.3g} m/s2 and the peak {with_it:.3g} instead of {peak:.3g} m/s2. The "
-            f"weighted RMS is {rms:.3g} m/s2 with them and {settled_rms:.3g} m/s2 without. If the record starts "
-            "at rest, set --offset keep"
+            f"MTVV and crest factor leave out the first {weighting(name).settling_s:g} s, in which {name} settles: "
+            f"with them MTVV is {mtvv(step, weighted, average=average):.3g} instead of {transient:.3g} m/s2, the peak "
+            f"{with_it:.3g} instead of {peak:.3g} m/s2; if the record starts at rest, set --offset keep"
         )
     values = {
         "weighting": name,
@@ -191,14 +190,11 @@ def _about_motion_sickness(duration: float) -> list[str]:
     if duration >= MOTION_SICKNESS_PERIOD * (1.0 - 1e-9):
         return []
     shortest = curve.shortest_record_s
-    held = (
-        f"the record has {duration:g} s, {duration * curve.lowest_frequency:.1f} periods of "
-        f"{curve.lowest_frequency:g} Hz"
-    )
+    held = f"{duration:.3g} s are {duration * curve.lowest_frequency:.1f} periods of {curve.lowest_frequency:g} Hz"
     if duration < shortest * (1.0 - 1e-9):
-        return [f"motion sickness dose (msdv): {held}; at least {shortest:.3g} s are needed, so there is no value"]
+        return [f"no motion sickness dose (msdv): {held}; record at least {shortest:.3g} s"]
     return [
-        f"motion sickness dose (msdv): only a rough estimate; {held}, and ISO 2631-1, D.1, requires "
+        f"motion sickness dose (msdv) is a rough estimate: {held}; ISO 2631-1, D.1, requires "
         f"{MOTION_SICKNESS_PERIOD:g} s"
     ]
 
@@ -262,7 +258,7 @@ def evaluate(
         raise DataError(f"acceleration: {still} zero throughout; select channels that contain vibration")
     if not 0.0 <= skip < (rows[0].size - 1) * step:
         raise ConfigurationError(
-            f"skip: found {skip:g} s, must be at least 0 s and shorter than the record, {rows[0].size * step:g} s"
+            f"skip: found {skip:g} s, must be at least 0 and shorter than the record, {rows[0].size * step:.4g} s"
         )
     span = _Span(time_step=step, skip=skip, from_rest=from_rest)
     values: dict[str, Any] = dict.fromkeys(AXES)
@@ -298,11 +294,11 @@ def evaluate(
     limited = band < range_end * (1.0 - CLOCK_TOLERANCE)
     if limited:
         reasons.append(
-            f"the record contains vibration up to {band:.4g} Hz; the values exclude higher frequencies (to "
-            f"{range_end:g} Hz in {contact_point.standard.partition(':')[0]})"
+            f"the record, and so the values, end at {band:.3g} Hz, not at the {range_end:g} Hz of "
+            f"{contact_point.standard.partition(':')[0]}"
         )
     if contact_point.health_factors is None:
-        reasons.append(f"vector_sum.health_weighted_rms has no value: the standard has no health factors for {contact}")
+        reasons.append(f"vector_sum.health_weighted_rms is empty: the standard has no health factors for {contact}")
     return {
         "place": contact,
         "standard": contact_point.standard,

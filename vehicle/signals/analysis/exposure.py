@@ -44,9 +44,7 @@ def mtvv(
     square = _one(weighted) ** 2
     length = round(integration_s / step)
     if length < 1:
-        raise ConfigurationError(
-            f"integration_s: found {integration_s:g} s, must be at least the time step of the record"
-        )
+        raise ConfigurationError(f"integration_s: found {integration_s:g} s, must be at least the time step")
     if average == "linear":
         total = np.cumsum(square, out=square)
         # Windows that begin before the record, where the signal is zero, count too.

@@ -1,4 +1,4 @@
-"""Lengths with fast Fourier transforms: those of `scipy.fft.next_fast_len`, whose import takes a tenth of a second."""
+"""Lengths with fast Fourier transforms, equal to `scipy.fft.next_fast_len`, whose import takes a tenth of a second."""
 
 
 def fast_length(samples: int) -> int:

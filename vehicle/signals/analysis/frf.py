@@ -19,6 +19,7 @@ from vehicle.signals.analysis.samples import (
     checked_time_step,
     is_constant,
     lines_in_band,
+    refuse_constant,
 )
 from vehicle.signals.analysis.segments import MINIMUM_AVERAGES, cut_into_segments
 from vehicle.threads import one_blas_thread
@@ -26,6 +27,12 @@ from vehicle.threads import one_blas_thread
 EXCITED = 1e-24
 """Minimum power of an excited line over the strongest line: amplitude ratio 1e-12, below which rounding of the
 transform leaves fewer than three correct digits."""
+
+CONSTANT = "{}: constant, so it has no FRF and no coherence"
+"""Notice on a response that does not move."""
+
+CORRELATED = "the inputs are fully correlated there, so their responses cannot be separated"
+"""Cause of an undefined FRF at lines with dependent inputs."""
 
 INDEPENDENCE = 1e-2
 """Minimum eigenvalue of the excitation matrix scaled to unit diagonal [-]: for two inputs 1 minus the modulus of their
@@ -129,13 +136,7 @@ def frequency_responses(
     outputs = checked_names("response", names, y.shape[0])
     minimum = minimum_averages if inputs == 1 else max(minimum_averages, inputs + 1.0)
     cut = cut_into_segments(x.shape[1], step, window_s=window_s, overlap=overlap, minimum_averages=minimum)
-    for i in np.flatnonzero(is_constant(x)):
-        others = " or ".join(name for name in labels if name != labels[i])
-        raise DataError(
-            f"{labels[i]}: constant at {x[i, 0]:g} over all {x.shape[1]} samples, so there is no frequency "
-            f"response to it; use {f'only {others}' if others else 'a channel that moves'}"
-        )
-
+    refuse_constant(x, labels)
     options = {"window": cut.window, "nperseg": cut.length, "noverlap": cut.overlap, "detrend": "constant"}
     lines, syy = scipy.signal.welch(y, 1.0 / step, **options)
     inside = lines_in_band(lines, edges)
@@ -166,9 +167,9 @@ def frequency_responses(
     response[:, :, separable] = np.moveaxis(solution / size[separable][:, :, None], (0, 1, 2), (2, 0, 1))
     response[:, still] = complex(np.nan, np.nan)
     inflation[:, separable] = np.real(np.einsum("mii->im", np.linalg.inv(scaled[separable])))
-    reasons = [f"{outputs[i]}: constant, so its FRF and its coherence are undefined" for i in np.flatnonzero(still)]
+    reasons = [CONSTANT.format(outputs[i]) for i in np.flatnonzero(still)]
     if cut.averages < 2.0:
-        reasons.append(f"the coherence is undefined with {cut.averages:.3g} averages: a single average always gives 1")
+        reasons.append(f"no coherence with {cut.averages:.3g} averages: a single average always gives 1")
     else:
         # Gxy^H Gxx^-1 Gxy: power of the response that the inputs explain.
         explained = np.real(np.einsum("mpk,mpk->km", cross.conj(), solution))
@@ -176,15 +177,12 @@ def frequency_responses(
         np.divide(explained, syy[:, separable], out=share, where=(syy[:, separable] > 0.0) & ~still[:, None])
         coherence[:, separable] = share
     for lost, cause in (
-        (~reached, "the input has no power there, so the FRF is undefined"),
-        (
-            reached & ~separable,
-            "the inputs are fully correlated there, so their responses cannot be separated; use one input",
-        ),
+        (~reached, "the input has no power there"),
+        (reached & ~separable, f"{CORRELATED}; use one input"),
     ):
         if lost.any():
             where = lines[inside][lost]
-            reasons.append(f"{where.size} lines between {where[0]:g} and {where[-1]:g} Hz: {cause}")
+            reasons.append(f"no FRF at {where.size} lines of {where[0]:.3g} to {where[-1]:.3g} Hz: {cause}")
     # n - p + 1 averages are left, and dependent inputs reduce them further.
     averages = (cut.averages - inputs + 1.0) / inflation  # (p, m)
     noise = np.sqrt((1.0 - np.minimum(coherence, 1.0)) * syy / 2.0)  # (k, m)
@@ -221,8 +219,7 @@ def _refuse_dependent(scaled: Complex, independence: Vector, labels: tuple[str, 
     ]
     which = "copies: " + ", ".join(pairs) if pairs else f"one of {', '.join(labels)} depends linearly on the others"
     raise DataError(
-        f"excitations: {which}, so the responses to the inputs cannot be separated (smallest eigenvalue of their "
-        f"normalised spectral matrix Gxx {np.median(independence):.3g}, must be at least {INDEPENDENCE:g}). Use "
-        "one input alone (its FRF is the response to the common motion), or drive the inputs with independent "
-        "signals"
+        f"excitations: {which}, so their responses cannot be separated (smallest eigenvalue of the normalised Gxx "
+        f"{np.median(independence):.3g}, must be at least {INDEPENDENCE:g}). Use one input, for the response to the "
+        "common motion, or drive the inputs independently"
     )

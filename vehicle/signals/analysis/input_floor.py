@@ -53,10 +53,10 @@ and cannot be separated from the transient of the car."""
 
 CAUSES = (
     "the input is weaker than its rounding errors and leakage",
-    "the input has less than 3 % of the power of the adjacent lines, at the edge of its frequency band",
-    "the input has power at fewer than five lines, like a sine, so FRF and transient cannot be separated",
+    "the input has less than 3 % of the power of the lines beside it",
+    "the input has fewer than five lines, like a sine, so FRF and transient cannot be separated",
     "the input has at most 1e-4 of the power within an octave, which is leakage",
-    "the input is a single event such as a bump (smooth spectrum), so FRF and transient cannot be separated",
+    "the input is a single event, for example a bump, so FRF and transient cannot be separated",
 )
 """Causes of an undefined FRF at a line, for messages."""
 
@@ -160,11 +160,7 @@ def _cubic_basis(half: int) -> Vector:
 
 
 def silent_lines(
-    inputs: Vector,
-    spectra: Complex,
-    centres: NDArray[np.int_],
-    halves: NDArray[np.int_],
-    rounding: Sequence[float],
+    inputs: Vector, spectra: Complex, centres: NDArray[np.int_], halves: NDArray[np.int_], rounding: Sequence[float]
 ) -> NDArray[np.int_]:
     """Return the cause of an undefined FRF at each line.
 
@@ -219,12 +215,13 @@ def cause_messages(frequency: Vector, silent: NDArray[np.int_], causes: Sequence
         if affected.size:
             # Consecutive lines form a range.
             runs = np.split(affected, np.flatnonzero(np.diff(affected) > 1) + 1)
-            ends = [(f"{frequency[run[0]]:.2f}", f"{frequency[run[-1]]:.2f}") for run in runs[:4]]
+            ends = [(f"{frequency[run[0]]:.3g}", f"{frequency[run[-1]]:.3g}") for run in runs[:4]]
             spans = ", ".join(low if low == high else f"{low} to {high}" for low, high in ends)
             more = f" and {len(runs) - 4} more ranges" if len(runs) > 4 else ""
             few = affected.size <= FEW * frequency.size
             remedy = "drive the car with a random signal" if cause in TRANSIENT else "give the input more power there"
             advice = "the other lines are good" if few else remedy
-            lines = f"{affected.size} of {frequency.size} lines"
-            messages.append(f"no FRF at {spans} Hz{more} ({lines}): {cause}; {advice}")
+            messages.append(
+                f"no FRF at {spans} Hz{more} ({affected.size} of {frequency.size} lines): {cause}; {advice}"
+            )
     return messages

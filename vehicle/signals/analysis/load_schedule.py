@@ -40,7 +40,7 @@ class ScheduledLoad:
         name, unit: of the channel.
         equivalent_amplitude: A of the schedule [unit].
         shares: share of each run in the damage [-]; 0 without damage.
-        ratio: damage over that of the reference run [-]; None without one, or without damage there.
+        ratio: damage over the damage of the reference run [-]; None without one, or without damage there.
     """
 
     name: str
@@ -59,9 +59,6 @@ def scheduled_loads(
         repeats: number of repeats of each, above 0.
         slope: slope k of the Woehler curve [-].
         reference: reference run; None without one.
-
-    Raises:
-        ConfigurationError: another number of repeats than of runs, a number that is not positive, or no common channel.
     """
     if len(repeats) != len(runs) or not all(0.0 < count < float("inf") for count in repeats):
         raise ConfigurationError(

@@ -45,9 +45,6 @@ class Cycles:
         Args:
             slope: slope k of the Woehler curve [-].
             duration: length T of the record [s].
-
-        Raises:
-            ConfigurationError: a slope below 1 or not finite, or a duration that is not above 0.
         """
         if not (1.0 <= slope < np.inf and duration > 0.0):
             raise ConfigurationError(
@@ -65,14 +62,8 @@ class Cycles:
 def count_cycles(load: npt.ArrayLike) -> Cycles:
     """Count the rainflow cycles of a load.
 
-    Args:
-        load: samples; (n,).
-
     Returns:
         Ranges and counts; empty for a constant load.
-
-    Raises:
-        MissingPartError: the package `rainflow` is not installed.
     """
     try:
         rainflow = import_module("rainflow")

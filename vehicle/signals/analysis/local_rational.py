@@ -23,7 +23,7 @@ from vehicle.arrays import Mask
 from vehicle.digits import number
 from vehicle.errors import DataError
 from vehicle.signals.analysis.dependence import refuse_copies
-from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.signals.analysis.frf import CONSTANT, CORRELATED, FrequencyResponse
 from vehicle.signals.analysis.input_floor import CAUSES, cause_messages, silent_lines
 from vehicle.signals.analysis.output_error import WindowFit, fit_windows
 from vehicle.signals.analysis.record_lines import RecordLines, is_long
@@ -36,6 +36,7 @@ from vehicle.signals.analysis.samples import (
     checked_signals,
     checked_time_step,
     is_constant,
+    refuse_constant,
 )
 from vehicle.threads import one_blas_thread
 
@@ -69,9 +70,6 @@ INDEPENDENT = 1e-2
 
 OUTPUTS_OF_A_LONG_RECORD = 12
 """Responses of a long record processed in a batch, to limit the memory."""
-
-SAME = "the inputs are fully correlated there, so that their responses cannot be separated"
-"""Cause of an undefined FRF at lines with dependent inputs."""
 
 
 @one_blas_thread()
@@ -125,14 +123,10 @@ def local_rational_responses(
     shortest = shortest_record(len(inputs), band[1])
     if samples * step < shortest:
         raise DataError(
-            f"record: {samples * step:g} s is too short for an FRF up to {band[1]:g} Hz; record at least "
+            f"record: {samples * step:.3g} s are too short for an FRF up to {band[1]:g} Hz; record at least "
             f"{shortest:.3g} s"
         )
-    for index in np.flatnonzero(is_constant(inputs)):
-        raise DataError(
-            f"{labels[index]}: is constant, at {inputs[index, 0]:g}; an FRF needs a moving input; drive it, or "
-            "select a moving input"
-        )
+    refuse_constant(inputs, labels)
     if len(inputs) > 1:
         refuse_copies(step, inputs, labels, band)
     last = samples // 2
@@ -142,10 +136,7 @@ def local_rational_responses(
     centres = np.unique(np.round(requested / line).astype(int))
     centres = centres[(centres > least_half) & (centres < last - least_half)]
     if not centres.size:
-        raise DataError(
-            f"record: sampled at {1.0 / step:g} Hz, which is too slow for an FRF from {band[0]:g} Hz on; record "
-            "at a higher rate"
-        )
+        raise DataError(f"record: {1.0 / step:.4g} Hz are too slow for an FRF from {band[0]:g} Hz on; sample faster")
     halves = np.clip(np.round(RELATIVE_WIDTH * centres), least_half, MOST_HALF_WIDTH).astype(int)
     # A window ends within the spectrum, without the line at 0 Hz.
     halves = np.minimum(halves, np.minimum(centres - 1, last - centres))
@@ -199,11 +190,8 @@ def local_rational_responses(
     frequency = centres * line
     reasons = (
         *_coarse(line),
-        *cause_messages(frequency, silent, (*CAUSES, SAME)),
-        *(
-            f"{output_names[row]}: constant, so its FRF and its coherence are undefined"
-            for row in np.flatnonzero(~moving)
-        ),
+        *cause_messages(frequency, silent, (*CAUSES, CORRELATED)),
+        *(CONSTANT.format(output_names[row]) for row in np.flatnonzero(~moving)),
     )
     return tuple(
         FrequencyResponse(
@@ -260,7 +248,6 @@ def _coarse(line: float) -> tuple[str, ...]:
         return ()
     low, high = (number(100.0 * resolution / (2.0 * frequency), 2) for frequency in (3.0, 30.0))
     return (
-        f"resonances narrower than {number(resolution, 2)} Hz between the half-power points (damping ratio below "
-        f"{low} % at 3 Hz, {high} % at 30 Hz) are not resolved by a "
-        f"record of {1.0 / line:.3g} s: their peaks are too low; use a longer record",
+        f"{1.0 / line:.3g} s do not resolve peaks narrower than {number(resolution, 2)} Hz (damping ratio below {low} "
+        f"% at 3 Hz, {high} % at 30 Hz): they are too low; use a longer record",
     )

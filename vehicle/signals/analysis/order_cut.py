@@ -47,16 +47,11 @@ def order_cut(
         speed: its angular speed [rad/s]; (n,).
         orders: multiples of the angle.
         begin: time from which the record is evaluated [s].
-
-    Raises:
-        DataError: the record has fewer than `TURNS` turns, or an order is above half the sampling rate.
     """
     turned = angle / (2.0 * np.pi)
     first = float(turned[min(int(np.searchsorted(time, begin - 1e-9)), time.size - 1)])
     if turned[-1] - first < TURNS:
-        raise DataError(
-            f"orders: {turned[-1] - first:.3g} turns are evaluated, must be at least {TURNS}; use a longer run"
-        )
+        raise DataError(f"orders: {turned[-1] - first:.3g} turns, must be at least {TURNS}; use a longer run")
     highest, rate = max(orders) * float(np.max(speed)) / (2.0 * np.pi), 1.0 / float(time[1] - time[0])
     if highest >= 0.5 * rate:
         raise DataError(

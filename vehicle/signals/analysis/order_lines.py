@@ -53,18 +53,12 @@ def order_lines(
         turns: turns of the part per second [Hz].
         orders: multiples of it.
         begin: time from which the record is evaluated [s].
-
-    Raises:
-        DataError: the record has fewer than `TURNS` turns, or an order is above half the sampling rate.
     """
     interval = float(time[1] - time[0])
     first = round((begin - float(time[0])) / interval)
     length, count = round(TURNS / (turns * interval)), time.size - first
     if count < length:
-        raise DataError(
-            f"orders: the evaluated {count * interval:.3g} s contain {count * interval * turns:.3g} turns, "
-            f"must be at least {TURNS}; use a longer run"
-        )
+        raise DataError(f"orders: {count * interval * turns:.3g} turns, must be at least {TURNS}; use a longer run")
     highest = max(orders) * turns
     if highest >= 0.5 / interval:
         raise DataError(

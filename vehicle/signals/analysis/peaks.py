@@ -71,9 +71,6 @@ def resonance_peaks(
         coherence: coherence of the lines [-], shape (m,).
         random_error: standard error of the magnitude [unit of the FRF], shape (m,); 0 by default.
         prominence_db: minimum prominence [dB].
-
-    Raises:
-        DataError: shapes differ, frequency not increasing, magnitude zero, negative or infinite.
     """
     lines = np.asarray(frequency, dtype=np.float64)
     values = np.asarray(magnitude, dtype=np.float64)

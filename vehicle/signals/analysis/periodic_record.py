@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from vehicle.digits import number
-from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.signals.analysis.frf import CONSTANT, FrequencyResponse
 from vehicle.signals.analysis.input_floor import ABOVE_FLOOR, rounding_step
 from vehicle.signals.analysis.local_rational import local_rational_responses
 from vehicle.signals.analysis.samples import (
@@ -98,9 +98,6 @@ def whole_record_responses(
     Returns:
         One FRF for each input; `estimator` is the name of the estimator. If a periodic input is not evaluated by its
         periods, because a response has not settled or is nonlinear, the first of `reasons` is a message.
-
-    Raises:
-        DataError: see `vehicle.signals.analysis.local_rational.local_rational_responses`.
     """
     inputs, outputs = checked_signals("excitations", excitations), checked_rows("responses", responses)
     evaluated, notice = inputs.shape[1], ""
@@ -203,7 +200,7 @@ def _periodic_response(
     reasons = []
     for row, (samples, name) in enumerate(zip(responses, names, strict=True)):
         if is_constant(samples[None])[0]:
-            reasons.append(f"{name}: constant, so its FRF and its coherence are undefined")
+            reasons.append(CONSTANT.format(name))
             continue
         spectra = np.fft.rfft(samples[-count * period :].reshape(count, period), axis=1)[:, lines]
         changes = np.linalg.norm(spectra[:-1] - spectra[-1], axis=1)
@@ -213,9 +210,9 @@ def _periodic_response(
         noisy = spectra[earlier[-1] + 1 if earlier.size else 0 :]
         if not changes[-1] <= SETTLED * size and len(noisy) < NOISE_PERIODS:
             return count * period, (
-                f"the input repeats every {period * step:g} s, but {name} is not settled: it changes by "
-                f"{number(100.0 * changes[-1] / size if size else math.inf, 2)} % between the last two periods, "
-                f"must be at most {100.0 * SETTLED:g} %. The record is evaluated as random; record more periods"
+                f"the input repeats every {period * step:.4g} s, but {name} changes by "
+                f"{number(100.0 * changes[-1] / size if size else math.inf, 2)} % between the last two periods, must "
+                f"be at most {100.0 * SETTLED:g} %: evaluated as random; record more periods"
             )
         variance = np.sum(np.abs(noisy - noisy.mean(axis=0)) ** 2, axis=0) / (len(noisy) - 1)
         # Two periods do not distinguish noise from the end of a transient, which has decayed more in the last one.
@@ -227,10 +224,10 @@ def _periodic_response(
         distortion = distortion - noise if distortion > DISTINCT * noise else 0.0
         if not distortion <= DISTORTED**2:
             return period, (
-                f"the input repeats every {period * step:g} s, but the FRF of {name} scatters by "
+                f"the input repeats every {period * step:.4g} s, but the FRF of {name} scatters by "
                 f"{number(100.0 * math.sqrt(distortion), 2)} % from line to line, must be at most "
-                f"{100.0 * DISTORTED:g} %: the car is nonlinear, or the lines are too far apart. The last period "
-                "is evaluated as a random record"
+                f"{100.0 * DISTORTED:g} % (a nonlinear car, or lines too far apart): the last period is evaluated as "
+                "random"
             )
         response[row] = mean / drive[lines]
         # Variance of Y: noise of the mean, or distortion, which repeats and no average lowers.
@@ -248,14 +245,14 @@ def _periodic_response(
         averages=averages,
         segments=count,
         window="none (whole periods)",
-        estimator=f"periodic input, {count} periods of {period * step:g} s",
+        estimator=f"periodic input, {count} periods of {period * step:.4g} s",
         resolution_hz=float(np.diff(frequency[lines]).min()),
         reasons=tuple(reasons),
     )
 
 
 def _scatter(frequency: Vector, drive: Complex, response: Complex) -> Vector:
-    """Return the variance of a response around that of a smooth FRF, in windows of adjacent lines.
+    """Return the variance of a response about a smooth FRF, in windows of adjacent lines.
 
     With H = (b0 + b1 x + b2 x^2) / (1 + a x), Y = U (b0 + b1 x + b2 x^2) - a x Y is linear in the unknowns. The
     variance is that at the middle of the window, x = 0.

@@ -109,11 +109,8 @@ def phase_inputs(
         time_step: sampling interval of the record [s].
         record: samples of each input, (n,); the density is their mean.
         delays: delay of each input to the first [s]; 0 by default.
-        interval: sampling interval of the inputs and of the responses to them [s]; that of the record by default.
+        interval: sampling interval of the inputs and of the responses to them [s]; of the record by default.
         seed: seed of the phases.
-
-    Raises:
-        DataError: the record is shorter than a period, or no input moves.
     """
     interval = interval or time_step
     period, lead, change = (round(length / interval) for length in (PERIOD, LEAD, CHANGE))

@@ -64,9 +64,6 @@ def row_of(name: ResponseName, names: Sequence[ResponseName]) -> tuple[int, floa
 
     The FRF of an input to its plate p is H / a_p. The FRF of one plate also matches an input that moves further
     plates with it. An unknown input is the only one of the set.
-
-    Raises:
-        DataError: the input is unknown, and the set has several.
     """
     rows = [row for row, other in enumerate(names) if other.output == name.output]
     if not rows:
@@ -75,8 +72,8 @@ def row_of(name: ResponseName, names: Sequence[ResponseName]) -> tuple[int, floa
         inputs = list(dict.fromkeys(names[row].input for row in rows))
         if len(rows) > 1:
             raise DataError(
-                f"{name.output}: the FRF does not state which of the {len(inputs)} plates moves; name the plate, "
-                f"for example --map {name.output}/{inputs[0]}=NAME (plates: {', '.join(inputs)})"
+                f"{name.output}: which of the {len(inputs)} plates ({', '.join(inputs)}) moves? Name it, for example "
+                f"--map {name.output}/{inputs[0]}=NAME"
             )
         return rows[0], 1.0
     first = name.motion[0][0]

@@ -45,10 +45,7 @@ def wave_names(name: str) -> tuple[str, ...]:
     return tuple(f"{name}_wave_{number}_{part}" for number in range(1, WAVES + 1) for part in ("re", "im"))
 
 
-MEANING = {
-    UNWEIGHTED: "RMS in 2 to 50 Hz",
-    WEIGHTED: "RMS after the weightings of a seat (ISO 2631-1)",
-}
+MEANING = {UNWEIGHTED: "RMS in 2 to 50 Hz", WEIGHTED: "RMS after the weightings of a seat (ISO 2631-1)"}
 """Name to its words on the console, in reports and figures."""
 
 
@@ -92,9 +89,6 @@ def comfort_columns(
     Returns:
         Name to values, (r,) each: those of `comfort_units` with these names, and their `wave_names`. `seat_value` is
         NaN for a rail at rest.
-
-    Raises:
-        DataError: a record that is too short or not finite.
     """
     columns = _point(time_step, rail, skip, band, names, contact, errors)
     if cushion is not None:

@@ -76,8 +76,8 @@ def road_level(time_step: float, height: ArrayLike, speed: float, *, window_s: f
     usable = np.isfinite(bands.rms) & (bands.rms > 0.0)
     if np.count_nonzero(usable) < LEAST_BANDS:
         raise DataError(
-            f"road: the record gives {np.count_nonzero(usable)} third octaves between {FITTED[0]:g} and "
-            f"{FITTED[1]:g} cycles/m, must be at least {LEAST_BANDS} for a road class; record a longer road"
+            f"road: {np.count_nonzero(usable)} third octaves between {FITTED[0]:g} and {FITTED[1]:g} cycles/m, must be "
+            f"at least {LEAST_BANDS} for a road class; record a longer road"
         )
     low, high = bands.edges[:-1][usable] / speed, bands.edges[1:][usable] / speed
     # Mean square over the width of the band in cycles/m.

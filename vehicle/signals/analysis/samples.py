@@ -31,9 +31,6 @@ def checked_signals(label: str, signals: ArrayLike) -> Vector:
     Args:
         label: name of the signals in messages.
         signals: samples, shape (n,) or (k, n).
-
-    Raises:
-        DataError: wrong shape, no sample, or a NaN or infinite value (the message contains the first).
     """
     array = np.asarray(signals, dtype=np.float64)
     if array.ndim not in (1, 2) or array.size == 0:
@@ -78,12 +75,7 @@ def checked_same_length(label: str, signals: Vector, reference: str, length: int
 
 
 def checked_band(band: tuple[float, float], time_step: float) -> tuple[float, float]:
-    """Return the band (low, high) [Hz]; check 0 <= low < high and a sampling rate of at least 2.5 high.
-
-    Raises:
-        ConfigurationError: the band is empty, negative or not finite.
-        DataError: the record is sampled too slowly for the upper edge.
-    """
+    """Return the band (low, high) [Hz]; check 0 <= low < high and a sampling rate of at least 2.5 high."""
     low, high = (float(edge) for edge in band)
     if not (np.isfinite([low, high]).all() and 0.0 <= low < high):
         raise ConfigurationError(f"band: found {low:g} to {high:g} Hz, must be 0 <= low < high, both finite")
@@ -108,12 +100,19 @@ def is_constant(signals: Vector) -> Mask:
     return np.asarray(np.ptp(signals, axis=-1) <= 8.0 * np.finfo(np.float64).eps * size)
 
 
+def refuse_constant(inputs: Vector, names: Sequence[str]) -> None:
+    """Reject inputs of an FRF, (p, n), of which one does not move."""
+    for row in np.flatnonzero(is_constant(inputs)).tolist():
+        others = " or ".join(name for name in names if name != names[row])
+        raise DataError(
+            f"{names[row]}: constant at {inputs[row, 0]:.3g}, so no FRF to it; use {others or 'a channel that moves'}"
+        )
+
+
 def checked_names(label: str, names: Sequence[str] | None, count: int) -> tuple[str, ...]:
     """Return a name for each signal: the given names, or `label 0`, `label 1`, ..."""
     if names is None:
         return tuple(f"{label} {i}" for i in range(count))
     if len(names) != count:
-        raise ConfigurationError(
-            f"names: found {len(names)} names for {count} {label} signals; set a name for each signal"
-        )
+        raise ConfigurationError(f"names: found {len(names)} names for {count} {label} signals; name each signal")
     return tuple(names)

@@ -1,4 +1,4 @@
-"""SEAT value: ratio of the weighted vibration on a seat to that of its rail; weighted RMS by axis."""
+"""SEAT value: ratio of the weighted vibration on a seat to its rail; weighted RMS by axis."""
 
 from dataclasses import dataclass
 
@@ -17,9 +17,9 @@ class SeatValue:
     """Seat effective amplitude transmissibility along z: a seat with a value below 1 isolates."""
 
     rms: float
-    """weighted RMS on the seat over that of the rail [-]"""
+    """weighted RMS, seat over rail [-]"""
     vdv: float
-    """vibration dose value on the seat over that of the rail, for shocks [-]"""
+    """vibration dose value, seat over rail, for shocks [-]"""
     weighting: str
     """weighting of both accelerations"""
 

@@ -77,9 +77,7 @@ def cut_into_segments(
         DataError: the record is too short; the message contains the required length.
     """
     if not (np.isfinite(window_s) and window_s >= 8.0 * time_step):
-        raise ConfigurationError(
-            f"window_s: found {window_s:g} s, must be at least 8 time steps ({8.0 * time_step:g} s)"
-        )
+        raise ConfigurationError(f"window_s: found {window_s:g} s, must be at least {8.0 * time_step:g} s (8 steps)")
     if not 0.0 <= overlap < 1.0:
         raise ConfigurationError(f"overlap: found {overlap:g}, must be 0 <= overlap < 1")
     length = round(window_s / time_step)
@@ -93,10 +91,9 @@ def cut_into_segments(
         while effective_averages(window, step, needed) < minimum_averages:
             needed += 1
         raise DataError(
-            f"record too short: {samples * time_step:g} s give {averages:.3g} averages with windows of "
-            f"{window_s:g} s and {100 * overlap:g} % overlap, must be at least {minimum_averages:g}; record at "
-            f"least {(length + (needed - 1) * step) * time_step:g} s, or use a shorter window (coarser frequency "
-            "lines)"
+            f"record too short: {samples * time_step:.4g} s give {averages:.3g} averages with windows of {window_s:g} "
+            f"s and {100 * overlap:g} % overlap, must be at least {minimum_averages:g}; record at least "
+            f"{(length + (needed - 1) * step) * time_step:.4g} s, or use a shorter window"
         )
     return Segments(length=length, step=step, count=count, averages=averages, window=window)
 
@@ -133,10 +130,6 @@ def window_extremes(time_step: float, signal: ArrayLike, window_s: float = 0.5) 
 
     Returns:
         Extremes, shape (w,), in the unit of the signal.
-
-    Raises:
-        ConfigurationError: the time step or the window is out of range.
-        DataError: more than one signal, a value that is not finite, or a record shorter than a window.
     """
     step = checked_time_step(time_step)
     values = checked_single("signal", "signal", signal)

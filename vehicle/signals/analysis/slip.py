@@ -164,12 +164,7 @@ def slip_phases(
                 delay = float(time[top] - start)
                 if delay > BREAK_AWAY:
                     peaks.append(
-                        SlipPeak(
-                            time=float(time[top]),
-                            delay=delay,
-                            height=float(relative[top]),
-                            prominence=prominence,
-                        )
+                        SlipPeak(time=float(time[top]), delay=delay, height=float(relative[top]), prominence=prominence)
                     )
         at_start = np.abs(time - start) <= BREAK_AWAY
         during = (time >= start) & (time <= end)

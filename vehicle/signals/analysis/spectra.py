@@ -40,12 +40,7 @@ class PowerSpectralDensity:
 
 
 def power_spectral_density(
-    time_step: float,
-    signals: ArrayLike,
-    *,
-    window_s: float = 4.0,
-    overlap: float = 0.5,
-    minimum_averages: float = 1.0,
+    time_step: float, signals: ArrayLike, *, window_s: float = 4.0, overlap: float = 0.5, minimum_averages: float = 1.0
 ) -> PowerSpectralDensity:
     """Estimate one-sided densities by Welch's method: Hann window, mean of each segment removed.
 
@@ -113,11 +108,7 @@ def _periodogram(step: float, array: Vector, lines: slice) -> PowerSpectralDensi
 
 
 def band_periodogram(time_step: float, signals: ArrayLike, band: tuple[float, float]) -> PowerSpectralDensity:
-    """Return the periodogram of the whole record, limited to the lines in the closed band [Hz].
-
-    Raises:
-        DataError: sampling rate too low for the upper edge, or no line in the band of a short record.
-    """
+    """Return the periodogram of the whole record, limited to the lines in the closed band [Hz]."""
     step = checked_time_step(time_step)
     edges, array = checked_band(band, step), checked_signals("signals", signals)
     inside = np.flatnonzero(lines_in_band(np.fft.rfftfreq(array.shape[1], step).astype(np.float64), edges))

@@ -76,9 +76,6 @@ def vibration_spectra(
         channels: name to the evaluated part of its time history, (n,).
         units: name to unit.
         frequency_range: lowest and highest frequency [Hz]; the highest is lowered to 0.4 of the sampling rate.
-
-    Raises:
-        DataError: a record is too short or not finite, or the range is empty.
     """
     lowest, highest = frequency_range[0], min(frequency_range[1], 0.4 / time_step)
     if not 0.0 < lowest < highest:

@@ -25,33 +25,23 @@ UPPER_BAND_EDGE_HZ = 50.0
 
 
 def samples_of(duration: float, rate: float) -> int:
-    """Return the number of steps N in `duration` [s] at `rate` [Hz]; a record from 0 to `duration` has N + 1 samples.
-
-    Raises:
-        ConfigurationError: N is not positive, not a whole number, or less than 32.
-    """
+    """Return the number of steps N, at least 32, in `duration` [s] at `rate` [Hz]; a record has N + 1 samples."""
     steps = duration * rate
     if not (np.isfinite(steps) and duration > 0.0 and rate > 0.0):
-        raise ConfigurationError(f"duration {duration!r} s at {rate!r} Hz; allowed: both positive and finite")
+        raise ConfigurationError(f"duration {duration!r} s at {rate!r} Hz: both must be above 0 and finite")
     whole = round(steps)
     if abs(steps - whole) > 1e-6 or whole < 32:
         raise ConfigurationError(
-            f"duration {duration:g} s at {rate:g} Hz gives {steps:.9g} time steps; must be a whole number of "
-            "at least 32"
+            f"duration {duration:g} s at {rate:g} Hz gives {steps:.9g} time steps; must be a whole number, at least 32"
         )
     return whole
 
 
 def lines_in_band(*, steps: int, rate: float, lower: float, upper: float) -> NDArray[np.int64]:
-    """Return the numbers k of the spectral lines f = k * rate / steps within lower <= f <= upper.
-
-    Raises:
-        ConfigurationError: edges not in order, above 0.8 of the Nyquist frequency, or no line in the band.
-    """
+    """Return the numbers k of the spectral lines f = k * rate / steps within lower <= f <= upper."""
     if not 0.0 < lower < upper or not upper <= 0.4 * rate:
         raise ConfigurationError(
-            f"band {lower!r} to {upper!r} Hz; allowed: 0 < lower < upper <= {0.4 * rate:g} Hz (0.8 of the Nyquist "
-            "frequency)"
+            f"band {lower!r} to {upper!r} Hz: must be 0 < lower < upper <= {0.4 * rate:g} Hz (0.8 of half the rate)"
         )
     line = rate / steps
     # The tolerance keeps lines at the band edges in spite of rounding.
@@ -59,8 +49,7 @@ def lines_in_band(*, steps: int, rate: float, lower: float, upper: float) -> NDA
     last = int(np.floor(upper / line * (1.0 + 1e-12)))
     if last < first:
         raise ConfigurationError(
-            f"band {lower:g} to {upper:g} Hz contains no multiple of {line:g} Hz, the line spacing; use a "
-            "longer duration"
+            f"band {lower:g} to {upper:g} Hz has no line (they are {line:g} Hz apart); set a longer duration"
         )
     return np.arange(first, last + 1)
 
@@ -68,7 +57,7 @@ def lines_in_band(*, steps: int, rate: float, lower: float, upper: float) -> NDA
 def positive(name: str, value: float, unit: str) -> None:
     """Reject a value that is not positive and finite."""
     if not 0.0 < value < np.inf:
-        raise ConfigurationError(f"{name} {value!r} {unit}; allowed: positive and finite")
+        raise ConfigurationError(f"{name} {value!r} {unit}: must be above 0 and finite")
 
 
 def period_of(coefficients: Complex, lines: NDArray[np.int64], steps: int) -> Vector:

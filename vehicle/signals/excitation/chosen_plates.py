@@ -52,7 +52,7 @@ def chosen_plates(path: Path, choice: Choice | None, wheel: str | None) -> tuple
         plain = [channel for channel in measurement.channels if channel.name == "displacement"] or measurement.channels
         if not assigned and (plain[0].name == "displacement" or len(plain) == 1):
             if wheel is None:
-                raise DataError(f"{path}: the name of channel {plain[0].name!r} states no wheel; {WHEEL_REMEDY}")
+                raise DataError(f"{path}: the name of channel {plain[0].name!r} contains no wheel; {WHEEL_REMEDY}")
             assigned = {wheel: "1" if len(measurement.channels) == 1 else plain[0].name}
         if not assigned:
             options = tuple(

@@ -12,9 +12,6 @@ def evaluation_start(durations: Mapping[str, float], skip: float | None, default
         durations: name of each input to its length [s].
         skip: requested start [s]; None for the default.
         default: default start [s].
-
-    Raises:
-        ConfigurationError: the start is negative, not finite, or not before the end of each input.
     """
     start = default if skip is None else skip
     for name, duration in durations.items():

@@ -163,10 +163,6 @@ class ForceLines:
         return values, changes.reshape(len(time) - 1, len(self))
 
     def require_length(self, duration: float) -> None:
-        """Check that every record is at least as long as a run [s].
-
-        Raises:
-            DataError: a record is shorter.
-        """
+        """Check that every record is at least as long as a run [s]."""
         for record in self.records:
             record.require_length(duration)

@@ -40,7 +40,7 @@ class ForceRecord:
         path: path of the force in the vehicle file, for messages.
         file: measurement file of any format of `vehicle.signals.formats`.
         channel: number, exact name or pattern of the channel; empty for the only one of this quantity.
-        unit: unit of the channel in place of that of the file; empty for that of the file.
+        unit: unit of the channel that replaces the unit of the file; empty for none.
         needed: "N" or "N m".
         ends_at_zero: the force is zero after the end of the file.
         given: history from Python, in place of a file.
@@ -81,11 +81,7 @@ class ForceRecord:
         return _history(self, changed)
 
     def require_length(self, duration: float) -> None:
-        """Check that the record lasts for a run of this length [s].
-
-        Raises:
-            DataError: the record is shorter.
-        """
+        """Check that the record lasts for a run of this length [s]."""
         history = self.read()
         if history.duration < duration - 1e-6 and not self.ends_at_zero:
             raise DataError(

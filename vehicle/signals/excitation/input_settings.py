@@ -24,9 +24,6 @@ def on_road(roads: Sequence[str], files: Sequence[str]) -> bool:
     Args:
         roads: values of --road.
         files: values of --input.
-
-    Raises:
-        ConfigurationError: neither or both are set.
     """
     if roads and files:
         named = " ".join(f"--road {road}" for road in roads)
@@ -42,7 +39,7 @@ class PlateSettings(Settings):
 
     Attributes:
         input: file, or the name of a shipped file.
-        wheel: moves by a column without a wheel in its name; by default that of the vehicle file.
+        wheel: moves by a column without a wheel in its name; by default as in the vehicle file.
         any_level: accept levels beyond a shaker, and plates so similar that their FRFs cannot be separated.
         interpolate: fill gaps in the displacement by interpolation.
         remove_mean: subtract the mean of the displacement.
@@ -57,7 +54,7 @@ class PlateSettings(Settings):
     record: RecordSettings = part(RecordSettings)
 
     def corner(self, default: str) -> str:
-        """Return the name of the wheel, by default that of the vehicle file."""
+        """Return the name of the wheel, by default as in the vehicle file."""
         return CORNERS[self.wheel] if self.wheel else default
 
     def signal(self, wheel: str, choice: Choice | None = None) -> Signal:
@@ -66,9 +63,6 @@ class PlateSettings(Settings):
         Args:
             wheel: wheel of a column without a wheel in its name.
             choice: channels, units and times; those of `record`.
-
-        Raises:
-            DataError: see `read_signal`.
         """
         from vehicle.signals.excitation.input_files import find_input
         from vehicle.signals.excitation.signal_file import read_signal
@@ -103,9 +97,6 @@ class DriveInput(Settings):
         """Return the channels of a road recorded over time, or None.
 
         The rate is that of the run; the times are those of the file.
-
-        Args:
-            others: see `RecordSettings.choice`.
         """
         record = replace(self.record, rate=None)
         return record.choice("height", further=("speed",), others=others) if self.over_time else None
@@ -116,11 +107,7 @@ class DriveInput(Settings):
         return isinstance(self.speed, str)
 
     def require_speed(self) -> float | str:
-        """Return the speed.
-
-        Raises:
-            ConfigurationError: no speed.
-        """
+        """Return the speed."""
         if self.speed is None:
             raise ConfigurationError("the speed on the road is missing; set it in km/h, for example --speed 80")
         return self.speed

@@ -96,9 +96,6 @@ class IsoRoad:
         coherence: g of the tracks [-]; None for an isotropic surface, 1 for equal and 0 for independent tracks.
         patch: length a of the contact patch [m], over which the tyre averages the road: factor sinc(n a).
         envelope: cams of the tyre, in place of the average over the contact patch.
-
-    Raises:
-        ConfigurationError: a value out of range.
     """
 
     level: float
@@ -114,15 +111,10 @@ class IsoRoad:
         positive("level of the road", self.level, "m3")
         positive("track", self.track, "m")
         if not 0.0 < self.lowest < self.highest < np.inf:
-            raise ConfigurationError(
-                f"wavenumbers {self.lowest!r} to {self.highest!r} cycles/m; allowed: 0 < lowest < highest"
-            )
+            raise ConfigurationError(f"wavenumbers {self.lowest!r} to {self.highest!r} cycles/m: must increase from 0")
         if self.coherence is not None and not 0.0 <= self.coherence <= 1.0:
-            raise ConfigurationError(
-                f"coherence {self.coherence!r}; allowed: 0 to 1, or none: coherence of an isotropic road surface"
-            )
-        if not 0.0 <= self.patch < 1.0:
-            raise ConfigurationError(f"contact patch {self.patch!r} m; allowed: 0 to 1 m")
+            raise ConfigurationError(f"coherence {self.coherence!r}: must be 0 to 1, or none for an isotropic road")
+        check_patch(self.patch)
 
     @property
     def repeats(self) -> bool:
@@ -155,19 +147,13 @@ class IsoRoad:
 
         Returns:
             Heights z [m], shape (N,).
-
-        Raises:
-            ConfigurationError: the band contains no line of the length.
         """
         if self.envelope is not None:
             return self.contact(start, step, steps, side, highest)[0]
         length = steps * step
         lines = np.arange(max(1, int(np.ceil(self.lowest * length))), int(min(self.highest, highest) * length) + 1)
         if lines.size == 0:
-            raise ConfigurationError(
-                f"{length:.4g} m of road are too short for a wave of {self.lowest:g} cycles/m; drive farther or raise "
-                "the lower edge"
-            )
+            raise ConfigurationError(f"road: {length:.4g} m are too short for {self.lowest:g} cycles/m; drive farther")
         wavenumber = lines / length
         related = isotropic_coherence(wavenumber, self.track) if self.coherence is None else self.coherence
         # One phase pair for each line of the road, so that a longer road of the same seed has the same phases; (2,
@@ -202,6 +188,12 @@ class IsoRoad:
         return self.envelope.height_and_slope(x, np.pad(z, margin, mode="wrap"), uniform_axis(steps, step, 0.0))
 
 
+def check_patch(patch: float) -> None:
+    """Reject a length of the contact patch [m] that is not from 0 to 1 m."""
+    if not 0.0 <= patch < 1.0:
+        raise ConfigurationError(f"contact patch {patch!r} m: must be at least 0 and below 1 m")
+
+
 def contact_words(patch: float, envelope: TyreEnvelope | None) -> str:
     """Return the contact of the tyre in words: the contact patch that averages the road [m], or the cams."""
     return f"contact patch {patch:g} m" if envelope is None else envelope.words
@@ -224,24 +216,18 @@ def drive(
 
     Returns:
         Signal with duration * rate + 1 samples for all wheels.
-
-    Raises:
-        ConfigurationError: a value out of range.
     """
     positive("speed", speed, "m/s")
     steps = samples_of(duration, rate)
     needed, memory = 8.0 * steps * (3 * len(wheels) + COPIES), physical_memory()
     if needed > 0.5 * memory:
         raise ConfigurationError(
-            f"duration {duration:g} s at {rate:g} Hz: {steps:.3g} samples of {len(wheels)} wheels need "
-            f"{needed / 1e9:.3g} GB, must be at most half the memory of this machine, {0.5 * memory / 1e9:.3g} GB; set "
-            "a shorter --duration or a lower --rate"
+            f"duration {duration:g} s at {rate:g} Hz: needs {needed / 1e9:.3g} GB, must be at most half the memory of "
+            f"this machine, {0.5 * memory / 1e9:.3g} GB; set a shorter --duration or a lower --rate"
         )
     behind = [distance for distance, _ in wheels.values()]
     if not wheels or min(behind) < 0.0 or not np.isfinite(behind).all():
-        raise ConfigurationError(
-            f"distances of the wheels {behind} m; must be 0 for the foremost axle and above 0 for the others"
-        )
+        raise ConfigurationError(f"distances of wheels {behind} m: must be 0 at the foremost axle, above 0 behind it")
     # Longer than the record by the delay of the last wheel: no wheel reaches the repetition of the road.
     period = steps + 1 + (int(np.ceil(max(behind) / speed * rate)) if road.repeats else 0)
     step, displacement, slopes, profile = speed / rate, {}, {}, {}

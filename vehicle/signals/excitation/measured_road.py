@@ -122,11 +122,7 @@ class MeasuredRoad:
         return replace(self, envelope=None, patch=0.0)
 
     def contact(self, start: float, step: float, steps: int, side: Side, highest: float) -> Contact:
-        """Return heights and, with cams, slopes of a track at equally spaced positions; arguments see `IsoRoad.height`.
-
-        Raises:
-            DataError: a position beyond the end of the road.
-        """
+        """Return heights and, with cams, slopes of a track at equal distances; arguments see `IsoRoad.height`."""
         return self.contact_at(uniform_axis(steps, step, start), side)
 
     def contact_at(self, positions: Vector, side: Side) -> Contact:
@@ -137,9 +133,6 @@ class MeasuredRoad:
         Args:
             positions: distances from the beginning of the road [m], (m,).
             side: right or left track.
-
-        Raises:
-            DataError: a position beyond the end of the road.
         """
         if positions.max() > self.length * (1.0 + 1e-9):
             raise DataError(
@@ -175,10 +168,6 @@ def read_road(path: Path, track: float, patch: float = 0.0, envelope: TyreEnvelo
         track: distance of the tracks of the car [m], for a surface.
         patch: length of the contact patch [m] over which the profile is averaged.
         envelope: cams of the tyre, in place of the average.
-
-    Raises:
-        ConfigurationError: the file does not exist.
-        DataError: bad data; the message names line and column.
     """
     recognised_format(path)  # its errors are about the file
     return replace(_road_of(path, digest(path), track), patch=patch, envelope=envelope)
@@ -210,11 +199,7 @@ def _road_of(path: Path, content: str, track: float) -> MeasuredRoad:
         where = source or table.place(row)
         raise DataError(f"{where}: the distance must increase from row to row, in at least four rows")
     return MeasuredRoad(
-        distance=columns["distance"],
-        right=columns["right"],
-        left=columns["left"],
-        source=path.name,
-        notices=notices,
+        distance=columns["distance"], right=columns["right"], left=columns["left"], source=path.name, notices=notices
     )
 
 
@@ -246,16 +231,12 @@ def _surface_road(path: Path, track: float) -> MeasuredRoad:
         missing = np.flatnonzero(~np.isfinite(tracks[side]))
         if missing.size:
             raise DataError(
-                f"{path}: the {side} wheels, {v:.3f} m to the left of the reference line, leave the road at "
-                f"{missing.size} of {surface.u.size} points, first after {surface.u[missing[0]]:g} m; the road "
-                f"extends from {surface.v[0]:g} to {surface.v[-1]:g} m; repair the surface, or cut it off there"
+                f"{path}: the {side} wheels (v = {v:.3g} m) leave the road, which extends from {surface.v[0]:g} to "
+                f"{surface.v[-1]:g} m, at {missing.size} of {surface.u.size} points, first after "
+                f"{surface.u[missing[0]]:g} m; repair the surface, or cut it off there"
             )
     return MeasuredRoad(
-        distance=surface.u,
-        right=tracks["right"],
-        left=tracks["left"],
-        source=path.name,
-        notices=(road_words(surface),),
+        distance=surface.u, right=tracks["right"], left=tracks["left"], source=path.name, notices=(road_words(surface),)
     )
 
 
@@ -266,7 +247,7 @@ def _columns(header: Header) -> dict[str, tuple[int, float]]:
         name, unit = name_and_unit(cell)
         if name in ("distance", "left", "right") and name not in columns:
             if unit not in UNITS or (name == "distance" and unit != "m"):
-                raise DataError(f"{header.where}: column {cell!r}; needed are {NEEDED}")
+                raise DataError(f"{header.where}: column {cell!r}; must be one of {NEEDED}")
             columns[name] = index, UNITS[unit]
     if len(columns) < 3 or len(columns) < len(header.cells):
         raise DataError(f"{header.where}: found {header.found}, must be {NEEDED}, each once")

@@ -109,12 +109,7 @@ class Obstacle:
 
     @classmethod
     def parse(cls, text: str) -> Self:
-        """Return the obstacle of a text, as "cleat:20x50", "pothole:50x300:right@40" or "speed_bump".
-
-        Raises:
-            ConfigurationError: an unknown shape, a wrong number of sizes, a size out of range, or an arc that is higher
-                than half its length.
-        """
+        """Return the obstacle of a text, as "cleat:20x50", "pothole:50x300:right@40" or "speed_bump"."""
         front, at, distance = text.partition("@")
         name, *parts = front.split(":")
         if name not in SHAPES:
@@ -132,20 +127,14 @@ class Obstacle:
         for size_name, size in zip(shape.sizes, sizes, strict=True):
             largest = LARGEST.get(size_name, 10_000.0)
             if not (1.0 <= size <= largest):
-                raise ConfigurationError(f"obstacle {text!r}: {size_name} {size:g}; allowed: 1 to {largest:g}")
+                raise ConfigurationError(f"obstacle {text!r}: {size_name} {size:g}, must be 1 to {largest:g}")
             if size_name == "number" and size != round(size):
                 raise ConfigurationError(f"obstacle {text!r}: found {size:g} stones, must be a whole number")
         if shape.arc and sizes[0] > 0.5 * sizes[1]:
             raise ConfigurationError(
-                f"obstacle {text!r}: height {sizes[0]:g} mm, must be at most {0.5 * sizes[1]:g} mm, half of the "
-                "length, or the arc would overhang"
+                f"obstacle {text!r}: height {sizes[0]:g} mm, must be at most half of the length, {0.5 * sizes[1]:g} mm"
             )
-        return cls(
-            name=name,
-            sizes=sizes,
-            side=None if side == "both" else side,
-            place=float(distance) if at else None,
-        )
+        return cls(name=name, sizes=sizes, side=None if side == "both" else side, place=float(distance) if at else None)
 
     @property
     def begin(self) -> float:
@@ -173,15 +162,12 @@ class Obstacle:
         Args:
             length: length of the road [m], at least to the end of the obstacle.
             patch, envelope: contact of the tyre; see `MeasuredRoad`.
-
-        Raises:
-            ConfigurationError: the obstacle is not wholly on the road.
         """
         x, tracks = self._outline()
         if self.begin < 1.0 or self.begin + x[-1] >= length:
             raise ConfigurationError(
-                f"obstacle from {self.begin:g} to {self.begin + x[-1]:g} m; must be within 1 to {length:.4g} m, "
-                "the distance that is driven; set another place (@METRES), or a longer --duration"
+                f"obstacle from {self.begin:g} to {self.begin + x[-1]:g} m: must be within 1 to {length:.4g} m, the "
+                "distance driven; set another place (@METRES), or a longer --duration"
             )
         distance = np.concatenate(([0.0], self.begin + x, [length]))
         for side, z in tracks.items():

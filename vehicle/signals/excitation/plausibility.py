@@ -74,74 +74,65 @@ def check_level(
     for wheel, z in displacement.items():
         unit = (units or {}).get(wheel, "m")
         per_metre, other_unit = (1e3, "um") if unit == "mm" else (1.0, "mm")
-        question, remedy = (
-            f"are the values in {other_unit}? The header of the column says [{unit}]",
-            "write its unit into the header ([m] or [mm])",
-        )
+        question, remedy = f"are the values in {other_unit}, not [{unit}]?", "correct the header ([m] or [mm])"
         if not unit:
-            unit, question, remedy = "m", "is the unit of the channel right?", f"set another: --unit {wheel}=UNIT"
+            unit, question, remedy = "m", "is the unit of the channel wrong?", f"set --unit {wheel}=UNIT"
         index = int(np.argmax(np.abs(z)))
         if abs(z[index]) > LARGEST_DISPLACEMENT and rare_events(z, LARGEST_DISPLACEMENT):
             events.append(
-                f"plate {wheel} is displaced by {per_metre * z[index]:.4g} {unit} at t = {index * timestep:.6g} "
-                f"s, more than the usual {per_metre * LARGEST_DISPLACEMENT:g} {unit}: a pothole or a kerb?"
+                f"plate {wheel} is displaced by {per_metre * z[index]:.3g} {unit} at {index * timestep:.4g} s, usually "
+                f"at most {per_metre * LARGEST_DISPLACEMENT:g} {unit}: a pothole or a kerb?"
             )
         elif abs(z[index]) > LARGEST_DISPLACEMENT:
             raise ImplausibleError(
-                f"{path}: plate {wheel} is displaced by {per_metre * z[index]:.6g} {unit} at sample {index} (t = "
-                f"{index * timestep:.6g} s); must be at most {per_metre * LARGEST_DISPLACEMENT:g} {unit}",
-                f"{question}; {remedy}, or remove a constant offset (--remove-mean)",
+                f"{path}: plate {wheel} is displaced by {per_metre * z[index]:.3g} {unit} at {index * timestep:.4g} s, "
+                f"must be at most {per_metre * LARGEST_DISPLACEMENT:g} {unit}",
+                f"{question} If so, {remedy}; --remove-mean removes a constant offset",
             )
         rms = float(np.std(z))
         if rms < SMALLEST_RMS and not (moving and np.ptp(z) == 0.0):
-            question = (
-                "does the column contain metres, although its header says [mm]?"
-                if unit == "mm"
-                else "does the column contain metres?"
-            )
             raise ImplausibleError(
-                f"{path}: RMS of plate {wheel} is {per_metre * rms:.3g} {unit}; must be at least "
+                f"{path}: RMS of plate {wheel} is {per_metre * rms:.3g} {unit}, must be at least "
                 f"{per_metre * SMALLEST_RMS:g} {unit}",
-                f"{question} Otherwise it is another quantity, or a dead sensor",
+                f"does the column contain metres{', not [mm]' if unit == 'mm' else ''}? Otherwise it is another "
+                "quantity, or a dead sensor",
             )
-        acceleration = band_limited_acceleration(z, timestep)
-        index = int(np.argmax(np.abs(acceleration)))
+        acceleration, index, peak = _peak_acceleration(wheel, z, timestep)
         # A pothole has high accelerations: 60 mm within 12 ms give 800 m/s2. Its depth is checked above.
         if abs(acceleration[index]) > LARGEST_ACCELERATION and rare_events(acceleration, LARGEST_ACCELERATION, np.inf):
-            events.append(
-                f"plate {wheel} accelerates by {acceleration[index]:.4g} m/s2 at t = {index * timestep:.6g} s "
-                f"(below {ACCELERATION_BAND:g} Hz), more than the usual {LARGEST_ACCELERATION:g} m/s2: a "
-                "pothole, or a spike of the logger?"
-            )
+            events.append(f"{peak}, usually at most {LARGEST_ACCELERATION:g} m/s2: a pothole, or a spike?")
         elif abs(acceleration[index]) > LARGEST_ACCELERATION:
             raise ImplausibleError(
-                f"{path}: plate {wheel} accelerates by {acceleration[index]:.4g} m/s2 at t = "
-                f"{index * timestep:.6g} s (below {ACCELERATION_BAND:g} Hz), must be at most "
-                f"{LARGEST_ACCELERATION:g} m/s2",
-                f"{question}; {remedy}. If it is right, look for a jump or spike at this time; for a road record "
-                "set --any-level",
+                f"{path}: {peak}, must be at most {LARGEST_ACCELERATION:g} m/s2",
+                f"{question} If so, {remedy}; else look for a spike at this time, or set --any-level for a road",
             )
     return events
 
 
 def acceleration_events(displacement: Mapping[str, Vector], timestep: float) -> list[str]:
-    """Return a notice for each plate of a road with an acceleration above that of a shaker, with its maximum.
-
-    Args:
-        displacement, timestep: see `check_level`.
-    """
+    """Return a notice for each plate of a road that accelerates more than a shaker, with its maximum."""
     events = []
     for wheel, z in displacement.items():
-        acceleration = band_limited_acceleration(z, timestep)
-        index = int(np.argmax(np.abs(acceleration)))
+        acceleration, index, peak = _peak_acceleration(wheel, z, timestep)
         if abs(acceleration[index]) > LARGEST_ACCELERATION:
             share = 100.0 * float(np.mean(np.abs(acceleration) > LARGEST_ACCELERATION))
             events.append(
-                f"plate {wheel}: the acceleration below {ACCELERATION_BAND:g} Hz reaches {acceleration[index]:.4g} "
-                f"m/s2 at t = {index * timestep:.6g} s, and exceeds {LARGEST_ACCELERATION:g} m/s2 for "
-                f"{number(share, 2)} % of the time, as in a pothole or on a rough road; the tyre may lift off"
+                f"{peak}, and by more than {LARGEST_ACCELERATION:g} m/s2 for {number(share, 2)} % of the time: a "
+                "pothole or a rough road? The tyre may lift off"
             )
     return events
+
+
+def _peak_acceleration(wheel: str, z: Vector, timestep: float) -> tuple[Vector, int, str]:
+    """Return the acceleration of a plate [m/s2], the index of its maximum, and the maximum in words."""
+    acceleration = band_limited_acceleration(z, timestep)
+    index = int(np.argmax(np.abs(acceleration)))
+    return (
+        acceleration,
+        index,
+        f"plate {wheel} accelerates by {acceleration[index]:.3g} m/s2 at {index * timestep:.4g} s (below "
+        f"{ACCELERATION_BAND:g} Hz)",
+    )
 
 
 def band_limited_acceleration(z: Vector, timestep: float) -> Vector:
@@ -198,9 +189,8 @@ def aliasing_notices(displacement: Mapping[str, Vector], timestep: float) -> tup
     limit = 0.4 / timestep
     shares = {wheel: velocity_share_near_nyquist(z) for wheel, z in displacement.items()}
     return tuple(
-        f"plate {wheel}: recorded without an anti-alias filter? {100.0 * share:.1f} % of the velocity variance "
-        f"lies above {limit:.4g} Hz (0.8 of half the sampling rate), expected are less than "
-        f"{100.0 * ALIAS_SHARE:g} %"
+        f"plate {wheel}: recorded without an anti-alias filter? {100.0 * share:.3g} % of the velocity variance lies "
+        f"above {limit:.4g} Hz (0.8 of half the sampling rate), usually less than {100.0 * ALIAS_SHARE:g} %"
         for wheel, share in shares.items()
         if share > ALIAS_SHARE
     )
@@ -221,9 +211,8 @@ def drifts(displacement: Mapping[str, Vector]) -> list[Finding]:
         if abs(drift) > max(DRIFT_SHARE * rms, SMALLEST_DRIFT):
             notices.append(
                 Finding(
-                    f"plate {wheel} drifts by {1e3 * drift:.4g} mm from beginning to end (RMS without the drift "
-                    f"{1e3 * rms:.4g} mm): a drifting sensor or integrator? The drift was not subtracted; for a "
-                    "sensor that drifts, --detrend subtracts it",
+                    f"plate {wheel} drifts by {1e3 * drift:.3g} mm from beginning to end and moves by {1e3 * rms:.3g} "
+                    "mm (RMS): a drifting sensor or integrator? Not subtracted; --detrend subtracts it",
                     "drift",
                 )
             )

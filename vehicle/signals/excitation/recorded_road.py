@@ -95,21 +95,14 @@ class RecordedDrive:
         return
 
     def signal(self) -> Signal:
-        """Return the plate signals.
-
-        Raises:
-            ConfigurationError: unknown file, or a duration longer than the record.
-            DataError: bad data, or an implausible speed.
-        """
+        """Return the plate signals."""
         measurement = read_record(self.road, self.choice.databases)
         time, tracks, highest, notices = self._heights(measurement)
         speed, speed_notices = self._driven(measurement, time)
         notices += speed_notices
         distance = scipy.integrate.cumulative_trapezoid(speed, time, initial=0.0)
         if distance[-1] < max(behind for _, behind, _ in self.wheels):
-            raise DataError(
-                f"{self.road}: the car drives {distance[-1]:.4g} m, less than its wheelbase; use a longer record"
-            )
+            raise DataError(f"{self.road}: drives {distance[-1]:.4g} m, less than the wheelbase; use a longer record")
         grid = uniform_time(samples=self._samples(float(time[-1] - time[0])), timestep=1.0 / self.rate)
         plates = {}
         for wheel, behind, side in self.wheels:
@@ -123,9 +116,8 @@ class RecordedDrive:
         moving = speed[speed > STANDING]
         if self.driving is not None and math.isnan(self.driving):
             notices.append(
-                f"the tyres roll at the mean speed of the record, {moving.mean():.4g} m/s: the slip of the tyres "
-                f"is calculated with this mean, although the speed is {moving.min():.3g} to {moving.max():.3g} "
-                "m/s"
+                f"the slip of the tyres is computed with the mean speed of the record, {moving.mean():.3g} m/s, "
+                f"although the speed is {moving.min():.3g} to {moving.max():.3g} m/s"
             )
         return Signal(
             time=grid,
@@ -163,9 +155,8 @@ class RecordedDrive:
         speed = choose(measurement, self._choice_of_speed())
         if speed.quantities["speed"] != "velocity":
             raise DataError(
-                f"{self.road}: --speed {PREFIX}{self.channel}: is a {speed.quantities['speed']}, must be a "
-                "velocity; choose another channel, or set --unit speed=km/h or speed=m/s if the unit in the "
-                "file is wrong"
+                f"{self.road}: --speed {PREFIX}{self.channel}: is a {speed.quantities['speed']}, must be a velocity; "
+                "choose another channel, or set --unit speed=km/h or speed=m/s if the unit in the file is wrong"
             )
         v, notices = self._speed(speed, time)
         return v, [*notices, *speed.notices]
@@ -180,9 +171,7 @@ class RecordedDrive:
     def _samples(self, length: float) -> int:
         """Return the number of samples of the signal for a record of this length [s]."""
         if self.duration is not None and not 0.0 < self.duration <= length * (1.0 + 1e-9):
-            raise ConfigurationError(
-                f"--duration {self.duration:g} s: must be at most the length of the record, {length:.6g} s"
-            )
+            raise ConfigurationError(f"--duration {self.duration:g} s: must be at most the record, {length:.6g} s")
         return int(np.floor((self.duration or length) * self.rate * (1.0 + 1e-12))) + 1
 
     def _heights(self, measurement: Measurement) -> tuple[Vector, dict[str, Vector], float | None, list[str]]:
@@ -224,11 +213,7 @@ class RecordedDrive:
                 if match is not None and not (role == "height" and (roles or receiver)):
                     roles[role] = match
         if not roles or ("height" in roles and len(roles) > 1):
-            above_sea = (
-                "; the height next to latitude and longitude is that of the GPS receiver, not of the road"
-                if receiver
-                else ""
-            )
+            above_sea = "; the height beside latitude and longitude belongs to the GPS receiver" if receiver else ""
             raise DataError(
                 f"{self.road}: which channels are the heights? set --channel left=NAME --channel right=NAME, or "
                 f"--channel height=NAME for both tracks; the file has {measurement.listed()}{above_sea}"
@@ -241,7 +226,7 @@ class RecordedDrive:
         slack = 1.5 * float(np.median(np.diff(speed_time)))
         if speed_time[0] > time[0] + slack or speed_time[-1] < time[-1] - slack:
             raise DataError(
-                f"{self.road}: the speed is known from {speed_time[0]:.6g} to {speed_time[-1]:.6g} s, the heights from "
+                f"{self.road}: the speed covers {speed_time[0]:.6g} to {speed_time[-1]:.6g} s, the heights "
                 f"{time[0]:.6g} to {time[-1]:.6g} s; set --from {max(speed_time[0], time[0]):.6g} --to "
                 f"{min(speed_time[-1], time[-1]):.6g}"
             )

@@ -13,6 +13,9 @@ RAMP_S = 0.5
 OFFSET_SHARE = 0.01
 """Maximum first value over the RMS [-]; a larger one is a step of the plate at t = 0."""
 
+POSITION_SHARE = 2.0
+"""Maximum first value over the RMS [-] of a motion about zero; a larger one may be the position of a sensor."""
+
 VELOCITY_SHARE = 0.1
 """Maximum first difference over the RMS of all differences [-]; a larger one is a velocity jump at t = 0."""
 
@@ -58,7 +61,7 @@ def start_from_rest(
     samples = next(iter(plates.values())).size
     length = min(RAMP_S, 0.1 * (samples - 1) * timestep)
     weights = half_cosine(samples=samples, timestep=timestep, length=length)
-    done = f"the motion of all plates is faded in over the first {length:.3f} s ({RAMP_WORDS})"
+    done = f"all plates are faded in over the first {length:.3g} s ({RAMP_WORDS})"
     # Adding 0.0 avoids -0.0 for a negative first value.
     return {wheel: z * weights + 0.0 for wheel, z in plates.items()}, tuple(f"{cause}; {done}" for cause in causes)
 
@@ -67,11 +70,9 @@ def _causes(wheel: str, z: Vector, timestep: float) -> list[str]:
     rms = float(np.std(z))
     first = float(z[0])
     if abs(first) > OFFSET_SHARE * rms:
-        return [f"plate {wheel} begins at {first:.6g} m instead of 0 (RMS {rms:.6g} m), which is a step at t = 0"]
+        zero = ": the zero of the sensor? --remove-mean subtracts the mean" if abs(first) > POSITION_SHARE * rms else ""
+        return [f"plate {wheel} begins at {1e3 * first:.3g} mm, not at 0, and moves by {1e3 * rms:.3g} mm (RMS){zero}"]
     steps = np.diff(z)
     if abs(steps[0]) > VELOCITY_SHARE * float(np.sqrt(np.mean(steps**2))):
-        return [
-            f"plate {wheel} begins with {steps[0] / timestep:.6g} m/s instead of 0, which is a jump of velocity "
-            "at t = 0"
-        ]
+        return [f"plate {wheel} begins with a velocity of {steps[0] / timestep:.3g} m/s, not at rest"]
     return []

@@ -13,7 +13,7 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.road_level import CLASSES, RoadLevel, road_level
 from vehicle.signals.analysis.roughness_index import RoughnessIndex, roughness_index
 from vehicle.signals.excitation.band import samples_of
-from vehicle.signals.excitation.iso_road import RISE_S, IsoRoad, Side, drive
+from vehicle.signals.excitation.iso_road import RISE_S, IsoRoad, Side, check_patch, drive
 from vehicle.signals.excitation.measured_road import MeasuredRoad, read_road
 from vehicle.signals.excitation.obstacle import Obstacle, is_obstacle
 from vehicle.signals.excitation.plausibility import acceleration_events
@@ -60,7 +60,7 @@ class RoadDrive:
     """Drive at constant speed; each wheel reaches the road d / V after the foremost wheel, in its track.
 
     Attributes:
-        road: class of ISO 8608, as "C"; the file of a measured profile; an obstacle, as "cleat:20x50"; or "level".
+        road: class of ISO 8608 ("C"), file of a measured profile, obstacle ("cleat:20x50"), or "level".
         speed: speed V [km/h]; 0 on a level road for a car at rest.
         wheels: name of each wheel, its distance d behind the foremost wheel [m], its track.
         track: distance of the two tracks [m].
@@ -75,9 +75,6 @@ class RoadDrive:
         radius: radius of the tyres [m], for the cams.
         driving: speed of rolling tyres [m/s], 0 for tyres that do not roll; None for the parameter of the car.
         lifting: paths of the tyres that can leave the road at an obstacle; a linear tyre would pull.
-
-    Raises:
-        ConfigurationError: a value out of range, or a coherence for a measured profile.
     """
 
     road: str | Path
@@ -99,24 +96,18 @@ class RoadDrive:
         stands = self.road == LEVEL and self.speed == 0.0
         if not stands and not (math.isfinite(self.speed) and 0.0 < self.speed <= FASTEST):
             raise ConfigurationError(f"--speed {self.speed:g} km/h: must be above 0 and at most {FASTEST:g}")
-        if isinstance(self.road, Path):
+        on_obstacle = isinstance(self.road, str) and is_obstacle(self.road)
+        if isinstance(self.road, Path) or on_obstacle or self.road == LEVEL:
             if self.coherence is not None:
-                raise ConfigurationError(
-                    "--coherence: works only with a road class, not with a measured profile; leave it out"
-                )
-        elif is_obstacle(self.road) or self.road == LEVEL:
-            if self.coherence is not None:
-                named = "a level road" if self.road == LEVEL else "an obstacle"
-                raise ConfigurationError(f"--coherence: works only with a road class, not with {named}; leave it out")
-            if self.road != LEVEL:
-                Obstacle.parse(self.road)
+                raise ConfigurationError("--coherence: works only with a road class; leave it out")
+            if on_obstacle:
+                Obstacle.parse(str(self.road))
         elif self.road not in CLASSES:
             raise ConfigurationError(
-                f"road class {self.road!r}: must be one of {', '.join(CLASSES)}, from good to poor, the file of "
-                f"a measured profile, an obstacle, for example cleat:20x50, or {LEVEL}"
+                f"road class {self.road!r}: must be one of {', '.join(CLASSES)} (good to poor), the file of a "
+                f"measured profile, an obstacle, for example cleat:20x50, or {LEVEL}"
             )
-        if not 0.0 <= self.patch < 1.0:
-            raise ConfigurationError(f"contact patch {self.patch!r} m; allowed: 0 to 1 m")
+        check_patch(self.patch)
         contacts = SETTINGS["contact"]["option"]["choices"]
         if self.contact is not None and self.contact not in contacts:
             raise ConfigurationError(f"contact {self.contact!r}: must be one of {', '.join(contacts)}")
@@ -140,8 +131,8 @@ class RoadDrive:
             return None
         if not 0.0 < self.patch < 1.0:
             raise ConfigurationError(
-                f"contact patch {self.patch!r} m; must be above 0 and at most 1 m with cams, whose distance is "
-                "proportional to the patch; for contact at a point set --contact patch --patch 0"
+                f"contact patch {self.patch!r} m: must be above 0 with cams, whose distance is proportional to it; for "
+                "contact at a point set --contact patch --patch 0"
             )
         return TyreEnvelope.of(CAMS, radius=self.radius, patch=self.patch)
 
@@ -172,11 +163,7 @@ class RoadDrive:
         return self.road != LEVEL and self.obstacle is None
 
     def signal(self) -> Signal:
-        """Generate the plate signals.
-
-        Raises:
-            ConfigurationError, DataError: see `IsoRoad`, `read_road`, `drive`.
-        """
+        """Generate the plate signals."""
         if self.road == LEVEL:
             return self._level(USUAL_DURATION if self.duration is None else self.duration)
         road, duration = self._road()
@@ -214,9 +201,6 @@ class RoadDrive:
         It is that of the road itself, without contact patch or cams and without the rise at the start. A profile with
         equal steps is rated at its own points, any other road every `ROUGHNESS_STEP`. An obstacle, and a track
         too short for a class, have no level.
-
-        Raises:
-            ConfigurationError, DataError: see `signal` and `roughness_index`.
         """
         if self.road == LEVEL:
             raise ConfigurationError("IRI: a level road has no roughness; give a road class, a profile or an obstacle")
@@ -246,7 +230,7 @@ class RoadDrive:
         )
 
     def slopes(self, signal: Signal) -> dict[str, Vector]:
-        """Return the slope of the road that each wheel takes, tan(beta) [-], (n,): that of the cams, or w'/V."""
+        """Return the slope of the road that each wheel takes, tan(beta) [-], (n,): from the cams, or w'/V."""
         rates = signal.slope_velocity or signal.plate_motion(signal.time).velocity
         return {wheel: rates[wheel] * 3.6 / self.speed for wheel in signal.wheels}
 

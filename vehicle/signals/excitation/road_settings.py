@@ -25,7 +25,7 @@ class RoadSettings(Settings):
         metavar="N",
     )
     coherence: float | None = setting(
-        "coherence of left and right track: 1 equal, 0 unrelated; default: that of an isotropic road surface",
+        "coherence of left and right track: 1 equal, 0 unrelated; default: of an isotropic road",
         within="[0, 1]",
         type=float,
         metavar="G",

@@ -71,9 +71,6 @@ class Signal:
             the tyre takes; for pictures only, by default for no wheel.
         random: False for one event, as a bump, or a level road: its values have no standard error.
         left_obstacle: time at which the last wheel leaves an obstacle [s]; None for another input.
-
-    Raises:
-        DataError: shapes differ, a value is not finite, the grid is not uniform, a wheel is unknown.
     """
 
     time: Vector
@@ -98,9 +95,7 @@ class Signal:
             object.__setattr__(self, name, columns)
         self._check_time()
         if not self.displacement:
-            raise DataError(
-                f"{self.source}: the signal moves no wheel; set the displacement of at least one of {_wheels()}"
-            )
+            raise DataError(f"{self.source}: moves no wheel; set the displacement of at least one of {_wheels()}")
         for wheel in self.displacement:
             if not is_wheel(wheel):
                 raise DataError(f"{self.source}: unknown wheel {wheel!r}; must be one of {_wheels()}")
@@ -120,7 +115,7 @@ class Signal:
                 if not np.isfinite(values).all():
                     bad = int(np.flatnonzero(~np.isfinite(values))[0])
                     raise DataError(
-                        f"{self.source}: {name} of {wheel} is {values[bad]} at sample {bad}; must be a finite number"
+                        f"{self.source}: {name} of {wheel} is {values[bad]} at sample {bad}, must be finite"
                     )
 
     def _check_time(self) -> None:
@@ -131,9 +126,7 @@ class Signal:
                 f"{MINIMUM_SAMPLES} samples"
             )
         if not np.isfinite(time).all() or time[0] != 0.0 or time[-1] <= 0.0:
-            raise DataError(
-                f"{self.source}: the time begins at {time[0]} s; it must begin at 0 s, increase and be finite"
-            )
+            raise DataError(f"{self.source}: the time begins at {time[0]} s, must be finite and increase from 0")
         deviation = float(np.max(np.abs(np.diff(time) / self.timestep - 1.0)))
         if deviation > STEP_TOLERANCE:
             raise DataError(

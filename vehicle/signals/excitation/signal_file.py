@@ -12,12 +12,7 @@ from vehicle.errors import ConfigurationError, DataError, OutputError
 from vehicle.names import CORNERS, in_order, is_wheel
 from vehicle.replacement import replaced_file
 from vehicle.signals.excitation.chosen_plates import WHEEL_REMEDY, chosen_plates
-from vehicle.signals.excitation.plausibility import (
-    ImplausibleError,
-    aliasing_notices,
-    check_level,
-    drifts,
-)
+from vehicle.signals.excitation.plausibility import ImplausibleError, aliasing_notices, check_level, drifts
 from vehicle.signals.excitation.rest import start_from_rest
 from vehicle.signals.excitation.signal import MINIMUM_SAMPLES, Signal, is_event, uniform_time
 from vehicle.signals.excitation.time_grid import FINE_RATE, LOWEST_RATE, SMOOTH_RATE, check_rate, fill_missing
@@ -136,7 +131,8 @@ def read_signal(
         notices.append(f"time begins at {time[0]:.9g} s in the file and was shifted to 0")
     if remove_mean:
         for driven, displacement in columns.items():
-            notices.append(f"mean {np.mean(displacement):.6g} m of plate {driven} was subtracted, as requested")
+            mean = 1e3 * np.mean(displacement)
+            notices.append(f"mean {mean:.3g} mm of plate {driven} was subtracted, as requested")
             columns[driven] = displacement - np.mean(displacement)
     columns, offsets = without_offsets(columns)
     notices.extend(offsets)
@@ -178,9 +174,7 @@ def plate_columns(header: Header, wheel: str | None) -> dict[str, tuple[int, str
             plain `displacement` column without `wheel`.
     """
     if any(_is_number(cell) for cell in header.cells):
-        raise DataError(
-            f"{header.where}:1: the header line is missing: found {header.found}; must name the columns {NEEDED}"
-        )
+        raise DataError(f"{header.where}:1: no header line, found {header.found}; must name {NEEDED}")
     named = [(index, cell, *name_and_unit(cell)) for index, cell in enumerate(header.cells)]
     of_road = [match is not None and is_wheel(match[1]) for match in (_OF_ROAD.fullmatch(row[2]) for row in named)]
     named = [row for row, beside in zip(named, of_road, strict=True) if not beside]
@@ -200,9 +194,8 @@ def plate_columns(header: Header, wheel: str | None) -> dict[str, tuple[int, str
         where = f"{header.where}:{index + 1}: column {cell!r}"
         if _OTHER_UNIT.fullmatch(unit or "") or _OTHER_QUANTITY.search(name):
             raise DataError(
-                f"{where} is an acceleration or a velocity, but the plate needs a displacement. To integrate it, "
-                f"choose a high-pass against drift, for example --channel {wheel or 'fl'}={name!r} --highpass "
-                f"0.5; or use {NEEDED}"
+                f"{where} is an acceleration or a velocity, but a plate needs its displacement. Integrate it with a "
+                f"high-pass against drift, for example --channel {wheel or 'fl'}={name!r} --highpass 0.5"
             )
         key = keys.get(name.lower())
         if key == "":
@@ -211,21 +204,18 @@ def plate_columns(header: Header, wheel: str | None) -> dict[str, tuple[int, str
             unknown.append(repr(cell))
         elif key in columns:
             first = columns[key][0]
-            raise DataError(
-                f"{where} repeats the quantity of column {first + 1} ({header.cells[first]!r}); remove one of "
-                f"them; found {header.found}"
-            )
+            raise DataError(f"{where} repeats column {first + 1} ({header.cells[first]!r}); remove one")
         else:
             columns[key] = index, _checked_unit(where, key, unit)
     if unknown:
         raise (DataError if columns else ForeignTableError)(
-            f"{header.where}: unknown column {', '.join(unknown)}; must be {NEEDED}; remove other columns, or "
-            f"assign a column to a wheel: --channel {wheel or 'fl'}=NAME (python -m vehicle inspect FILE prints "
-            f"the command); found {header.found}"
+            f"{header.where}: unknown column {', '.join(unknown)}; must be {NEEDED}; remove other columns, or name the "
+            f"column of a wheel: --channel {wheel or 'fl'}=NAME (python -m vehicle inspect FILE prints the command); "
+            f"found {header.found}"
         )
     if "time" not in columns or len(columns) == 1:
         missing = "displacement" if "time" in columns else "time"
-        raise DataError(f"{header.where}: no {missing} column; found {header.found}; needed are {NEEDED}")
+        raise DataError(f"{header.where}: no {missing} column; found {header.found}, must be {NEEDED}")
     return {key: columns[key] for key in ("time", *in_order({wheel or "fl", *wheels})) if key in columns}
 
 
@@ -236,10 +226,7 @@ def _checked_unit(where: str, key: str, unit: str | None) -> str:
     if unit not in allowed:
         unit_entry, hint = find_unit(unit), ""
         if unit_entry is not None and unit_entry.si == ("s" if key == "time" else "m"):
-            hint = (
-                "; or name the channel, for example --channel fl=displacement: the shaker then reads every unit "
-                "that `python -m vehicle inspect` knows"
-            )
+            hint = "; or name the channel, for example --channel fl=displacement: every unit is then read"
         raise DataError(f"{where} has the unit [{unit}], must be {expected}{hint}")
     return unit
 
@@ -320,6 +307,4 @@ def write_signal(
         with replaced_file(path) as temporary:
             write_table(temporary, [TIME, *(f"{name} [m]" for name in names), *further], columns, comments, forms)
     except OSError as error:
-        raise OutputError(
-            f"{path}: cannot be written ({error.strerror}); check the folder, its permissions and the space"
-        ) from error
+        raise OutputError(f"{path}: cannot be written ({error.strerror}); check the folder and its space") from error

@@ -23,37 +23,27 @@ FULL_RATE = 250.0
 
 
 def check_rate(path: Path, rate: float) -> tuple[str, ...]:
-    """Reject a sampling rate [Hz] below `LOWEST_RATE`; return a notice on the usable band below `FULL_RATE`.
-
-    Raises:
-        DataError: the rate is too low.
-    """
+    """Reject a sampling rate [Hz] below `LOWEST_RATE`; return a notice on the usable band below `FULL_RATE`."""
     if rate < LOWEST_RATE * (1.0 - 1e-9):  # tolerance for a rate from rounded times
         hint = "; are the times in ms?" if FULL_RATE <= rate * 1000.0 <= 5e3 else ""
         raise DataError(
-            f"{path}: sampling rate {rate:.6g} Hz, must be at least {LOWEST_RATE:g} Hz (usable up to "
+            f"{path}: sampling rate {rate:.4g} Hz, must be at least {LOWEST_RATE:g} Hz (usable up to "
             f"{USABLE * LOWEST_RATE:g} Hz){hint}; measure or export with a higher rate"
         )
     if rate >= FULL_RATE * (1.0 - UNIFORM_TOLERANCE):
         return ()
     ends = "; FRFs and comfort end there" if rate < SMOOTH_RATE * (1.0 - UNIFORM_TOLERANCE) else ""
     return (
-        f"sampling rate {rate:.6g} Hz: results are valid up to {USABLE * rate:.4g} Hz; with at least "
-        f"{FULL_RATE:g} Hz up to 100 Hz{ends}",
+        f"sampling rate {rate:.4g} Hz: results are valid up to {USABLE * rate:.3g} Hz (100 Hz from {FULL_RATE:g} Hz "
+        f"on){ends}",
     )
 
 
 def fill_missing(table: Table, time: Vector, column: int) -> tuple[Vector, list[str]]:
     """Interpolate missing displacements by a cubic spline through the values on both sides.
 
-    Args:
-        time: increasing times [s], shape (n,).
-
     Returns:
         Column, shape (n,), and a notice with the number of interpolated values, if any.
-
-    Raises:
-        DataError: a gap that is too long, or at the beginning or end.
     """
     values, name = table.values[:, column], f"column {table.header.cells[column]!r}"
     valid = np.isfinite(values)
@@ -62,8 +52,8 @@ def fill_missing(table: Table, time: Vector, column: int) -> tuple[Vector, list[
     first = int(np.flatnonzero(~valid)[0])
     if not (valid[0] and valid[-1]) or np.count_nonzero(valid) < MINIMUM_SAMPLES:
         raise DataError(
-            f"{table.place(first)}:{column + 1}: {name} has missing values at its beginning or end, or too few "
-            "values; interpolation needs values on both sides; remove these rows"
+            f"{table.place(first)}:{column + 1}: {name} has too few values, or none at its beginning or end; "
+            "interpolation needs values on both sides; remove these rows"
         )
     gaps = np.diff(time[valid])
     limit = longest_gap(float(np.median(np.diff(time))))
@@ -71,8 +61,8 @@ def fill_missing(table: Table, time: Vector, column: int) -> tuple[Vector, list[
     if gaps[largest] > limit * (1.0 + UNIFORM_TOLERANCE):
         begin = int(np.flatnonzero(valid)[largest]) + 1
         raise DataError(
-            f"{table.place(begin)}:{column + 1}: {name} has no value for {gaps[largest]:.6g} s from this line "
-            f"on; interpolation can fill at most {limit:.6g} s; use the part before or after it"
+            f"{table.place(begin)}:{column + 1}: {name} has no value for {gaps[largest]:.3g} s from this line on, "
+            f"interpolation fills at most {limit:.3g} s; use the part before or after it"
         )
     filled = values.copy()
     filled[~valid] = scipy.interpolate.CubicSpline(time[valid], values[valid])(time[~valid])

@@ -91,13 +91,10 @@ class TyreEnvelope:
     """Two cams of a tyre.
 
     Attributes:
-        distance: s, from the centre of the rear cam to that of the front cam [m].
+        distance: s, between the centres of the rear and the front cam [m].
         half_length: a [m].
         half_height: b [m].
         order: c [-], above 1.
-
-    Raises:
-        ConfigurationError: a value out of range.
     """
 
     distance: float

@@ -35,13 +35,7 @@ class _Warnings(logging.Handler):
 
 
 def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
-    """Read a bus log and decode its frames into channels.
-
-    Raises:
-        ConfigurationError: a database is missing or unreadable.
-        DataError: no database, a damaged file, no frames, or no identifier of the log in the databases.
-        MissingPartError: python-can or asammdf is not installed.
-    """
+    """Read a bus log and decode its frames into channels."""
     extra("can", "can", "a CAN log in BLF")
     module = import_module("can.io.blf")
     rows: dict[Source, list[tuple[float, bytes]]] = {}
@@ -53,9 +47,7 @@ def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
         with reading(path, "BLF", RECORD), module.BLFReader(str(path)) as file:
             size = path.stat().st_size
             if file.file_size not in (0, size):
-                raise DataError(
-                    f"{path}: has {size} bytes, but its header states {file.file_size}; it is truncated; {RECORD}"
-                )
+                raise DataError(f"{path}: {size} bytes, its header states {file.file_size}: truncated; {RECORD}")
             require_unpacked(path, float(file.uncompressed_size), size)
             started = float(file.start_timestamp)
             for message in file:

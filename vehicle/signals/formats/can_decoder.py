@@ -54,12 +54,7 @@ NO_VALUE = re.compile(
 
 
 def load_database(path: Path) -> Any:
-    """Load a database of CAN messages: DBC, or another format of canmatrix.
-
-    Raises:
-        ConfigurationError: the file does not exist or contains no messages.
-        MissingPartError: asammdf, which installs canmatrix, is not installed.
-    """
+    """Load a database of CAN messages: DBC, or another format of canmatrix."""
     extra("asammdf", "mdf", "decoding a bus log")
     if not path.is_file():
         raise ConfigurationError(f"--dbc {path}: file not found; set the path of a database of CAN messages")
@@ -118,9 +113,7 @@ def decode(
     loaded = [load_database(database) for database in databases]
     messages = {source: message for source in log if (message := _message(source, loaded)) is not None}
     if not messages:
-        raise DataError(
-            f"{path}: {names} describes none of the messages of the log ({_shown(log)}); use the database of this bus"
-        )
+        raise DataError(f"{path}: {names} describes none of the messages of the log ({_shown(log)}); use the right one")
     channels: list[Channel] = []
     missing: Counter[str] = Counter()
     try:
@@ -281,7 +274,7 @@ def _without_value(signal: Any, raw: NDArray[Any], values: Vector, j1939: bool) 
 
 
 def _outside(signal: Any, value: float) -> bool:
-    """Return True for a value outside the range that the database states; [0|0] states none."""
+    """Return True for a value outside the range in the database; [0|0] is none."""
     if signal.min is None or signal.max is None or not signal.min < signal.max:
         return False
     return not float(signal.min) <= value <= float(signal.max)

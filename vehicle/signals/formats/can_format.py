@@ -61,13 +61,7 @@ Parser = Callable[[str], "_Row | str"]
 
 
 def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
-    """Read a bus log and decode its frames into channels.
-
-    Raises:
-        ConfigurationError: a database is missing or unreadable.
-        DataError: no database, no frames, or no identifier of the log in the databases.
-        MissingPartError: asammdf is not installed.
-    """
+    """Read a bus log and decode its frames into channels."""
     text = read_text(path)
     lines = text.lines
     log_format = can_log_type(text.body[:4096])

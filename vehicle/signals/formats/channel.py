@@ -111,7 +111,7 @@ class Measurement:
         channels: channels in the order of the file, which numbers them from 1.
         sha256: hexadecimal digest of the bytes of the file; `read_record` adds it.
         program: program that wrote the file; empty if unknown.
-        start: date and time of the first sample, as written in the file.
+        start: date and time of the first sample in the words of the file.
         notices: messages on unusual content that was accepted.
         geometry: points and lines; empty if the file has none.
         shapes: mode shapes; empty if the file has none.
@@ -189,11 +189,7 @@ def clock_step(step: float, digits: int = 6) -> tuple[float, str]:
 
 
 def check_length(path: Path, claimed: float, available: float, part: str) -> None:
-    """Reject a file whose header claims more data than the file contains, before memory is allocated.
-
-    Raises:
-        DataError: `claimed` is negative or larger than `available`.
-    """
+    """Reject a file whose header claims more data than the file contains, before memory is allocated."""
     if claimed < 0 or claimed > available:
         raise DataError(
             f"{path}: {part} states {claimed:.0f} bytes of data, but the file has only {available:.0f}; it "

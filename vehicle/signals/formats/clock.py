@@ -32,16 +32,13 @@ def check_increasing(table: Table, time: Vector) -> None:
     row = int(np.flatnonzero(steps <= 0.0)[0]) + 1
     relation = "repeats" if steps[row - 1] == 0.0 else "is before"
     raise DataError(
-        f"{table.place(row)}: time {time[row]:.9g} s {relation} the time {time[row - 1]:.9g} s of {table.row(row - 1)}"
-        "; time must increase from row to row; were two logs concatenated?"
+        f"{table.place(row)}: time {time[row]:.9g} s {relation} {time[row - 1]:.9g} s of {table.row(row - 1)}, must "
+        "increase from row to row; were two logs concatenated?"
     )
 
 
 def check_uniform(table: Table, time: Vector, remedy: str = "resample it to uniform steps") -> None:
     """Reject time steps that deviate from the median step by more than `UNIFORM_TOLERANCE`.
-
-    Args:
-        time: increasing times [s], shape (n,).
 
     Raises:
         DataError: a pause or times that are not uniform; the message names the row of the largest deviation.
@@ -50,13 +47,13 @@ def check_uniform(table: Table, time: Vector, remedy: str = "resample it to unif
     step = time[row] - time[row - 1]
     if worst > UNIFORM_TOLERANCE and step >= PAUSE:
         raise DataError(
-            f"{table.place(row)}: the record has a gap of {step:.6g} s, from {time[row - 1]:.9g} to "
-            f"{time[row]:.9g} s, and gaps are not filled; use the part before or after it"
+            f"{table.place(row)}: the record has a gap of {step:.3g} s, from {time[row - 1]:.9g} to {time[row]:.9g} s, "
+            "which is not filled; use the part before or after it"
         )
     if worst > UNIFORM_TOLERANCE:
         raise DataError(
-            f"{table.place(row)}: time steps are not uniform: a step of {step:.9g} s deviates from the median "
-            f"{float(np.median(np.diff(time))):.9g} s by the factor {worst:.3g}, must be at most "
+            f"{table.place(row)}: time steps are not uniform: {step:.6g} s deviates from the median "
+            f"{float(np.median(np.diff(time))):.6g} s by the factor {worst:.3g}, must be at most "
             f"{UNIFORM_TOLERANCE:g}; write the time with more digits, or {remedy}"
         )
 
@@ -75,9 +72,6 @@ def clock_of_rounded(time: Vector) -> tuple[float, int] | None:
 
     t_k = t_0 + k / f + e_k with e_k within one unit q of the last decimal, for all k: 2048 Hz written with six decimals
     has steps of 488 and 489 us. Return a whole number f if it fits, else the clock with the smallest spread.
-
-    Args:
-        time: increasing times [s], shape (n,).
 
     Returns:
         Rate f [Hz] and number of decimals; None if no clock fits or q exceeds `LARGEST_QUANTUM` steps.
@@ -110,14 +104,7 @@ def clock_of_stamps(time: Vector) -> StampClock | None:
 
 
 def check_stamps(where: object, time: Vector) -> None:
-    """Reject stamps that are not the times of the samples; the message contains the rate.
-
-    Args:
-        time: stamps [s], (n,).
-
-    Raises:
-        DataError: `clock_of_stamps` returns a clock.
-    """
+    """Reject stamps that are not the times of the samples; the message contains the rate."""
     clock = clock_of_stamps(time)
     if clock is not None:
         raise DataError(f"{where}: {clock.remedy}")
@@ -174,8 +161,8 @@ def time_remarks(time: Vector) -> tuple[str, ...]:
     if rounded or is_uniform(time):
         return rounded
     return (
-        f"times are not uniform: steps of {steps.min():.6g} to {steps.max():.6g} s; set {remedy}, or --rate HZ "
-        "if the samples are uniform and only the time stamps are irregular",
+        f"times are not uniform: steps of {steps.min():.3g} to {steps.max():.3g} s; set {remedy}, or --rate HZ if only "
+        "the time stamps are irregular",
     )
 
 

@@ -159,11 +159,7 @@ def epoch_seconds(values: Vector, unit: str) -> tuple[Vector, str, str] | None:
 
 
 def clock_of_day(value: float) -> float:
-    """Return the seconds after midnight of a time of day written as a number HHMMSS.sss.
-
-    Raises:
-        ValueError: hours, minutes or seconds out of range.
-    """
+    """Return the seconds after midnight of a time of day written as a number HHMMSS.sss."""
     if not 0.0 <= value < 250000.0:  # also infinity and NaN
         raise ValueError(value)
     whole = int(value)

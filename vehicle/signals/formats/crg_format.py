@@ -144,11 +144,7 @@ def read(path: Path) -> Measurement:
         for index, v in enumerate(surface.v)
     ]
     return Measurement(
-        path=path,
-        format="crg",
-        channels=tuple(channels),
-        program="OpenCRG",
-        notices=(road_words(surface),),
+        path=path, format="crg", channels=tuple(channels), program="OpenCRG", notices=(road_words(surface),)
     )
 
 
@@ -181,11 +177,7 @@ def _header(text: str) -> dict[str, list[str]]:
 
 
 def _modifiers(path: Path, lines: Sequence[str]) -> tuple[str, ...]:
-    """Return the names of the modifiers that move the road as a whole: a car drives over the same heights.
-
-    Raises:
-        DataError: a modifier that changes the surface.
-    """
+    """Return the names of the modifiers that move the road as a whole: a car drives over the same heights."""
     moved = []
     for name, value in _parameters(path, lines, "ROAD_CRG_MODS").items():
         if _MOVES.fullmatch(name):

@@ -40,12 +40,7 @@ class _Axis(NamedTuple):
 
 
 def read(path: Path) -> Measurement:
-    """Read the table of a text file with the headers above the table.
-
-    Raises:
-        ConfigurationError: the file does not exist.
-        DataError: no numeric columns, a row of another length, a non-numeric cell, or an ambiguous comma.
-    """
+    """Read the table of a text file with the headers above the table."""
     text = read_text(path)
     if any(line.startswith(FREQUENCY) and SUFFIXES[0] in line for line in text.lines[:20]):
         return _responses(path, text.sha256)
@@ -151,9 +146,7 @@ def _texts(
     for line, row in zip(numbers, rows, strict=True):
         cells = row.split(delimiter or None) if unquoted else cells_of(row, delimiter)
         if len(cells) != len(kinds):
-            raise DataError(
-                f"{path}:{line}: the row has {len(cells)} cells, but the header {len(kinds)}; repair or remove the row"
-            )
+            raise DataError(f"{path}:{line}: the row has {len(cells)} cells, but the header {len(kinds)}; repair it")
         for column in columns:
             if column in texts:
                 texts[column].append(cells[column].strip())
@@ -288,7 +281,7 @@ def _responses(path: Path, sha256: str) -> Measurement:
 
 
 def _is_axis(name: str, unit: str, quantity: str) -> bool:
-    """Return True if name and unit of a column are those of the time or the frequency."""
+    """Return True if name and unit of a column mean the time or the frequency."""
     pattern = TIME_NAME if quantity == "time" else FREQUENCY_NAME
     unit_entry = find_unit(unit)
     return bool(pattern.fullmatch(name.strip())) and (unit_entry is None or unit_entry.quantity == quantity)

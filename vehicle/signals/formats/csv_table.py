@@ -131,7 +131,7 @@ def comment_line(text: str) -> str:
 
 
 class RowWriter:
-    """Writer of rows of any cells as CSV, see `plain_cell`; methods as those of the module csv."""
+    """Writer of rows of any cells as CSV, see `plain_cell`; methods of the module csv."""
 
     def __init__(self, file: Any) -> None:
         self._rows = csv.writer(file, lineterminator="\n")
@@ -147,12 +147,7 @@ class RowWriter:
 
 
 def read_texts(path: Path) -> list[list[str]]:
-    """Read the cells of all rows as texts, the header first; keep commas within quotes.
-
-    Raises:
-        ConfigurationError: the file does not exist.
-        DataError: not a CSV text.
-    """
+    """Read the cells of all rows as texts, the header first; keep commas within quotes."""
     try:
         rows = csv.reader(line for line in read_text(path).lines if not _is_comment(line))
         return [[FORMULA_TEXT.sub("", cell.strip()) for cell in row] for row in rows]
@@ -264,9 +259,6 @@ def careful(
         key: index of the column of times or frequencies; -1 for none.
         wanted: requirements on the table.
         texts: see `logged`.
-
-    Raises:
-        DataError: a non-numeric cell, or a row with another number of cells.
     """
     width, used = len(header.cells), None if wanted.columns is None else wanted.columns(header)
     values: Vector = np.full((len(rows), width), np.nan)
@@ -288,7 +280,7 @@ def careful(
                 if texts is not None and column != key:
                     texts.setdefault(column, f"{cell!r} in line {line} is no number")
                     continue
-                raise DataError(f"{where} is {cell!r}, must be a number with a decimal point, such as -1.25e-4")
+                raise DataError(f"{where} is {cell!r}, must be a number, for example -1.25e-4; repair the cell")
             if column == key:
                 stamp = "time stamp" if header.cells[column].lower().startswith("time") else "frequency"
                 raise DataError(f"{where} is {cell!r}; a {stamp} is never interpolated; repair or remove the row")
@@ -319,8 +311,8 @@ def _wrong_count(index: int, numbers: list[int], rows: list[str], header: Header
         if index < len(rows) - 1:
             return _different_length(f"{header.path}:{numbers[index]}:{width}: column {header.cells[-1]!r}")
         return DataError(
-            f"{where}: the last row has {len(cells)} cells, but the header {width}; the file is truncated; "
-            "remove the row"
+            f"{where}: the last row has {len(cells)} cells, but the header {width}; the file is truncated: remove the "
+            "row"
         )
     hint = "one cell per column"
     if len(cells) < width and any(sign in rows[index] for sign in (";", "\t")):
@@ -334,19 +326,12 @@ def _wrong_count(index: int, numbers: list[int], rows: list[str], header: Header
 
 def _different_length(where: str) -> DataError:
     return DataError(
-        f"{where} ends before the other columns; all columns must have the same length; export them over the same time"
+        f"{where} ends before the other columns, must have the same length; export them over the same time"
     )
 
 
 def decimal_points(numbers: list[int], rows: list[str], header: Header) -> tuple[list[str], list[str]]:
-    """Replace decimal commas by decimal points, with a notice; reject ambiguous commas.
-
-    Args:
-        numbers, rows, header: see `careful`.
-
-    Raises:
-        DataError: a comma that may separate thousands.
-    """
+    """Replace decimal commas by decimal points, with a notice; reject ambiguous commas."""
     if header.delimiter == "," or not any("," in row for row in rows):
         return rows, []
     pointed = next((n for n, row in zip(numbers, rows, strict=True) if "." in row), None)

@@ -25,9 +25,6 @@ def read(path: Path) -> Measurement:
     The second line contains NCHAN, NSAMP, NRECS, NBYTES, KEYNUM and STEP: channels, samples (-1: unknown), layout of
     binary data, number format, and the spacing of the samples in XUNITS.
 
-    Raises:
-        DataError: a damaged header or table, binary numbers, or an unknown unit of the distance.
-
     Source: UMTRI, The ERD File Specification; headers of LTPP profiles.
     """
     text = read_text(path)
@@ -39,13 +36,9 @@ def read(path: Path) -> Measurement:
     try:
         count, samples, number_format, step = int(cells[0]), int(cells[1]), int(cells[4]), float(cells[5])
     except (IndexError, ValueError):
-        raise DataError(
-            f"{path}:2: must contain NCHAN, NSAMP, NRECS, NBYTES, KEYNUM, STEP; found {lines[1]!r}"
-        ) from None
+        raise DataError(f"{path}:2: must be NCHAN, NSAMP, NRECS, NBYTES, KEYNUM, STEP; found {lines[1]!r}") from None
     if number_format != TEXT:
-        raise DataError(
-            f"{path}:2: binary numbers (KEYNUM {number_format}) are not supported; export the profile as text ERD"
-        )
+        raise DataError(f"{path}:2: binary numbers (KEYNUM {number_format}) are not read; export text ERD")
     if count < 1 or step <= 0.0:
         raise DataError(f"{path}:2: {count} channels with a step of {step:g}; both must be above 0")
     keywords = _keywords(lines[2:end])

@@ -55,7 +55,7 @@ class FrfData:
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        """Return the distinct inputs, as "plate_fr", without unknown inputs."""
+        """Return the distinct known inputs, for example "plate_fr"."""
         return tuple(dict.fromkeys(name.input for name in self.names if name.motion))
 
     @property
@@ -71,7 +71,7 @@ class FrfData:
         """Return the FRFs of channels in a frequency band, with a minimum spacing of the frequencies.
 
         Args:
-            channels: names of outputs, or of output and plate as "knuckle_fr_acc_z/plate_fr".
+            channels: names of outputs, or of output and plate ("knuckle_fr_acc_z/plate_fr").
             band: minimum and maximum frequency [Hz].
             spacing: minimum spacing of the frequencies [Hz]. Adjacent lines of an estimate are correlated; lines
                 separated by its resolution are not.
@@ -122,7 +122,7 @@ def read_frf(path: Path) -> FrfData:
 
     `#` comments, one header line `frequency [Hz]`, then `<channel>_magnitude` [m/s2 per m], `<channel>_phase [deg]`
     and `<channel>_coherence` of each channel, optionally `<channel>_random_error` [m/s2 per m]; an empty cell for an
-    undefined value. With several plates a channel is `<channel>/<plate>`, as `knuckle_fr_acc_z/plate_fr`.
+    undefined value. With several plates a channel is `<channel>/<plate>`.
 
     Raises:
         ConfigurationError: the file does not exist.
@@ -130,9 +130,7 @@ def read_frf(path: Path) -> FrfData:
     """
     table = read_table(path, Wanted(needed=NEEDED, key=_frequency, missing="empty"))
     if len(table.values) < LEAST_LINES:
-        raise DataError(
-            f"{path}: {len(table.values)} rows of numbers, must be a header and at least {LEAST_LINES} rows"
-        )
+        raise DataError(f"{path}: {len(table.values)} rows, must be at least {LEAST_LINES} rows")
     frequency = table.values[:, table.key]
     for index in np.flatnonzero(np.diff(frequency, prepend=0.0) <= 0.0)[:1].tolist():
         after = f" after {frequency[index - 1]:g}; frequencies must increase" if index else ", must be above 0"
@@ -169,7 +167,7 @@ def _channels(header: Header) -> tuple[str, ...]:
         )
     channels = tuple(dict.fromkeys(name.removesuffix(end or "") for name, end in suffix_of.items()))
     if not channels:
-        raise DataError(f"{header.where}: contains no channel; needed are {NEEDED}")
+        raise DataError(f"{header.where}: contains no channel, must be {NEEDED}")
     missing = next((channel + end for channel in channels for end in SUFFIXES if channel + end not in names), None)
     if missing is not None:
         raise DataError(f"{header.where}: no column {missing!r}; a channel needs magnitude, phase and coherence")
@@ -193,16 +191,12 @@ def _columns(table: Table, channels: Sequence[str], suffix: str) -> Vector:
 
 
 def write_frf(
-    path: Path,
-    responses: Mapping[str, FrequencyResponse],
-    channels: Sequence[str],
-    frame: str,
-    inputs: str = "",
+    path: Path, responses: Mapping[str, FrequencyResponse], channels: Sequence[str], frame: str, inputs: str = ""
 ) -> None:
     """Write magnitude [m/s2 per m], phase [deg], coherence and random error of each channel; undefined values empty.
 
     Args:
-        responses: input, as "plate_fr", to the FRFs of the channels, in columns `<channel>_magnitude` for one input,
+        responses: input ("plate_fr") to the FRFs of the channels, in columns `<channel>_magnitude` for one input,
             `<channel>/<input>_magnitude` for several.
         frame: description of the vector axes.
         inputs: description of the inputs if there is more than one plate.

@@ -65,12 +65,7 @@ def read(path: Path) -> Measurement:
     if not channels:
         raise DataError(f"{path}: contains no numeric array; export the channels as arrays of numbers")
     return Measurement(
-        path=path,
-        format="hdf5",
-        channels=channels,
-        program=program,
-        start=start,
-        notices=tuple(notices),
+        path=path, format="hdf5", channels=channels, program=program, start=start, notices=tuple(notices)
     )
 
 
@@ -203,7 +198,7 @@ def _arrays(
 def _coordinate(dataset: Any, count: int) -> Vector | None:
     """Return the times of the first dimension [s] from its dimension scale; None without a scale in a unit of time.
 
-    Times since a date, as "seconds since 2026-01-01" (CF conventions, section 4.4), begin at zero.
+    Times since a date ("seconds since 2026-01-01" in the CF conventions, 4.4) begin at zero.
     """
     scales = dataset.dims[0]
     if not len(scales) or scales[0].shape != (count,) or scales[0].dtype.kind not in "fiu":
@@ -284,12 +279,7 @@ def _attribute(item: Any, name: str) -> str:
 
 
 def write(path: Path, channels: tuple[Channel, ...], description: str) -> None:
-    """Write channels to an HDF5 file, one array per channel.
-
-    Raises:
-        MissingPartError: h5py is not installed.
-        OSError: the file cannot be written.
-    """
+    """Write channels to an HDF5 file, one array per channel."""
     h5py = extra("h5py", "hdf5", "writing HDF5")
     # The file is made in memory: an error as HDF5 closes a file on a full disk cannot be caught, and ends the process.
     with h5py.File(path.name, "w", driver="core", backing_store=False) as file:

@@ -110,9 +110,6 @@ def read_heads(path: Path, lines: Sequence[str], start: int, delimiter: str, cou
         start: index of the first row of numbers.
         delimiter: delimiter of the cells; "" for blanks.
         count: number of columns.
-
-    Raises:
-        DataError: a name line with a wrong number of cells, or a line that mixes names and numbers.
     """
     above, first = _lines_of_heads(path, lines, start, delimiter, count)
     units = _take_units(above)
@@ -194,7 +191,7 @@ def _is_number(cell: str) -> bool:
 
 
 def bare_unit(cell: str) -> str:
-    """Strip enclosing blanks and brackets from a unit, as "[m/s2]", "(g)", "m/(s^2)"; return "" for a dash."""
+    """Strip enclosing blanks and brackets from a unit ("[m/s2]", "(g)", "m/(s^2)"); return "" for a dash."""
     text = cell.strip(" -")
     while len(text) > 1 and text[0] + text[-1] in ("[]", "()"):
         inner = text[1:-1]
@@ -233,7 +230,7 @@ def _take_units(above: list[list[str]]) -> list[str] | None:
 def split_head(cell: str) -> tuple[str, str]:
     """Split a column header into name and unit.
 
-    A unit in brackets or after " / " is removed from the name. A unit suffix, as in `AccelX_g`, stays in the name,
+    A unit in brackets or after " / " is removed from the name. A unit suffix (`AccelX_g`) stays in the name,
     because it may be a part of the name.
 
     Args:

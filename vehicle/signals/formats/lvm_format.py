@@ -53,12 +53,7 @@ class _Segment:
 
 
 def read(path: Path) -> Measurement:
-    """Read the channels of all segments; concatenate segments with equal channels.
-
-    Raises:
-        ConfigurationError: the file does not exist.
-        DataError: not according to the specification, damaged, or segments that overlap in time.
-    """
+    """Read the channels of all segments; concatenate segments with equal channels."""
     text = read_text(path)
     lines = text.lines
     head, first = _file_header(path, lines)
@@ -116,8 +111,7 @@ def _segments(path: Path, lines: Sequence[str], first: int, separator: str) -> l
             segments.append(_Segment(attributes={word: line.split(separator)}))
         elif not segments:
             raise DataError(
-                f"{path}:{index + 1}: found {line[:40]!r} where the header of a segment (Channels) must "
-                "begin; export it again"
+                f"{path}:{index + 1}: found {line[:40]!r}, must be the header of a segment; export it again"
             )
         elif not segments[-1].names:
             segments[-1].names, segments[-1].line = [cell.strip() for cell in line.split(separator)], index + 1
@@ -210,22 +204,15 @@ def _numbers(path: Path, segment: _Segment, names: list[str], separator: str, si
     for line, row in segment.rows:
         cells = row.split(separator)
         if len(cells) < width:
-            raise DataError(
-                f"{path}:{line}: the row has {len(cells)} cells for {width} columns; the file is truncated; "
-                "remove the row"
-            )
+            raise DataError(f"{path}:{line}: {len(cells)} cells for {width} columns: truncated; remove the row")
         if any(cell.strip() for cell in cells[width:]):
             notices.append("comments behind rows are ignored")
         rows.append("\t".join(cells[:width]))
     commas = any("," in row for row in rows)
     if commas and any("." in row for row in rows):
-        raise DataError(
-            f"{path}:{segment.line}: the segment mixes decimal points and decimal commas; export it with one of them"
-        )
+        raise DataError(f"{path}:{segment.line}: decimal points and decimal commas; export one of them")
     if commas and sign == ".":
-        raise DataError(
-            f"{path}:{segment.line}: the numbers have decimal commas, but Decimal_Separator is '.'; export it again"
-        )
+        raise DataError(f"{path}:{segment.line}: decimal commas, but Decimal_Separator is '.'; export it again")
     if commas:
         rows = [row.replace(",", ".") for row in rows]
     header = Header(path=path, line=segment.line, cells=tuple(names), delimiter="\t")
@@ -250,14 +237,13 @@ def _times(
         return None, "the times are missing: Delta_X is not positive; set --rate HZ"
     if 0 < packet < count:
         return None, (
-            f"the time between packets of {packet} samples is unknown; if there are no gaps between them, set "
-            f"--rate {1.0 / step:.9g}"
+            f"the time between packets of {packet} samples is unknown; without gaps set --rate {1.0 / step:.9g}"
         )
     return uniform_axis(count, step, origin), remark
 
 
 def _step(text: str) -> tuple[float, str]:
-    """Parse a time step [s]; for fixed decimals, as 0.000977, recover the only matching whole rate."""
+    """Parse a time step [s]; for fixed decimals (0.000977) recover the only matching whole rate."""
     step = float(text)
     _, point, decimals = text.partition(".")
     if not point or not decimals.isdecimal() or step <= 0.0:
@@ -267,7 +253,7 @@ def _step(text: str) -> tuple[float, str]:
     if low == high and abs(step * low - 1.0) > 1e-12:
         return 1.0 / low, f"time step {text} s is rounded; the sampling rate is assumed to be {low} Hz"
     if low != high and half / step > 1e-5:
-        uncertainty = f"the sampling rate is {1.0 / step:.9g} Hz +- {number(100 * half / step, 2)} %"
+        uncertainty = f"the sampling rate is {1.0 / step:.6g} Hz +- {number(100 * half / step, 2)} %"
         return step, f"time step {text} s is rounded: {uncertainty}"
     return step, ""
 
@@ -317,7 +303,7 @@ def _starts(path: Path, segments: Sequence[_Segment], columns: Sequence[list[Cha
         gap = shifts[index] + after[0] - shifts[index - 1] - before[-1]
         if gap <= 0.0 or gap < (1.0 - JOINED) * step * 0.5:
             raise DataError(
-                f"{path}:{segments[index].line}: segment {index + 1} begins {-gap:.6g} s before the end of segment "
-                f"{index}; segments must not overlap; export each segment to a separate file"
+                f"{path}:{segments[index].line}: segment {index + 1} begins {-gap:.3g} s before the end of segment "
+                f"{index}, must begin after it; export each segment to a separate file"
             )
     return [float(shift) for shift in shifts]

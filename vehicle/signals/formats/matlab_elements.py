@@ -31,9 +31,6 @@ def check_matrix(path: Path, data: bytes, order: str, where: str, depth: int = 0
     Args:
         data: bytes of the element without its tag.
         order: byte order, "<" or ">".
-
-    Raises:
-        DataError: a part of unknown type or size, or dimensions that contradict the amount of data.
     """
     if not data:
         return  # an empty cell
@@ -66,9 +63,6 @@ def object_name(path: Path, data: bytes, order: str) -> tuple[str, str] | None:
     Args:
         data: bytes of the element without its tag.
         order: byte order, "<" or ">".
-
-    Raises:
-        DataError: inconsistent parts.
     """
     if len(data) < 16 or data[8 if order == "<" else 11] != OBJECT:
         return None

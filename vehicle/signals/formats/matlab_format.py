@@ -49,15 +49,7 @@ def read(path: Path) -> Measurement:
 def with_tables(
     variables: Mapping[str, Any], path: Path, objects: Mapping[str, str]
 ) -> tuple[tuple[Channel, ...], list[str], str]:
-    """Return the channels of MATLAB variables and of tables and timetables, notices, and the start of dates.
-
-    Args:
-        variables, objects: see `channels_of`.
-
-    Raises:
-        DataError: no channels, or a damaged table without other channels.
-        MissingPartError: the file has tables and no other channels, and mat-io is not installed.
-    """
+    """Return the channels of MATLAB variables and of tables and timetables, notices, and the start of dates."""
     tables = {name: class_name for name, class_name in objects.items() if class_name in TABLES}
     others = {name: class_name for name, class_name in objects.items() if name not in tables}
     if not tables:
@@ -84,9 +76,6 @@ def channels_of(
     Args:
         variables: name to array; structures are record arrays.
         objects: name to class of variables that are objects (tables, timetables, dates), which are not read.
-
-    Raises:
-        DataError: no channels.
     """
     channels: list[Channel] = []
     scalars: list[str] = []
@@ -125,9 +114,7 @@ def channels_of(
         raise DataError(f"{path}: no numeric array; {remedy}")
     if not channels:
         names = ", ".join(name for name in list(variables)[:12] if not name.startswith("__")) or "nothing"
-        raise DataError(
-            f"{path}: contains {names}; must contain a structure with x_values and y_values, or a numeric array"
-        )
+        raise DataError(f"{path}: has {names}; must have a structure with x_values and y_values or a numeric array")
     notices = [f"single numbers: {', '.join(scalars[:12])}"] if scalars else []
     if objects:
         notices.append(f"ignored: {remedy}")
@@ -272,9 +259,7 @@ def _check_elements(path: Path) -> dict[str, str]:
             file.seek(position)
             data_type, count = struct.unpack(f"{order}II", file.read(8))
             if data_type >> 16:
-                raise DataError(
-                    f"{path}: expected a data element at byte {position}; the file is damaged; save it again"
-                )
+                raise DataError(f"{path}: no data element at byte {position}; the file is damaged; save it again")
             check_length(path, count, size - position - 8, f"element at byte {position}")
             if data_type not in (MATRIX, COMPRESSED):
                 raise DataError(f"{path}: expected a matrix at byte {position}; the file is damaged; save it again")

@@ -18,7 +18,7 @@ from vehicle.signals.formats.units import seconds_in
 
 
 def is_structure(record: Mapping[str, Any]) -> bool:
-    """Return True if the fields of a structure, with their values, are those of Simulink or dSPACE."""
+    """Return True if the fields of a structure, with their values, are of Simulink or dSPACE."""
     return _has(record, "signals", "values") or (_has(record, "X", "Data") and _has(record, "Y", "Data"))
 
 

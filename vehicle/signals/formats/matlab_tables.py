@@ -25,15 +25,7 @@ TABLES = ("table", "timetable")
 
 
 def table_channels(path: Path, tables: Mapping[str, str]) -> tuple[list[Channel], list[str], str]:
-    """Return the channels of the tables of a file, notices, and the start of the first table with dates.
-
-    Args:
-        tables: name of a variable to its class, table or timetable.
-
-    Raises:
-        MissingPartError: mat-io is not installed.
-        DataError: a damaged table, or one of alternating sensors.
-    """
+    """Return the channels of the tables of a file, notices, and the start of the first table with dates."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of pandas, about an option that mat-io sets
         matio = extra("matio", "matlab", "a table of MATLAB")

@@ -42,11 +42,6 @@ def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
     """Read the numeric channels of all groups over the times of their group, without resampling.
 
     Raw frames of a CAN bus are decoded with the databases, and ignored without databases.
-
-    Raises:
-        ConfigurationError: a database is missing or unreadable.
-        MissingPartError: asammdf is not installed.
-        DataError: the file is damaged, truncated, without numbers, or has only frames that are not decoded.
     """
     asammdf = extra("asammdf", "mdf", "an MDF file")
     for database in databases:
@@ -78,36 +73,19 @@ def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
         count = sum(frames.time.size for frames in log.values())
         notices = [f"{count} raw frames of a CAN bus are ignored; set --dbc FILE to decode them", *notices]
     if not channels:
-        raise DataError(
-            f"{path}: contains no channel with numbers; {'; '.join(notices) or 'no channels'}; export numbers"
-        )
+        raise DataError(f"{path}: no channel with numbers; {'; '.join(notices) or 'no channels'}; export numbers")
     return Measurement(
-        path=path,
-        format="mdf",
-        channels=tuple(channels),
-        program=program,
-        start=start,
-        notices=tuple(notices),
+        path=path, format="mdf", channels=tuple(channels), program=program, start=start, notices=tuple(notices)
     )
 
 
 def write(path: Path, channels: Sequence[Channel], description: str) -> None:
-    """Write time histories as MDF 4.10, one channel group for each time axis; values are stored as float64.
-
-    Args:
-        path: file to write, with the extension .mf4.
-
-    Raises:
-        MissingPartError: asammdf is not installed.
-        DataError: a channel without times.
-    """
+    """Write time histories as MDF 4.10, one channel group for each time axis; values are stored as float64."""
     asammdf = extra("asammdf", "mdf", "an MDF file")
     groups: dict[int, tuple[Any, list[Any]]] = {}
     for channel in channels:
         if channel.axis is None or channel.kind != "time":
-            raise DataError(
-                f"{path}: {channel.name} is not a time history, and MDF stores only time histories; leave it out"
-            )
+            raise DataError(f"{path}: {channel.name} is no time history, and MDF stores nothing else; leave it out")
         _, signals = groups.setdefault(id(channel.axis), (channel.axis, []))
         signals.append(
             asammdf.Signal(
@@ -224,7 +202,7 @@ def _frames(file: Any, number: int) -> BusLog:
     if not _is_can(group):
         return {}
     index = {str(channel.name).removeprefix("CAN_DataFrame."): n for n, channel in enumerate(group.channels)}
-    columns = {  # values of virtual channels, as a constant bus, are in their conversions
+    columns = {  # values of virtual channels, for example a constant bus, are in their conversions
         name: file.get(group=number, index=index[name], ignore_invalidation_bits=True)
         for name in ("ID", "IDE", "BusChannel", "Dir", "DataLength", "DLC", "DataBytes")
         if name in index
@@ -260,7 +238,7 @@ def _frames(file: Any, number: int) -> BusLog:
 
 
 def _unpacked(group: Any) -> float:
-    """Return the size of the values and times of a group in memory [byte], as its headers state it."""
+    """Return the size of the values and times of a group in memory by its headers [byte]."""
     cycles = float(getattr(group.channel_group, "cycles_nr", 0))
     return cycles * max(float(getattr(group.channel_group, "samples_byte_nr", 0)), 8.0 * len(group.channels))
 

@@ -1,4 +1,4 @@
-"""Refuse long tables, whose rows are those of several sensors: time, sensor, value."""
+"""Refuse long tables with rows of several sensors: time, sensor, value."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -18,13 +18,10 @@ SAMPLED = 200
 
 
 def check_alternation(path: Path, name: str, texts: Sequence[str]) -> None:
-    """Check that a column of texts, as a marker, is no name of alternating sensors.
+    """Check that a column of texts, for example markers, does not name alternating sensors.
 
     Args:
         texts: cells of the first `SAMPLED` rows; empty texts for missing cells.
-
-    Raises:
-        DataError: the texts alternate.
     """
     texts = [text for text in texts if text]  # a source has a name; a remark may be missing
     different = sorted(set(texts))
@@ -35,11 +32,7 @@ def check_alternation(path: Path, name: str, texts: Sequence[str]) -> None:
 
 
 def check_cycles(measurement: Measurement) -> None:
-    """Check that no channel counts sensors: the same k different whole numbers at each k equal times.
-
-    Raises:
-        DataError: a channel counts sensors.
-    """
+    """Check that no channel counts sensors: the same k different whole numbers at each k equal times."""
     cycles: dict[int, int] = {}  # by axis, which many channels share
     for channel in measurement.channels:
         time, values = channel.axis, channel.values

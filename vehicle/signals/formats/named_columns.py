@@ -14,9 +14,6 @@ from vehicle.signals.formats.units import allowed_units, find_unit
 def named_columns(path: Path, wanted: Mapping[str, str]) -> dict[str, Vector]:
     """Read named columns of a measurement file in SI units.
 
-    Args:
-        wanted: column name in lower case to SI unit of its quantity.
-
     Returns:
         Column name to values in SI units, all of equal length.
 
@@ -29,9 +26,7 @@ def named_columns(path: Path, wanted: Mapping[str, str]) -> dict[str, Vector]:
         matches = [channel for channel in measurement.channels if channel.name.strip().lower() == name]
         if len(matches) != 1:
             shown = ", ".join(f"{channel.name!r} [{channel.unit}]" for channel in measurement.channels[:12]) or "none"
-            raise DataError(
-                f"{path}: {len(matches)} columns are named {name!r}, must be a single column [{si}]; found {shown}"
-            )
+            raise DataError(f"{path}: {len(matches)} columns {name!r}, must be one [{si}]; found {shown}")
         unit_entry, needed = find_unit(matches[0].unit), find_unit(si)
         if unit_entry is None or needed is None or unit_entry.quantity != needed.quantity:
             units = allowed_units(needed.quantity if needed is not None else None)

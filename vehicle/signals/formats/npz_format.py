@@ -14,12 +14,7 @@ from vehicle.signals.formats.unpacked_size import require_unpacked
 
 
 def read(path: Path, wanted: Wanted) -> Table:
-    """Read the array `time` and all numeric arrays of its length as a table.
-
-    Raises:
-        DataError: not an archive of arrays, too large, no array `time`, another length, values that are not finite, or
-            a violated requirement of `wanted`.
-    """
+    """Read the array `time` and all numeric arrays of its length as a table."""
     with reading(path, "npz", "use the time.npz of a run, or a CSV file"):
         names = _wanted_arrays(path)
         with np.load(path, allow_pickle=False) as arrays:
@@ -44,14 +39,7 @@ def read(path: Path, wanted: Wanted) -> Table:
     table = np.empty((count, len(numbers)), order="F")
     for column, name in enumerate(tuple(numbers)):
         table[:, column] = numbers.pop(name)  # keep only one copy of a long record in memory
-    return Table(
-        header=header,
-        key=key,
-        values=table,
-        lines=np.arange(1, count + 1),
-        notices=(),
-        sha256=digest(path),
-    )
+    return Table(header=header, key=key, values=table, lines=np.arange(1, count + 1), notices=(), sha256=digest(path))
 
 
 def _wanted_arrays(path: Path) -> list[str]:

@@ -16,9 +16,6 @@ def extra(package: str, name: str, purpose: str) -> Any:
         package: package to import.
         name: name of the extra that installs the package.
         purpose: use of the package, for the message.
-
-    Raises:
-        MissingPartError: the library is not installed.
     """
     try:
         return import_module(package)
@@ -31,11 +28,7 @@ def extra(package: str, name: str, purpose: str) -> Any:
 
 @contextmanager
 def reading(path: Path, form: str, remedy: str) -> Iterator[None]:
-    """Convert the errors of a library that reads a file; for damaged files libraries raise errors of any type.
-
-    Raises:
-        DataError: any error in the block.
-    """
+    """Convert the errors of a library that reads a file; for damaged files libraries raise errors of any type."""
     try:
         yield
     except DataError:

@@ -48,7 +48,7 @@ def time_pairs(columns: Sequence[str]) -> dict[int, int]:
 
 
 def is_time(name: str, unit: str) -> bool:
-    """Return True if name and unit of a column are those of a time; pandas writes a repeated name as "Time.1".
+    """Return True if name and unit of a column mean a time; pandas writes a repeated name as "Time.1".
 
     Without a unit the name must contain a word for time: "T Oil" is a temperature.
     """
@@ -67,16 +67,13 @@ def own_times(
 ) -> dict[int, Vector]:
     """Return the times of each channel of `time_pairs` [s]; NaN where its row is blank.
 
-    Two clocks of the same rows, as those of a logger and of a satellite receiver, have equal spans, also in the rows
+    Two clocks of the same rows, for example of a logger and a satellite receiver, have equal spans, also in the rows
     that they share, and the word of a clock in their names; the result is then empty. It is also empty if a column of
     the same rows is no clock, see `rises`.
 
     Args:
         where: file, for messages.
         columns: numbers of all columns, (n,) each.
-
-    Raises:
-        DataError: a value without a time, or an unknown unit.
     """
     times = list(dict.fromkeys(pairs.values()))
     rows = [np.isfinite(columns[t]) for t in times]
@@ -92,7 +89,7 @@ def own_times(
         return {}
     if not all(_factor(units, time, times) for time in times):
         shown = ", ".join(repr(names[time]) for time in times)
-        raise DataError(f"{where}: each channel has a time column ({shown}) without a known unit; write it, as [s]")
+        raise DataError(f"{where}: each channel has a time column ({shown}) without a known unit; write it ([s])")
     factors = {time: _factor(units, time, times) for time in times}
     first = columns[times[0]] * factors[times[0]]
     zero = 0.0

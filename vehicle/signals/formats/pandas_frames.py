@@ -27,14 +27,7 @@ NANOSECONDS = 1e-9
 
 
 def frame_channels(path: Path, name: str, group: Any, notices: list[str]) -> tuple[list[Channel], str]:
-    """Return the columns of a pandas frame or series as channels, and its start time; adds notices.
-
-    Args:
-        group: group of an HDF5 file, with the attribute `pandas_type`.
-
-    Raises:
-        DataError: an unsupported storage format; the message contains a command that converts the frame.
-    """
+    """Return the columns of a pandas frame or series as channels, and its start time; adds notices."""
     frame_type = _text(group.attrs.get("pandas_type"))
     if frame_type not in ("frame", "series"):
         convert = f"import pandas; pandas.read_hdf({path.name!r}, {name!r}).to_csv({name.replace('/', '_') + '.csv'!r})"
@@ -58,9 +51,7 @@ def frame_channels(path: Path, name: str, group: Any, notices: list[str]) -> tup
             values = values if block.attrs.get("transposed", True) else values.T
             items = [_text(item_name) for item_name in group[f"block{number}_items"][()]]
             if values.ndim != 2 or values.shape != (index.shape[0], len(items)):
-                raise DataError(
-                    f"{path}: {name!r}: the shape of block {number} contradicts its names; the file is damaged"
-                )
+                raise DataError(f"{path}: {name!r}: block {number} contradicts its names; the file is damaged")
             columns |= {item: values[:, n].astype(np.float64) for n, item in enumerate(items)}
         order = [_text(item_name) for item_name in group["axis0"][()]]
         columns = {item: columns[item] for item in order if item in columns}

@@ -51,12 +51,7 @@ def read(path: Path) -> Measurement:
             f"{', '.join(map(repr, fields.names[:12])) or 'nothing'}; export numbers"
         )
     return Measurement(
-        path=path,
-        format="parquet",
-        channels=tuple(channels),
-        program=program[:80],
-        start=start,
-        notices=tuple(notices),
+        path=path, format="parquet", channels=tuple(channels), program=program[:80], start=start, notices=tuple(notices)
     )
 
 

@@ -55,9 +55,6 @@ def read(file: str | Path, databases: Sequence[Path] = ()) -> Measurement:
 
     Returns:
         Channels with names, units and times; `read(file)["Seat Z"]` is one of them.
-
-    Raises:
-        ConfigurationError, DataError: see `read_record`.
     """
     return read_record(time_file(Path(file)), databases)
 
@@ -93,11 +90,7 @@ def read_columns(path: Path, needed: str = "'time [s]' and '<channel> [<unit>]'"
 
 
 def time_file(run: Path) -> Path:
-    """Return the file of the time histories of a run: the path itself, or `time.npz` or `time.csv` in a folder.
-
-    Raises:
-        ConfigurationError: the folder contains neither.
-    """
+    """Return the file of the time histories of a run: the path itself, or `time.npz` or `time.csv` in a folder."""
     if not run.is_dir():
         return run
     for name in ("time.npz", "time.csv"):

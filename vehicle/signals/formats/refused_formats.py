@@ -10,7 +10,7 @@ SIGNATURES = {
     b"<usi:tdm": ("TDM of DIAdem", "TDMS or CSV"),
     b"DEWESOFT": ("Dewesoft", "UFF 58, MAT or MDF4"),
     b"$OP2": ("Nastran OP2", "UFF 55 or CSV"),
-    b"CDF": ("netCDF of the classic form", "netCDF-4, as `nccopy -k nc4 IN.nc OUT.nc` does"),
+    b"CDF": ("netCDF of the classic form", "netCDF-4, with `nccopy -k nc4 IN.nc OUT.nc`"),
     b"ULog\x01\x12\x35": ("PX4 ULog", "CSV, for example with `ulog2csv FILE` of pyulog"),
 }
 """First bytes of a file -> name of the format, and alternative for the export."""
@@ -49,14 +49,7 @@ TEXT_ENDINGS = (".csv", ".txt", ".asc")
 
 
 def refuse(head: Head) -> None:
-    """Raise the error for an unsupported format or binary data; return for a possible text file.
-
-    Args:
-        head: beginning of a file that no format of `vehicle.signals.formats.formats` recognises.
-
-    Raises:
-        DataError: a known but unsupported format, or binary data.
-    """
+    """Raise the error for an unsupported format or binary data; return for a possible text file."""
     path, data, ending = head.path, head.data, head.path.suffix.lower()
     if (names := zip_names(head)) is not None:
         contents = (CONTAINERS.get(Path(name).suffix.lower()) or CONTAINERS.get(name) for name in names)

@@ -123,9 +123,7 @@ def _header(path: Path, data: bytes) -> dict[str, str]:
             blocks = _number(path, header, "NUM_HEADER_BLOCKS")
             check_length(path, blocks * BLOCK, len(data), "NUM_HEADER_BLOCKS")
             if count * RECORD > blocks * BLOCK:
-                raise DataError(
-                    f"{path}: the header has {blocks:g} blocks, too few for its {count} keywords; export it again"
-                )
+                raise DataError(f"{path}: {blocks:g} header blocks, too few for {count} keywords; export it again")
     return header
 
 
@@ -178,7 +176,7 @@ def _check_values(path: Path, head: dict[str, str], number: int, values: np.ndar
     if abs(max(extremes) - largest) < 0.01 * largest or not 0.0 < 2.0 * limit < largest:
         return ()
     if constant:
-        return (f"channel {number} reaches {largest:g}; the limit {limit:g} in the header is that of all channels",)
+        return (f"channel {number} reaches {largest:g}; the limit {limit:g} in the header is for all channels",)
     raise DataError(
         f"{path}: channel {number} reaches {largest:g}, but its limit in the header is {limit:g}; the "
         "keyword SCALE is damaged or used in another sense; export it in floating point"
@@ -186,18 +184,12 @@ def _check_values(path: Path, head: dict[str, str], number: int, values: np.ndar
 
 
 def write(path: Path, channels: tuple[Channel, ...], description: str) -> None:
-    """Write time histories of equal rate in floating point.
-
-    Raises:
-        DataError: different rates, or missing values, which the format does not support.
-    """
+    """Write time histories of equal rate in floating point."""
     first = channels[0]
     rate = first.rate
     for channel in channels:
         if channel.kind != "time" or channel.values.size != first.values.size or channel.rate != rate or rate is None:
-            raise DataError(
-                f"{path}: {channel.name} has another sampling rate, and RPC III stores a single rate; resample it"
-            )
+            raise DataError(f"{path}: {channel.name} has another sampling rate, RPC III stores one; resample it")
         if not np.isfinite(channel.values).all():
             raise DataError(f"{path}: {channel.name} has a missing value, which RPC III cannot store; leave it out")
     samples, count = first.values.size, len(channels)

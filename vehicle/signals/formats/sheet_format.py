@@ -66,12 +66,7 @@ def _sheets(path: Path, *, formulas: bool = False) -> dict[str, list[tuple[objec
 
 
 def read_sheet_texts(path: Path) -> list[list[str]]:
-    """Read the cells of the first sheet as texts, numbers with all digits; skip empty rows.
-
-    Raises:
-        MissingPartError: openpyxl is not installed.
-        DataError: the file is damaged or has no sheet, or a formula without a saved value.
-    """
+    """Read the cells of the first sheet as texts, numbers with all digits; skip empty rows."""
     sheets = _sheets(path)
     title = next(iter(sheets), None)
     rows = [] if title is None else sheets[title]

@@ -33,9 +33,6 @@ def joined(where: object, channels: Sequence[Channel]) -> tuple[Channel, ...]:
 
     Returns:
         Channels with responses in place of their first parts; other columns unchanged.
-
-    Raises:
-        DataError: see `_angle_unit`.
     """
     parts: dict[str, dict[str, int]] = {}
     for index, channel in enumerate(channels):
@@ -93,8 +90,8 @@ def _angle_unit(where: object, magnitude: Channel, phase: Channel) -> str:
     if EDGE < extent <= turn and (jumps or resonates):
         return "rad"
     raise DataError(
-        f"{where}: the phase {phase.name!r} has no unit, and its values, at most {number(largest, 3)}, may be degrees "
-        f"or radians; write the unit into the header, {phase.name} [deg] or {phase.name} [rad]"
+        f"{where}: the phase {phase.name!r} has no unit, and its values (at most {number(largest, 3)}) may be degrees "
+        f"or radians; write {phase.name} [deg] or {phase.name} [rad] into the header"
     )
 
 

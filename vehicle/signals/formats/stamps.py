@@ -65,10 +65,10 @@ class StampClock(NamedTuple):
     @property
     def remedy(self) -> str:
         """Return a description of the stamps, with the option to replace them."""
-        limits = "" if self.lowest == self.highest else f" ({self.lowest:.6g} to {self.highest:.6g} Hz fit)"
+        limits = "" if self.lowest == self.highest else f" ({self.lowest:.4g} to {self.highest:.4g} Hz fit)"
         return (
-            f"time stamps {self.reason}, so they do not show when each sample was taken; if the samples are "
-            f"uniform, set --rate {self.option}, the mean rate{limits}"
+            f"time stamps {self.reason}: not the times of the samples; if these are uniform, set --rate {self.option}, "
+            f"the mean rate{limits}"
         )
 
 

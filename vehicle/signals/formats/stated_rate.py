@@ -1,4 +1,4 @@
-"""Sampling rate in a file: an attribute or a single number, as "sample_rate" or "dt_ms"."""
+"""Sampling rate in a file: an attribute or a single number, for example "sample_rate" or "dt_ms"."""
 
 import re
 from collections.abc import Mapping
@@ -35,7 +35,7 @@ def stated_step(numbers: Mapping[str, Any], *, of_time: bool = False) -> tuple[f
             accelerations; the remark then contains it.
 
     Returns:
-        The step; None if no name is that of a rate or step, or if several contradict each other. The remark contains a
+        The step; None if nothing is named as a rate or step, or if several contradict each other. The remark contains a
         possible step, or the contradiction; empty without a remark.
     """
     steps: dict[str, float] = {}
@@ -67,10 +67,7 @@ def stated_step(numbers: Mapping[str, Any], *, of_time: bool = False) -> tuple[f
     if not steps and of_time and len(set(guesses.values())) == 1:
         key, step = next(iter(guesses.items()))
         shown = f"{key!r} = {number_of(numbers[key])[0]:g}"
-        return (
-            step,
-            f"{shown} is read as the step of the samples, {step:g} s, {1.0 / step:g} Hz; otherwise set --rate HZ",
-        )
+        return step, f"{shown} is taken for the step of the samples ({1.0 / step:.6g} Hz); if it is not, set --rate HZ"
     if not steps:
         return None, unsure
     first, *others = steps.values()

@@ -92,7 +92,7 @@ class Table:
     sha256: str
 
     def row(self, row: int) -> str:
-        """Return the name of a row, as "line 7", for messages."""
+        """Return the name of a row for messages: "line 7"."""
         return f"{'line' if self.header.line else 'sample'} {self.lines[row]}"
 
     def place(self, row: int) -> str:
@@ -110,9 +110,6 @@ class Record:
         units: channel name to unit; empty if unknown.
         notices: messages on unusual content that was accepted.
         highest: maximum usable frequency of a resampled record [Hz]; None for 0.4 times its rate.
-
-    Raises:
-        DataError: a channel of another length, or a value that is not finite.
     """
 
     time: Vector
@@ -124,9 +121,7 @@ class Record:
     def __post_init__(self) -> None:
         for name, values in self.channels.items():
             if values.shape != self.time.shape:
-                raise DataError(
-                    f"record: {name} has {values.size} samples, must be {self.time.size}, one for each time"
-                )
+                raise DataError(f"record: {name} has {values.size} samples, the time {self.time.size}; store as many")
             if not np.isfinite(values).all():
                 raise DataError(f"record: {name} contains NaN or infinity; repair the record, or cut this part out")
 
@@ -166,7 +161,7 @@ def key_column(cell: str, needed: str) -> Callable[[Header], int]:
             raise DataError(f"{header.where}: column {twice!r} appears twice; rename or remove one of them")
         if cell not in header.cells:
             shown = ", ".join(map(repr, header.cells[:8]))
-            raise DataError(f"{header.where}: column {cell!r} is missing; found {shown}; needed are {needed}")
+            raise DataError(f"{header.where}: column {cell!r} is missing; found {shown}, must be {needed}")
         return header.cells.index(cell)
 
     return check

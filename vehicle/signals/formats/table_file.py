@@ -8,12 +8,7 @@ from vehicle.signals.formats.table import TIME, Table, Wanted, key_column, name_
 
 
 def read_table(path: Path, wanted: Wanted) -> Table:
-    """Read a table from an archive of arrays or a text file.
-
-    Raises:
-        ConfigurationError: the file does not exist.
-        DataError: bad data; the message names line and column.
-    """
+    """Read a table from an archive of arrays or a text file."""
     try:
         with path.open("rb") as file:
             archive = file.read(2) == b"PK"

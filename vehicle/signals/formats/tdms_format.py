@@ -23,7 +23,7 @@ NO_DATE = 1904
 
 @contextmanager
 def _remarks() -> Iterator[list[str]]:
-    """Collect log messages of npTDMS, as on an incomplete segment, that indicate missing data."""
+    """Collect log messages of npTDMS that indicate missing data, for example an incomplete segment."""
     messages: list[str] = []
     handler = logging.Handler()
     handler.emit = lambda record: messages.append(record.getMessage())  # type: ignore[method-assign]
@@ -106,9 +106,7 @@ def read(path: Path) -> Measurement:
                 )
             )
     if not channels:
-        raise DataError(
-            f"{path}: contains no channel with numbers, only {skipped} channels of other types; export numbers"
-        )
+        raise DataError(f"{path}: no channel with numbers, only {skipped} others; export numbers")
     return Measurement(
         path=path,
         format="tdms",

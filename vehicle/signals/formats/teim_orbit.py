@@ -83,36 +83,25 @@ class PropertyFile:
 
     @property
     def source(self) -> str:
-        """Return file, type and units, as "front.dpr (dpr; mm, newton, second, degrees)"."""
+        """Return file, type and units: "front.dpr (dpr; mm, newton, second, degrees)"."""
         units = self.blocks.get("UNITS", Block()).values
         return f"{self.path.name} ({self.file_type}; {', '.join(units[name] for name in UNITS if name in units)})"
 
     @property
     def file_type(self) -> str:
-        """Return the type in lower case, as "dpr": FILE_TYPE of [MDI_HEADER], or else the suffix of the file."""
+        """Return the type in lower case ("dpr"): FILE_TYPE of [MDI_HEADER], or else the suffix of the file."""
         header = self.blocks.get("MDI_HEADER", Block())
         return header.values.get("FILE_TYPE", self.path.suffix.lstrip(".")).lower()
 
     def block(self, name: str) -> Block:
-        """Return a block.
-
-        Raises:
-            DataError: the file does not contain it.
-        """
+        """Return a block."""
         if name not in self.blocks:
             present = ", ".join(f"[{other}]" for other in self.blocks) or "none"
             raise DataError(f"{self.path}: the block [{name}] is missing; found {present}; add it")
         return self.blocks[name]
 
     def unit(self, quantity: str) -> float:
-        """Return the factor of a quantity to its SI unit.
-
-        Args:
-            quantity: key of `UNITS`, as "LENGTH".
-
-        Raises:
-            DataError: the block [UNITS] or the quantity is missing, or the unit is unknown.
-        """
+        """Return the factor of a quantity to its SI unit."""
         units = self.block("UNITS").values
         if quantity not in units:
             raise DataError(f"{self.path}: [UNITS] has no {quantity}; add a line such as {quantity} = "
@@ -123,11 +112,7 @@ class PropertyFile:
         return UNITS[quantity][name]
 
     def number(self, block: str, name: str) -> float | None:
-        """Return a number of a block in the units of the file; None if it is missing.
-
-        Raises:
-            DataError: it is no finite number.
-        """
+        """Return a number of a block in the units of the file; None if it is missing."""
         text = self.blocks.get(block, Block()).values.get(name)
         return None if text is None else _finite(text, f"{self.path}: [{block}] {name}")
 
@@ -139,9 +124,6 @@ class PropertyFile:
         Args:
             x_unit: factor of the first column.
             y_unit: factor of the second column.
-
-        Raises:
-            DataError: the block is missing; a row is not two finite numbers; fewer than two points; not ascending.
         """
         points: list[tuple[float, float]] = []
         for line, row in self.block(block).rows:

@@ -104,10 +104,7 @@ def _check_bytes(path: Path, data: bytes) -> None:
         raise DataError(f"{path}:1:1: the file is UTF-16, must be UTF-8; save it as UTF-8 text")
     nul = data.find(b"\0")
     if nul >= 0:
-        raise DataError(
-            f"{_place(path, data, nul)}: contains a NUL character, so this is a binary or damaged file; must be "
-            "UTF-8 text"
-        )
+        raise DataError(f"{_place(path, data, nul)}: contains a NUL character: binary or damaged, must be UTF-8")
     if len(data) == LONGEST_LINE + 1 and b"\n" not in data and b"\r" not in data:
         raise _line_too_long(path, 1)
 

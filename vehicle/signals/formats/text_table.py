@@ -41,11 +41,7 @@ class TextTable:
 
 
 def find_table(path: Path, lines: Sequence[str]) -> TextTable:
-    """Find the table of numbers in a text: numbers only, else with dates and clocks, else with text columns.
-
-    Raises:
-        DataError: no table.
-    """
+    """Find the table of numbers in a text: numbers only, else with dates and clocks, else with text columns."""
     for allowed in (("number",), ("number", "clock"), ("number", "clock", "text")):
         for delimiter in DELIMITERS:
             for start in range(min(TEXT_LINES, len(lines))):
@@ -155,11 +151,7 @@ def _goes_on(lines: Sequence[str], delimiter: str, kinds: Sequence[Kind]) -> boo
 
 
 def settled_kinds(path: Path, rows: Sequence[str], table: TextTable, names: Sequence[str]) -> tuple[Kind, ...]:
-    """Determine the types of all columns, including columns whose first cells are empty.
-
-    Raises:
-        DataError: rows of different sensors alternate in the table.
-    """
+    """Determine the types of all columns, including columns whose first cells are empty."""
     sampled = [cells_of(row, table.delimiter) for row in _spread(rows)]
     settled: list[Kind] = []
     for column, settled_kind in enumerate(table.kinds):

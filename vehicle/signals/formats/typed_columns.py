@@ -24,7 +24,7 @@ class TypedColumn(NamedTuple):
     Attributes:
         head: name, with or without a unit.
         values: numbers, (n,), NaN if missing; whole numbers for counts since 1970.
-        of_time: unit of a date or duration, as "us"; empty for numbers.
+        of_time: unit of a date or duration ("us"); empty for numbers.
         unit: unit of the column in addition to its name; empty if missing.
     """
 
@@ -40,10 +40,7 @@ def typed_channels(
     """Return the channels of a table with their times, and the start of dates; adds notices.
 
     Args:
-        row_times: True if the first column has the times of all others, as in a timetable of MATLAB.
-
-    Raises:
-        DataError: see `own_times`.
+        row_times: True if the first column has the times of all others (a timetable of MATLAB).
     """
     heads = [(column.head, column.unit) if column.unit else split_head(column.head) for column in columns]
     heads = [(name, column.of_time or unit) for column, (name, unit) in zip(columns, heads, strict=True)]

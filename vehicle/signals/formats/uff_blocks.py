@@ -50,11 +50,7 @@ def cells(line: bytes, widths: tuple[int, ...]) -> list[str]:
 
 
 def wholes(line: bytes) -> list[int]:
-    """Parse the integers of a line, separated by blanks, or in fields of ten characters without blanks.
-
-    Raises:
-        ValueError: the line contains other text.
-    """
+    """Parse the integers of a line, separated by blanks, or in fields of ten characters without blanks."""
     parts = line.split()
     if any(len(part) > 10 for part in parts):
         parts = [cell.encode() for cell in cells(line, (10,) * (len(line.rstrip()) // 10 + 1)) if cell]
@@ -62,11 +58,7 @@ def wholes(line: bytes) -> list[int]:
 
 
 def numbers(lines: list[bytes]) -> list[float]:
-    """Parse the numbers of lines, with or without blanks between numbers: 1.0E+00-2.0E+00.
-
-    Raises:
-        ValueError: the lines contain other text.
-    """
+    """Parse the numbers of lines, with or without blanks between numbers: 1.0E+00-2.0E+00."""
     body = D_EXPONENT.sub(b"E", b" ".join(lines))
     if _NUMBER.sub(b"", body).strip():
         raise ValueError(f"{raw_text(_NUMBER.sub(b'', body)).strip()[:20]!r} is not a number")

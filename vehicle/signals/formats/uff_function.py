@@ -124,7 +124,7 @@ def _points(line: bytes) -> list[str]:
     match = _WORDS.fullmatch(text[30:])
     if match is None:
         raise ValueError(
-            f"the line {text[30:].strip()[:40]!r} contains no nodes and directions (names have up to ten letters)"
+            f"the line {text[30:].strip()[:40]!r} has no nodes and directions (names of up to ten letters)"
         )
     return [*fixed[:4], *("" if word.upper() == "NONE" else word for word in match.groups())]
 
@@ -246,7 +246,7 @@ def _unit(code: int, label: str, units: Units | None) -> tuple[str, str]:
         gravity = acceleration and "g" in label.lower()
         if dataset_factor is not None and not gravity and abs(dataset_factor / unit.factor - 1.0) > 1e-6:
             si = "m/s2" if acceleration else "of the SI unit"
-            return "", f"the unit {label!r} contradicts dataset 164, which states {dataset_factor:g} {si}"
+            return "", f"the unit {label!r} contradicts the {dataset_factor:g} {si} of dataset 164"
         return label, ""
     dataset_factor = _factor(quantity, units)
     if dataset_factor is None:
@@ -256,7 +256,7 @@ def _unit(code: int, label: str, units: Units | None) -> tuple[str, str]:
     for factor, text in by_factor.items():
         if abs(dataset_factor / factor - 1.0) < 1e-9 and find_unit(text) is not None:
             return text, "unit from dataset 164"
-    return "", f"dataset 164 states the unit {dataset_factor:g} {si}, which has no known name"
+    return "", f"the unit {dataset_factor:g} {si} of dataset 164 has no known name"
 
 
 def _factor(quantity: str, units: Units | None) -> float | None:

@@ -38,11 +38,7 @@ class Units:
 
 
 def read_units(path: Path, where: str, lines: list[bytes]) -> Units:
-    """Read the unit factors of dataset 164.
-
-    Raises:
-        DataError: no valid factors.
-    """
+    """Read the unit factors of dataset 164."""
     try:
         factors = numbers(lines[1:])[:2]
     except ValueError:
@@ -101,11 +97,7 @@ class Nodes:
     lines: list[list[int]] = field(default_factory=list)
 
     def read(self, path: Path, number: int, where: str, lines: list[bytes]) -> bool:
-        """Read a geometry dataset; return False for other datasets.
-
-        Raises:
-            DataError: the dataset is damaged.
-        """
+        """Read a geometry dataset; return False for other datasets."""
         readers = {15: self._short, 2411: self._long, 18: self._systems, 82: self._trace, 2412: self._elements}
         if number not in readers:
             return False

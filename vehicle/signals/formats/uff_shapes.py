@@ -25,9 +25,6 @@ def read_shape(path: Path, number: int, where: str, lines: list[bytes], nodes: N
 
     Returns:
         Mode shape, or the description of a result other than a mode.
-
-    Raises:
-        DataError: the dataset is damaged.
     """
     try:
         return _shape(path, where, _head55(lines) if number == 55 else _head2414(lines), nodes, units)

@@ -33,9 +33,6 @@ def write(
         channels: time histories, frequency responses and coherences over uniform axes.
         geometry: coordinates and lines of the points.
         shapes: mode shapes at the points.
-
-    Raises:
-        DataError: a channel without an axis, or a time history with a missing value or uneven times.
     """
     wireframe = geometry or Geometry()
     points = list(dict.fromkeys([*wireframe.points, *(channel.place for channel in channels if channel.place)]))

@@ -24,14 +24,11 @@ def require_unpacked(
     """Refuse data that would fill the memory, or that are far denser than measurements.
 
     Args:
-        size: size of the unpacked data, as their headers state it [byte].
+        size: size of the unpacked data by their headers [byte].
         packed: size in the file [byte].
         limit: maximum size [byte]; `MEMORY_LIMIT` by default.
         freely: size up to which every compression ratio is accepted [byte]; `FREELY` by default.
         densest: maximum compression ratio above it [-].
-
-    Raises:
-        DataError: too large, or too dense.
     """
     limit, freely = MEMORY_LIMIT if limit is None else limit, FREELY if freely is None else freely
     if size > limit:
@@ -41,29 +38,18 @@ def require_unpacked(
         )
     if size > freely and size > densest * packed:
         raise DataError(
-            f"{label}: the data are almost constant, unlike those of a sensor: {size / 1e6:.3g} MB are "
+            f"{label}: the data are almost constant, unlike a sensor: {size / 1e6:.3g} MB are "
             f"compressed to {packed / 1e6:.3g} MB, {size / max(packed, 1.0):.0f} to 1, must be at most "
             f"{densest:g} to 1; record again"
         )
 
 
 def require_archive(
-    label: object,
-    file: BinaryIO,
-    *,
-    limit: float | None = None,
-    freely: float | None = None,
-    densest: float = DENSEST,
+    label: object, file: BinaryIO, *, limit: float | None = None, freely: float | None = None, densest: float = DENSEST
 ) -> None:
     """Refuse a ZIP archive whose files would be too large, too dense or too many.
 
     The sizes are those of its directory, beyond which Python's `zipfile` does not unpack.
-
-    Args:
-        limit, freely, densest: see `require_unpacked`.
-
-    Raises:
-        DataError: too large, too dense, or too many files; damaged.
     """
     try:
         with zipfile.ZipFile(file) as archive:

@@ -35,12 +35,7 @@ _CREATED = re.compile(r"File created on\s+(?P<date>\S+)", re.IGNORECASE)
 
 
 def read(path: Path) -> Measurement:
-    """Read all columns over the times of the file.
-
-    Raises:
-        ConfigurationError: the file does not exist.
-        DataError: a missing section, a row of another length, an invalid time of day.
-    """
+    """Read all columns over the times of the file."""
     text = read_text(path)
     sections: dict[str, list[tuple[int, str]]] = {"": []}
     name = ""
@@ -55,10 +50,7 @@ def read(path: Path) -> Measurement:
     columns = " ".join(line for _, line in sections.get("column names", [])).split() or heads
     rows = sections.get("data", [])
     if not columns or len(rows) < 2:
-        raise DataError(
-            f"{path}: found {len(columns)} columns and {len(rows)} rows; must have the sections [column names] "
-            "and [data]"
-        )
+        raise DataError(f"{path}: {len(columns)} columns and {len(rows)} rows; must have [column names] and [data]")
     header = Header(path=path, line=rows[0][0] - 1, cells=tuple(columns), delimiter=" ")
     numbers, data_rows = [number for number, _ in rows], [" ".join(line.split()) for _, line in rows]
     data_rows, points = decimal_points(numbers, data_rows, header)
@@ -84,7 +76,7 @@ def read(path: Path) -> Measurement:
                 unit, remark = (
                     "",
                     (
-                        "the format states minutes of arc, but no latitude is above 90, so degrees are possible; "
+                        "minutes of arc by the format, but no latitude is above 90, so perhaps degrees; "
                         "set --unit arcmin or --unit deg"
                     ),
                 )

@@ -34,7 +34,7 @@ def _notices(xyz: Mapping[str, Vector], rate: float) -> tuple[str, ...]:
         power = np.abs(np.fft.rfft(record - record.mean())) ** 2
         total = float(power.sum())
         if np.ptp(record) == 0.0:
-            notices.append(f"{axis}: constant at {record[0]:g} m/s2; is the sensor missing?")
+            notices.append(f"{axis}: constant at {record[0]:.3g} m/s2; is the sensor missing?")
         elif total > 0.0:
             share = float(power[int(0.8 * power.size) :].sum()) / total
             if share > ALIASED_SHARE:
@@ -54,8 +54,8 @@ def _chosen(path: Path, choice: Choice, names: list[str]) -> Record:
         roles = {axis: name for axis, name in zip(AXES, names, strict=True) if name in names_in_file}
     if not roles or not set(roles) <= set(AXES):
         raise DataError(
-            f"{path}: which channels are the axes? set one or more of --channel x=NAME, y=NAME, z=NAME, each "
-            f"with a number, an exact name or a pattern with *; the file has {measurement.listed()}"
+            f"{path}: which channels are the axes? set --channel x=NAME, y=NAME or z=NAME, NAME a number, an exact "
+            f"name or a pattern with *; the file has {measurement.listed()}"
         )
     chosen = choose(measurement, replace(choice, channels={**choice.channels, **roles}))
     wrong = next((role for role, quantity in chosen.quantities.items() if quantity != "acceleration"), None)
@@ -119,7 +119,7 @@ def read_acceleration(path: str | Path, point: str | None = None, choice: Choice
             points = dict.fromkeys(channel[:-6] for channel in record.channels if channel.endswith("_acc_x"))
             points_shown = f"; set --channel to one of {', '.join(points)}" if points else ""
             shown = ", ".join(list(record.channels)[:6])
-            raise DataError(f"{file}: column {name} is missing; found {shown}; needed are {needed}{points_shown}")
+            raise DataError(f"{file}: column {name} is missing; found {shown}, must be {needed}{points_shown}")
         if (unit := record.units[name]) not in UNITS:
             raise DataError(
                 f"{file}: column {name!r} has the unit {unit!r}, must be one of "
@@ -130,15 +130,13 @@ def read_acceleration(path: str | Path, point: str | None = None, choice: Choice
         largest = float(deviation.max())
         if largest > LARGEST_ACCELERATION and rare_events(deviation, LARGEST_ACCELERATION):
             events.append(
-                f"{axis}: deviates by {largest:.4g} m/s2 from its mean at t = "
-                f"{record.time[int(np.argmax(deviation))]:.6g} s, more than {LARGEST_ACCELERATION:g} m/s2: "
-                "a pothole, or a spike of the logger?"
+                f"{axis}: deviates by {largest:.3g} m/s2 from its mean at {record.time[int(np.argmax(deviation))]:.4g} "
+                f"s, usually at most {LARGEST_ACCELERATION:g} m/s2: a pothole, or a spike of the logger?"
             )
         elif largest > LARGEST_ACCELERATION:
             raise DataError(
-                f"{file}: column {name!r} deviates by {largest:g} m/s2 from its mean, must be at most "
-                f"{LARGEST_ACCELERATION:g}; is the unit mm/s2, or is there a spike? correct the unit in the "
-                "header or the record"
+                f"{file}: column {name!r} deviates by {largest:.3g} m/s2 from its mean, must be at most "
+                f"{LARGEST_ACCELERATION:g}; is it in mm/s2, or is there a spike? Correct the header or the record"
             )
         xyz[axis] = values
     # `choose` checks its channels before they are filtered.

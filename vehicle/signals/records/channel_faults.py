@@ -74,11 +74,7 @@ OTHERS_MOVE = 0.2
 
 
 def faults(
-    channels: Mapping[str, Vector],
-    time: Vector,
-    *,
-    moving: Container[str] = (),
-    rests: Container[str] = (),
+    channels: Mapping[str, Vector], time: Vector, *, moving: Container[str] = (), rests: Container[str] = ()
 ) -> list[Finding]:
     """Return one finding for each clipped side and each constant part of the channels.
 
@@ -97,9 +93,9 @@ def faults(
         for side, level, share in clipped(values):
             findings.append(
                 Finding(
-                    f"{name}: clipped? {100.0 * share:.3g} % of the samples are exactly at the {side}, {level:.4g}, "
-                    "with sharp edges, so peaks, RMS and spectra are wrong; measure with a larger range, or select "
-                    "an unclipped part (--from S and --to S)",
+                    f"{name}: clipped? {100.0 * share:.3g} % of the samples stand at the {side}, {level:.3g}, so "
+                    "peaks, RMS and spectra are wrong; measure with a larger range, or select another part (--from, "
+                    "--to)",
                     "clipped",
                 )
             )
@@ -111,9 +107,8 @@ def faults(
             options = ("--to", f"{begin:.9g}") if first else ("--from", f"{end:.9g}")
             findings.append(
                 Finding(
-                    f"{name}: constant for {end - begin:.4g} s, from {begin:.6g} to {end:.6g} s: a stuck sensor or a "
-                    "pause? These seconds are part of all mean values; select the part "
-                    f"{'before' if first else 'after'} it with {' '.join(options)}",
+                    f"{name}: constant from {begin:.4g} to {end:.4g} s: a stuck sensor or a pause? It counts in all "
+                    f"mean values; {' '.join(options)} selects the part {'before' if first else 'after'} it",
                     "constant",
                     options,
                 )
@@ -154,7 +149,7 @@ def clipped(values: Vector) -> list[tuple[str, float, float]]:
 
 
 def switches(values: Vector) -> bool:
-    """Return True for samples (n,) at their largest or smallest value most of the time, as a square wave."""
+    """Return True for samples (n,) at their largest or smallest value most of the time: a square wave."""
     low, high = float(np.min(values)), float(np.max(values))
     margin = EQUAL * (high - low)
     ends = [float(np.mean(values >= high - margin)), float(np.mean(values <= low + margin))]
@@ -199,7 +194,7 @@ def stuck(
     """Return begin and end [s] of the longest implausibly constant part of a channel; None without such a part.
 
     A constant beginning or end is accepted where the motion begins or ends smoothly, unless another channel moves at
-    the end. Nothing is said of a channel that switches between two values.
+    the end. A channel that switches between two values is not judged.
 
     Args:
         values: samples, (n,).

@@ -124,12 +124,12 @@ def tokens_of(name: str) -> list[Token]:
 
 
 def words_of(name: str) -> list[str]:
-    """Return the words of a channel name, as "accSeatZ", in small letters, without numbers."""
+    """Return the words of a channel name such as "accSeatZ" in small letters, without numbers."""
     return [token.text for token in tokens_of(name) if not token.text[0].isdigit()]
 
 
 def wheel_of(name: str) -> str:
-    """Return the wheel in a channel name, as "FR", "VL", "rear left", "LeftFront"; empty if none or several."""
+    """Return the wheel in a channel name: "FR", "VL", "rear left", "LeftFront"; empty if none or several."""
     parts = words_of(name)
     pairs = {PAIRS[word] for word in parts if word in PAIRS}
     if pairs:
@@ -145,7 +145,7 @@ def _any(parts: Sequence[str], names: Sequence[str]) -> bool:
 
 
 def axis_of(channel: Channel) -> str:
-    """Return the axis of a channel, from its direction or its name; empty if it states none, or several."""
+    """Return the axis of a channel, from its direction or its name; empty if there is none, or several."""
     if channel.direction:
         return channel.direction[-1].lower() if channel.direction[-1] in "XYZxyz" else ""
     mentions = _mentions(channel.name)
@@ -177,14 +177,14 @@ def _mentions(name: str) -> list[Mention]:
 
 
 def _axis_word(word: str) -> str:
-    """Return the axis of a word, as "lateral" or "Querbeschleunigung"; empty for other words."""
+    """Return the axis of a word such as "lateral" or "Querbeschleunigung"; empty for other words."""
     compound = _COMPOUND.fullmatch(word)
     word = compound[1] if compound else word
     return next((axis for axis, names in AXES.items() if word in names), "")
 
 
 def _is_letter(tokens: Sequence[Token], at: int) -> bool:
-    """Return True if a letter x, y or z is a word, as in "AccX", "Z1"; not in "0x1F", "x1000", "4x", "xDCU"."""
+    """Return True if a letter x, y or z is a word ("AccX", "Z1"), not in "0x1F", "x1000", "4x", "xDCU"."""
     token = tokens[at]
     before = tokens[at - 1] if at else None
     after = tokens[at + 1] if at + 1 < len(tokens) else None
@@ -221,7 +221,7 @@ def _is_neutral(token: Token) -> bool:
 
 
 def _significant(text: str) -> set[str]:
-    """Return the words for the point in a name, without codes of sensors, as "MP12"."""
+    """Return the words for the point in a name, without codes of sensors ("MP12")."""
     tokens = tokens_of(text)
     along = [(mention.begin, mention.end) for mention in _mentions(text)]
     return {
@@ -244,12 +244,12 @@ def _is_point(channel: Channel, needed: Collection[str], allowed: Collection[str
 
 
 def on_seat(channel: Channel) -> bool:
-    """Return True if the name of a channel is that of a seat or its rail."""
+    """Return True if the name of a channel means a seat or its rail."""
     return _is_point(channel, SEAT, RAIL | CUSHION | OTHER_SEAT)
 
 
 def of_wheel_or_engine(channel: Channel) -> bool:
-    """Return True if the name of a channel is that of a wheel or an engine, or of a part of them: nobody sits there."""
+    """Return True if the name of a channel means a wheel, an engine or a part of them: nobody sits there."""
     return not {*KNUCKLE, *ENGINE}.isdisjoint(words_of(f"{channel.name} {channel.place}"))
 
 
@@ -267,14 +267,14 @@ def by_point(channels: Sequence[tuple[int, Channel]]) -> list[list[tuple[int, Ch
 
 
 def _point(channel: Channel, *, numbers: bool) -> tuple[str, ...]:
-    """Return the words of the name and the place of a channel without those of its axis."""
+    """Return the words of the name and the place of a channel without the axis."""
     along = [(mention.begin, mention.end) for mention in _mentions(channel.name)]
     name = [token for token in tokens_of(channel.name) if not any(b <= token.begin < e for b, e in along)]
     return tuple(token.text for token in (*name, *tokens_of(channel.place)) if numbers or not token.text[0].isdigit())
 
 
 def of_receiver(channels: Sequence[Channel]) -> bool:
-    """Return True if channels include latitude and longitude: their heights are those of a satellite receiver.
+    """Return True if channels include latitude and longitude: their heights are from a satellite receiver.
 
     A receiver gives the height above the sea in steps of 10 mm at best, with an error of metres: no road.
     """
@@ -301,7 +301,7 @@ def suggested_channels(channels: Sequence[Channel], model_channels: Collection[s
     knuckle_rl_acc_z.
 
     Args:
-        model_channels: names of the model; by default those of a car with four wheels.
+        model_channels: names of the model; by default of a car with four wheels.
     """
     names = [channel.name for channel in channels]
     suggested: dict[str, str] = {}

@@ -35,7 +35,7 @@ class Choice:
         highpass: corner frequency [Hz]; required to integrate velocities and accelerations.
         databases: DBC files that decode the log of a CAN bus.
         resample: new sampling rate [Hz]; resampling comes before trend removal and integration.
-        delays: channel of the model, pattern or group, as "accelerations", to delay in the file, which is taken out
+        delays: channel of the model, pattern or group ("accelerations") to delay in the file, which is taken out
             [s]; see `vehicle.signals.records.delays`.
         any_level: accept levels and accelerations of plates beyond a shaker, in a fit.
     """
@@ -95,18 +95,14 @@ class Chosen:
         return float(self.time[-1] - self.time[0]) / (self.time.size - 1)
 
     def require_uniform(self, where: object) -> None:
-        """Check that the times are uniform.
-
-        Raises:
-            DataError: not uniform; the message lists the options that make them uniform.
-        """
+        """Check that the times are uniform."""
         if not is_uniform(self.time):
             steps = np.diff(self.time)
             jitter = 100.0 * float(np.max(np.abs(steps / np.median(steps) - 1.0)))
             options = clock_options(self.time)
             text = (
-                f"times are not uniform, steps deviate from the median by up to {jitter:.3g} %; set "
-                f"{' '.join(options)}, or --rate HZ if the samples are uniform and only the time stamps are irregular"
+                f"times are not uniform: steps deviate from the median by up to {jitter:.3g} %; set "
+                f"{' '.join(options)}, or --rate HZ if only the time stamps are irregular"
             )
             raise FindingError(where, [Finding(text, "times", options)])
 
@@ -116,9 +112,6 @@ def pairs(option: str, texts: Sequence[str], role: str) -> dict[str, str]:
 
     Args:
         role: role for a text without "=".
-
-    Raises:
-        ConfigurationError: a repeated role or an empty value.
     """
     values_by_role: dict[str, str] = {}
     for text in texts:
@@ -143,9 +136,6 @@ def pick(
         wanted: value of the option; `12+Z` and `Dof 12 +Z` match the channel at node 12 in direction +Z.
         option: name of the option, for messages.
         allowed: predicate of the channels to search; all channels keep their numbers.
-
-    Raises:
-        DataError: no match or several; the message lists the channels.
     """
     matches = matching(measurement, wanted, allowed)
     if len(matches) == 1:
@@ -195,7 +185,7 @@ def choose(measurement: Measurement, choice: Choice) -> Chosen:
         unit = choice.units.get(role, choice.units.get("", ""))
         if unit:
             if channel.unit and channel.unit != unit:
-                notices.append(f"{role}: the unit is [{unit}], as requested; the file says [{channel.unit}]")
+                notices.append(f"{role}: unit [{unit}] as requested, not [{channel.unit}] of the file")
             channels[role] = channel = replace(channel, unit=unit, remark="")
         where = f"{path}: channel {index + 1} {channel.name!r}"
         if find_unit(channel.unit) is None:
@@ -259,9 +249,7 @@ def _blocks(
         return blocks
     if len({channel.values.size for channel in selected.values()}) > 1:
         sizes = ", ".join(f"{role} {channel.values.size}" for role, channel in selected.items())
-        raise DataError(
-            f"{path}: the channels have different lengths ({sizes}); choose channels with the same sampling rate"
-        )
+        raise DataError(f"{path}: the channels have different lengths ({sizes}); choose channels of one rate")
     time = _times(path, choice, selected, notices)
     return [Block(time=time, channels={role: selected[role] for role in channels})]
 
@@ -340,9 +328,7 @@ def _times(path: Path, choice: Choice, channels: Mapping[str, Channel], notices:
         return np.arange(first.values.size) / choice.rate
     unit = choice.units.get("time", channels["time"].unit)
     if not (factor := seconds_in(unit)):
-        raise DataError(
-            f"{path}: channel {channels['time'].name!r} has the unit {unit!r}; set --unit time=s, or ms, us, min"
-        )
+        raise DataError(f"{path}: channel {channels['time'].name!r}: unit {unit!r}; set --unit time=s, or ms, us, min")
     return np.asarray(channels["time"].values, dtype=np.float64) * factor
 
 
@@ -360,16 +346,15 @@ def _uniform(path: object, time: Vector, notices: list[str]) -> Vector:
     if not np.isfinite(time).all() or not (steps > 0.0).all():
         at = int(np.flatnonzero(~(steps > 0.0))[0]) + 1
         raise DataError(
-            f"{path}: sample {at + 1}: the time {time[at]:.9g} s follows {time[at - 1]:.9g} s, but times must "
-            "increase; exclude this part with --from and --to"
+            f"{path}: sample {at + 1}: time {time[at]:.9g} s after {time[at - 1]:.9g} s, must increase; exclude this "
+            "part with --from and --to"
         )
     median = float(np.median(steps))
     index = int(np.argmax(steps))
     if steps[index] > longest_step(median):
         text = (
-            f"the record has a gap of {steps[index]:.6g} s, from {time[index]:.9g} to {time[index + 1]:.9g} s, and "
-            f"gaps are not filled; select the part before it (--to {time[index]:.9g}) or after it (--from "
-            f"{time[index + 1]:.9g})"
+            f"the record has a gap of {steps[index]:.3g} s, which is not filled; select the part before it (--to "
+            f"{time[index]:.9g}) or after it (--from {time[index + 1]:.9g})"
         )
         raise FindingError(path, [Finding(text, "times", clock_options(time))])
     unrounded, rounded = without_rounding(time)

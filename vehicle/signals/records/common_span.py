@@ -53,9 +53,6 @@ def cut(where: object, blocks: list[Block]) -> tuple[list[Block], str]:
 
     Returns:
         One block and a notice, or the unchanged blocks and "".
-
-    Raises:
-        DataError: no common span of three samples.
     """
     if len(blocks) == 1:
         return blocks, ""
@@ -73,21 +70,15 @@ def cut(where: object, blocks: list[Block]) -> tuple[list[Block], str]:
     whole = Block(
         time=parts[0].time, channels={role: channel for part in parts for role, channel in part.channels.items()}
     )
-    cover = f"the channels cover different times ({_spans(blocks)})"
-    return [whole], f"{cover}, so they are cut to the time that all have, {first:.6g} to {last:.6g} s"
+    cut = f"cut to their common time, {first:.6g} to {last:.6g} s"
+    return [whole], f"the channels cover different times ({_spans(blocks)}): {cut}"
 
 
 def span(where: object, blocks: list[Block]) -> tuple[float, float]:
-    """Return begin and end of the common span of blocks [s].
-
-    Raises:
-        DataError: shorter than two steps.
-    """
+    """Return begin and end of the common span of blocks [s]."""
     first, last = max(float(block.time[0]) for block in blocks), min(float(block.time[-1]) for block in blocks)
     if last - first < 2.0 * max(_step(block.time) for block in blocks):
-        raise DataError(
-            f"{where}: the channels have no time in common ({_spans(blocks)}); choose channels recorded together"
-        )
+        raise DataError(f"{where}: channels without common time ({_spans(blocks)}); choose channels recorded together")
     return first, last
 
 
@@ -112,8 +103,8 @@ def different_spans(channels: Sequence[Channel]) -> str:
         return ""
     (first, first_end, _), (last, last_end, _) = ends.min(axis=0), ends.max(axis=0)
     return (
-        f"channels begin at {first:.6g} to {last:.6g} s and end at {first_end:.6g} to {last_end:.6g} s; commands "
-        "that use several of them cut them to the time that all have"
+        f"channels begin at {first:.6g} to {last:.6g} s and end at {first_end:.6g} to {last_end:.6g} s: several "
+        "together are cut to their common time"
     )
 
 

@@ -31,15 +31,15 @@ PARTS = 1e6
 """Parts per million."""
 
 UNITS: Mapping[tuple[str, float], str] = {
-    ("m/s2", STANDARD_GRAVITY): "m/s2 though the file says g",
+    ("m/s2", STANDARD_GRAVITY): "m/s2 (not g)",
     ("m/s2", 1.0 / STANDARD_GRAVITY): "g",
     ("m/s2", 1e3): "mm/s2",
-    ("m/s2", 1e-3): "m/s2 though the file says mm/s2",
+    ("m/s2", 1e-3): "m/s2 (not mm/s2)",
     ("m", 1e3): "mm",
-    ("m", 1e-3): "m though the file says mm",
+    ("m", 1e-3): "m (not mm)",
     ("m/s", 1e3): "mm/s",
-    ("m/s", 1e-3): "m/s though the file says mm/s",
-    ("N", 1e3): "N though the file says kN",
+    ("m/s", 1e-3): "m/s (not mm/s)",
+    ("N", 1e3): "N (not kN)",
     ("N", 1e-3): "kN",
 }
 """SI unit and ratio of measured to true values -> actual unit of the measured values."""
@@ -152,20 +152,20 @@ def clock_advice(
     if drifts:
         low, high = middle - 0.5 * span, middle + 0.5 * span
         message = (
-            f"the clock of the measurement is {100 * abs(slope):.4g} % {'slow' if slope > 0 else 'fast'}: the "
-            f"simulated time histories are {1e3 * (lag + slope * (low - middle)):.5g} ms late at {low:.4g} s and "
-            f"{1e3 * (lag + slope * (high - middle)):.5g} ms at {high:.4g} s, {agreement}: set {options}"
+            f"the clock of the measurement is {100 * abs(slope):.3g} % {'slow' if slope > 0 else 'fast'}: the run lags "
+            f"it by {1e3 * (lag + slope * (low - middle)):.3g} ms at {low:.3g} s and by "
+            f"{1e3 * (lag + slope * (high - middle)):.3g} ms at {high:.3g} s {agreement}; set {options}"
         )
     else:
         message = (
-            f"the simulated time histories are {number(1e3 * lag)} ms late, {agreement}; if the records began at "
-            f"different times, set {options}"
+            f"the measurement is {number(1e3 * abs(lag), 3)} ms {'early' if lag > 0.0 else 'late'} {agreement}; if the "
+            f"records began at different times, set {options}"
         )
     periods = {round(shift.period, 6) for shift in shifts if shift.period is not None}
     if len(periods) and all(shift.period is not None for shift in shifts):
         message += (
-            f"; the records repeat every {min(periods):.4g} s, so a shift by whole periods fits equally well; "
-            "start the record at an event that occurs once"
+            f" (the records repeat every {min(periods):.4g} s: a shift by whole periods fits as well; start at an "
+            "event that occurs once)"
         )
     return [Finding(message, "clock", () if command else arguments)]
 
@@ -221,7 +221,7 @@ def response_faults(channel: str, measured: Complex, simulated: Complex, weight:
 
 def _inverted(channel: str, why: str) -> Finding:
     remedy = f"if its sensor points the other way, set --turn {channel}"
-    text = f"{channel} is inverted relative to the run ({why}): {remedy}"
+    text = f"{channel} is inverted relative to the run ({why}); {remedy}"
     return Finding(text, "sign", ("--turn", channel))
 
 
@@ -229,13 +229,11 @@ def _unit(channel: str, unit: str, ratio: float) -> list[Finding]:
     for (si, factor), unit_text in UNITS.items():
         if si == unit and abs(math.log(ratio / factor)) < math.log(FACTOR_RANGE):
             name, *remark = unit_text.split(" ", 1)
-            size = (
-                f"{ratio:.4g} times the simulated one" if ratio > 1.0 else f"1/{1.0 / ratio:.4g} of the simulated one"
-            )
+            size = f"{ratio:.3g} times" if ratio > 1.0 else f"1/{1.0 / ratio:.3g} of"
             full_text = f"{name} {remark[0]}" if remark else name
             text = (
-                f"{channel}: the measured level is {size}, which is close to the unit factor "
-                f"{max(factor, 1.0 / factor):.4g}; if the values are in {full_text}, set --unit {channel}={name}"
+                f"{channel}: {size} the simulated level, close to the unit factor {max(factor, 1.0 / factor):.4g}; if "
+                f"the values are in {full_text}, set --unit {channel}={name}"
             )
             return [Finding(text, "unit", ("--unit", f"{channel}={name}"))]
     return []

@@ -1,4 +1,4 @@
-"""Delays of groups of channels within a measurement, as of sensors with filters or of a second logger, taken out.
+"""Delays of groups of channels within a measurement, for example of filtered sensors or a second logger, taken out.
 
 A channel with the delay d shows at the time t_m of the file what happened at t_m - d. On the clock of the run
 
@@ -51,10 +51,7 @@ def parsed_delays(texts: Sequence[str]) -> dict[str, float]:
     """Return the values of the option --delay: RECORD, group, channel or pattern -> delay [s].
 
     Args:
-        texts: as "0.2", "accelerations=12.3ms" or "seat_*=400us".
-
-    Raises:
-        ConfigurationError: no number with the unit s, ms or us, or a name twice.
+        texts: for example "0.2", "accelerations=12.3ms" or "seat_*=400us".
     """
     delays = {}
     for name, text in pairs("--delay", texts, RECORD).items():
@@ -65,18 +62,14 @@ def parsed_delays(texts: Sequence[str]) -> dict[str, float]:
             delays[name] = math.nan
         if not math.isfinite(delays[name]):
             raise ConfigurationError(
-                f"--delay {name}={text}: must be a finite number of seconds, or a number with the unit ms or "
-                "us, for example 12.3ms"
+                f"--delay {name}={text}: must be a finite number of seconds, or with the unit ms or us, for example "
+                "12.3ms"
             )
     return delays
 
 
 def split_delay(delay: Delay) -> tuple[float, dict[str, float]]:
-    """Return the start of the record after the run [s], and the delays of groups, channels or patterns [s].
-
-    Raises:
-        ConfigurationError: a delay is not finite.
-    """
+    """Return the start of the record after the run [s], and the delays of groups, channels or patterns [s]."""
     delays = dict(delay) if isinstance(delay, Mapping) else {RECORD: float(delay)}
     for name, value in delays.items():
         if not math.isfinite(value):
@@ -90,9 +83,6 @@ def channel_delays(channels: Collection[str], delays: Mapping[str, float]) -> di
     Args:
         channels: names of channels of the model.
         delays: channel, pattern or group -> delay [s].
-
-    Raises:
-        ConfigurationError: a name specifies no channel.
     """
     delay_of: dict[str, float] = {}
     for name in sorted(delays, key=lambda name: (name in channels, "*" in name or "?" in name)):
@@ -115,9 +105,6 @@ def without_delays(chosen: Chosen, delays: Mapping[str, float]) -> Chosen:
     Args:
         chosen: channels at uniform times.
         delays: role -> delay d [s].
-
-    Raises:
-        DataError: no common time remains.
     """
     if not any(delays.values()):
         return chosen
@@ -125,8 +112,8 @@ def without_delays(chosen: Chosen, delays: Mapping[str, float]) -> Chosen:
     inside = (chosen.time >= chosen.time[0] - min(every)) & (chosen.time <= chosen.time[-1] - max(every))
     if np.count_nonzero(inside) <= DEGREE:
         raise DataError(
-            f"--delay: delays from {min(every):g} to {max(every):g} s are too long for the record of "
-            f"{chosen.time[-1] - chosen.time[0]:.4g} s: no time is left that all channels cover; correct them"
+            f"--delay: {min(every):.3g} to {max(every):.3g} s leave no common time of the record of "
+            f"{chosen.time[-1] - chosen.time[0]:.4g} s; correct them"
         )
     start, time = chosen.time[0], chosen.time[inside]
     values: dict[str, Vector] = {}
@@ -148,4 +135,4 @@ def responses_without_delays(frf: FrfData, delays: Mapping[str, float]) -> FrfDa
 
 
 def _notices(delays: Mapping[str, float]) -> list[str]:
-    return [f"{name}: delay of {1e3 * value:.6g} ms removed, as requested" for name, value in delays.items() if value]
+    return [f"{name}: delay of {1e3 * value:.4g} ms removed, as requested" for name, value in delays.items() if value]

@@ -35,11 +35,7 @@ MOST_SAMPLES = 2**17
 
 
 def exchanged_histories(measured: Record, simulated: Record, times: Vector) -> dict[str, str]:
-    """Return measured channel -> the channel whose motion it contains, for exchanged time histories.
-
-    Args:
-        times: times of the measured samples on the clock of the run [s], (n,).
-    """
+    """Return measured channel -> the channel whose motion it contains, for exchanged time histories."""
     step = max(float(times[-1] - times[0]) / (times.size - 1), simulated.step)
     start, end = max(times[0], simulated.time[0]), min(times[-1], simulated.time[-1])
     count = min(int((end - start) / step + 1e-6) + 1, MOST_SAMPLES)
@@ -119,16 +115,16 @@ def exchange_finding(exchanged: Mapping[str, str], mapped: Mapping[str, str], *,
     options = _renamed(mapped, exchanged, complete=complete)
     if not options:
         return []
-    pairs = ", ".join(f"that of {name} moves like {motion} of the run" for name, motion in exchanged.items())
+    pairs = ", ".join(f"{name} moves like {motion} of the run" for name, motion in exchanged.items())
     wheels = _exchanged_wheels(exchanged, [parsed_name(role).output for role in mapped])
     if wheels:
         # The run moves wheel b with the motion that its plate had at wheel a.
         plates = {f"plate_{b}_displacement": f"plate_{a}_displacement" for a, b in wheels.items()}
         plate_options = shlex.join(_renamed(mapped, plates, complete=complete))
         text = (
-            f"either the plates or all other channels are exchanged: {pairs}; if it is the plates, "
-            f"{f'set {plate_options}' if plate_options else 'exchange those of the run'}; if it is the channels, "
-            f"set {shlex.join(options)}"
+            f"the plates or all other channels are exchanged: {pairs}; if the plates, "
+            f"{f'set {plate_options}' if plate_options else 'exchange the plates of the run'}; if the channels, set "
+            f"{shlex.join(options)}"
         )
         return [Finding(text, "exchanged")]
     return [Finding(f"exchanged channels: {pairs}; set {shlex.join(options)}", "exchanged", options)]
@@ -137,7 +133,7 @@ def exchange_finding(exchanged: Mapping[str, str], mapped: Mapping[str, str], *,
 def _renamed(mapped: Mapping[str, str], names: Mapping[str, str], *, complete: bool) -> tuple[str, ...]:
     """Return the options --map of channels under other names (old -> new), as words; () if none is mapped.
 
-    A role keeps its plate, as in "knuckle_fl_acc_z/plate_fl".
+    A role keeps its plate: "knuckle_fl_acc_z/plate_fl".
     """
     outputs = {role: parsed_name(role).output for role in mapped}
     right = {names[output] + role[len(output) :]: mapped[role] for role, output in outputs.items() if output in names}

@@ -46,7 +46,7 @@ class FindingError(DataError):
         super().__init__(f"{where}: {'; '.join(self.findings)}" if where else "; ".join(self.findings))
 
     def __reduce__(self) -> tuple[type[Self], tuple[object, tuple[Finding, ...]]]:
-        """Return the class and its arguments, for `pickle`: those of an exception are the text alone by default."""
+        """Return the class and its arguments for `pickle`, which keeps the text alone by default."""
         return type(self), (self.where, self.findings)
 
 

@@ -1,4 +1,4 @@
-"""Gravity in records of accelerometers, as a check of their unit and range.
+"""Gravity in records of accelerometers: a check of their unit and range.
 
 Accelerometers that measure from 0 Hz on show the standard gravity as the mean of its vertical axis, or as the
 length of the vector of the means of three axes.
@@ -59,9 +59,7 @@ def gravity_findings(
         low, high = (pick(map(abs, with_gravity.values())) for pick in (min, max))
         shown = f"{high:.4g}" if high - low < 5e-3 * high else f"{low:.4g} to {high:.4g}"
         which = "the mean" if len(with_gravity) == 1 else "the means"
-        text = (
-            f"{', '.join(with_gravity)}: gravity is in {which} ({shown} m/s2) and no motion; subtract it with --detrend"
-        )
+        text = f"{', '.join(with_gravity)}: gravity is in {which} ({shown} m/s2); --detrend subtracts it"
         findings.append(Finding(text, "gravity", ("--detrend",)))
     return findings
 
@@ -73,7 +71,7 @@ def axis_of_role(role: str) -> str:
 
 
 def _groups(means: Mapping[str, float]) -> list[tuple[str, ...]]:
-    """Return the roles of each point together, as x, y and z."""
+    """Return the roles of each point together: x, y and z."""
     points: dict[str, list[str]] = {}
     for role in means:
         points.setdefault(role[:-1] if axis_of_role(role) else role, []).append(role)
@@ -86,7 +84,10 @@ def _near(value: float, gravity: float) -> bool:
 
 def _unit_of(role: str, roles: tuple[str, ...], mean: float, level: float, units: Mapping[str, str]) -> list[Finding]:
     """Return the finding on the unit or range of a role whose mean is not gravity by its unit, or none."""
-    unit, subject = units[role], "the mean is" if len(roles) == 1 else f"the means of {', '.join(roles)} are together"
+    unit, subject = (
+        units[role],
+        "the mean is" if len(roles) == 1 else f"the vector of the means of {', '.join(roles)} is",
+    )
     entry = find_unit(unit)
     factor = entry.factor if entry is not None else 1.0
     others = {other: entry.factor for other in ACCELERATIONS if (entry := find_unit(other)) is not None}
@@ -97,18 +98,17 @@ def _unit_of(role: str, roles: tuple[str, ...], mean: float, level: float, units
             tuple(word for each in roles for word in ("--unit", f"{each}={text}")) for text in (right, unit)
         )
         text = (
-            f"{role}: {subject} {mean:.4g} m/s2{observed}{', so ' if sure else ': perhaps '}{cause}; set "
-            f"{shlex.join(options)}, or, if it is an offset{'' if sure else ' or a tilt'} of the sensor, set "
-            f"{shlex.join(same)}"
+            f"{role}: {subject} {mean:.3g} m/s2{observed}{', so ' if sure else ': perhaps '}{cause}; set "
+            f"{shlex.join(options)}, or for an offset{'' if sure else ' or a tilt'} of the sensor {shlex.join(same)}"
         )
         return [Finding(text, "unit" if sure else "doubt", options if sure else ())]
 
     for other, other_factor in others.items():
         if other_factor != factor and _near(mean / factor * other_factor, STANDARD_GRAVITY):
-            observed = f" by the unit [{unit}] of the file, but gravity is 9.81 m/s2"
+            observed = f" by the unit [{unit}] of the file, not 9.81 m/s2"
             return finding(observed, f"the values are in {other}", other, sure=vector or level < SMALLEST_LEVEL)
     for ratio in RANGES:
         if _near(mean, ratio * STANDARD_GRAVITY):
-            cause = "the range or the calibration of the sensor is wrong by this factor"
+            cause = "range or calibration of the sensor are wrong"
             return finding(f", {ratio:g} times gravity", cause, f"{1.0 / ratio:g} {unit}", sure=vector)
     return []

@@ -92,8 +92,8 @@ class GroupDelay:
         separate = [
             Finding(
                 f"{channel} {'lags' if delay > others else 'leads'} the other {self.group} by "
-                f"{1e3 * abs(delay - others):.3g} ms: wrong parameters of the car or a late sensor; only if this "
-                f"sensor is known to lag, set --delay {channel}={1e3 * delay:.5g}ms{after}",
+                f"{1e3 * abs(delay - others):.3g} ms: wrong parameters of the car or a late sensor; only if you know "
+                f"that it lags, set --delay {channel}={1e3 * delay:.5g}ms{after}",
                 "delay",
             )
             for channel, delay in self.unlike.items()
@@ -108,8 +108,7 @@ class GroupDelay:
             return [
                 Finding(
                     f"the {self.group} {'lag' if low > 0.0 else 'lead'} the {self.against} by {1e3 * abs(low):.3g} to "
-                    f"{1e3 * abs(high):.3g} ms, each channel by another time: late sensors and wrong parameters of the "
-                    "car together; fit both with `tune`, and compare with the fitted car",
+                    f"{1e3 * abs(high):.3g} ms: late sensors and wrong parameters of the car; fit both with `tune`",
                     "delay",
                 )
             ]
@@ -118,15 +117,15 @@ class GroupDelay:
         option = f"{self.group}={1e3 * self.delay:.5g}ms"
         text = (
             f"the {self.group} {'lag' if self.delay > 0.0 else 'lead'} the {self.against} by "
-            f"{1e3 * abs(self.delay):.3g} ms (+- {number(1e3 * self.error, 1)} ms, in {self.agreeing} of "
-            f"{self.channels} channels)"
+            f"{1e3 * abs(self.delay):.3g} ms (+- {number(1e3 * self.error, 1)} ms) in {self.agreeing} of "
+            f"{self.channels} channels"
         )
         if abs(remainder) >= LATE_SENSORS and self.agreeing == self.channels >= LEAST_ALIKE:
             cure = f": late sensors; set --delay {option}{after}"
             return [*separate, Finding(text + cure, "delay", ("--delay", option))]
         cure = (
-            ": wrong parameters of the car or late sensors; `tune` fits both together. Only if the sensors are known "
-            f"to lag, set --delay {option}{after}"
+            ": wrong parameters of the car or late sensors; fit both with `tune`; only if you know that the sensors "
+            f"lag, set --delay {option}{after}"
         )
         return [*separate, Finding(text + cure, "delay")]
 

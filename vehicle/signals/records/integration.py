@@ -23,18 +23,13 @@ def displacement(chosen: Chosen, choice: Choice, where: str) -> tuple[dict[str, 
 
     Returns:
         Role to displacement, and notices.
-
-    Raises:
-        DataError: another quantity, or integration without a corner frequency.
     """
     orders = {"displacement": 0, "velocity": 1, "acceleration": 2}
     displacements, notices = {}, []
     for role, values in chosen.values.items():
         quantity = chosen.quantities[role]
         if quantity not in orders:
-            raise DataError(
-                f"{where}: {role} is a {quantity}, must be a displacement, a velocity or an acceleration of the plate"
-            )
+            raise DataError(f"{where}: {role} is a {quantity}, must be a motion of the plate")
         if choice.highpass is None:
             if orders[quantity]:
                 raise DataError(
@@ -54,11 +49,7 @@ def displacement(chosen: Chosen, choice: Choice, where: str) -> tuple[dict[str, 
 
 
 def filtered(chosen: Chosen, corner: float) -> tuple[dict[str, Vector], tuple[str, ...]]:
-    """Return the selected channels after the high-pass filter, without integration, and the notices.
-
-    Raises:
-        DataError: see `integrate`.
-    """
+    """Return the selected channels after the high-pass filter, without integration, and the notices."""
     notice = f"high-pass {corner:g} Hz, as requested (Butterworth, order {ORDER}, forwards and backwards)"
     values = {role: integrate(samples, chosen.step, 0, corner) for role, samples in chosen.values.items()}
     return values, (*chosen.notices, notice)
@@ -75,15 +66,10 @@ def integrate(values: Vector, step: float, order: int, corner: float) -> Vector:
 
     Returns:
         Filtered samples, (n,). Trend removal and zero padding before the transform avoid wrap-around.
-
-    Raises:
-        DataError: the corner is not between 2 / duration and 0.4 / step.
     """
     count, duration = np.arange(values.size), step * values.size
     if not 2.0 / duration <= corner <= 0.4 / step:
-        raise DataError(
-            f"--highpass {corner:g} Hz: must be {2.0 / duration:.3g} to {0.4 / step:.4g} Hz for this record"
-        )
+        raise DataError(f"--highpass {corner:g} Hz: must be {2.0 / duration:.3g} to {0.4 / step:.4g} Hz here")
     detrended = values - np.polynomial.Polynomial.fit(count, values, 1)(count)
     size = fast_length(values.size + int(np.ceil(PERIODS / (corner * step))))
     frequency = np.fft.rfftfreq(size, step)

@@ -36,7 +36,7 @@ SMALL_MOTION = 0.05
 """Maximum RMS of a plate over that of the others that changes no response [-]: it counts as noise of 5 %."""
 
 FRF_BAND = (1.0, 50.0)
-"""Frequency band of estimated responses [Hz], equal to that of simulated responses."""
+"""Frequency band of estimated and of simulated responses [Hz]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -85,7 +85,7 @@ def read_measured(
         path: measurement file of any format.
         model_channels: channel names of the model.
         choice: model channel name to channel of the file, and preprocessing; by default all channels whose names are
-            in `model_channels`. A frequency response may name its plate, as "knuckle_fr_acc_z/plate_fr".
+            in `model_channels`. A frequency response may name its plate: "knuckle_fr_acc_z/plate_fr".
         inverted: names of channels whose sign is inverted.
         window: length of Hann windows for estimated responses [s]; by default the whole record is evaluated.
         measurement: contents of the file, if already read.
@@ -114,7 +114,7 @@ def read_measured(
             f"--map {unknown}=...: unknown channel of the model; names look like knuckle_fr_acc_z"
             + (f"; did you mean {' or '.join(close)}?" if close else "")
         )
-    # In the order of the model: that of the options and of the file changes nothing.
+    # In the order of the model, whatever the order of the options and the file.
     roles = {
         role: roles[role] for role in sorted(roles, key=lambda role: (model_channels.index(output_of[role]), role))
     }
@@ -127,8 +127,8 @@ def read_measured(
             f"their names suggest {shlex.join(options)}" if options else f"channels of the model look like {examples}"
         )
         text = (
-            "no channel has the name of a channel of the model; set --map CHANNEL=NAME, with a number, exact name or "
-            f"pattern with *; the file has {listed}; {advice}"
+            "no channel is named like one of the model; set --map CHANNEL=NAME, NAME a number, exact name or pattern "
+            f"with *; the file has {listed}; {advice}"
         )
         raise FindingError(path, [Finding(text, "unmapped", options)])
     other = next((name for name in selection.units if name and name not in {*roles, *output_of.values()}), None)
@@ -152,8 +152,8 @@ def read_measured(
         wrong = next((output for name in spectra if channel_units([output := output_of[name]])[output] != "m/s2"), None)
         if wrong is not None:
             raise DataError(
-                f"{path}: --map {wrong}=...: is a frequency response; only acceleration channels of the model "
-                "have frequency responses"
+                f"{path}: --map {wrong}=...: is a frequency response, which only accelerations of the model have; "
+                "choose another channel"
             )
         frf, notices = measured_frfs(file, spectra, selection, inverted)
         frf = responses_without_delays(frf, delays)
@@ -161,8 +161,8 @@ def read_measured(
     named = next((name for name in histories if output_of[name] != name), None)
     if named is not None:
         raise ConfigurationError(
-            f"--map {named}={histories[named]}: names a plate, which only FRFs have, but the channel is a time "
-            f"history; set --map {output_of[named]}={histories[named]}"
+            f"--map {named}={histories[named]}: the channel is a time history, and only FRFs have a plate; set --map "
+            f"{output_of[named]}={histories[named]}"
         )
     if histories:
         times = {role: wanted for role, wanted in selection.channels.items() if role == "time"}
@@ -175,10 +175,7 @@ def read_measured(
                 frf, estimator = estimated
                 notices.append(f"FRFs estimated from the time histories: {estimator}")
             elif "m/s2" in record.units.values():
-                notices.append(
-                    "no FRFs, because no channel is the motion of a plate; to get FRFs, name it with --map "
-                    "plate_fl_displacement=NAME (time histories need no plate)"
-                )
+                notices.append("no FRFs without the motion of a plate; name it with --map plate_fl_displacement=NAME")
     return Measured(
         file=file,
         frf=frf,
@@ -217,8 +214,8 @@ def _unmapped_plates(
         return []
     options = map_words({**(roles if by_name else {}), **unmapped})
     text = (
-        f"moving plates that are not mapped: {', '.join(unmapped.values())}; they move the car as well, so that FRFs "
-        f"and fitted values without them are wrong; set {shlex.join(options)}"
+        f"moving plates that are not mapped: {', '.join(unmapped.values())}; without them FRFs and fitted values are "
+        f"wrong; set {shlex.join(options)}"
     )
     return [Finding(text, "unmapped", options)]
 
@@ -239,7 +236,7 @@ def _is_data(channel: object) -> bool:
 
 
 def _same_names(file: Measurement, model_channels: Sequence[str], order: Sequence[bool]) -> dict[str, str]:
-    """Map model channel names, and names as "knuckle_fr_acc_z/plate_fr", to the channels of these names."""
+    """Map model channel names, and names such as "knuckle_fr_acc_z/plate_fr", to the channels of these names."""
     numbers: dict[str, str] = {}
     for wants_response in order:
         outputs = {parsed_name(role).output for role in numbers}
@@ -268,9 +265,8 @@ def _record(file: Measurement, choice: Choice, inverted: Collection[str], delays
         model_unit = find_unit(units[name].replace(" ", ""))
         if model_unit is not None and chosen.quantities[name] != model_unit.quantity:
             raise DataError(
-                f"{file.path}: {name} is a {model_unit.quantity} in the model, the channel is a "
-                f"{chosen.quantities[name]}; choose another channel, or "
-                f"set --unit {name}={units[name]} if the unit in the file is wrong"
+                f"{file.path}: {name} is a {chosen.quantities[name]}, must be a {model_unit.quantity}; choose another "
+                f"channel, or set --unit {name}={units[name]} if the unit in the file is wrong"
             )
     notices = list(chosen.notices)
     if plates:
@@ -297,9 +293,6 @@ def estimated_frf(record: Record, window: float | None = None) -> tuple[FrfData,
 
     Returns:
         Frequency responses and name of the estimator; None without a moving plate or without accelerations.
-
-    Raises:
-        DataError: the record is too short, or a plate repeats another with a delay.
     """
     plates = {name: match["wheel"] for name in record.channels if (match := PLATE_CHANNEL.fullmatch(name))}
     moving = {wheel: record.channels[name] for name, wheel in plates.items() if np.ptp(record.channels[name]) > 0.0}

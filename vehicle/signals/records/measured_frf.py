@@ -45,16 +45,13 @@ def measured_frfs(
     plates that the file names.
 
     Args:
-        channels: model channel name, as knuckle_fr_acc_z or knuckle_fr_acc_z/plate_fr, to number, name, pattern or
+        channels: model channel name (knuckle_fr_acc_z or knuckle_fr_acc_z/plate_fr) to number, name, pattern or
             point in the file.
-        choice: selection with units that override those of the file.
+        choice: selection with units that override the file.
         inverted: names of channels whose sign is inverted.
 
     Returns:
         Frequency responses, and one message per channel or fault.
-
-    Raises:
-        DataError: a channel that is not a response, without a unit, real, or per force.
     """
     responses: dict[ResponseName, tuple[Channel, Complex]] = {}
     notices = []
@@ -62,9 +59,7 @@ def measured_frfs(
         for name, index in _named_channels(measurement, parsed_name(role), wanted):
             channel, output = measurement.channels[index], name.output
             if name in responses:
-                raise DataError(
-                    f"{measurement.path}: {name}: is mapped twice; name the plate: --map {output}/PLATE=NAME"
-                )
+                raise DataError(f"{measurement.path}: {name}: mapped twice; name the plate: --map {output}/PLATE=NAME")
             unit = choice.units.get(role, choice.units.get(output, choice.units.get("", "")))
             if unit:
                 channel = replace(channel, unit=unit)
@@ -147,8 +142,8 @@ def _acceleration_per_displacement(channel: Channel, where: str, name: str) -> t
         raise DataError(f"{where} has no frequencies; export it with frequencies")
     if channel.function not in RESPONSES and not np.iscomplexobj(channel.values):
         raise DataError(
-            f"{where} is a {channel.function} without a phase, must be a frequency response: complex, or two columns "
-            "named real and imag, or magnitude and phase"
+            f"{where} is a {channel.function} without a phase; must be complex, or two columns, real and imag or "
+            "magnitude and phase"
         )
     unit = find_ratio(channel.unit)
     quantity = unit.quantity if unit is not None else ""
@@ -156,18 +151,17 @@ def _acceleration_per_displacement(channel: Channel, where: str, name: str) -> t
     if unit is None:
         raise DataError(
             f"{where} has {f'the unknown unit {channel.unit!r}' if channel.unit else channel.remark or 'no unit'}; "
-            f"set --unit {name}=UNIT, such as m/s2/m, g/m, m/m or g/g"
+            f"set --unit {name}=UNIT, for example m/s2/m, g/m, m/m or g/g"
         )
     if lower == "force" or "force" in upper:
         raise DataError(
-            f"{where} is in {channel.unit}: a response to a force, but the inputs of the model are plate "
-            "displacements; use the response to the displacement or acceleration of the plate, or the time "
-            "histories of response and plate"
+            f"{where} is in {channel.unit}, a response to a force; the plates of the model move: use a response to the "
+            "motion of the plate, or time histories of response and plate"
         )
     if upper not in ORDERS or lower not in ORDERS:
         raise DataError(
-            f"{where} is in {channel.unit}, must be a motion of a point divided by a motion of the plate, such "
-            f"as m/s2/m, g/m or m/m; if the unit in the file is wrong, set --unit {name}=UNIT"
+            f"{where} is in {channel.unit}, must be a motion per motion of the plate, for example m/s2/m, g/m or m/m; "
+            f"if the unit in the file is wrong, set --unit {name}=UNIT"
         )
     values = np.asarray(channel.si_values, dtype=np.complex128)
     power = ORDERS["acceleration"] - ORDERS[upper] + ORDERS[lower]

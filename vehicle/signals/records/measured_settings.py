@@ -23,7 +23,7 @@ class MeasuredSettings(Settings):
 
     Attributes:
         measured: file; None without a measurement.
-        mapping: channels as "CHANNEL=NAME", the name of the model first.
+        mapping: channels, "CHANNEL=NAME", the name of the model first.
         turned: channels that are measured in the opposite direction.
         delay: start of the measurement after the run, "S", and delays of groups of channels, "GROUP=TIME".
     """
@@ -51,9 +51,6 @@ class MeasuredSettings(Settings):
         Args:
             record: units, times and filters.
             input_names: names of units that belong to the input.
-
-        Raises:
-            ConfigurationError: a channel twice, an unknown unit, a number out of range.
         """
         from vehicle.signals.records.choice import Choice, pairs
         from vehicle.signals.records.delays import parsed_delays, split_delay

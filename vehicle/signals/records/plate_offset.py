@@ -46,15 +46,13 @@ def without_offsets(plates: Mapping[str, Vector]) -> tuple[dict[str, Vector], li
     about_zero = [name for name, z in plates.items() if name not in offsets and not _is_constant(z)]
     ratio = max(abs(float(np.mean(plates[name]))) / float(np.std(plates[name])) for name in offsets)
     low, high = 1e3 * min(offsets.values()), 1e3 * max(offsets.values())
-    shown = f"the constant of {high:.4g} mm is" if len(offsets) == 1 else f"constants of {low:.4g} to {high:.4g} mm are"
-    text = f"{', '.join(offsets)}: {shown} {number(ratio, 2)} times the RMS of the motion: "
+    shown = f"{high:.3g} mm" if len(offsets) == 1 else f"{low:.3g} to {high:.3g} mm"
+    text = f"{', '.join(offsets)}: the mean of {shown} is {number(ratio, 2)} times the RMS of the motion: "
     if about_zero:
-        text += (
-            f"the position of the sensor? It was not subtracted, because {', '.join(about_zero)} "
-            f"{'has' if len(about_zero) == 1 else 'have'} none; --detrend subtracts it"
-        )
+        none = f"{', '.join(about_zero)} {'has' if len(about_zero) == 1 else 'have'} none"
+        text += f"the position of the sensor? Not subtracted, because {none}; --detrend subtracts it"
         return dict(plates), [Finding(text, "offset")]
-    text += "the position of the sensor, not a motion of the plate; it was subtracted"
+    text += "the position of the sensor; it was subtracted"
     stands = {name: float(z[0]) for name, z in plates.items() if name not in offsets}
     return {name: z - (offsets | stands)[name] for name, z in plates.items()}, [Finding(text, "offset")]
 

@@ -111,7 +111,7 @@ class RecordComfort:
             lines.append(f"mean comfort N_MV of each 5 minutes (EN 12299)  {means}")
             largest = ", ".join(f"{axis} {value:.3g}" for axis, value in rated["largest_continuous"].items())
             lines.append(f"largest continuous comfort, 5 s  {largest} m/s2")
-        lines.append("the values are those of this record alone; repeat the ride to see their scatter")
+        lines.append("values of this record alone; repeat the ride to see their scatter")
         return "\n".join(lines)
 
 
@@ -169,14 +169,12 @@ def evaluate_comfort(
         raise ConfigurationError(f"offset: found {offset!r}, must be one of {', '.join(OFFSETS)}")
     seated = rail is not None or rail_choice is not None
     if seated and contact not in ("seat", "seat_bs6841"):
-        raise ConfigurationError(
-            f"--place {contact}: --rail gives the SEAT value, which only a seat has; leave out --place or --rail"
-        )
+        raise ConfigurationError(f"--place {contact}: only a seat has a SEAT value (--rail); leave out one of them")
     record = _read(file, point, choice, contact, offset)
     axes, xyz = list(record.channels), np.array(list(record.channels.values()))
     copied = [
-        f"{first} and {second} have identical samples, which the vector sum counts twice: was a channel copied "
-        f"or chosen twice? Choose another channel: --channel {second}=NAME"
+        f"{first} and {second} are the same channel, and the vector sum counts it twice; choose another one with "
+        f"--channel {second}=NAME"
         for first, second in copies(record.channels)
     ]
     removed = offset == "remove"
@@ -220,8 +218,8 @@ def evaluate_comfort(
                 f"{1.0 / step:.6g} Hz from {first:.6g} to {last:.6g} s" for first, last, step in (ends, ends_below)
             ]
             raise DataError(
-                f"{file}: the seat is at {spans[0]}, the rail at {spans[1]}; the SEAT value needs both at the same "
-                "times; set --resample HZ for another rate, --from and --to for another span"
+                f"{file}: the seat has {spans[0]}, the rail {spans[1]}, must be the same; set --resample HZ for "
+                "another rate, --from and --to for another span"
             )
         seat_and_rail = np.array([record.channels["z"], below.channels["z"]])
         seat_and_rail = without_offset(seat_and_rail) if removed else seat_and_rail
@@ -249,9 +247,9 @@ def _read(
     ):
         if axis in checked and (effect > OFFSET_EFFECT or abs(mean) > LARGEST_MEAN):
             raise DataError(
-                f"{file}: the mean of column {axis!r} is {mean:.4g} m/s2, must be at most {LARGEST_MEAN:g} m/s2, "
-                f"and its drift {number(drift, 2)} m/s2; together they change the weighted RMS or VDV by "
-                f"{100 * effect:.3g} %, must be at most {100 * OFFSET_EFFECT:g} %; set --offset remove for a "
-                "sensor offset or gravity, --offset keep if the record begins at rest and the mean is real"
+                f"{file}: the mean of column {axis!r} is {mean:.3g} m/s2, must be at most {LARGEST_MEAN:g} m/s2; with "
+                f"the drift of {number(drift, 2)} m/s2 it changes weighted RMS or VDV by {100 * effect:.3g} %, must be "
+                f"at most {100 * OFFSET_EFFECT:g} %; set --offset remove for a sensor offset or gravity, --offset keep "
+                "if the record begins at rest"
             )
     return record

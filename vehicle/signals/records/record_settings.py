@@ -21,8 +21,8 @@ class RecordSettings(Settings):
     """Settings of a measurement file.
 
     Attributes:
-        picks: channels as "ROLE=NAME"; a text without "=" has the role of the reader.
-        units: units as "ROLE=UNIT", or "UNIT" for all channels.
+        picks: channels, "ROLE=NAME"; a text without "=" has the role of the reader.
+        units: units, "ROLE=UNIT", or "UNIT" for all channels.
         databases: DBC files that decode the log of a CAN bus.
     """
 
@@ -51,9 +51,6 @@ class RecordSettings(Settings):
             role: role of a channel without ROLE=.
             further: roles without a channel that a unit may name.
             others: True if units without a channel of their role belong to another file, as the measured one.
-
-        Raises:
-            ConfigurationError: a role twice, a unit that is not known, a number out of range.
         """
         from vehicle.signals.records.choice import Choice, pairs
 

@@ -54,8 +54,7 @@ def resampled(
     """
     if time.size <= DEGREE:
         raise DataError(
-            f"{sample_name(0)}: the record has {time.size} samples, must be at least {DEGREE + 1} for "
-            "--resample; use a longer record"
+            f"{sample_name(0)}: {time.size} samples, must be at least {DEGREE + 1} for --resample; use a longer record"
         )
     steps = np.diff(time)
     median = float(np.median(steps))
@@ -63,9 +62,8 @@ def resampled(
     gap = int(np.argmax(steps))
     if steps[gap] > limit * (1.0 + UNIFORM_TOLERANCE):
         raise DataError(
-            f"{sample_name(gap + 1)}: gap of {steps[gap]:.6g} s after {time[gap]:.9g} s; --resample fills at "
-            f"most {limit:.6g} s; use the part before it (--to {time[gap]:.9g}) or after it (--from "
-            f"{time[gap + 1]:.9g})"
+            f"{sample_name(gap + 1)}: gap of {steps[gap]:.3g} s, --resample fills at most {limit:.3g} s; use the part "
+            f"before it (--to {time[gap]:.9g}) or after it (--from {time[gap + 1]:.9g})"
         )
     factor = max(1, int(np.ceil((1.0 - UNIFORM_TOLERANCE) / (median * rate))))
     first, last = (time[0], time[-1]) if span is None else span
@@ -113,11 +111,10 @@ def _notice(steps: Vector, median: float, rate: float, factor: int, uniform: boo
         if missing:
             plural = "s" if missing > 1 else ""
             clock = f"{clock} with {missing} gap{plural} of up to {1e3 * float(steps.max()):.3g} ms"
-    filtering = f" and a linear-phase anti-alias filter from {KEPT * rate:g} Hz on" if factor > 1 else ""
+    filtering = f" and an anti-alias filter from {KEPT * rate:g} Hz on" if factor > 1 else ""
     return (
-        f"resampled from {clock} at {1.0 / median:.6g} Hz to {rate:g} Hz by a spline of degree {DEGREE} through "
-        f"the samples at their true times{filtering}; amplitudes are correct within 0.1 % up to "
-        f"{0.3 / longest:.3g} Hz and within 4 % up to {KEPT / longest:.3g} Hz"
+        f"resampled from {clock} at {1.0 / median:.4g} Hz to {rate:g} Hz by a spline of degree {DEGREE}{filtering}; "
+        f"amplitudes are right within 0.1 % up to {0.3 / longest:.3g} Hz and 4 % up to {KEPT / longest:.3g} Hz"
     )
 
 

@@ -71,8 +71,8 @@ def beside_run(
         # The lag of the other channels would contain the unknown difference of the plates.
         findings.append(
             Finding(
-                f"{', '.join(part.channel for part in without)}: unlike those of the run (correlation below 0.7), so "
-                "neither the clock nor delays can be judged; simulate the plates of this measurement",
+                f"{', '.join(part.channel for part in without)}: unlike the plates of the run (correlation below 0.7), "
+                "so clock and delays are not judged; simulate the plates of this measurement",
                 "plates",
             )
         )
@@ -95,15 +95,11 @@ def _offsets(record: Record, simulated: Record, notices: tuple[str, ...]) -> lis
         means = float(np.mean(values)), float(np.mean(simulated.channels[name]))
         if abs(means[0] - means[1]) > LARGEST_OFFSET * float(np.std(values)):
             horizontal = axis_of_role(name) in ("x", "y")
-            cause = (
-                "braking, cornering, or an inclined sensor? If not wanted, subtract"
-                if horizontal
-                else "the offset of a sensor? Subtract"
-            )
+            cause = "braking, cornering, or an inclined sensor" if horizontal else "the offset of a sensor"
             findings.append(
                 Finding(
-                    f"{name}: the mean is {means[0]:.3g} m/s2 in the measurement and {number(means[1], 2)} m/s2 in the "
-                    f"run, and it spoils the RMS ratio: {cause} it with --detrend, or with --highpass 0.5",
+                    f"{name}: the mean is {means[0]:.3g} m/s2, in the run {number(means[1], 2)} m/s2, which spoils the "
+                    f"RMS ratio: {cause}? --detrend or --highpass 0.5 subtracts it",
                     "offset",
                     () if horizontal else ("--detrend",),
                 )

@@ -14,9 +14,5 @@ periods of the body bounce near 2 Hz. Measured on records cut out of runs, RMS e
 
 
 def settling_time(notices: Iterable[str]) -> float:
-    """Return the time after which a run follows a record of its signal [s]: `SETTLED` if faded in, otherwise 0.
-
-    Args:
-        notices: notices of the signal, or of its run.
-    """
+    """Return the time after which a run follows a record of its signal [s]: `SETTLED` if faded in, otherwise 0."""
     return SETTLED if any(RAMP_WORDS in text for text in notices) else 0.0
