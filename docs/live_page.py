@@ -12,6 +12,7 @@ from vehicle.handover.page.trial_data import trial_data
 from vehicle.handover.page.trial_section import trial_of
 from vehicle.runs.report.modes_section import as_json, mode_set
 from vehicle.runs.report.page import document
+from vehicle.runs.report.run_input import car_title
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal_file import read_signal
 
@@ -22,7 +23,7 @@ def live_cars(app: Any, error: Exception | None) -> None:
     if error is None and app.builder.format == "html":
         folder.mkdir(exist_ok=True)
         road_b = road("B", 80, duration=30)
-        cars: dict[str, tuple[str, str | Road]] = {"shaker": ("focus", "low.csv"), "road": ("focus_road", road_b)}
+        cars: dict[str, tuple[str, str | Road]] = {"shaker": ("focus", "low.csv"), "road": ("sedan", road_b)}
         for name, (car, source) in cars.items():
             (folder / f"{name}.html").write_text(live_page(Car.load(car), source), encoding="utf-8")
 
@@ -44,13 +45,12 @@ def live_page(car: Car, source: str | Road) -> str:
     if isinstance(source, Road):
         drive = source.under(car.vehicle, car.overrides)
         summary: dict[str, Any] = {**drive.summary(signal := drive.signal())}
-        car, name, skip = car.with_(drive.overrides), f"road of class {summary['class']}", drive.skip
+        car, title, skip = car.with_(drive.overrides), car_title(car.vehicle.name, summary), drive.skip
         driven = RunRoad(road_class=summary["class"], speed=summary["speed_kmh"], behind=summary["behind_m"])
         numbers = trial_data(car, signal, wheel=wheel, skip=skip, road=driven)
     else:
-        signal, name = read_signal(find_input(source), wheel=wheel), source
+        signal, title = read_signal(find_input(source), wheel=wheel), car_title(car.vehicle.name, {}, source)
         numbers = trial_data(car, signal, wheel=wheel)
     trial = trial_of(numbers, min(signal.duration, LONGEST))
-    picture = as_json([mode_set(car.vehicle.name, wheel, car_wireframe(car.model), {})])
-    title = f"{car.vehicle.name} on {'a ' * isinstance(source, Road)}{name}"
+    picture = as_json([mode_set(car.vehicle.name, car_wireframe(car.model), {})])
     return document(title, (), [("Try it", "trial", trial.content)], modes=picture, trial=trial)

@@ -77,7 +77,7 @@ ROOMS: dict[str, set[str]] = {
     "fmu": {"car", "core", "linear", "parameters", "reduced", "version"},
     "page": {"analysis", "car", "excitation", "figures", "fmu", "formats", "laws", "linear", "output", "parameters"}
     | {"records", "reduced", "rendering", "report", "simulation", "targets"},
-    "bench": {"analysis", "assembly", "car", "excitation", "figures", "formats", "linear", "output", "page"}
+    "bench": {"analysis", "car", "excitation", "figures", "formats", "linear", "output", "page"}
     | {"parameters", "reduced", "rendering", "report", "shapes", "threads"},
     "design": {"car", "flexbody", "kinematics", "parameters", "simulation", "threads"},
     "mounts": {"formats", "parameters"},

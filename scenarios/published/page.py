@@ -16,11 +16,13 @@ TITLE = "# Published results, figure by figure"
 
 WRITTEN_BY = "<!-- Written by `python -m scenarios.published`; never edit by hand. -->"
 
-INTRODUCTION = f"""\
+INTRODUCTION = """\
 Three publications, and the result of this program for each of their statements. Every statement has a row: the
 printed value, ours, the verdict and its reason. Numbers come from `python -m scenarios.published`; the studies
 write large figures, notes and further numbers to `runs/published/STUDY/`.
+"""
 
+EXPLANATION = f"""\
 **What was read twice.** The thesis survives as a scan: text, tables with damaged exponents, and the labels of the
 axes of its figures; the curves are lost. All of it was read twice; where both readings differ, the second one
 counts. "Left" and "right" of the thesis may be as seen from the front of the car.
@@ -91,6 +93,7 @@ def page(
     """
     pictures = frozenset(existing)
     lines = [TITLE, "", WRITTEN_BY, "", f"**{headline(rows)}.**", "", INTRODUCTION]
+    lines += _folded("What was read, chosen and counted", EXPLANATION)
     if notes:
         lines += ["The candidates of the choice and their likelihoods are in the [last section](#choice).", ""]
     if quick:
@@ -104,7 +107,8 @@ def page(
     for source in SOURCES:
         lines += _source(source, [row for row in rows if source_of(study_of(row)) is source], figures, pictures)
     if notes:
-        lines += ['<a id="choice"></a>\n', "## What was chosen, and on what\n", *(f"{note}\n" for note in notes)]
+        lines += ['<a id="choice"></a>\n', "## What was chosen, and on what\n"]
+        lines += _folded(f"{len(notes)} note{'s' * (len(notes) > 1)}", *(f"{note}\n" for note in notes))
     return "\n".join(lines).rstrip("\n") + "\n"
 
 
@@ -114,13 +118,16 @@ def _index(rows: Sequence[Row]) -> Iterator[str]:
     for source in SOURCES:
         links = []
         for _, location, group in _places(source, rows):
-            counted = {text: sum(cell(row, "within") == text for row in group) for text in ("NO", "undecided")}
-            verdicts = ", ".join(f"{count} {text}" for text, count in counted.items() if count)
-            links.append(
-                f"[{_heading(location)}](#{_anchor(source, location)})" + (f" ({verdicts})" if verdicts else "")
-            )
+            links.append(f"[{_heading(location)}](#{_anchor(source, location)}){_verdicts(group)}")
         if links:
             yield f"**{_upper(source.short)}:** {', '.join(links)}.\n"
+
+
+def _verdicts(rows: Sequence[Row]) -> str:
+    """Return the numbers of disagreeing and of undecided rows in brackets, or an empty text."""
+    counted = {text: sum(cell(row, "within") == text for row in rows) for text in ("NO", "undecided")}
+    verdicts = ", ".join(f"{count} {text}" for text, count in counted.items() if count)
+    return f" ({verdicts})" if verdicts else ""
 
 
 def _listed(rows: Sequence[Row], heading: str, verdict: str) -> Iterator[str]:
@@ -137,7 +144,9 @@ def _listed(rows: Sequence[Row], heading: str, verdict: str) -> Iterator[str]:
         source, location = source_of(study_of(row)), place_of(row["place"])
         link = f"[{_upper(source.short)}: {_lower(_heading(location))}](#{_anchor(source, location)})"
         table.append((link, *_cells(row, ("name", "published", "ours", "status", "why"))))
-    yield markdown(("where", "statement", "published", "ours", "status", "why"), table) + "\n"
+    yield from _folded(
+        f"{len(wrong)} rows", markdown(("where", "statement", "published", "ours", "status", "why"), table)
+    )
 
 
 def _source(source: Source, rows: Sequence[Row], figures: str, pictures: frozenset[str]) -> Iterator[str]:
@@ -152,17 +161,25 @@ def _source(source: Source, rows: Sequence[Row], figures: str, pictures: frozens
         before = section
         yield f'<a id="{_anchor(source, location)}"></a>\n'
         yield f"#### {_heading(location)}\n"
-        yield f"{', '.join(f'`{name}`' for name in dict.fromkeys(study_of(row) for row in group))}\n"
-        for picture in dict.fromkeys(row["picture"] for row in group if row["picture"] in pictures):
-            yield f"![{_heading(location)}]({figures}/{picture})\n"
+        studies = ", ".join(f"`{name}`" for name in dict.fromkeys(study_of(row) for row in group))
         shown = [
             (column, name)
             for column, name in zip(ROW_COLUMNS, ROW_CELLS, strict=True)
             if name not in SPARSE or any(row[name] is not None for row in group)
         ]
         columns, names = zip(*shown, strict=True)
-        yield markdown(columns, [_cells(row, names) for row in group])
-        yield ""
+        pictures_of = dict.fromkeys(row["picture"] for row in group if row["picture"] in pictures)
+        yield from _folded(
+            f"{len(group)} {'row' if len(group) == 1 else 'rows'}{_verdicts(group)}",
+            studies + "\n",
+            *(f"![{_heading(location)}]({figures}/{picture})\n" for picture in pictures_of),
+            markdown(columns, [_cells(row, names) for row in group]),
+        )
+
+
+def _folded(summary: str, *content: str) -> Iterator[str]:
+    """Yield content that is folded under a line of text."""
+    yield from (f'<details class="table"><summary>{summary}</summary>\n', *content, "\n</details>\n")
 
 
 def _places(source: Source, rows: Sequence[Row]) -> Iterator[tuple[Section | None, Place, list[Row]]]:

@@ -209,7 +209,8 @@ def test_a_row_of_the_choice_says_its_half(studies, tmp_path, monkeypatch):
 def test_the_notes_of_the_choice_are_the_last_section(studies, tmp_path, monkeypatch):
     monkeypatch.setattr(published, "CHOICE", "quarter_car")
     assert command(tmp_path) == 0
-    assert written(tmp_path).endswith("\n## What was chosen, and on what\n\nmade by quarter_car\n")
+    last = written(tmp_path).rpartition("\n## What was chosen, and on what\n")[2]
+    assert "<summary>1 note</summary>\n\nmade by quarter_car\n" in last and last.count("<details") == 1
 
 
 def test_a_picture_that_no_row_names_any_more_is_removed(studies, tmp_path, monkeypatch):

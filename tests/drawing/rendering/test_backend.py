@@ -29,44 +29,29 @@ class Machine:
         return None if name in self.working else f"no {name} here"
 
 
-def test_osmesa_is_preferred():
-    probe = Machine("osmesa", "egl")
-    assert backend.choose_backend(probe) == "osmesa"
-    assert probe.asked == ["osmesa"]
-    assert os.environ["MUJOCO_GL"] == os.environ["PYOPENGL_PLATFORM"] == "osmesa"
-
-
-def test_egl_where_osmesa_is_missing():
-    assert backend.choose_backend(Machine("egl")) == "egl"
-    assert os.environ["MUJOCO_GL"] == "egl"
-
-
-def test_glfw_where_the_other_two_are_missing():
-    probe = Machine("glfw")
-    assert backend.choose_backend(probe) == "glfw" and probe.asked == ["osmesa", "egl", "glfw"]
-    assert os.environ["MUJOCO_GL"] == "glfw"
-    assert os.environ["PYOPENGL_PLATFORM"] == "", "PyOpenGL knows no such platform, and MuJoCo uses GLFW without it"
+@pytest.mark.parametrize(
+    ("working", "wanted", "found", "asked"),
+    [
+        (("osmesa", "egl"), "", "osmesa", ["osmesa"]),
+        (("egl",), "", "egl", ["osmesa", "egl"]),
+        (("glfw",), "", "glfw", ["osmesa", "egl", "glfw"]),
+        (("osmesa", "egl"), "EGL", "egl", ["egl"]),
+        (("osmesa",), "egl", "osmesa", ["egl", "osmesa"]),
+        (("osmesa",), "nonsense", "osmesa", ["osmesa"]),
+    ],
+)
+def test_the_first_working_backend_is_chosen(monkeypatch, working, wanted, found, asked):
+    monkeypatch.setenv("MUJOCO_GL", wanted)
+    probe = Machine(*working)
+    assert backend.choose_backend(probe) == os.environ["MUJOCO_GL"] == found and probe.asked == asked
+    # PyOpenGL knows no platform glfw, and MuJoCo uses GLFW without it.
+    assert os.environ["PYOPENGL_PLATFORM"] == ("" if found == "glfw" else found)
 
 
 def test_every_backend_is_one_of_mujoco():
     """The message of a machine without it is of the library, not of an unknown name."""
     for name in backend.BACKENDS:
         assert "invalid value for environment variable" not in (backend.probe(name) or "")
-
-
-def test_a_working_choice_of_the_user_is_kept(monkeypatch):
-    monkeypatch.setenv("MUJOCO_GL", "EGL")
-    assert backend.choose_backend(Machine("osmesa", "egl")) == "egl"
-
-
-def test_a_choice_that_does_not_work_is_replaced(monkeypatch):
-    monkeypatch.setenv("MUJOCO_GL", "egl")
-    assert backend.choose_backend(Machine("osmesa")) == "osmesa"
-
-
-def test_an_invalid_choice_is_replaced(monkeypatch):
-    monkeypatch.setenv("MUJOCO_GL", "nonsense")
-    assert backend.choose_backend(Machine("osmesa")) == "osmesa"
 
 
 def test_a_loaded_opengl_decides(monkeypatch):
@@ -78,13 +63,8 @@ def test_a_loaded_opengl_decides(monkeypatch):
 
 
 def test_nothing_works_names_the_package():
-    with pytest.raises(MissingPartError) as caught:
+    with pytest.raises(MissingPartError, match=r"no osmesa here.*no egl here.*no glfw here.*libosmesa6") as caught:
         backend.choose_backend(Machine())
-    assert str(caught.value) == (
-        "video: no off-screen OpenGL library works on this machine (osmesa: no osmesa here; egl: no egl here; "
-        "glfw: no glfw here). "
-        "Install OSMesa, on Debian: apt-get install libosmesa6; or run without --video"
-    )
     assert caught.value.exit_code == 5
     assert os.environ["MUJOCO_GL"] == ""  # nothing is set where nothing works
 
@@ -126,13 +106,9 @@ def test_no_ffmpeg_names_both_remedies(tmp_path, monkeypatch, present):
     path = program(tmp_path / "ffmpeg", "no encoders") if present else None
     monkeypatch.setattr("shutil.which", lambda name: path)
     monkeypatch.setattr(backend, "_bundled_ffmpeg", lambda: None)
-    found = f"{path} has no encoder libx264" if present else "the program ffmpeg was not found"
-    with pytest.raises(MissingPartError) as caught:
+    found = f"{path}.*libx264" if present else "ffmpeg.*not found"
+    with pytest.raises(MissingPartError, match=f"{found}.*apt-get install ffmpeg.*imageio-ffmpeg"):
         backend.find_ffmpeg()
-    assert str(caught.value) == (
-        f"video: {found}. Install ffmpeg, on Debian: apt-get install ffmpeg, or the Python package imageio-ffmpeg; "
-        "or run without --video"
-    )
 
 
 def test_reason_why_no_film_can_be_made(monkeypatch):

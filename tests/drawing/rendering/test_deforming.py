@@ -8,7 +8,6 @@ from tests.drawing.rendering.test_palette import linear, oklab
 from vehicle.drawing.rendering.body_wireframe import Wireframe
 from vehicle.drawing.rendering.colour_scale import colours
 from vehicle.drawing.rendering.motion import Coil, RecordedMotion
-from vehicle.drawing.rendering.rounding import round_up
 from vehicle.drawing.rendering.wireframe import COIL_RADIUS, _coil
 
 
@@ -60,11 +59,6 @@ def test_colours_of_the_displacement_grow_lighter_in_equal_steps():
     assert np.all(np.diff(shades[:, 0]) > 0.0) and np.ptp(shades[:, 0]) > 0.5
     assert steps.max() < 1.5 * steps.mean() and steps.min() > 0.5 * steps.mean()
     np.testing.assert_array_equal(colours([5.0], 2.0), colours([2.0], 2.0))
-
-
-@pytest.mark.parametrize(("value", "rounded"), [(0.0, 1.0), (0.93, 1.0), (1.0, 1.0), (1.01, 1.5), (0.034, 0.04)])
-def test_scales_are_rounded_up(value, rounded):
-    assert round_up(value) == pytest.approx(rounded)
 
 
 def coil_of(car, motion, wheel):

@@ -93,33 +93,21 @@ def test_the_chosen_exaggeration_makes_motion_visible(run):
 
 
 @pytest.mark.parametrize(
-    ("options", "message"),
+    ("options", "found"),
     [
-        ({"start": 0.3}, "film, start: found 0.3 s, must be 0 to 0.3 s, within the record"),
-        ({"start": -1.0}, "film, start: found -1 s, must be 0 to 0.3 s, within the record"),
-        ({"duration": 0.0}, "film, duration: found 0 s, must be above 0 and finite"),
-        ({"duration": np.nan}, "film, duration: found nan s, must be above 0 and finite"),
-        ({"slow": 0.5}, "film, slow motion: found 0.5, must be at least 1"),
-        ({"exaggeration": -3.0}, "film, exaggeration: found -3, must be above 0 and finite"),
+        ({"start": 0.3}, r"start: .*0\.3 s, .*0 to 0\.3 s"),
+        ({"start": -1.0}, "start: .*-1 s"),
+        ({"duration": 0.0}, "duration: .*0 s"),
+        ({"duration": np.nan}, "duration: .*nan s"),
+        ({"slow": 0.5}, r"slow motion: .*0\.5.*1"),
+        ({"exaggeration": -3.0}, "exaggeration: .*-3"),
+        ({"size": (1281, 720)}, "1281 x 720.*1282 x 720"),
+        ({"size": (160, 90)}, "160 x 90.*320 x 180"),
     ],
 )
-def test_options_out_of_range_are_refused(run, options, message):
-    with pytest.raises(ConfigurationError) as caught:
-        shot(run, **options)
-    assert str(caught.value) == message
-
-
-@pytest.mark.parametrize(
-    ("size", "message"),
-    [
-        ((1281, 720), "film size: found 1281 x 720, both numbers must be even; give 1282 x 720"),
-        ((160, 90), "film size: found 160 x 90, must be at least 320 x 180 to be readable"),
-    ],
-)
-def test_sizes_that_cannot_be_encoded_or_read_are_refused(size, message):
-    with pytest.raises(ConfigurationError) as caught:
-        Layout(width=size[0], height=size[1])
-    assert str(caught.value) == message
+def test_options_out_of_range_are_refused(run, options, found):
+    with pytest.raises(ConfigurationError, match=f"film.*{found}"):
+        Layout(width=options["size"][0], height=options["size"][1]) if "size" in options else shot(run, **options)
 
 
 def test_lamps_show_the_slip_of_each_damper(run):

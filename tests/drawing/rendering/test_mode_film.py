@@ -1,6 +1,5 @@
 """A mode as a film: its motion against MuJoCo's own kinematics, its cycles, and what the command refuses."""
 
-import subprocess
 from types import SimpleNamespace
 from typing import Any
 
@@ -9,9 +8,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from tests.drawing.frames import frames
 from vehicle.commands import modes as command
 from vehicle.drawing.rendering import backend, mode_film, mode_motion
-from vehicle.drawing.rendering.backend import find_ffmpeg
 from vehicle.drawing.rendering.layout import OneView
 from vehicle.drawing.rendering.mode_film import ModeShot
 from vehicle.drawing.rendering.mode_motion import ModeMotion
@@ -74,10 +73,7 @@ def test_the_cycles_of_the_film_join(car, modes, few_frames, tmp_path):
     path = tmp_path / "mode.mp4"
     fractions: list[float] = []
     mode_film.mode_film(car, modes[4], path, size=(320, 180), progress=fractions.append)
-    done = subprocess.run(
-        [find_ffmpeg(), "-i", str(path), "-f", "rawvideo", "-pix_fmt", "rgb24", "-"], capture_output=True, check=True
-    )
-    video = np.frombuffer(done.stdout, dtype=np.uint8).reshape(-1, 180, 320, 3).astype(int)
+    video = frames(path, (320, 180))
     assert len(video) == 12 and fractions == [0.25, 0.5, 0.75, 1.0]
     again, half = (np.abs(video[frame] - video[0]) for frame in (8, 2))
     assert again.mean() < 0.2 * half.mean() and half.max() > 50  # the code is not without loss

@@ -6,11 +6,27 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from markupsafe import Markup
 
 from scenarios.signals.random_road import random_road
 from tests.patience import HANG
 from vehicle.commands.shaker import main
 from vehicle.signals.excitation.signal_file import write_signal
+
+
+@pytest.fixture
+def no_figures(monkeypatch):
+    """Leave out the figures of reports, all but their labels."""
+    for module in ("sections", "answer", "car_section", "comparison_section", "spectra_section"):
+        monkeypatch.setattr(
+            f"vehicle.runs.report.{module}.drawing", lambda plot, label: Markup(f"<figure>{label}</figure>")
+        )
+
+
+@pytest.fixture
+def one_car(monkeypatch):
+    """Leave out the sliders with a car for each position, which take most of the time of a page."""
+    monkeypatch.setattr("vehicle.handover.page.trial_data.stepped_sliders", lambda car, drive: ([], [car]))
 
 
 @dataclass(frozen=True)
@@ -31,20 +47,8 @@ def reported(tmp_path_factory: pytest.TempPathFactory) -> Reported:
     place = tmp_path_factory.mktemp("report")
     write_signal(place / "a<b>&c.csv", random_road(rms=5.25e-4, seed=3, wheel="fl", duration=20.0), plain=True)
     folder = place / "run"
-    words = [
-        "--input",
-        str(place / "a<b>&c.csv"),
-        "--output",
-        str(folder),
-        "--engine",
-        "reduced",
-        "--quiet",
-        "--report",
-        "--author",
-        "A. Engineer",
-        "--project",
-        "Ride",
-    ]
+    words = ["--input", str(place / "a<b>&c.csv"), "--output", str(folder), "--engine", "reduced", "--quiet"]
+    words += ["--report", "--author", "A. Engineer", "--project", "Ride"]
     assert main([*words, "--set", "damper.coulomb_friction=100"]) == 0
     return Reported(folder=folder, page=folder / "report.html")
 

@@ -47,7 +47,7 @@ def test_the_policy_of_the_page_lets_nothing_in(browser):
         "const one = document.createElement('script'); one.textContent = 'document.title = \"other\"';"
         "document.body.append(one);"
     )
-    assert browser.title == "Car on the shaker: run"
+    assert browser.title == "Focus on the shaker: run"
     assert any("Content Security Policy" in entry["message"] for entry in browser.get_log("browser"))
 
 
@@ -76,7 +76,7 @@ def test_another_mode_another_state_and_another_view_are_shown(browser):
     buttons[5].click()
     assert pick.all_selected_options == [pick.options[5]]
     chosen = browser.find_element("id", "mode-words").text
-    assert chosen != words and "6.43 Hz" in chosen and "body roll" in chosen
+    assert chosen != words and "5.87 Hz" in chosen and "body roll" in chosen
     after = picture(browser)
     assert not np.array_equal(before, after)
     canvas = browser.find_element("id", "mode-canvas")
@@ -85,7 +85,7 @@ def test_another_mode_another_state_and_another_view_are_shown(browser):
     assert not np.array_equal(after, turned)
     ActionChains(browser).scroll_from_origin(_origin(canvas), 0, -400).perform()
     assert not np.array_equal(turned, picture(browser))
-    Select(browser.find_element("id", "mode-state")).select_by_value("sliding")
+    Select(browser.find_element("id", "mode-state")).select_by_value("stuck")
     assert browser.find_element("id", "mode-words").text != chosen
     browser.find_element(By.CSS_SELECTOR, "details:has(#mode-gallery) summary").click()
 

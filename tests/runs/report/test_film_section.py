@@ -3,13 +3,12 @@
 import base64
 import dataclasses
 import re
-import subprocess
 
 import numpy as np
 import pytest
 
-from tests.patience import HANG
-from vehicle.drawing.rendering.backend import film_available, find_ffmpeg
+from tests.drawing.frames import frames
+from vehicle.drawing.rendering.backend import film_available
 from vehicle.runs.report import film_section
 from vehicle.runs.report.film_section import BUDGET, QUALITIES, embedded, film
 from vehicle.runs.report.finished_run import read_run
@@ -24,10 +23,10 @@ def large_film(tmp_path_factory):
     from vehicle.drawing.rendering.film import write_film
 
     path, generator = tmp_path_factory.mktemp("film") / "run.mp4", np.random.default_rng(1)
-    frames = generator.integers(0, 255, (60, 120, 160, 3)).astype(np.uint8)
-    for number, frame in enumerate(frames):
+    noise = generator.integers(0, 255, (60, 120, 160, 3)).astype(np.uint8)
+    for number, frame in enumerate(noise):
         frame[40:80, 2 * number : 2 * number + 40] = 255
-    write_film(path, iter(frames), (120, 160))
+    write_film(path, iter(noise), (120, 160))
     return path
 
 
@@ -43,20 +42,7 @@ def test_a_large_film_is_encoded_again_with_all_frames_and_the_same_bytes(large_
     first, second = (embedded(large_film, budget, folder) for folder in folders)
     assert first is not None and first == second and len(first) <= budget
     (tmp_path / "again.mp4").write_bytes(first)
-    command = [
-        find_ffmpeg(),
-        "-loglevel",
-        "error",
-        "-i",
-        str(tmp_path / "again.mp4"),
-        "-f",
-        "rawvideo",
-        "-pix_fmt",
-        "gray",
-        "-",
-    ]
-    raw = subprocess.run(command, capture_output=True, check=True, timeout=HANG).stdout
-    pictures = np.frombuffer(raw, dtype=np.uint8).reshape(-1, 120, 160)
+    pictures = frames(tmp_path / "again.mp4", (160, 120), "gray")
     assert len(pictures) == 60
     assert pictures[30][50:70, 65:95].mean() > 200 > pictures[30][50:70, 5:30].mean(), "the square has moved"
 
@@ -86,9 +72,7 @@ def test_two_saved_runs_make_a_film(reported, tmp_path):
     assert said.startswith("0.50 to 0.57 s, both runs simulated again by the engine mujoco; its curves differ by ")
     share = re.search(r"differ by ([\d.]+) %", said)
     assert share is not None and float(share[1]) < 5.0, "the saved run is of the reduced engine, for small rotations"
-    command = [find_ffmpeg(), "-loglevel", "error", "-i", str(path), "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
-    raw = subprocess.run(command, capture_output=True, check=True, timeout=HANG).stdout
-    frames = np.frombuffer(raw, dtype=np.uint8).reshape(-1, 180, 320, 3).astype(int)
-    assert len(frames) == 3
-    car = frames[:, 70:140]
+    video = frames(path, (320, 180))
+    assert len(video) == 3
+    car = video[:, 70:140]
     assert np.abs(car[:, :, 4:156] - car[:, :, 164:316]).mean() < 3.0 < car[0].std()

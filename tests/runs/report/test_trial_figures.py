@@ -15,6 +15,7 @@ LIVE = (
 OTHERS = ("unweighted", "stick_share", "rms:seat_rail_acc_z:Wk", "frequency:heave")
 
 
+@pytest.mark.usefixtures("one_car")
 def test_figures_follow_the_sliders(browser):
     car, signal = shipped("high.csv")
     page = Page(browser, car, signal, measure=[*LIVE, *OTHERS])

@@ -5,6 +5,8 @@ import pytest
 from tests.runs.report.test_trial import STRIBECK, Page, changes_of, deviations, random_states, scaled, shipped
 from vehicle.runs.car import Car
 
+pytestmark = pytest.mark.usefixtures("one_car")
+
 PRESLIDING = ("front.damper.friction_law=presliding", "front.damper.presliding_stiffness=1e6")
 
 LAWS: dict[str, tuple[str, ...]] = {

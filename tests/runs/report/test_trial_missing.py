@@ -27,9 +27,7 @@ def test_a_report_without_sliders_says_why(reported):
 
 def test_a_car_that_the_page_cannot_run_has_no_section():
     car, signal = shipped("low.csv")
-    with pytest.raises(
-        ConfigurationError, match=r"12 s, of which the page runs at most 30 s, must have at least 35\.4 s"
-    ):
+    with pytest.raises(ConfigurationError, match=r"8 s, .* at most 30 s, .* at least 35\.4 s"):
         trial_data(car, signal, wheel="fl", skip=30.0)
     slopes = dataclasses.replace(signal, slope_velocity=signal.displacement)
     with pytest.raises(ConfigurationError, match="plate displacements"):

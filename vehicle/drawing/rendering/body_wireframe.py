@@ -1,4 +1,4 @@
-"""Wireframe of the flexible body: a node at r from its origin, with modal coordinates q, is shown at
+"""Wireframe of the body: a point at r from its origin, with modal coordinates q, is shown at
 
     x = p + exp(k [theta]) (r + k Phi q),
 
@@ -13,11 +13,10 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.arrays import Indices
 from vehicle.drawing.rendering.added_geom import add_geom
+from vehicle.drawing.rendering.body_outline import drawn_body
 from vehicle.drawing.rendering.motion import Motion, State
 from vehicle.signals.analysis.samples import Vector
-from vehicle.signals.analysis.thinned_wireframe import MOST_NODES, thinned
 
 if TYPE_CHECKING:  # processes that draw a film need no compiler of models
     from vehicle.engines.simulation.car_model import CarModel
@@ -33,25 +32,20 @@ EMISSION = 0.35
 """Emission of the members: share of their colour without light."""
 
 
-def members_of(car: CarModel) -> tuple[Indices, float]:
-    """Return the lines of the flexible body as pairs of nodes (n, 2), and a factor on their thickness."""
-    element = car.superelement
-    lines = thinned(element.positions, np.asarray(element.edges, dtype=int))
-    return lines, min(1.0, float(np.cbrt(FRAME_LINES / max(len(lines), 1))))
+def thickness(lines: int) -> float:
+    """Return the factor on the thickness of a number of lines."""
+    return min(1.0, float(np.cbrt(FRAME_LINES / max(lines, 1))))
 
 
 class Wireframe:
-    """Nodes and members of the superelement, coloured by displacement."""
+    """Points and lines of the body, coloured by displacement."""
 
     def __init__(self, car: CarModel, motion: Motion) -> None:
-        element = car.superelement
+        drawn = drawn_body(car)
         self.motion = motion
         self.body = int(motion.model.body("body").id)
-        lines, self.slim = members_of(car)
-        # Show all nodes of a body without lines, otherwise the ends of the lines.
-        shown, index = np.unique(lines, return_inverse=True) if len(lines) else (slice(MOST_NODES), lines)
-        self.rest, self.edges = np.asarray(element.positions)[shown], index.reshape(-1, 2)
-        self.shapes = np.asarray(element.shapes)[: len(motion.modal), shown]  # (modes, n, 3); no mode for a rigid body
+        self.rest, self.edges, self.slim = drawn.points, drawn.lines, thickness(len(drawn.lines))
+        self.shapes = drawn.shapes[: len(motion.modal)]  # (modes, n, 3); no mode for a rigid body
 
     def positions(self, state: State, factor: float) -> Vector:
         """Return exaggerated positions of the nodes [m], (n, 3)."""

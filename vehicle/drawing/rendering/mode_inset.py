@@ -59,7 +59,7 @@ class ModeInset:
         mode = shown.mode
         self.lines = [
             f"mode: {mode.frequency:.2f} Hz, damping ratio {100.0 * mode.damping_ratio:.2f} %",
-            *textwrap.wrap(mode.description, LETTERS)[:2],
+            *textwrap.wrap(mode.description, LETTERS),
             *shown.words,
             f"exaggerated {EXAGGERATION:g} times, {self.cycle.slow_words}",
         ]

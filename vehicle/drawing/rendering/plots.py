@@ -173,7 +173,12 @@ def plot_time(path: Path, run: RecordedRun, *, page: bool = False, others: Seque
         f"tyres {run.car.model.vehicle.driving.words}"
     )
     if dampers:
-        caption += f"; dashed: slip velocity ±{1e3 * slip:g} mm/s, red: {side} damper in slip"
+        rubs, shown = run.car.model.vehicle.damper.static_friction > 0.0, f"±{1e3 * slip:g} mm/s"
+        caption += (
+            f"; dashed: slip velocity {shown}, red: {side} damper in slip"
+            if rubs
+            else (f"; dashed: {shown}, red: {side} damper faster")
+        )
     size = (PAGE_WIDTH, PAGE_HEIGHT) if page else (15.0, 9.2)
     title = "" if page else "Main time histories"
     caption = wrapped(caption, size[0])

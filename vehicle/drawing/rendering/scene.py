@@ -69,8 +69,11 @@ class Scene:
 
         self.recording, self.vehicle, self.wheel, self.size = run.recording, run.car.model.vehicle, run.wheel, size
         self.composition = self.vehicle.composition
-        self.wheels, self.dampers = wheels_of(self.recording), dampers_of(self.recording)
-        self.slip = self.vehicle.damper.slip_velocity if self.dampers else 0.0
+        self.wheels, dampers = wheels_of(self.recording), dampers_of(self.recording)
+        self.slip = self.vehicle.damper.slip_velocity if dampers else 0.0
+        # A damper without friction neither sticks nor slips.
+        rubbing = {damper.name for damper in self.composition.dampers if damper.law.static_friction > 0.0}
+        self.dampers = [wheel for wheel in dampers if f"damper_{wheel}" in rubbing]
         self.model = stage_model(run.car.model, size, road=speed is not None)
         self.opacity = self.model.mat_rgba[:, 3].copy()  # drawing changes the values of the model
         self.unveiled = unveiled(self.model)

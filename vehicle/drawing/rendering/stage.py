@@ -3,13 +3,15 @@
 import mujoco
 import numpy as np
 
-from vehicle.drawing.rendering.body_wireframe import EMISSION, members_of
+from vehicle.drawing.rendering.body_outline import body_outline, drawn_body
+from vehicle.drawing.rendering.body_wireframe import EMISSION, thickness
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.model.assembly.studio import add_studio
 from vehicle.model.assembly.visuals import add_shapes, visible_shapes
-from vehicle.model.shapes import SHELL
+from vehicle.model.shapes import SHELL, palette
 from vehicle.model.shapes.shape import Shape
 from vehicle.model.shapes.solids import joined, rod
+from vehicle.model.shapes.surface import grid
 from vehicle.signals.analysis.samples import Vector
 
 SAMPLES = 0
@@ -46,8 +48,7 @@ def stage_model(car: CarModel, size: tuple[int, int], *, road: bool = False) -> 
         road: draw a driving car, without shakers and plates, and the floor below the road.
     """
     spec = car.spec.copy()
-    shapes = {name: shape for name, shape in visible_shapes(car.vehicle, rig=not road).items() if name not in HIDDEN}
-    still = frame_at_rest(car)
+    shapes, still = shapes_of(car, rig=not road), frame_at_rest(car)
     shapes |= still
     add_shapes(spec, shapes, car.origins, car.vehicle.composition.springs)
     for name in shapes:
@@ -60,6 +61,16 @@ def stage_model(car: CarModel, size: tuple[int, int], *, road: bool = False) -> 
     return spec.compile()
 
 
+def shapes_of(car: CarModel, *, rig: bool) -> dict[str, Shape]:
+    """Return the shapes of a picture by name; an outline replaces the sheet metal of the estate car on other bodies."""
+    shapes = {name: shape for name, shape in visible_shapes(car.vehicle, rig=rig).items() if name not in HIDDEN}
+    if not len(car.superelement.edges) and len(sheets := body_outline(car.vehicle)[0]):
+        shapes = {name: shape for name, shape in shapes.items() if name not in SHELL}
+        nose, tail = (grid(end[[[0, 5], [1, 4]]], flip=flip) for end, flip in ((sheets[0], False), (sheets[-1], True)))
+        shapes["body_shell"] = Shape(mesh=joined(grid(sheets), nose, tail), rgba=palette.BODY, part="body")
+    return shapes
+
+
 REST_RADIUS, REST_COLOUR = 0.005, (0.35, 0.38, 0.42, 1.0)
 """Radius [m] and colour of the rods of a frame at rest."""
 
@@ -69,11 +80,11 @@ def frame_at_rest(car: CarModel) -> dict[str, Shape]:
 
     Empty for a body without lines.
     """
-    lines, slim = members_of(car)
-    if not len(lines):
+    body = drawn_body(car)
+    if not len(body.lines):
         return {}
-    ends = np.asarray(car.superelement.positions)[lines]
-    mesh = joined([rod(first, second, slim * REST_RADIUS, sides=6) for first, second in ends])
+    radius = thickness(len(body.lines)) * REST_RADIUS
+    mesh = joined([rod(first, second, radius, sides=6) for first, second in body.points[body.lines]])
     return {"frame_at_rest": Shape(mesh=mesh, rgba=REST_COLOUR, part="world")}
 
 

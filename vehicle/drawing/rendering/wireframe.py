@@ -7,10 +7,10 @@ import mujoco
 import numpy as np
 
 from vehicle.arrays import Indices
+from vehicle.drawing.rendering.body_outline import drawn_body
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.model.parameters.composition import Composition, PlacedPart, PlacedWheel
 from vehicle.signals.analysis.samples import Complex, Vector
-from vehicle.signals.analysis.thinned_wireframe import MOST_NODES, thinned
 
 GROUPS = ("body", "mass", "link", "spring", "wheel", "ground")
 """Groups of lines."""
@@ -62,17 +62,15 @@ def unit_factor(displacement: Complex) -> complex:
 
 
 def car_wireframe(car: CarModel) -> CarWireframe:
-    """Draw a car: the frame of its body, its links, springs and wheels, boxes for heavy parts, plates and stands.
+    """Draw a car: its body (`drawn_body`), links, springs and wheels, boxes for heavy parts, plates and stands.
 
     Returns:
         Points and lines of the car, and J of u_point = J u, which is zero for plates and stands.
     """
-    pen = _Pen(car)
-    element, composition = car.superelement, car.vehicle.composition
-    lines = thinned(element.positions, np.asarray(element.edges, dtype=int))
-    shown = np.unique(lines) if len(lines) else range(min(len(element.positions), MOST_NODES))
-    nodes = {int(node): pen.point(element.positions[node], "body") for node in shown}
-    pen.join([(nodes[int(first)], nodes[int(second)]) for first, second in lines], "body")
+    pen, body, composition = _Pen(car), drawn_body(car), car.vehicle.composition
+    for point in body.points:
+        pen.point(point, "body")
+    pen.join([(int(first), int(second)) for first, second in body.lines], "body")
     wheels = {wheel.part for wheel in composition.wheels}
     for part in composition.parts:
         if part.shape != "none" and part.name not in wheels and part.seat is None:

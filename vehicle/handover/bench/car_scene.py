@@ -10,11 +10,10 @@ from scipy.spatial.transform import Rotation
 from vehicle.drawing.rendering.colour_scale import colours
 from vehicle.drawing.rendering.motion import coil_seats
 from vehicle.drawing.rendering.recorded_run import hub_of
-from vehicle.drawing.rendering.stage import HIDDEN, OPACITY
+from vehicle.drawing.rendering.stage import OPACITY, shapes_of
 from vehicle.drawing.rendering.wireframe import GROUPS, CarWireframe, car_wireframe
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.handover.bench.motion import CarMotion, CarPose
-from vehicle.model.assembly.visuals import visible_shapes
 from vehicle.model.parameters.composition import Composition, PlacedSpring, PlacedWheel
 from vehicle.model.shapes.shape import Shape
 from vehicle.runs.car import Car
@@ -52,7 +51,7 @@ class CarScene:
         self._car = car.geometry
         composition, driving = self._car.vehicle.composition, self._car.vehicle.driving
         wheels = composition.wheels if driving.rolling else ()
-        shapes = {name: s for name, s in visible_shapes(self._car.vehicle, rig=self.rig).items() if name not in HIDDEN}
+        shapes = shapes_of(self._car.model, rig=self.rig)
         self.wire = car_wireframe(self._car.model)
         self._place(self._car.matrices, composition, wheels)
         self._spin = {wheel.part: -driving.speed / (wheel.center[2] - wheel.patch[2]) for wheel in wheels}

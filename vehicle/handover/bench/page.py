@@ -19,6 +19,7 @@ from vehicle.handover.bench.setting import Setting
 from vehicle.handover.bench.stage import Stage
 from vehicle.handover.bench.state import BenchState, LatestOnly
 from vehicle.handover.bench.view import View
+from vehicle.names import side_of
 from vehicle.runs.car import Car
 from vehicle.runs.report.differences import difference, parameter_words
 
@@ -212,7 +213,7 @@ class Page:
             change = "" if math.isnan(a) or math.isnan(b) else difference(a, b, unit)
             # Long words in the last column would break the names into one word a line.
             change = change.replace("percentage ", "").replace(" ", "\u00a0")
-            lines.append(f"| {name} [{unit}] | {_short(a)} | {_short(b)} | {change} |")
+            lines.append(f"| {self._words(name)} [{unit}] | {_short(a)} | {_short(b)} | {change} |")
         texts = [_escaped(self._changed(shown)) for shown in (car, other)]
         label = f"{_escaped(state.drive.label)}; computed in {1e3 * present.seconds:.0f} ms"
         lines.append(f"\n**A** {texts[1]} · **B** {texts[0]}\n\n{label}")
@@ -224,6 +225,12 @@ class Page:
             if present.warnings:
                 warnings = "; ".join(text.removesuffix(REMEDY) for text in present.warnings)
                 self._say(f"outside the valid range: {warnings}; save the vehicle file and run it with --engine mujoco")
+
+    def _words(self, row: str) -> str:
+        """Return the name of a row; a damper without friction is fast, and does not slip, so its velocity is named."""
+        _, slip, wheel = row.rpartition("slip ")
+        vehicle = self.state.car.vehicle
+        return f"above {1e3 * vehicle.damper.slip_velocity:g} mm/s, {side_of(wheel, vehicle.wheels)}" if slip else row
 
     def _changed(self, car: Car) -> str:
         """Return what differs from the car of the start, in words."""
@@ -268,7 +275,7 @@ class Page:
                 logarithmic(density_curves(*both)[1]),
             ),
             (
-                f"damper {wheel}: force [N] over velocity [m/s]",
+                f"{side_of(wheel, self.state.car.vehicle.wheels)} damper: force [N] over velocity [m/s]",
                 lambda a, b: damper_curves(a, b, wheel),
                 (
                     uplot.Series(label="v [m/s]"),

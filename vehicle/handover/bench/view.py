@@ -13,6 +13,7 @@ from vehicle.handover.bench.drive import BenchDrive
 from vehicle.handover.bench.motion import car_motion, mode_motion
 from vehicle.handover.bench.stage import CYCLE, LARGER, SLOWER, Stage
 from vehicle.runs.car import Car
+from vehicle.runs.report.modes_section import ride_share
 from vehicle.signals.analysis.modal_assurance import mac
 
 RUN = "run"
@@ -83,7 +84,7 @@ class View:
         if not self.modes:
             raise ConfigurationError("this car has no mode up to 60 Hz")
         self.stage.car_scene.update(car)
-        index = 0
+        index = int(np.argmax([ride_share(mode) for mode in self.modes]))
         if self._chosen is not None:
             index = int(np.argmax(mac([self._chosen], [self._displacement(mode) for mode in self.modes])))
         self.mode.options = [

@@ -111,23 +111,25 @@
   const signed = (value, digits) => `${value < 0 ? "−" : "+"}${Math.abs(value).toFixed(digits)}`;
   const difference = (change) => `${signed(change, Math.abs(change) < 10 ? 1 : 0)} %`;
 
+  // A damper slips where it has friction; without, its velocity alone is stated.
   function sentence() {
     const changed = data.sliders.filter((slider) => acting(slider, now.settings) !== acting(slider, before.settings));
     const damper = data.dampers[data.shown], slip = (run) => run.record.slips[data.shown];
-    const slipping = `the ${damper.name} damper slips ${short(100 * slip(now), 2)} % of the time`;
-    if (!changed.length) return `Move a slider. Now the weighted acceleration${data.shortened ? ` of the first ${short(now.record.seconds)} s` : ""} is ${short(now.record.comfort)} m/s², and ${slipping}.`;
+    const rubs = data.sliders.some((slider) => data.names[slider.parameter]?.endsWith("friction") && slider.dampers.includes(data.shown) && now.settings[slider.id] > 0);
+    const slipping = `the ${damper.name} damper ${rubs ? "slips" : `moves faster than ${short(1000 * damper.slip)} mm/s`} ${short(100 * slip(now), 2)} % of the time`;
+    const first = data.shortened ? ` (first ${short(now.record.seconds)} s)` : "";
+    if (!changed.length) return `Weighted acceleration of the seat rail${first}; ${slipping}. Move a slider.`;
     const list = changed.map((slider) => `${slider.words} ${words(slider, acting(slider, before.settings))} → ${words(slider, acting(slider, now.settings))}`);
     const change = percent(now.record.comfort, before.record.comfort);
-    const effect = Math.abs(change) < 0.05 ? "stays" : `${change > 0 ? "rises" : "falls"} from ${short(before.record.comfort)} to`;
-    const rating = Math.abs(change) < 0.05 ? "" : ` (${difference(change)}, ${change > 0 ? "worse" : "better"})`;
-    return `The weighted acceleration ${effect} ${Math.abs(change) < 0.05 ? "at " : ""}${short(now.record.comfort)} m/s²${rating}; ${slipping}, before ${short(100 * slip(before), 2)} %. Changed: ${list.join(", ")}.`;
+    const effect = Math.abs(change) < 0.05 ? "as before" : `before ${short(before.record.comfort)} m/s² (${difference(change)}, ${change > 0 ? "worse" : "better"})`;
+    return `Weighted acceleration of the seat rail, ${effect}; ${slipping}, before ${short(100 * slip(before), 2)} %. Changed: ${list.join(", ")}.`;
   }
 
   // Rows: text, value of a run, digits, and true for a share, whose change is a difference in points.
   function table() {
     const rows = [["a_v (ISO 2631-1) [m/s²]", (run) => run.record.comfort, 4]];
     ["x", "y", "z"].forEach((axis, k) => rows.push([`a_w ${axis} [m/s²]`, (run) => run.record.axes[k], 4]));
-    data.dampers.forEach(({ name }, k) => rows.push([`slip, ${name} [%]`, (run) => 100 * run.record.slips[k], 3, true]));
+    data.dampers.forEach(({ name }, k) => rows.push([`above ${short(1000 * data.dampers[k].slip)} mm/s, ${name} [%]`, (run) => 100 * run.record.slips[k], 3, true]));
     data.dampers.forEach(({ name }, k) => rows.push([`highest force, ${name} [N]`, (run) => run.record.highest[k], 4]));
     (data.figures ?? []).forEach(({ words, unit }, k) => rows.push([`${words} [${unit}]`, (run) => run.record.figures[k], 4]));
     const row = (name, cells) => {
@@ -172,7 +174,7 @@
     pen.textAlign = "right";
     for (const mark of marks(axes.y, axes.logY, [1])) {
       pen.beginPath(); pen.moveTo(left, down(mark)); pen.lineTo(right, down(mark)); pen.stroke();
-      pen.fillText(axes.logY ? mark.toExponential(0) : short(mark), left - 4, down(mark) + 4);
+      pen.fillText(axes.logY ? power(mark) : short(mark), left - 4, down(mark) + 4);
     }
     pen.save();
     pen.beginPath(); pen.rect(left, top, right - left, bottom - top); pen.clip();
@@ -194,6 +196,8 @@
     pen.restore();
   }
 
+  const power = (mark) => `10${String(Math.round(Math.log10(mark))).replace(/./g, (digit) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[digit] ?? "⁻")}`;
+
   function marks([low, high], log, digits) {
     if (log) {
       const found = [];
@@ -210,6 +214,7 @@
   const both = (of) => [[before, GREY, 2.2], [now, RED, 1.4]].map(([run, colour, thick]) => [...of(run), colour, thick]);
 
   function show() {
+    byId("number").textContent = `${short(now.record.comfort)} m/s²`;
     byId("words").textContent = sentence();
     table();
     const bins = now.record.density.map((_, k) => k * now.record.resolution), first = Math.ceil(1 / now.record.resolution), last = Math.floor(50 / now.record.resolution);

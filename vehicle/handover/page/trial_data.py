@@ -227,7 +227,7 @@ def _sliders(car: Car, numbers: CarNumbers, road: RunRoad | None) -> list[dict[s
         sliders.append(
             {
                 "id": f"{axle}-curve_scale",
-                "words": f"{axle} damper curve, factor (to 0.1 %)",
+                "words": f"{axle} damper curve, factor",
                 "unit": "",
                 "low": low,
                 "high": high,

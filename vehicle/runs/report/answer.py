@@ -95,8 +95,8 @@ def _of_one(run: FinishedRun, modes: Modes) -> Markup:
         return fill("no_comfort")
     total = comfort.weighted
     texts = [
-        f"On {input_text(run)} the weighted acceleration at the seat rail of {run.car.vehicle.name} is "
-        f"{number(total)} m/s²: {' to '.join(reactions(total))} (ISO 2631-1; lower is better)."
+        f"{number(total)} m/s² weighted acceleration at the seat rail of the {run.car.vehicle.name} on "
+        f"{input_text(run)}: {' to '.join(reactions(total))} (ISO 2631-1; lower is better)."
     ]
     band = main_band(spectra)
     if band is not None:
@@ -142,12 +142,19 @@ def _damper_words(run: FinishedRun) -> str:
     if not shares:
         return ""
     low, high = (100.0 * limit(shares.values()) for limit in (min, max))
+    ends = " to ".join(dict.fromkeys(number(share, 2) for share in (low, high)))
+    if not run.friction:
+        return f"; the dampers are faster than {_slip(run)} for {ends} % of the time"
     if high < 1.0 <= 100.0 * max(run.summary.friction_saturated_share.values()):
         return "; the dampers slide slowly at times"
     if high < 1.0:
         return "; the dampers stick, so they dissipate almost no energy"
-    ends = dict.fromkeys(number(share, 2) for share in (low, high))
-    return f"; the dampers slip for {' to '.join(ends)} % of the time"
+    return f"; the dampers slip for {ends} % of the time"
+
+
+def _slip(run: FinishedRun) -> str:
+    """Return the velocity above which a damper counts as slipping, in words."""
+    return f"{1e3 * run.summary.slip_share['slip_velocity']:g} mm/s"
 
 
 def _path_words(run: FinishedRun, band: MainBand, mode: Mode) -> list[str]:
@@ -278,9 +285,10 @@ def _reason(first: FinishedRun, run: FinishedRun, modes: Modes, run_modes: Modes
         wheel = max(slips[0], key=lambda name: abs(slips[1][name] - slips[0][name]))
         before, after = (100.0 * slip[wheel] for slip in slips)
         if abs(after - before) >= SLIP and number(after, 2) != number(before, 2):
+            slipping = "slips" if first.friction and run.friction else f"is faster than {_slip(run)}"
             return (
-                f"{', '.join(parts)}; the {side_of(wheel, slips[0])} damper slips for {number(after, 2)} % of the time "
-                f"instead of {number(before, 2)} %."
+                f"{', '.join(parts)}; the {side_of(wheel, slips[0])} damper {slipping} for {number(after, 2)} % of the "
+                f"time instead of {number(before, 2)} %."
             )
     return f"{', '.join(parts)}."
 

@@ -7,6 +7,7 @@ from vehicle.drawing.rendering.figure import PAGE_WIDTH
 from vehicle.drawing.rendering.wireframe import car_wireframe
 from vehicle.runs.car import Car
 from vehicle.runs.car.car_text import car_tables, parameter_table
+from vehicle.runs.report.differences import parameter_words
 from vehicle.runs.report.markup import templates
 from vehicle.runs.report.svg_figure import drawing
 
@@ -20,6 +21,7 @@ def car_section(car: Car) -> Markup:
     """Return drawing and tables of a car, as of `python -m vehicle show`; all parameters are folded."""
     data = car.show()
     wire = car_wireframe(car.model)
+    parameters = parameter_table(data.parameters, shortened=False)
     whole, usual, axles, figures = car_tables(data)
     return fill(
         "car",
@@ -29,5 +31,6 @@ def car_section(car: Car) -> Markup:
         axles=axles,
         figures=figures,
         notes=data.notes,
-        parameters=parameter_table(data.parameters, shortened=False),
+        parameters=[(parameter_words(path), path, *row) for path, *row in parameters.rows],
+        heads=["parameter", "path", *parameters.heads[1:]],
     )

@@ -11,10 +11,10 @@ from vehicle.digits import number
 from vehicle.drawing.rendering.figure import PAGE_WIDTH
 from vehicle.drawing.rendering.several_runs import plot_responses, shared_channels
 from vehicle.names import side_of, wheel_words
-from vehicle.runs.report.differences import changed_parameters, difference, key_figures
+from vehicle.runs.report.differences import changed_parameters, difference, key_figures, parameter_rows, parameter_words
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.general_notices import without_general
-from vehicle.runs.report.markup import templates
+from vehicle.runs.report.markup import named, templates
 from vehicle.runs.report.run_input import references
 from vehicle.runs.report.spectra_section import spectra
 from vehicle.runs.report.svg_figure import drawing
@@ -40,13 +40,13 @@ def numbers_beside(runs: Sequence[FinishedRun]) -> Markup:
     figures = _figures_of_many(runs) if len(runs) > MANY else _figures_beside(runs)
     changed = changed_parameters([run.car.vehicle for run in runs])
     if len(runs) > MANY:
-        columns = [f"{path} [{unit}]" for path, unit, _ in changed]
+        columns = [named(path, f"{parameter_words(path)} [{unit}]") for path, unit, _ in changed]
         parameters = (
             ["run", *columns],
             [(name, *(values[k] for *_, values in changed)) for k, name in enumerate(names)],
         )
     else:
-        parameters = (["parameter", "unit", *names], [(path, unit, *values) for path, unit, values in changed])
+        parameters = (["parameter", "unit", *names], parameter_rows(changed))
     inputs = [
         (
             run.name,
@@ -131,9 +131,9 @@ def wheelbase_words(runs: Sequence[FinishedRun]) -> list[str]:
         return []
     values = ", ".join(f"{name} {number(0.5 * rate)}" for name, rate in rates.items())
     return [
-        "the rear wheels follow the front wheels after another time, because wheelbase or speed differ: gaps of bounce "
-        f"at odd multiples of half of speed over wheelbase ({values} Hz), of pitch at even ones, lie elsewhere in the "
-        "spectra and FRFs; differences there are no effect of the suspension"
+        "wheelbase or speed differ, so the rear wheels follow after another time: spectra and FRFs have their gaps of "
+        f"bounce at odd multiples of half of speed over wheelbase ({values} Hz), of pitch at even ones; differences "
+        "there do not come from the suspension"
     ]
 
 

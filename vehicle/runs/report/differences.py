@@ -9,6 +9,7 @@ from vehicle.model.parameters.shipped import CARS, vehicle_file
 from vehicle.model.parameters.vehicle import Vehicle, load_vehicle
 from vehicle.names import point_words, side_of
 from vehicle.runs.report.finished_run import FinishedRun
+from vehicle.runs.report.markup import named
 
 MISSING = "–"
 """Text of a parameter or value that a car or run does not have."""
@@ -81,8 +82,9 @@ def key_figures(run: FinishedRun) -> dict[tuple[str, str], float | None]:
         }
     shares = summary.slip_shares
     for wheel, share in shares.items():
-        figures[f"{side_of(wheel, shares)} damper: time in slip", "%"] = 100.0 * share
-        figures[f"{side_of(wheel, shares)} damper: first slip", "s"] = summary.first_slip_s[wheel]
+        damper, limit = side_of(wheel, shares), 1e3 * summary.slip_share["slip_velocity"]
+        figures[f"{damper} damper: time above {limit:g} mm/s", "%"] = 100.0 * share
+        figures[f"{damper} damper: first above {limit:g} mm/s", "s"] = summary.first_slip_s[wheel]
     for wheel, plate, resonances in run.peaks:
         for channel in (f"knuckle_{wheel}_acc_z", "seat_rail_acc_z"):
             peaks = resonances.get(channel)
@@ -95,7 +97,7 @@ def key_figures(run: FinishedRun) -> dict[tuple[str, str], float | None]:
     return figures
 
 
-GENERAL = ("parts", "bushings", "points")
+GENERAL = ("parts", "bushings", "hardpoints", "points")
 """Tables whose names have no meaning for a reader."""
 
 
@@ -104,6 +106,11 @@ def parameter_words(path: str) -> str:
     names = [point_words(name) for name in path.split(".") if name not in GENERAL]
     names = [name for name, following in zip(names, [*names[1:], ""], strict=True) if name not in following]
     return " ".join(names).replace("coulomb", "Coulomb")
+
+
+def parameter_rows(changed: Sequence[tuple[str, str, Sequence[str]]]) -> list[tuple[str, ...]]:
+    """Return the rows of a table of `changed_parameters`: words, unit, values."""
+    return [(named(path, parameter_words(path)), unit, *values) for path, unit, values in changed]
 
 
 DIFFERENCES = {"s": "s", "%": "percentage points"}

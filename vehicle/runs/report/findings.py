@@ -41,7 +41,7 @@ def findings(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[Find
         modes: modes of the car, for dampers "stuck" and "sliding".
     """
     summary = run.summary
-    sentences = [Finding("Dampers", text) for text in damper_sentences(summary)]
+    sentences = [Finding("Dampers", text) for text in damper_sentences(summary, friction=run.friction)]
     sentences += [Finding("Forces", text) for text in order_sentences(summary)]
     sentences += [Finding("Resonances", text) for text in _resonances(run, modes)]
     sentences += [Finding("Body", text) for text in body_modes(run, damper_state(run))]
@@ -50,16 +50,19 @@ def findings(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[Find
     return [*sentences, *(Finding("Computation", f"Warning: {text}") for text in summary.solver.warnings)]
 
 
-def damper_sentences(summary: RunSummary) -> list[str]:
+def damper_sentences(summary: RunSummary, *, friction: bool = True) -> list[str]:
     """Return a sentence for each state: the dampers in it, and their shares of the time in slip.
 
     Args:
         summary: content of the `summary.json` of the run.
+        friction: False for dampers that cannot stick.
     """
     shares, limit = summary.slip_shares, 1e3 * summary.slip_share.get("slip_velocity", 0.0)
     by_state: dict[str, list[str]] = {}
     for wheel, share in shares.items():
-        if share <= STICKS < summary.friction_saturated_share[wheel]:
+        if not friction:
+            state = "without friction"
+        elif share <= STICKS < summary.friction_saturated_share[wheel]:
             state = f"at times sliding slowly, seldom or never faster than {limit:g} mm/s"
         elif summary.first_slip_s[wheel] is None:
             state = "stuck all the time: almost no energy is dissipated, and the strut acts as a rigid link"
@@ -75,7 +78,8 @@ def damper_sentences(summary: RunSummary) -> list[str]:
         text = f"{_names([side_of(wheel, shares) for wheel in wheels], len(shares))} {state}."
         if any(summary.first_slip_s[wheel] is not None for wheel in wheels):
             each = [f"{number(100 * shares[wheel], 2)} % ({side_of(wheel, shares)})" for wheel in wheels]
-            text += f" Slip, faster than {limit:g} mm/s: {' and '.join(each)} of the time."
+            slip = "Slip, faster than" if friction else "Faster than"
+            text += f" {slip} {limit:g} mm/s: {' and '.join(each)} of the time."
         sentences.append(text)
     return sentences
 
@@ -168,8 +172,8 @@ def _linearity(run: FinishedRun) -> list[str]:
     if not run.responses:
         if run.summary.input.road:
             return [
-                "There are no FRFs: on a road the rear wheels follow the front wheels over the same heights, and the "
-                "responses to the plates cannot be separated."
+                "There are no FRFs: on a road the rear wheels repeat what the front wheels met, so the responses to "
+                "the plates cannot be separated."
             ]
         reason = next((text.removeprefix("no FRFs: ") for text in run.summary.notices if "no FRFs" in text), "")
         return [f"There are no FRFs: {reason}." if reason else "There are no FRFs."]

@@ -69,6 +69,11 @@ class FinishedRun(RatedRun):
         return self.summary.input.wheel
 
     @property
+    def friction(self) -> bool:
+        """True if a damper has friction, so that it can stick and slip."""
+        return any(damper.law.static_friction > 0.0 for damper in self.car.vehicle.composition.dampers)
+
+    @property
     def span(self) -> str:
         """Evaluated span in words; empty for the whole record."""
         return f"{self.skip:g} to {self.summary.evaluated_s[1]:g} s" if self.skip > 0.0 else ""

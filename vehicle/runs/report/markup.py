@@ -29,6 +29,11 @@ def templates(module: str) -> Callable[..., Markup]:
     return fill
 
 
+def named(name: str, title: str) -> Markup:
+    """Return a title in words that shows the name in the program when the pointer rests on it."""
+    return Markup('<span title="{}">{}</span>').format(name, title)
+
+
 @cache
 def _environment(folder: Path) -> Environment:
     """Return the environment of the templates of a folder; elements.html has the elements of all."""

@@ -90,7 +90,10 @@
     show();
   }
 
-  function chooseState(index = 0) {
+  // Opened on the mode with the largest share of body heave and pitch.
+  const ride = () => modes().reduce((first, one, i, all) => (one.ride > all[first].ride ? i : first), 0);
+
+  function chooseState() {
     fill(pickMode, modes().map((one, i) => [i, `${one.hz.toFixed(2)} Hz  ${one.text}`]));
     gallery.replaceChildren(...modes().map((one, i) => {
       const button = document.createElement("button"), picture = document.createElement("canvas");
@@ -100,7 +103,7 @@
       return button;
     }));
     thumbnails();
-    chooseMode(Math.min(index, modes().length - 1));
+    chooseMode(ride());
   }
 
   function thumbnails() {
@@ -164,7 +167,7 @@
     show();
   }));
   pickCar.addEventListener("change", chooseCar);
-  pickState.addEventListener("change", () => chooseState());
+  pickState.addEventListener("change", chooseState);
   pickMode.addEventListener("change", () => chooseMode(Number(pickMode.value)));
   amplitude.addEventListener("input", () => { show(); thumbnails(); });
   play.addEventListener("click", () => setPlaying(!playing));
@@ -177,8 +180,5 @@
   pickCar.parentElement.hidden = data.cars.length < 2;
   setPlaying(!window.matchMedia("(prefers-reduced-motion: reduce)").matches);
   chooseCar();
-  // Opened on the mode in which the excited wheel moves most.
-  const share = modes().map((one) => (one.hz < 50 && one.zeta < 0.3 ? (one.energy.find(([name]) => name === car().wheel) || [0, 0])[1] : 0));
-  chooseMode(share.indexOf(Math.max(...share)));
   requestAnimationFrame(frame);
 })();

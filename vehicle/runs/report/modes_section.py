@@ -10,6 +10,7 @@ from markupsafe import Markup
 from vehicle.drawing.rendering.colour_scale import colours
 from vehicle.drawing.rendering.wireframe import GROUPS, CarWireframe, car_wireframe, unit_factor
 from vehicle.engines.linear.car_modes import Mode
+from vehicle.runs.report.findings import damper_state
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import templates
 
@@ -28,15 +29,16 @@ fill = templates(__file__)
 
 
 def modes_of(run: FinishedRun) -> Modes:
-    """Return the modes of the car of a run for each of `STATES`."""
-    return {state: run.car.modes(state, HIGHEST_MODE) for state in STATES}
+    """Return the modes of the car of a run for each of `STATES`, that of its dampers first."""
+    states = sorted(STATES, key=lambda state: state != damper_state(run))
+    return {state: run.car.modes(state, HIGHEST_MODE) for state in states}
 
 
 def car_modes_of(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> list[dict[str, Any]]:
     """Return the modes of each car; cars with equal modes appear once."""
     sets: list[dict[str, Any]] = []
     for run, car_modes in zip(runs, modes, strict=True):
-        entry = mode_set(run.name, run.wheel, car_wireframe(run.car.model), car_modes)
+        entry = mode_set(run.name, car_wireframe(run.car.model), car_modes)
         same = next((other for other in sets if {**other, "name": ""} == {**entry, "name": ""}), None)
         if same is None:
             sets.append(entry)
@@ -59,7 +61,7 @@ def moving_modes(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> Markup:
     return fill("modes", tables=tables, highest=HIGHEST_MODE, several=len(runs) > 1)
 
 
-def mode_set(name: str, wheel: str, wire: CarWireframe, modes: Modes) -> dict[str, Any]:
+def mode_set(name: str, wire: CarWireframe, modes: Modes) -> dict[str, Any]:
     """Return the modes of one car for the script of the page.
 
     Args:
@@ -70,7 +72,6 @@ def mode_set(name: str, wheel: str, wire: CarWireframe, modes: Modes) -> dict[st
     """
     return {
         "name": name,
-        "wheel": f"wheel {wheel}",
         "points": np.rint(1e3 * wire.points).astype(int).ravel().tolist(),
         "lines": wire.lines.ravel().tolist(),
         "groups": wire.groups.tolist(),
@@ -86,10 +87,16 @@ def _mode(wire: CarWireframe, mode: Mode) -> dict[str, Any]:
         "hz": round(mode.frequency, 4),
         "zeta": round(mode.damping_ratio, 5),
         "text": mode.description,
+        "ride": round(100 * ride_share(mode)),
         "energy": [[name, round(100 * share)] for name, share in _largest(mode.energy)],
         "re": np.rint(FULL * moved.real).astype(int).ravel().tolist(),
         "im": np.rint(FULL * moved.imag).astype(int).ravel().tolist(),
     }
+
+
+def ride_share(mode: Mode) -> float:
+    """Return the share of body heave and pitch in the kinetic energy of a mode; the mode with most is shown first."""
+    return sum(mode.motions.get(name, 0.0) for name in ("body heave (z)", "body pitch (Ry)"))
 
 
 def _largest(energy: Mapping[str, float]) -> list[tuple[str, float]]:

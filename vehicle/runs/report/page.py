@@ -23,7 +23,7 @@ from vehicle.runs.report.film_section import film, film_part
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import templates
 from vehicle.runs.report.modes_section import Modes, as_json, car_modes_of, modes_of, moving_modes
-from vehicle.runs.report.run_input import references
+from vehicle.runs.report.run_input import car_title, references
 from vehicle.runs.report.spectra_section import spectra
 from vehicle.runs.report.verdict_section import verdict_section
 from vehicle.runs.targets.target import Target
@@ -88,18 +88,26 @@ def report_page(
         parts.insert(1, ("Figures", "figures", figures_section(measure, runs)))
     if targets is not None:
         parts.insert(0, ("Targets", "targets", verdict_section(targets, runs)))
-    first, others = runs[0].name, [run.name for run in runs[1:]]
-    against = "against" if set(references(runs)[1:]) == {0} else "and"
-    names = (
-        f"{' and '.join(others) if len(others) < 4 else f'{len(others)} runs'} {against} {first}" if others else first
-    )
     captions = "; ".join(dict.fromkeys(run.caption for run in runs))
     head = head_line(author, project)
     shown = _drawn(runs)
     data = as_json(car_modes_of([runs[k] for k in shown], [modes[k] for k in shown]))
-    page = document(f"Car on the shaker: {names}", (captions, head), parts, modes=data, trial=tried)
+    page = document(_title(runs), (captions, head), parts, modes=data, trial=tried)
     done(1.0)
     return page
+
+
+def _title(runs: Sequence[FinishedRun]) -> str:
+    """Return the title of a report: car and input, of several runs their names if these differ."""
+    roads = [run.summary.input.road or {} for run in runs]
+    titles = [car_title(run.car.vehicle.name, road, run.name) for run, road in zip(runs, roads, strict=True)]
+    if len(runs) == 1:
+        return titles[0]
+    first, *others = (run.name for run in runs)
+    against = "against" if set(references(runs)[1:]) == {0} else "and"
+    compared = f"{' and '.join(others) if len(others) < 4 else f'{len(others)} runs'} {against} {first}"
+    where = "the shaker" if not any(roads) else "the road" if all(roads) else "shaker and road"
+    return f"{titles[0] if len(set(titles)) == 1 else f'Cars on {where}'}: {compared}"
 
 
 def head_line(author: str = "", project: str = "") -> str:

@@ -1,7 +1,8 @@
 """Inputs of the runs of a report: their words, the runs that are compared, and the error of a change on one road."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.special import stdtrit
@@ -24,6 +25,22 @@ def input_text(run: FinishedRun) -> str:
         named = road.get("obstacle") or road.get("profile") or Path(excitation.file).name
         return f"{named} at {road['speed_kmh']:g} km/h"
     return f"{Path(excitation.file).name} (RMS {1e3 * excitation.rms_m:.3g} mm)"
+
+
+def car_title(name: str, road: Mapping[str, Any], run: str = "") -> str:
+    """Return car and road as a title, "Sedan on road B at 80 km/h"; off a road, the car and the name of its run.
+
+    Args:
+        name: name of the car.
+        road: the road in the summary of the run; empty on a rig.
+        run: name of the run.
+    """
+    car, speed = name[:1].upper() + name[1:].replace("_", " "), road.get("speed_kmh")
+    if speed is None:
+        return f"{car} on the shaker: {run}"
+    under = f"road {road['class']}" if road.get("class") else "a level road" if road.get("level") else ""
+    under = under or str(road.get("obstacle") or road.get("profile") or "a road").replace("_", " ")
+    return f"{car} on {under} at {speed:g} km/h"
 
 
 def references(runs: Sequence[FinishedRun]) -> list[int | None]:

@@ -14,13 +14,13 @@ from vehicle.drawing.rendering.frf_plot import plot_frfs
 from vehicle.drawing.rendering.plots import plot_time
 from vehicle.engines.linear.car_modes import Mode
 from vehicle.model.parameters.shipped import VEHICLES
-from vehicle.names import point_words, side_of
+from vehicle.names import CORNERS, channel_words, point_words, side_of
 from vehicle.runs.report.comfort_class import REACTIONS, reactions
-from vehicle.runs.report.differences import changed_parameters, shipped_origin
+from vehicle.runs.report.differences import changed_parameters, parameter_rows, shipped_origin
 from vehicle.runs.report.findings import findings, main_points, nearest_mode
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.general_notices import without_general
-from vehicle.runs.report.markup import templates
+from vehicle.runs.report.markup import named, templates
 from vehicle.runs.report.order_words import force_rows
 from vehicle.runs.report.svg_figure import drawing
 
@@ -65,8 +65,11 @@ def tiles(run: FinishedRun) -> Markup:
         total = value.weighted
         label = f"weighted acceleration at the {point.replace('_', ' ')}, {' to '.join(reactions(total))}"
         values.append((f"{number(total)} m/s²", label))
+    slipping = (
+        "in slip" if run.friction else f"faster than {1e3 * summary.slip_share.get('slip_velocity', 0.0):g} mm/s"
+    )
     values += [
-        (f"{number(100 * share, 2)} %", f"of the time in slip, {side_of(wheel, shares)} damper")
+        (f"{number(100 * share, 2)} %", f"of the time {slipping}, {side_of(wheel, shares)} damper")
         for wheel, share in shares.items()
     ]
     for wheel, plate, resonances in run.peaks[:1]:
@@ -131,9 +134,7 @@ def what_was_run(run: FinishedRun) -> Markup:
         "run",
         tables={"Car": car, "Signal": signal, "Engine": engine},
         default=default and default.name,
-        changed=[(path, unit, *values) for path, unit, values in changed_parameters([default, vehicle])]
-        if default
-        else [],
+        changed=parameter_rows(changed_parameters([default, vehicle])) if default else [],
     )
 
 
@@ -178,7 +179,8 @@ def dampers(run: FinishedRun) -> Markup | None:
                 f"{number(force)} N",
             )
         )
-    return fill("dampers", slip=1e3 * share["slip_velocity"], limit=1e3 * summary.saturated_velocity, rows=rows)
+    limits = {"slip": 1e3 * share["slip_velocity"], "limit": 1e3 * summary.saturated_velocity}
+    return fill("dampers", friction=run.friction, rows=rows, **limits)
 
 
 def _when(value: float | None) -> str:
@@ -274,7 +276,10 @@ def measured(run: FinishedRun) -> Markup | None:
     if not comparison:
         return None
     heads = list(dict.fromkeys(key for row in comparison.table for key in row))
-    rows = [[_cell(row.get(key)) for key in heads] for row in comparison.table]
+    rows = [
+        [_channel_title(str(row[key])) if key == "channel" else _cell(row.get(key)) for key in heads]
+        for row in comparison.table
+    ]
     titles = [UNITS.get(head, head.replace("_", " ")) for head in heads]
     pictures = [
         (base64.b64encode(path.read_bytes()).decode("ascii"), purpose.replace("_", " "))
@@ -282,6 +287,14 @@ def measured(run: FinishedRun) -> Markup | None:
         if purpose.startswith("compare_") and (path := run.folder / name).suffix == ".png" and path.is_file()
     ]
     return fill("measured", file=comparison.file, heads=titles, rows=rows, pictures=pictures)
+
+
+def _channel_title(name: str, plate: str = "") -> Markup:
+    """Return a channel in words, "front right damper velocity", with its name."""
+    parts = channel_words(name).split("_")
+    corner = next((corner for corner, wheel in CORNERS.items() if wheel in parts), "")
+    text = " ".join([corner, *(part for part in parts if part != CORNERS.get(corner)), plate])
+    return named(name, text.replace("_", " ").strip())
 
 
 def _cell(value: object) -> str:
@@ -296,10 +309,10 @@ def tables(run: FinishedRun) -> Markup:
     levels = []
     for name, values in recording.channels.items():
         numbers = (float(np.sqrt(np.mean(values**2))), float(values.min()), float(values.max()))
-        levels.append((name, recording.units[name], *(number(value, 4) for value in numbers)))
+        levels.append((_channel_title(name), recording.units[name], *(number(value, 4) for value in numbers)))
     peaks = [
         (
-            channel + (f" to the {plate}" if plate else ""),
+            _channel_title(channel, f"to the {plate}" if plate else ""),
             ", ".join(f"{peak.frequency_hz:.2f} ({number(peak.magnitude)})" for peak in peaks),
         )
         for _, plate, resonances in run.peaks

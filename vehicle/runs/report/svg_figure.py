@@ -11,6 +11,10 @@ FONTS = "'DejaVu Sans', Verdana, sans-serif"
 """Fonts of the figures: the layout uses the first, and the second has equal widths; the page contains no fonts."""
 
 
+READABLE = 9.0 / 8.0
+"""Pixels a point of a figure on a phone: letters of 8 points have 9 pixels."""
+
+
 def drawing(plot: Callable[[Path], object], label: str) -> Markup:
     """Return a figure as an HTML element."""
     with TemporaryDirectory() as folder:
@@ -31,9 +35,9 @@ def small(svg: str, label: str) -> str:
     svg = re.sub(r'(?<= [xy]=")-?\d+\.\d+(?=")', lambda match: _rounded(match[0]), svg)
     svg = re.sub(r">\s+<", ">\n<", svg)
     head, content = svg.split(">", 1)
-    view = re.search(r'viewBox="[^"]*"', head)
+    view = re.search(r'viewBox="\S+ \S+ (\S+) [^"]*"', head)
     assert view is not None
-    return f'<svg {view[0]} role="img" xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"><title>{escape(label)}</title>{content.strip()}'
+    return f'<svg {view[0]} width="{READABLE * float(view[1]):.0f}" role="img" xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"><title>{escape(label)}</title>{content.strip()}'
 
 
 def _short(path: str) -> str:

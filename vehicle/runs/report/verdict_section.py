@@ -1,10 +1,12 @@
 """First section of a report: targets with limits, values and verdict, on a page of A4."""
 
+import re
 from collections.abc import Mapping, Sequence
 
 from markupsafe import Markup
 
 from vehicle.digits import number
+from vehicle.runs.report.differences import parameter_words
 from vehicle.runs.report.figures_section import value_text
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import templates
@@ -21,7 +23,7 @@ def verdict_section(figures: Mapping[str, Target], runs: Sequence[FinishedRun]) 
         figures: figures with their limits, see `vehicle.runs.targets.verdict.read_targets`.
         runs: finished runs of one or several cars.
     """
-    rated = verdict(figures, runs)
+    rated = {_car_words(car): each for car, each in verdict(figures, runs).items()}
     rows = [
         {
             "words": figure.words or name.replace("_", " "),
@@ -41,6 +43,11 @@ def verdict_section(figures: Mapping[str, Target], runs: Sequence[FinishedRun]) 
         caption="value and its 95 % interval on a random road; undecided if the limit lies inside the interval; the "
         "worst of several runs",
     )
+
+
+def _car_words(car: str) -> str:
+    """Return the name of a car with its changed parameters in words."""
+    return re.sub(r"(\w+(?:\.\w+)+)=", lambda match: f"{parameter_words(match[1])} ", car)
 
 
 def _value(rated: Rated) -> str:
