@@ -56,6 +56,24 @@ def test_every_plot_returns_axes_and_draws_on_those_of_the_user(run, response, t
         assert one.plot(ax=axis) is axis and len(axis.lines) == 2 * drawn
         colours = [line.get_color() + str(line.get_linestyle()) for line in axis.lines]
         assert len(set(colours)) == min(len(colours), 5)  # a second plot goes on with the colours
+    mixed = run.psd(["seat rail z", "damper force fr", "knuckle fr z"])
+    axes = mixed.plot()
+    units = {each.name: each.unit for each in mixed.channels}
+    assert units["damper_fr_force"] == "N" and axes.shape == (3, 3)
+    for one, first in zip(axes.T, axes.T[0:1].repeat(3, axis=0), strict=True):
+        same = units[one[0].get_title()] == units[first[0].get_title()]
+        assert all(a.get_shared_y_axes().joined(a, b) == same for a, b in zip(one, first, strict=True))
+    assert [axis.get_ylabel() for axis in axes[0]] == ["density [(m/s²)²/Hz]", "", "density [N²/Hz]"]
+    _, axis = pyplot.subplots()
+    for refused in (mixed.plot, lambda ax: [run.plot(name, ax=ax) for name in ("damper force fr", "seat rail z")]):
+        with pytest.raises(ConfigurationError, match=r"ax: .* N"):
+            refused(ax=axis)
+    softer = run.car.with_({"damper.viscous": 900}).run(run.signal, "reduced")
+    for plot in (lambda one, ax: one.plot("seat rail z", ax), lambda one, ax: one.frf("seat rail z").plot(ax),
+                 lambda one, ax: one.psd("seat rail z").plot(ax)):  # fmt: skip
+        _, axis = pyplot.subplots()
+        texts = [text.get_text() for text in (plot(run, axis), plot(softer, axis))[1].get_legend().get_texts()]
+        assert texts[0].startswith("focus") and "damper.viscous" not in texts[0] and "damper.viscous=900" in texts[-1]
     _, axis = pyplot.subplots()
     assert run.plot("seat rail z", ax=axis) is axis
     np.testing.assert_array_equal(axis.lines[0].get_ydata(), run["seat_rail_acc_z"])

@@ -87,11 +87,12 @@ def force_targets(
 
 
 def new_tables(overrides: Iterable[str]) -> list[str]:
-    """Return the paths of overrides that set keys of a load or of a force, which are optional in a vehicle file."""
+    """Return the paths of overrides that set keys of a load, a force or an output, optional in a vehicle file."""
     keys = "|".join((*PLACE_KEYS, *AppliedForce.__dataclass_fields__))
     texts = list(overrides)
     names = [text.partition("=")[0].strip() for text in texts]
-    return new_loads(texts) + [name for name in names if re.fullmatch(rf"force\.[A-Za-z0-9_-]+\.({keys})", name)]
+    new = re.compile(rf"force\.[A-Za-z0-9_-]+\.({keys})|outputs\.[A-Za-z0-9_-]+\.(on|at)")
+    return new_loads(texts) + [name for name in names if new.fullmatch(name)]
 
 
 def further_force(name: str, value: Any, targets: ForceTargets) -> PlacedForce:
