@@ -67,7 +67,7 @@ def test_the_package_is_imported_without_any_of_its_modules() -> None:
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines() == [
         f"['vehicle.handed_down'] {len(vehicle.__all__)}",
-        "['vehicle.errors', 'vehicle.handed_down']",
+        "['vehicle.errors', 'vehicle.handed_down', 'vehicle.wording']",
         "True",
     ]
 

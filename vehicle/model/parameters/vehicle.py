@@ -362,5 +362,5 @@ def load_file(path: Path | None = None, overrides: Iterable[str] = ()) -> tuple[
     except ConfigurationError as error:
         if path is None:
             raise
-        text = str(error)
+        text = error.args[0]
         raise ConfigurationError(text if text.startswith((str(path), "--set")) else f"{path}: {text}") from None

@@ -210,8 +210,9 @@ class Car:
         """True if all parameters and the body models are equal, however the values were set."""
         if not isinstance(other, Car):
             return NotImplemented
-        one, two = (own_body_file(car.vehicle, car.folder) for car in (self, other))
-        return self.vehicle == other.vehicle and (one == two or bool(one and two and cmp(one, two, shallow=False)))
+        body, others = (own_body_file(car.vehicle, car.folder) for car in (self, other))
+        same = body == others or bool(body and others and cmp(body, others, shallow=False))
+        return same and self.vehicle == other.vehicle
 
     def __hash__(self) -> int:
         """Return the hash of name and wheels, which equal cars share."""
