@@ -93,7 +93,7 @@ def test_parameters_of_a_fit_start_at_the_car(focus):
     assert ranges_of(focus.vehicle, {VISCOUS: (500.0, 5000.0, 900.0)})[0].start == 900.0
     with pytest.raises(ConfigurationError, match=r"must be \(lower, upper\)"):
         ranges_of(focus.vehicle, {VISCOUS: (500.0,)})
-    with pytest.raises(ConfigurationError, match=r"the most similar path is front\.damper\.viscous"):
+    with pytest.raises(ConfigurationError, match=r"did you mean front\.damper\.viscous"):
         tune(focus, {"damper.vicsous": (1.0, 2.0)}, [])
     with pytest.raises(ConfigurationError, match="targets: the measurement is missing"):
         tune(focus, {VISCOUS: (500.0, 5000.0)}, [])

@@ -8,8 +8,9 @@ A message is written once, with the options of the command line, and worded wher
 'set rate=HZ, or channels={"time": "NAME"}'
 """
 
+import difflib
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager
 
 ARGUMENTS = {
@@ -101,6 +102,21 @@ def in_words(text: str) -> str:
         parts += [OPTION.sub(_argument, text[end : line.start()]), line[0]]
         end = line.end()
     return "".join([*parts, OPTION.sub(_argument, text[end:])])
+
+
+def did_you_mean(name: str, known: Iterable[str], cutoff: float = 0.0) -> str:
+    """Return "; did you mean X?" with the known name of the most similar spelling, or an empty text.
+
+    Args:
+        cutoff: least similarity, 0 to 1; 0 accepts any name.
+    """
+    similar = difflib.get_close_matches(name, list(known), n=1, cutoff=cutoff)
+    return f"; did you mean {similar[0]}?" if similar else ""
+
+
+def choose_from(name: str, known: Collection[str]) -> str:
+    """Return "; did you mean X?" if a known name is similar, otherwise "; choose from" and all of them."""
+    return did_you_mean(name, known, cutoff=0.6) or f"; choose from {', '.join(known)}"
 
 
 def _argument(option: re.Match[str]) -> str:

@@ -105,7 +105,7 @@ def test_a_frf_to_a_force_is_that_of_the_matrices(place):
 REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     "no such force": (
         {"b": np.zeros(501)},
-        ("force: unknown name 'b', no table [force.NAME] of this car; the most similar name is a"),
+        ("force: unknown name 'b', no table [force.NAME] of this car; did you mean a"),
     ),
     "another length": (
         {"a": np.zeros(500)},
@@ -134,7 +134,7 @@ def test_forces_that_are_not_there_are_refused():
     with pytest.raises(VehicleError, match=r"force\.a\.enabled is false"):
         car.with_({"force.a.enabled": False}).run(still, engine="reduced", forces={"a": np.zeros(501)})
     with pytest.raises(
-        VehicleError, match="force: unknown name 'shake', no force of this car; the most similar name is a"
+        VehicleError, match="force: unknown name 'shake', no force of this car; did you mean a"
     ):
         car.force_frf(["seat_rail_acc_z"], [5.0], force="shake")
     with pytest.raises(VehicleError, match="no channel 'force_a'"):

@@ -56,7 +56,7 @@ SETTINGS = [
     ("20 NaN stiffness", "bushings.tyre.stiffness=[nan, 1e5, 1e5]", "bushings.tyre.stiffness: found nan"),
     ("50 sign of a product", "body.inertia.izx=-1800", "the sum of the two smaller at least the largest"),
     ("27 no such body", "body.superelement=nothing.toml", "body.superelement: the file 'nothing.toml' is neither"),
-    ("30 unknown name", "damper.coulomb_fricton=100", "the most similar path is front.damper.coulomb_friction"),
+    ("30 unknown name", "damper.coulomb_fricton=100", "did you mean front.damper.coulomb_friction"),
     ("33 path in a name", 'body.superelement="../../secret.toml"', "must be a name of letters"),
 ]
 """Of each way to a refusal one; all values are in tests/model/parameters."""

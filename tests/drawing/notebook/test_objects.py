@@ -87,9 +87,9 @@ def test_words_name_a_channel(run):
     np.testing.assert_array_equal(run["damper velocity front left"], run["damper_fl_velocity"])
     assert run.frf("seat rail z").names == ("seat_rail_acc_z",)
     assert run.psd("knuckle fr z").channels[0].name == "knuckle_fr_acc_z"
-    with pytest.raises(ConfigurationError, match=r"channel 'steering wheel z': no channel has these words; choose"):
+    with pytest.raises(ConfigurationError, match=r"channel 'steering wheel z'.*choose from"):
         run.frf("steering wheel z")
-    with pytest.raises(ConfigurationError, match=r"'damper velocity': several channels have .* choose from damper_f"):
+    with pytest.raises(ConfigurationError, match=r"'damper velocity'.* choose from damper_f"):
         run["damper velocity"]
 
 

@@ -128,7 +128,7 @@ def test_both_sides_are_mirrored_and_stand(tmp_path):
 
 
 @pytest.mark.parametrize(("axes", "message"), [
-    ('["engine_cog", "engine_kog"]', "connection.link.axes: unknown point 'engine_kog'; the most similar name is"),
+    ('["engine_cog", "engine_kog"]', "connection.link.axes: unknown point 'engine_kog'; did you mean"),
     ('["engine_cog"]', "connection.link.axes: found ['engine_cog'], must be two points of a connection"),
     ("3", "connection.link.axes: found 3, must be a list"),
 ])  # fmt: skip

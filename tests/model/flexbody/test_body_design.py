@@ -46,7 +46,7 @@ BAD = {
     "misspelt key": (
         "freedom = 0.15",
         "fredom = 0.15",
-        "nodes.arm_front.fredom: unknown parameter; the most similar known name",
+        "nodes.arm_front.fredom: unknown parameter; did you mean",
     ),
     "a mass missing": (
         "mass = 4.0  # [kg] assumed: A-arm bracket of the subframe\n",
@@ -65,12 +65,12 @@ BAD = {
     "no such hardpoint": (
         "[nodes.strut_top]",
         "[nodes.strut_tip]",
-        "nodes.strut_tip: the vehicle has no hardpoint strut_tip; the most similar name is strut_top",
+        "nodes.strut_tip: the vehicle has no hardpoint strut_tip; did you mean strut_top",
     ),
     "mirror of nothing": (
         'mirror = "seat_rail"',
         'mirror = "seat_rial"',
-        "nodes.seat_rail_right: the vehicle has no hardpoint seat_rial; the most similar name is seat_rail",
+        "nodes.seat_rail_right: the vehicle has no hardpoint seat_rial; did you mean seat_rail",
     ),
     "name made twice": ("[nodes.sill_rear]", "[nodes.seat_rail]", "Cannot declare ('nodes', 'seat_rail') twice"),
     "node made twice": (
@@ -81,7 +81,7 @@ BAD = {
     "member to nowhere": (
         '"rail_front-arm_front"',
         '"rail_front-arm_font"',
-        "members.front_rails.between: 'rail_front-arm_font' has no node 'arm_font'; the most similar name is arm_front",
+        "members.front_rails.between: 'rail_front-arm_font' has no node 'arm_font'; did you mean arm_front",
     ),
     "member to itself": (
         '"rail_front-arm_front"',

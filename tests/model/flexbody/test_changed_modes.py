@@ -50,7 +50,7 @@ def test_what_is_changed_stands_in_the_file_of_a_run(changed, tmp_path):
         ),
         "zero": ("body.modes.2.frequency_factor=0", "frequency_factor: found 0.0, must be at least 0.1"),
         "overdamped": ("body.modes.2.damping_ratio=0.9", "must be at most 0.3 .trimmed bodies have 0.01 to 0.08"),
-        "no number": ("body.modes.first.damping_ratio=0.1", "the most similar path is"),
+        "no number": ("body.modes.first.damping_ratio=0.1", "did you mean"),
         "which mode": ("frequency_factor=1.1", "or one of 995 others; give more of its path"),
     }.values(),
 )

@@ -32,12 +32,12 @@ BAD = {
     "misspelt key": (
         "mass_kg = 30.0",
         "mas_kg = 30.0",
-        "node 1: unknown key 'mas_kg'; the most similar known key is 'mass_kg'.",
+        "node 1: unknown key 'mas_kg'; did you mean mass_kg?",
     ),
     "misspelt top key": (
         "provenance =",
         "provenence =",
-        "unknown key 'provenence'; the most similar known key is 'provenance'.",
+        "unknown key 'provenence'; did you mean provenance?",
     ),
     "key missing": ("damping_ratio = 0.02\n", "", "mode 1: key 'damping_ratio' is missing"),
     "mode count": ("mode_count = 4", "mode_count = 9", "sections [[mode]], but mode_count = 9. The"),

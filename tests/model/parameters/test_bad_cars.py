@@ -23,26 +23,26 @@ def put(text: str) -> tuple[str, str]:
 
 VEHICLES = {
     # Keys that nobody knows.
-    "of the car": ("gravity = 9.81", "gravity = 9.81\ncolour = 3", "colour: unknown parameter; the most similar known"),
+    "of the car": ("gravity = 9.81", "gravity = 9.81\ncolour = 3", "colour: unknown parameter; did you mean"),
     "of the body": (
         "mass = 813.0",
         "mass = 813.0\nmas = 3",
-        "body.mas: unknown parameter; the most similar known name is mass",
+        "body.mas: unknown parameter; did you mean mass",
     ),
     "of an element": (
         "viscous =",
         "viscus = 1\nviscous =",
-        "front.damper.viscus: unknown parameter; the most similar known",
+        "front.damper.viscus: unknown parameter; did you mean",
     ),
     "of an axle": (
         "[front.damper]",
         "[front.dampers]",
-        ("front.dampers: unknown parameter; the most similar known name"),
+        ("front.dampers: unknown parameter; did you mean"),
     ),
     "part of an axle": (
         "[front.parts.caliper]",
         "[front.parts.brake]",
-        "front.parts.brake: unknown parameter; the most similar known",
+        "front.parts.brake: unknown parameter; did you mean",
     ),
     "no value": (
         "viscous = 2250.0",
@@ -56,7 +56,7 @@ VEHICLES = {
     "a bushing of a side": (*put("[front.left.bushings.arm_reer]"), "front.left.bushings.arm_reer: unknown parameter"),
     "deep in a side": (
         *put("[front.left.bushings.arm_rear]\nstifness = [1e5, 1e5, 1e5]"),
-        "front.left.bushings.arm_rear.stifness: unknown parameter; the most similar known name is stiffness",
+        "front.left.bushings.arm_rear.stifness: unknown parameter; did you mean stiffness",
     ),
     "deeper in a side": (
         *put("[front.left.damper.stop]\ndisplacment = [0, 1]"),
@@ -72,13 +72,13 @@ VEHICLES = {
     # Templates.
     "no template": ('template = "blocks"', "", "rear.template: missing; the section needs template = NAME"),
     "no template below": (*put("[seat.driver]\nparts = {}"), "seat.driver.template: missing"),
-    "a table of no kind": (*put("[reer]\nname = 1"), "reer: unknown parameter; the most similar known name is rear"),
+    "a table of no kind": (*put("[reer]\nname = 1"), "reer: unknown parameter; did you mean rear"),
     "no such template": (
         'template = "blocks"',
         'template = "bloks"',
         (
-            "template 'bloks': the file is neither in the folder of the vehicle file nor in the package; the most "
-            "similar name is blocks"
+            "template 'bloks': the file is neither in the folder of the vehicle file nor in the package; did you "
+            "mean blocks"
         ),
     ),
     "a number as template": (
@@ -91,7 +91,7 @@ VEHICLES = {
     "missing": (
         "tie_outer = [",
         "tie_outr = [",
-        "front.hardpoints.tie_outr: unknown parameter; the most similar known",
+        "front.hardpoints.tie_outr: unknown parameter; did you mean",
     ),
     "twice": ("seat = [", "seat = [1, 0, 1]\nseat = [", "not a TOML file: Cannot overwrite a value (at line"),
     "twice under two names": (
@@ -183,11 +183,11 @@ VEHICLES = {
     ),
     "moving part": (
         *put(f"[connection.x]\n{LINK.replace('engine', 'engin')}"),
-        "connection.x.moving: unknown part 'engin'; the most",
+        "connection.x.moving: unknown part 'engin'; did you mean engine",
     ),
     "carrier": (
         *put(f"[connection.x]\n{LINK.replace('body', 'bodi')}"),
-        "connection.x.carrier: unknown part 'bodi'; the most",
+        "connection.x.carrier: unknown part 'bodi'; did you mean body",
     ),
     "the same part": (
         *put(f"[connection.x]\n{LINK.replace('body', 'engine')}"),
@@ -197,7 +197,7 @@ VEHICLES = {
     "part of an output": (
         'on = "engine"',
         'on = "engin"',
-        "outputs.engine.on: unknown part 'engin'; the most similar name is",
+        "outputs.engine.on: unknown part 'engin'; did you mean",
     ),
     "point of an output": (
         'at = "engine_cog"',

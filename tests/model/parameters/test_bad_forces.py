@@ -8,14 +8,14 @@ from vehicle.errors import ConfigurationError, DataError
 ON: dict[str, object] = {"on": "engine", "moment": [0, 1, 0], "harmonics": [[2, 40, 0]], "frequency": 25.0}
 
 FORCES: dict[str, tuple[dict[str, object], str]] = {
-    "unknown part": ({**ON, "on": "engin"}, "force.a.on: unknown part 'engin'; the most similar name is engine"),
+    "unknown part": ({**ON, "on": "engin"}, "force.a.on: unknown part 'engin'; did you mean engine"),
     "the world": ({**ON, "on": "world"}, "force.a.on: unknown part 'world'"),
     "a plate": ({**ON, "on": "plate_fr"}, "force.a.on: unknown part 'plate_fr'"),
     "unknown point": (
         {**ON, "at": "engine_cg"},
-        "force.a.at: unknown point 'engine_cg'; the most similar name is engine_cog",
+        "force.a.at: unknown point 'engine_cg'; did you mean engine_cog",
     ),
-    "unknown joint": ({"joint": "spin"}, "force.a.joint: 'spin' is not a hinge or slide; the most similar name is"),
+    "unknown joint": ({"joint": "spin"}, "force.a.joint: 'spin' is not a hinge or slide; did you mean"),
     "joint and part": ({"joint": "damper_fr", "on": "engine"}, "force.a.on: belongs to a force on a part"),
     "force and moment": ({**ON, "force": [0, 0, 1]}, "found both of force and moment"),
     "neither": ({"on": "engine"}, "found none of force and moment"),
@@ -34,7 +34,7 @@ FORCES: dict[str, tuple[dict[str, object], str]] = {
     "neither of them": ({**ON, "frequency": None}, "force.a.angle: give either an angle"),
     "unknown angle": (
         {**ON, "frequency": None, "angle": "wheel"},
-        ("unknown angle 'wheel'; the most similar name is wheel_"),
+        ("unknown angle 'wheel'; did you mean wheel_"),
     ),
     "half an order of a wheel": (
         {**ON, "frequency": None, "angle": "wheel_fr", "harmonics": [[0.5, 40, 0]]},
@@ -81,7 +81,7 @@ def test_a_wrong_force_is_refused(case):
         ({"front.brake_variation.torque": [[1, 2e3, 0]]}, "2000 N m, must be at most 1000 N m"),
         (
             {"front.nonuniformity.tfv": [[1, 20, 0]]},
-            ("unknown parameter front.nonuniformity.tfv; the most similar path is"),
+            ("unknown parameter front.nonuniformity.tfv; did you mean"),
         ),
         ({"crank.rpm": 12000}, "crank.rpm: found 12000.0 1/min, must be at most 10000.0 (engines idle at 600 to 1000)"),
         (

@@ -10,11 +10,11 @@ MOUNT = 'suspension_mount = { shape = "top_mount", points = ["strut_top"] }'
 LINE = 'along = ["damper_bottom", "strut_top"]'
 
 TEMPLATES = {
-    "unknown list": ("above = [", "abuve = [", "abuve: unknown key; the most similar known key is above"),
+    "unknown list": ("above = [", "abuve = [", "abuve: unknown key; did you mean above"),
     "unknown key": (
         'kind = "ball"',
         'kynd = "ball"',
-        "joint.lower_ball.kynd: unknown parameter; the most similar known name",
+        "joint.lower_ball.kynd: unknown parameter; did you mean",
     ),
     "unknown kind": (
         'kind = "ball"',
@@ -30,7 +30,7 @@ TEMPLATES = {
     "unknown point": (
         'at = "tie_outer"',
         'at = "tie_outa"',
-        "unknown name 'tie_outa'; the most similar is tie_outer",
+        "unknown name 'tie_outa'; did you mean tie_outer",
     ),
     "unknown joint": ('joint = "damper"', 'joint = "dampr"', "damper.damper.joint: unknown name 'dampr'"),
     "side of a part": ('child = "a_arm"', 'child = "a_arm:lft"', "joint.2.child: found side 'lft', must be left"),
@@ -44,12 +44,12 @@ TEMPLATES = {
     "a default of no port": (
         'rack = "body"',
         'rak = "body"',
-        "port_defaults.rak: unknown name 'rak'; the most similar",
+        "port_defaults.rak: unknown name 'rak'; did you mean",
     ),
     "a port as no part": (
         'rack = "body"',
         'rack = "bodi"',
-        "port_defaults.rack: unknown name 'bodi'; the most similar",
+        "port_defaults.rack: unknown name 'bodi'; did you mean",
     ),
     "one point above": (
         "above = [",
@@ -174,8 +174,8 @@ TEMPLATES = {
         'template = "wheel"',
         'template = "weel"',
         (
-            "'weel': the file is neither in the folder of the vehicle file nor in the package; the most similar "
-            "name is wheel"
+            "'weel': the file is neither in the folder of the vehicle file nor in the package; did you mean "
+            "wheel"
         ),
     ),
     "uses itself": ('template = "wheel"', 'template = "mine"', "template 'mine': uses itself"),
@@ -194,7 +194,7 @@ TEMPLATES = {
     "a port without part": (
         'hub = "knuckle"',
         'hub = "knukle"',
-        "unknown name 'knukle'; the most similar is knuckle",
+        "unknown name 'knukle'; did you mean knuckle",
     ),
 }
 

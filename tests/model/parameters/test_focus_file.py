@@ -142,7 +142,7 @@ def test_an_override_may_name_an_axis():
         (
             "damper.coulomb_fricton=1",
             "--set damper.coulomb_fricton=1: unknown parameter damper.coulomb_fricton; "
-            "the most similar path is front.damper.coulomb_friction",
+            "did you mean front.damper.coulomb_friction?",
         ),
         ("damper", "--set damper: must be PATH=VALUE, for example damper.coulomb_friction=93.75"),
         ("=3", "--set =3: must be PATH=VALUE, for example damper.coulomb_friction=93.75"),

@@ -96,7 +96,7 @@ def test_values_arrive_where_their_paths_say(car):
 def test_a_path_that_is_no_number_is_refused_with_the_nearest(car, path):
     for use in (lambda: overrides_of(car.vehicle, {path: 1.0}), lambda: value_of(car.vehicle, path)):
         with pytest.raises(
-            ConfigurationError, match=f"parameter {path}: is not a number of the vehicle; the most similar path is "
+            ConfigurationError, match=f"parameter {path}: is not a number of the vehicle; did you mean "
         ):
             use()
 
@@ -104,7 +104,7 @@ def test_a_path_that_is_no_number_is_refused_with_the_nearest(car, path):
 def test_the_nearest_path_has_its_axis(car):
     for misspelt in ("bushings.suspension_mount.stifness.z", "suspension_mount.stifness.z"):
         with pytest.raises(
-            ConfigurationError, match=r"most similar path is front\.bushings\.suspension_mount\.stiffness\.z$"
+            ConfigurationError, match=r"did you mean front\.bushings\.suspension_mount\.stiffness\.z\?$"
         ):
             value_of(car.vehicle, misspelt)
 
@@ -123,8 +123,8 @@ def test_the_end_of_a_path_is_enough_where_it_can_mean_one_thing_only(car):
     with pytest.raises(ConfigurationError) as caught:
         load_vehicle(None, ["torsional_stifness=1"])
     assert str(caught.value) == (
-        "--set torsional_stifness=1: unknown parameter torsional_stifness; the most similar path is "
-        "front.stabilizer.torsional_stiffness"
+        "--set torsional_stifness=1: unknown parameter torsional_stifness; did you mean "
+        "front.stabilizer.torsional_stiffness?"
     )
     with pytest.raises(ConfigurationError) as caught:
         load_vehicle(None, ["maxwell_stiffness=1", "mass=1"])
@@ -156,7 +156,7 @@ def test_optional_keys_are_given_where_the_law_has_them():
     assert arm is not None and arm.damping == (9.0, 9.0, 9.0)
     for text, near in (("gas_forse=1", "damper.gas_force"), ("*.stopp=1", "damper.stop"), ("w.tabel_x=1", "table_x")):
         with pytest.raises(
-            ConfigurationError, match=rf"^--set {re.escape(text)}: unknown parameter .* most similar path is .*{near}$"
+            ConfigurationError, match=rf"^--set {re.escape(text)}: unknown parameter .* did you mean .*{near}\?$"
         ):
             load_vehicle(None, [text])
     with pytest.raises(ConfigurationError, match="parameter table_x is ambiguous: it may be"):
@@ -185,7 +185,7 @@ def test_logarithmic_scale():
 
 
 def test_what_a_path_begins_is_nearer_than_what_is_spelt_alike(car):
-    with pytest.raises(ConfigurationError, match=r"the most similar path is front\.damper\.coulomb_friction$"):
+    with pytest.raises(ConfigurationError, match=r"did you mean front\.damper\.coulomb_friction\?$"):
         full_path(car.vehicle.table, "front.damper.coulom")
 
 
@@ -193,7 +193,7 @@ def test_a_damper_with_a_table_has_no_constant_and_the_message_says_how_to_get_o
     sedan = Car.load("sedan")
     with pytest.raises(ConfigurationError, match=r"front\.damper\.viscous_law = table has none; to add it, set --set"):
         full_path(as_table(sedan.vehicle), "front.damper.viscous")
-    with pytest.raises(ConfigurationError, match=r"the most similar path is front\.damper\.friction_law$"):
+    with pytest.raises(ConfigurationError, match=r"did you mean front\.damper\.friction_law\?$"):
         full_path(as_table(sedan.vehicle), "front.damper.friction")
 
 

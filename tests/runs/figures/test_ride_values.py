@@ -114,7 +114,7 @@ def test_names_of_figures():
     ("text", "message"),
     [
         ("comfort", "figure 'comfort': focus has no figure 'comfort'; choose from unweighted[:AXIS], weighted[:AXIS]"),
-        ("seat_weighted", "figure 'seat_weighted': focus has no figure 'seat_weighted'; choose from "),
+        ("seat_weighted", "figure 'seat_weighted': focus has no figure 'seat_weighted'; did you mean "),
         ("peak", "figure 'peak': needed is peak:CHANNELS[:WEIGHTING]"),
         ("travel:long", "figure 'travel:long': needed is travel[:WHEELS]"),
         ("travel_rl", "figure 'travel_rl': wheels: found rl, must be among fr, fl"),

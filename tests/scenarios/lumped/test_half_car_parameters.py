@@ -95,7 +95,7 @@ def test_misspelt_name_is_refused_with_the_nearest(tmp_path):
     path.write_text(PUBLISHED.read_text(encoding="utf-8").replace("seat_arm", "seat_arn"), encoding="utf-8")
     with pytest.raises(ConfigurationError) as caught:
         half_car_rider_parameters(path)
-    assert str(caught.value) == "body.seat_arn: unknown parameter; the most similar known name is seat_arm"
+    assert str(caught.value) == "body.seat_arn: unknown parameter; did you mean seat_arm?"
 
 
 def test_bands_need_a_width():

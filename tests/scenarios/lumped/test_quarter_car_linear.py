@@ -231,7 +231,7 @@ BAD = [
     ),
     (
         {"damper": "slip", "vary": {"mount.stifness": 1.0}},
-        "unknown parameter mount.stifness; the most similar path is mount.stiffness",
+        "unknown parameter mount.stifness; did you mean mount.stiffness?",
     ),
     ({"damper": "stuck"}, "damper: found 'stuck', must be slip, stick or friction"),
     ({"damper": "friction", "friction": "stick"}, "friction: found 'stick', must be one of coulomb, stribeck"),

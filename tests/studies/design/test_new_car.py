@@ -294,5 +294,5 @@ def test_survey_inertia_is_that_of_the_whole_car(surveyed):
 def test_contradictions_are_found_before_any_computation():
     with pytest.raises(ConfigurationError, match="the curve sets the damping"):
         stated_numbers(None, {"damping_ratio_front": 0.3, "damper_curve_front": "a.csv"})
-    with pytest.raises(ConfigurationError, match="most similar known name is kerb_mass"):
+    with pytest.raises(ConfigurationError, match="did you mean kerb_mass"):
         stated_numbers(None, {"kerb_mas": 3.0})

@@ -147,7 +147,7 @@ def test_a_table_of_variations(tmp_path):
         (["--vary", "damper.viscous=1000", "--jobs", "0"], "--jobs 0: must be at least 1", 2),
         (
             ["--vary", "damper.viscous=1000", "--set", "damper.vicsous=1"],
-            ("the most similar path is front.damper.viscous"),
+            ("did you mean front.damper.viscous"),
             2,
         ),
         (

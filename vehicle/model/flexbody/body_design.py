@@ -12,7 +12,8 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.beam import BeamSection
 from vehicle.model.parameters.hardpoints import Point, mirrored
 from vehicle.model.parameters.quantity import quantity, validate
-from vehicle.model.parameters.toml_file import build, nearest, read_table
+from vehicle.model.parameters.toml_file import build, read_table
+from vehicle.wording import did_you_mean
 
 FORMAT = "body design 1"
 _SIDES = (("_fr", "_fl"), ("_rr", "_rl"), ("_right", "_left"))
@@ -139,10 +140,10 @@ class BodyDesign:
                 positions[name] = {f"{name}{end}": points[f"{name}{end}"] for end in (pair or ("",))}
             else:
                 hardpoint = node.mirror or name
-                similar = nearest(hardpoint, [*points, *(key.removesuffix("_fr") for key in points)])
+                similar = did_you_mean(hardpoint, [*points, *(key.removesuffix("_fr") for key in points)])
                 raise ConfigurationError(
-                    f"nodes.{name}: the vehicle has no hardpoint {hardpoint}; the most similar name is "
-                    f"{similar}. Set the place of the node, or name it after a hardpoint"
+                    f"nodes.{name}: the vehicle has no hardpoint {hardpoint}{similar} Set the place of the node, or "
+                    "name it after a hardpoint"
                 )
         names = [name for nodes in positions.values() for name in nodes]
         duplicates = sorted({name for name in names if names.count(name) > 1})
@@ -168,8 +169,7 @@ class BodyDesign:
             for name in names:
                 if name not in sides:
                     raise ConfigurationError(
-                        f"members.{group}.between: {member!r} has no node {name!r}; the most similar name is "
-                        f"{nearest(name, sides)}"
+                        f"members.{group}.between: {member!r} has no node {name!r}{did_you_mean(name, sides)}"
                     )
             if len(names) == 1:
                 pairs = [sides[names[0]]]

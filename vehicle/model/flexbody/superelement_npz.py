@@ -1,6 +1,5 @@
 """Modal superelement as npz, for thousands of nodes and hundreds of modes, which are slow to read as text."""
 
-import difflib
 import io
 import json
 from typing import Any
@@ -11,6 +10,7 @@ from vehicle.errors import DataError
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.flexbody.superelement_toml import FORMAT, RIGID, given_rigid, head_of, numbers
 from vehicle.signals.formats.unpacked_size import require_archive
+from vehicle.wording import did_you_mean
 
 _ARRAYS = {
     "positions": "position_m",
@@ -47,8 +47,7 @@ def of_arrays(raw: bytes) -> Superelement:
         raise DataError(f"format is {file_format!r}, must be {FORMAT!r} for npz.")
     for name in sorted(content.keys() ^ _NPZ):
         if name not in _NPZ:
-            similar = difflib.get_close_matches(name, sorted(_NPZ), n=1, cutoff=0.0)
-            raise DataError(f"unknown array {name!r}; the most similar known name is {similar[0]!r}.")
+            raise DataError(f"unknown array {name!r}{did_you_mean(name, sorted(_NPZ))}")
         if name not in _NPZ_OPTIONAL:
             raise DataError(f"array {name!r} is missing. The file is incomplete; write it again.")
     for name in _NPZ - {"head"} & content.keys():

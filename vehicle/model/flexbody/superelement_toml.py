@@ -1,6 +1,5 @@
 """Modal superelement as TOML with a unit in every key; unknown or missing keys are errors."""
 
-import difflib
 import json
 from collections.abc import Iterable
 from typing import Any
@@ -11,6 +10,7 @@ from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.model.flexbody.mass_properties import MassProperties
 from vehicle.model.flexbody.superelement import Superelement
+from vehicle.wording import did_you_mean
 
 FORMAT = "modal superelement 2"
 _OLDER = "modal superelement 1"
@@ -122,8 +122,7 @@ def _check_keys(table: dict[str, Any], table_type: str, where: str, older: bool)
     valid_keys = [key for key in _KEYS[table_type] if older or key != _OF_VERSION_1]
     for key in table:
         if key not in valid_keys:
-            similar = difflib.get_close_matches(key, valid_keys, n=1, cutoff=0.0)
-            raise DataError(f"{where}: unknown key {key!r}; the most similar known key is {similar[0]!r}.")
+            raise DataError(f"{where}: unknown key {key!r}{did_you_mean(key, valid_keys)}")
     for key in valid_keys:
         if key not in table and key not in _OPTIONAL and key != _OF_VERSION_1:
             raise DataError(f"{where}: key {key!r} is missing. The file is incomplete or truncated; write it again.")

@@ -18,7 +18,8 @@ from vehicle.model.parameters.force_elements import (
 from vehicle.model.parameters.hardpoints import Axes, Point, axes_along, require_apart, require_point
 from vehicle.model.parameters.quantity import NAME_PATTERN
 from vehicle.model.parameters.rigid_part import Load
-from vehicle.model.parameters.toml_file import build, convert, nearest
+from vehicle.model.parameters.toml_file import build, convert
+from vehicle.wording import did_you_mean
 
 CONNECTION_KEYS = {"moving", "carrier", "at", "ground", "axes"}
 """Keys of a connection of the vehicle file other than the numbers of its law."""
@@ -56,8 +57,7 @@ def named_point(path: str, table: Mapping[str, Any], points: Mapping[str, Point]
         raise ConfigurationError(f"{path}.at: missing; set the name of a point, or its coordinates [m]")
     if isinstance(value, str):
         if value not in points:
-            near = nearest(value, points)
-            raise ConfigurationError(f"{path}.at: unknown point {value!r}; the most similar name is {near}")
+            raise ConfigurationError(f"{path}.at: unknown point {value!r}{did_you_mean(value, points)}")
         return points[value], value
     return point_of(f"{path}.at", value), name
 
@@ -68,9 +68,7 @@ def named_part(path: str, table: Mapping[str, Any], key: str, names: set[str]) -
         raise ConfigurationError(f"{path}.{key}: missing; set the name of a part, for example body")
     name: str = convert(str, table[key], f"{path}.{key}")
     if name not in names:
-        raise ConfigurationError(
-            f"{path}.{key}: unknown part {name!r}; the most similar name is {nearest(name, names)}"
-        )
+        raise ConfigurationError(f"{path}.{key}: unknown part {name!r}{did_you_mean(name, names)}")
     return name
 
 
@@ -110,8 +108,7 @@ def _axes(path: str, table: Mapping[str, Any], points: Mapping[str, Point]) -> A
     names: tuple[str, ...] = convert(tuple[str, ...], table["axes"], f"{path}.axes")
     for name in names:
         if name not in points:
-            near = nearest(name, points)
-            raise ConfigurationError(f"{path}.axes: unknown point {name!r}; the most similar name is {near}")
+            raise ConfigurationError(f"{path}.axes: unknown point {name!r}{did_you_mean(name, points)}")
     if len(names) != 2 or table.get("ground"):
         raise ConfigurationError(
             f"{path}.axes: found {list(names)}, must be two points of a connection that does not touch the ground"

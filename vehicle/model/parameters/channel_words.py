@@ -9,6 +9,7 @@
 from collections.abc import Iterable, Sequence
 
 from vehicle.errors import ConfigurationError
+from vehicle.wording import choose_from
 
 SYNONYMS = {
     "front left": "fl",
@@ -45,10 +46,10 @@ def channel_named(text: str, names: Iterable[str]) -> str:
     extras = {name: len(name.split("_")) for name in channels if tokens and tokens <= set(name.split("_"))}
     shortest = [name for name, count in extras.items() if count == min(extras.values())]
     if len(shortest) != 1:
-        problem = "no channel has" if not extras else "several channels have"
-        raise ConfigurationError(
-            f"channel {text!r}: {problem} these words; choose from {', '.join(extras or channels)}"
-        )
+        if extras:
+            raise ConfigurationError(f"channel {text!r}: matches several; choose from {', '.join(extras)}")
+        words = "_".join(spoken_text.split())
+        raise ConfigurationError(f"channel {text!r}: no channel has these words{choose_from(words, channels)}")
     return shortest[0]
 
 

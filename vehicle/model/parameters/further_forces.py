@@ -17,7 +17,8 @@ from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.instance import Instance
 from vehicle.model.parameters.placed_force import NONE, PlacedForce
 from vehicle.model.parameters.quantity import NAME_PATTERN
-from vehicle.model.parameters.toml_file import build, convert, nearest
+from vehicle.model.parameters.toml_file import build, convert
+from vehicle.wording import did_you_mean
 
 PLACE_KEYS = ("on", "at", "force", "moment", "axes", "against", "joint")
 """Keys of a force other than those of its history."""
@@ -107,8 +108,8 @@ def further_force(name: str, value: Any, targets: ForceTargets) -> PlacedForce:
         raise ConfigurationError(f"{path}: found {name!r}, must consist of letters, digits, '_', '.', '-'")
     law = build(AppliedForce, {key: inner for key, inner in table.items() if key not in PLACE_KEYS}, path)
     if law.angle is not None and law.angle not in targets.speeds:
-        near = nearest(law.angle, targets.speeds)
-        raise ConfigurationError(f"{path}.angle: unknown angle {law.angle!r}; the most similar name is {near}")
+        near = did_you_mean(law.angle, targets.speeds)
+        raise ConfigurationError(f"{path}.angle: unknown angle {law.angle!r}{near}")
     speed = 2.0 * math.pi * law.frequency if law.frequency else targets.speeds.get(law.angle or "", 0.0)
     require_harmonics(f"{path}.harmonics", law.harmonics, of_wheel=law.angle not in (None, CRANK))
     if "joint" in table:
@@ -174,8 +175,8 @@ def _torque(path: str, table: Mapping[str, Any], targets: ForceTargets, law: App
             raise ConfigurationError(f"{path}.{key}: belongs to a force on a part; a torque on a joint has no {key}")
     joint = convert(str, table["joint"], f"{path}.joint")
     if joint not in targets.joints:
-        near = nearest(joint, targets.joints)
-        raise ConfigurationError(f"{path}.joint: {joint!r} is not a hinge or slide; the most similar name is {near}")
+        near = did_you_mean(joint, targets.joints)
+        raise ConfigurationError(f"{path}.joint: {joint!r} is not a hinge or slide{near}")
     if targets.joints[joint] == "hinge":
         _require_torque(path, law)
     return PlacedForce(

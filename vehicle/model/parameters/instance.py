@@ -18,10 +18,11 @@ from vehicle.model.parameters.hardpoints import Point, mirrored, require_point
 from vehicle.model.parameters.quantity import NAME_PATTERN
 from vehicle.model.parameters.template import read_template
 from vehicle.model.parameters.tested_range import merged_law
-from vehicle.model.parameters.toml_file import build, convert, nearest
+from vehicle.model.parameters.toml_file import build, convert
 from vehicle.model.parameters.topology import Template
 from vehicle.model.parameters.wheel_forces import WHEEL_FORCES
 from vehicle.names import SIDE_SIGN
+from vehicle.wording import did_you_mean
 
 T = TypeVar("T")
 RIGHT, LEFT = SIDE_SIGN
@@ -103,8 +104,8 @@ class Instance:
                     self.missing(f"{group}.{key}", ", ".join(pools[group]))
 
     def _unknown(self, path: str, key: str, names: list[str]) -> None:
-        near = f"the most similar known name is {nearest(key, names)}" if names else f"{self.template.file} has none"
-        raise ConfigurationError(f"{self.name}.{path}: unknown parameter; {near}")
+        near = did_you_mean(key, names) or f"; {self.template.file} has none"
+        raise ConfigurationError(f"{self.name}.{path}: unknown parameter{near}")
 
     def missing(self, path: str, needed: str) -> None:
         """Raise the error of a missing table.
@@ -281,10 +282,10 @@ def _instance_tables(table: Mapping[str, Any], prefix: str, instance: str) -> It
         elif isinstance(value, Mapping) and set(value) & set(INSTANCE_KEYS):
             raise ConfigurationError(f"{path}.template: missing; the section needs template = NAME")
         else:
-            near = nearest(key, [other for other in (table if prefix else (*VEHICLE_KEYS, *table)) if other != key])
-            raise ConfigurationError(
-                f"{path}: unknown parameter; the most similar known name is {near}. A new section needs template = NAME"
+            near = did_you_mean(
+                key, [other for other in (table if prefix else (*VEHICLE_KEYS, *table)) if other != key]
             )
+            raise ConfigurationError(f"{path}: unknown parameter{near} A new section needs template = NAME")
 
 
 def _contains_instance(table: Mapping[str, Any]) -> bool:

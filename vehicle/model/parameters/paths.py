@@ -99,7 +99,7 @@ def _missing(table: Mapping[str, Any], path: str, candidates: Iterable[str]) -> 
     """Return the error of a path that does not exist, with the nearest path or the law that lacks the parameter."""
     law = next(iter(_existing(table, f"{path}_law")), "")
     if not law.endswith("viscous_law"):
-        return ConfigurationError(f"unknown parameter {path}; the most similar path is {nearest(path, candidates)}")
+        return ConfigurationError(f"unknown parameter {path}; did you mean {nearest(path, candidates)}?")
     return ConfigurationError(
         f"unknown parameter {path}, because {law} = {value_at(table, law)} has none; to add it, set --set "
         f"{law}=linear --set {path}=VALUE"
@@ -257,11 +257,11 @@ def value_of(vehicle: Any, path: str) -> float:
         value = value_at(table, full_path(table, path))
         if _is_number(value):
             return float(value)
-        raise ConfigurationError(f"the most similar path is {nearest(path, _numbers(table))}")
+        raise ConfigurationError(f"did you mean {nearest(path, _numbers(table))}?")
     except ConfigurationError as error:
         # For a misspelt path, show the nearest number, not the nearest text.
         misspelt = str(error).startswith("unknown parameter")
-        reason = f"the most similar path is {nearest(path, _numbers(table))}" if misspelt else str(error)
+        reason = f"did you mean {nearest(path, _numbers(table))}?" if misspelt else str(error)
         raise ConfigurationError(f"parameter {path}: is not a number of the vehicle; {reason}") from None
 
 

@@ -8,7 +8,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.applied_force import AppliedForce
 from vehicle.model.parameters.driving import RunUp
 from vehicle.model.parameters.hardpoints import Point
-from vehicle.model.parameters.toml_file import nearest
+from vehicle.wording import did_you_mean
 
 NONE = (0.0, 0.0, 0.0)
 """Direction of a force or moment that is absent."""
@@ -105,11 +105,7 @@ def force_named(name: str, forces: Sequence[PlacedForce], *, own: bool = False) 
     if name not in indices:
         table = "no table [force.NAME]" if own else "no force"
         raise ConfigurationError(
-            f"force: unknown name {name!r}, {table} of this car; "
-            + (
-                f"the most similar name is {nearest(name, indices)}"
-                if indices
-                else "add a section [force.NAME] to the vehicle file"
-            )
+            f"force: unknown name {name!r}, {table} of this car"
+            + (did_you_mean(name, indices) or "; add a section [force.NAME] to the vehicle file")
         )
     return indices[name]

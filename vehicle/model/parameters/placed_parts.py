@@ -10,9 +10,9 @@ from vehicle.model.parameters.composition import PlacedJoint, PlacedPart
 from vehicle.model.parameters.hardpoints import Point, cross, mirrored
 from vehicle.model.parameters.instance import Instance, elements
 from vehicle.model.parameters.rigid_part import Part
-from vehicle.model.parameters.toml_file import nearest
 from vehicle.model.parameters.topology import Joint
 from vehicle.names import SIDE_SIGN
+from vehicle.wording import did_you_mean
 
 
 @dataclass(slots=True)
@@ -149,10 +149,8 @@ def _mean_point(i: Instance, name: str, side: str | None, points: tuple[str, ...
     """Return the mean of points of a part [m]; raise for a name that the template does not have."""
     for point in points:
         if point not in i.template.hardpoints:
-            near = nearest(point, i.template.hardpoints)
-            raise ConfigurationError(
-                f"{i.name}.parts.{name}.between: unknown hardpoint {point!r}; the most similar name is {near}"
-            )
+            near = did_you_mean(point, i.template.hardpoints)
+            raise ConfigurationError(f"{i.name}.parts.{name}.between: unknown hardpoint {point!r}{near}")
     chosen = [i.point(point, side) for point in points]
     x, y, z = (sum(axis) / len(chosen) for axis in zip(*chosen, strict=True))
     return (x, y, z)

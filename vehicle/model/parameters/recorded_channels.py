@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from vehicle.errors import ConfigurationError
+from vehicle.wording import did_you_mean
 
 if TYPE_CHECKING:
     from vehicle.model.parameters.vehicle import Vehicle
@@ -26,8 +26,7 @@ def recorded_channels(text: str, vehicle: Vehicle) -> tuple[str, ...]:
     names = [name.strip() for name in text.split(",")]
     for name in names:
         if name not in vehicle.channels and name not in more:
-            close = get_close_matches(name, (*more, *vehicle.channels), n=1)
-            nearest = f"; did you mean {close[0]}?" if close else ""
+            nearest = did_you_mean(name, (*more, *vehicle.channels), cutoff=0.6)
             raise ConfigurationError(
                 f"--channels: the car has no channel {name!r}; give loads, all, or names, for example "
                 f"{vehicle.load_channels[0]},{vehicle.load_channels[-1]}{nearest}"

@@ -9,9 +9,10 @@ from vehicle.model.parameters.composition import Composition
 from vehicle.model.parameters.hardpoints import require_apart, require_triangle
 from vehicle.model.parameters.instance import RIGHT, Instance
 from vehicle.model.parameters.paths import full_path
-from vehicle.model.parameters.toml_file import convert, nearest
+from vehicle.model.parameters.toml_file import convert
 from vehicle.model.parameters.topology import Template
 from vehicle.names import SIDE_SIGN
+from vehicle.wording import did_you_mean
 
 GROUPS = ("hardpoints", "parts", "bushings", "ports")
 """Tables of an instance with one entry for each name."""
@@ -27,10 +28,8 @@ def require_ports(car: Mapping[str, Instance], names: set[str]) -> None:
         for port in i.numbers.get("ports", {}):
             for side in i.sides():
                 if (part := i.part(port, side)) not in names:
-                    near = nearest(part, names)
-                    raise ConfigurationError(
-                        f"{i.name}.ports.{port}: unknown part {part!r}; the most similar name is {near}"
-                    )
+                    near = did_you_mean(part, names)
+                    raise ConfigurationError(f"{i.name}.ports.{port}: unknown part {part!r}{near}")
 
 
 def require_geometry(car: Mapping[str, Instance]) -> None:

@@ -6,6 +6,7 @@ from importlib import resources
 from pathlib import Path
 
 from vehicle.errors import ConfigurationError
+from vehicle.wording import did_you_mean
 
 VEHICLES = Path(str(resources.files("vehicle.model"))) / "vehicles"
 FOCUS_FILE = VEHICLES / "focus" / "vehicle.toml"
@@ -37,7 +38,8 @@ def vehicle_file(path: Path | str) -> Path:
     if path.suffix or path.exists() or path.name != str(path):
         return path
     if path.name not in CARS:
-        raise ConfigurationError(f"{path}: is neither a file nor a shipped car; shipped cars are {', '.join(CARS)}")
+        near = did_you_mean(path.name, CARS, cutoff=0.6)
+        raise ConfigurationError(f"{path}: is neither a file nor a shipped car, {', '.join(CARS)}{near}")
     return VEHICLES / path / "vehicle.toml"
 
 

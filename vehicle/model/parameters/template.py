@@ -16,8 +16,9 @@ from typing import Any
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.quantity import NAME_PATTERN
 from vehicle.model.parameters.template_file import LISTS, read_template_file
-from vehicle.model.parameters.toml_file import build, nearest
+from vehicle.model.parameters.toml_file import build
 from vehicle.model.parameters.topology import RolePart, SteeringAxis, Template, Wheel
+from vehicle.wording import did_you_mean
 
 SHIPPED = Path(str(resources.files("vehicle.model"))) / "templates"
 FREE_PORTS = ("body", "world", "plate")
@@ -106,8 +107,7 @@ def _merged(name: str, options: frozenset[str], searched: tuple[Path, ...], abov
             else "the file is neither in the folder of the vehicle file nor in the package"
         )
         raise ConfigurationError(
-            f"template {name!r}: {reason}; the most similar name is {nearest(name, set(names) - {name})}; "
-            f"templates are {', '.join(names)}"
+            f"template {name!r}: {reason}{did_you_mean(name, set(names) - {name})} Templates: {', '.join(names)}"
         )
     template = read_template_file(path)
     chosen = [use for use in template.pop("use") if use.get("when") is None or use["when"] in options]
@@ -193,9 +193,7 @@ def _check(template: Template, raw: Mapping[str, Any]) -> None:
     for port, part in template.port_defaults.items():
         for word, allowed in ((port, {*template.ports}), (part, parts - {port})):
             if word not in allowed:
-                raise ConfigurationError(
-                    f"port_defaults.{port}: unknown name {word!r}; the most similar is {nearest(word, allowed)}"
-                )
+                raise ConfigurationError(f"port_defaults.{port}: unknown name {word!r}{did_you_mean(word, allowed)}")
     used: set[str] = set()
     names_of: dict[str, Collection[str]] = {"joint": joints, **dict.fromkeys(_PARTS, parts)}
     names_of |= dict.fromkeys(_POINTS, template.hardpoints)
@@ -213,10 +211,9 @@ def _check(template: Template, raw: Mapping[str, Any]) -> None:
                         f"{where}.name: found {word!r}, must consist of letters, digits, '_', '.', '-'"
                     )
                 if allowed is not None and head not in allowed:
-                    besides = f"; every template also has {', '.join(FREE_PORTS)}" if allowed is parts else ""
-                    raise ConfigurationError(
-                        f"{where}.{key}: unknown name {word!r}; the most similar is {nearest(head, allowed)}{besides}"
-                    )
+                    besides = f" Every template also has {', '.join(FREE_PORTS)}" if allowed is parts else ""
+                    near = did_you_mean(head, allowed)
+                    raise ConfigurationError(f"{where}.{key}: unknown name {word!r}{near}{besides}")
                 if allowed is not None and side not in ("", "left", "right", "middle"):
                     raise ConfigurationError(f"{where}.{key}: found side {side!r}, must be left, right or middle")
                 if allowed is template.hardpoints:

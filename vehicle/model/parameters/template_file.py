@@ -5,8 +5,9 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.toml_file import convert, nearest, read_table
+from vehicle.model.parameters.toml_file import convert, read_table
 from vehicle.model.parameters.topology import Connection, Damper, Joint, Output, Spring
+from vehicle.wording import did_you_mean
 
 LISTS = {"joint": Joint, "connection": Connection, "spring": Spring, "damper": Damper, "output": Output}
 """Lists of elements, and their classes."""
@@ -39,9 +40,7 @@ def read_template_file(path: Path) -> dict[str, Any]:
     try:
         for key, value in table.items():
             if key not in TEMPLATE_KEYS:
-                raise ConfigurationError(
-                    f"{key}: unknown key; the most similar known key is {nearest(key, TEMPLATE_KEYS)}"
-                )
+                raise ConfigurationError(f"{key}: unknown key{did_you_mean(key, TEMPLATE_KEYS)}")
             convert(TEMPLATE_KEYS[key], value, key)
         for position, use in enumerate(table.get("use", [])):
             if "template" not in use or set(use) - set(USE_KEYS):

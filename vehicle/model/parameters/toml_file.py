@@ -1,18 +1,18 @@
 """Conversion of TOML files to parameter objects and back, with strict names and types."""
 
 import dataclasses
-import difflib
 import functools
 import json
 import tomllib
 import types
 import typing
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.quantity import NAME_PATTERN, field_quantity, type_hints
+from vehicle.wording import did_you_mean
 
 T = TypeVar("T")
 
@@ -64,8 +64,7 @@ def build(cls: type[T], table: Mapping[str, Any], path: str = "") -> T:
     hints, fields = type_hints(cls), _fields(cls)  # type: ignore[arg-type]
     for key in table:
         if key not in fields:
-            near = f"the most similar known name is {nearest(key, fields)}"
-            raise ConfigurationError(f"{_join(path, key)}: unknown parameter; {near}")
+            raise ConfigurationError(f"{_join(path, key)}: unknown parameter{did_you_mean(key, fields)}")
     values: dict[str, Any] = {}
     missing: list[dataclasses.Field[Any]] = []
     for name, entry in fields.items():
@@ -212,11 +211,6 @@ def _number(value: Any, path: str) -> float:
         return float(value)
     except OverflowError:
         raise ConfigurationError(f"{path}: found a whole number beyond 1.8e308, must be a finite number") from None
-
-
-def nearest(name: str, known: Iterable[str]) -> str:
-    """Return the known name with the most similar spelling; "nothing" if no name is known."""
-    return next(iter(difflib.get_close_matches(name, list(known), n=1, cutoff=0.0)), "nothing")
 
 
 def copy_table(table: Mapping[str, Any]) -> dict[str, Any]:

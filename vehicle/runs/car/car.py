@@ -104,10 +104,10 @@ class Car:
         return car
 
     def with_(self, overrides: Overrides) -> Car:
-        """Return this car with other parameters; the car itself stays as it is.
+        """Return a car with other parameters; this car is not changed.
 
-        Changes add to earlier ones, and values that depend on the mass or the CoG of the body follow them
-        (docs/vehicle-file.md). `overrides` lists all steps: `Car.load(file, variant.overrides)` loads the same car.
+        Changes add to earlier ones; the inertia of the body follows another mass or CoG (docs/vehicle-file.md).
+        `overrides` lists all steps: `Car.load(file, variant.overrides)` loads the same car.
         Variants of laws and masses are fast: their matrices come from terms of this car, computed once.
 
         Raises:
@@ -136,8 +136,8 @@ class Car:
         """
         if any(output.name == name for output in self.vehicle.composition.outputs):
             raise ConfigurationError(f"with_channel: the car already has an output {name!r}; choose another name")
-        place = at if isinstance(at, str) else np.asarray(at).tolist()
-        return self.with_({f"outputs.{name}.at": place, f"outputs.{name}.on": on})
+        point = at if isinstance(at, str) else np.asarray(at).tolist()
+        return self.with_({f"outputs.{name}.at": point, f"outputs.{name}.on": on})
 
     # Made by the first variant: a cycle, and the cars of a sweep must be freed without the garbage collector.
     @cached_property
@@ -309,7 +309,7 @@ class Car:
 
     @one_blas_thread()
     def stepped(self) -> Car:
-        """Return this car with its own time step, or without one with the largest step that passes all checks.
+        """Return this car with the time step of its file, or the largest step that passes all checks.
 
         Raises:
             ConfigurationError: the given step is too large, or no step is small enough.
