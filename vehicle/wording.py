@@ -104,19 +104,19 @@ def in_words(text: str) -> str:
     return "".join([*parts, OPTION.sub(_argument, text[end:])])
 
 
-def did_you_mean(name: str, known: Iterable[str], cutoff: float = 0.0) -> str:
+def did_you_mean(name: str, names: Iterable[str], cutoff: float = 0.0) -> str:
     """Return "; did you mean X?" with the known name of the most similar spelling, or an empty text.
 
     Args:
         cutoff: least similarity, 0 to 1; 0 accepts any name.
     """
-    similar = difflib.get_close_matches(name, list(known), n=1, cutoff=cutoff)
+    similar = difflib.get_close_matches(name, list(names), n=1, cutoff=cutoff)
     return f"; did you mean {similar[0]}?" if similar else ""
 
 
-def choose_from(name: str, known: Collection[str]) -> str:
+def choose_from(name: str, names: Collection[str]) -> str:
     """Return "; did you mean X?" if a known name is similar, otherwise "; choose from" and all of them."""
-    return did_you_mean(name, known, cutoff=0.6) or f"; choose from {', '.join(known)}"
+    return did_you_mean(name, names, cutoff=0.6) or f"; choose from {', '.join(names)}"
 
 
 def _argument(option: re.Match[str]) -> str:

@@ -68,6 +68,8 @@ def test_every_plot_returns_axes_and_draws_on_those_of_the_user(run, response, t
     for refused in (mixed.plot, lambda ax: [run.plot(name, ax=ax) for name in ("damper force fr", "seat rail z")]):
         with pytest.raises(ConfigurationError, match=r"ax: .* N"):
             refused(ax=axis)
+    again = mixed.plot(ax=axes)
+    assert [len({line.get_color() for line in axis.lines}) for axis in again[0]] == [2, 2, 2]
     softer = run.car.with_({"damper.viscous": 900}).run(run.signal, "reduced")
     for plot in (lambda one, ax: one.plot("seat rail z", ax), lambda one, ax: one.frf("seat rail z").plot(ax),
                  lambda one, ax: one.psd("seat rail z").plot(ax)):  # fmt: skip

@@ -69,6 +69,7 @@ def draw_spectra(
         axes: axes, (3, channels), with a shared frequency.
     """
     first, largest = dict[str, npt.NDArray[Any]](), dict[str, float]()
+    drawn = sum(line.get_alpha() is None for line in axes[0, 0].lines)  # those of the weighted spectra are pale
     for column, (channel, heading) in zip(axes.T, channels.items(), strict=True):
         unit = next(spectrum.unit for spectra in runs.values() for spectrum in spectra if spectrum.name == channel)
         for axis, label, leader in zip(column, _labels(unit), first.setdefault(unit, column), strict=True):
@@ -77,7 +78,7 @@ def draw_spectra(
             elif not axis.get_shared_y_axes().joined(axis, leader):
                 axis.sharey(leader)
                 axis.tick_params(labelleft=False)
-        for (name, spectra), look in zip(runs.items(), looks(), strict=False):
+        for (name, spectra), look in zip(runs.items(), islice(looks(), drawn, None), strict=False):
             for spectrum in (spectrum for spectrum in spectra if spectrum.name == channel):
                 label = fill(f"{name}, weighted", NAME_WIDTH) if spectrum.weighting else fill(name, NAME_WIDTH)
                 style = look | (WEIGHTED if spectrum.weighting else {})

@@ -48,8 +48,8 @@ def channel_named(text: str, names: Iterable[str]) -> str:
     if len(shortest) != 1:
         if extras:
             raise ConfigurationError(f"channel {text!r}: matches several; choose from {', '.join(extras)}")
-        words = "_".join(spoken_text.split())
-        raise ConfigurationError(f"channel {text!r}: no channel has these words{choose_from(words, channels)}")
+        near = choose_from("_".join(spoken_text.split()), channels)
+        raise ConfigurationError(f"channel {text!r}: no channel has these words{near}")
     return shortest[0]
 
 

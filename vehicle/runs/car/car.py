@@ -390,9 +390,8 @@ class Car:
             car, named = self.with_(drive.overrides) if drive.overrides else self, replace(signal, source=drive.name)
             run = car.run(named, engine, progress=progress, channels=channels, skip=start, forces=forces)
             return replace(run, road=drive.summary(signal))
-        signal = source
-        if not isinstance(signal, Signal):
-            signal = read_signal(find_input(signal), wheel=self.vehicle.shaker_wheel)
+        wheel = self.vehicle.shaker_wheel
+        signal = source if isinstance(source, Signal) else read_signal(find_input(source), wheel=wheel)
         start = evaluation_start({signal.source: signal.duration}, skip, 0.0)
         driven = with_histories(self, forces, signal.time) if forces else self
         car, recording, reason = simulated_run(driven, signal, progress, engine, channels)
