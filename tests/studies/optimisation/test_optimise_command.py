@@ -169,7 +169,7 @@ def test_tolerances_and_another_front_beside(road, searched, tmp_path, capsys):
         (
             ["--minimise", "comfrt"],
             2,
-            "--minimise 'comfrt': focus has no figure 'comfrt'; choose from unweighted",
+            "--minimise 'comfrt': focus has no figure 'comfrt'",
         ),
         (
             ["--minimise", "unweighted", "--vary", "damper.viscos=1:2"],
