@@ -1,7 +1,7 @@
 # make shaker   set everything up and run the main job with a film
 # make test     set everything up, check and test the product
 # make test-all make test, then the rest: studies of the sources, pages of the documentation, films
-# make check    format, lint and types only
+# make check    format, lint, types and wrapped pages only
 # make studies  the studies of the sources, whole (hours) -> docs/published-results.md
 # make faults   every system call of every command fails once (hours) -> docs/faults.md
 # make core     build the compiled core for all platforms
@@ -39,6 +39,7 @@ check: setup-tests
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
+	$(BIN)/python -m tools.wrap_docs --check
 
 core: tools
 	$(BIN)/python tools/core.py

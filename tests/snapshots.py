@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from itertools import zip_longest
 from pathlib import Path
 
-from tests.documentation.pages import output_of
+from tests.documentation.pages import in_process, output_of
 
 FOLDER = Path(__file__).parent / "commands" / "snapshots"
 
@@ -29,7 +29,7 @@ def cases(name: str) -> Iterator[tuple[str, list[str]]]:
 
 def printed(line: str, folder: Path) -> list[str]:
     """Run a command in a folder; return what it prints, and its exit code as the last line."""
-    code, text = output_of(line, folder, in_process=True)
+    code, text = output_of(line, folder, in_process(line))
     return [*(part.rstrip() for part in text.rstrip("\n").split("\n") if text.strip()), f"exit code {code}"]
 
 

@@ -63,7 +63,7 @@ def test_comments_are_counted_without_docstrings_and_marks(plainness, tmp_path):
 
 @pytest.mark.parametrize("page", sorted((ROOT / "docs" / "theory").glob("*.md")), ids=lambda page: page.stem)
 def test_a_theory_page_begins_with_its_reader_and_question(page):
-    first = page.read_text(encoding="utf-8").split("\n\n")[1]
+    first = " ".join(page.read_text(encoding="utf-8").split("\n\n")[1].split())
     sentence = first.partition("?")[0]
     assert first.startswith("For ") and ": " in sentence and "?" in first, first
     assert not set("=<>|^") & set(sentence), "a symbol comes before the question"

@@ -22,23 +22,23 @@ FOLDER = "VEHICLE_VALIDATION_ROWS"
 """Environment variable with the folder to which `python -m tests.validation` has the rows written."""
 
 INTRODUCTION = """\
-How far may the numbers of this program be trusted? Each row below is a physical or numerical claim that a test of the
-program checks against an expected value from elsewhere: a closed form, a second derivation, another program, a
+How far can you trust the numbers of this program? Each row below is a physical or numerical claim, and a test of the
+program checks it against an independent expected value: a closed form, a second derivation, another program, a
 standard, a publication, or a conservation law or symmetry. A second derivation is written for the test, or computes
 the same quantity by another path of the program: the other engine, a finer step, the matrices of the linear system.
 Foreign code is most often a solver, an integral or a file writer of scipy, on equations that the test writes out. Where
-it works on equations, matrices or laws of this program, the row says own function: it verifies the integration alone.
-The tests write this page.
+it works on equations, matrices or laws of this program, the row is marked own function: it verifies the integration
+alone. The tests write this page.
 
 **Verified against equations.** Force laws, static equilibrium, the linear system, time integration, reduction of
 flexible bodies, FRF estimation, ISO 2631 and ISO 8608. The program solves its equations as accurately as the rows say.
-Agreement of both engines, MuJoCo and the reduced one, is verification too: they share matrices and force laws, and
-the same wrong parameter gives both the same wrong result.
+Agreement of both engines, MuJoCo and the reduced one, is also verification only: they share matrices and force laws,
+so a wrong parameter gives both the same wrong result.
 
 **Validated against measurements: published values only.** The car of Bommer 2006 was measured on a shaker; the thesis
 prints a part of these measurements, and we compare with what is printed. It is a scan without curves: many values are
-labels of axes. [Published results](published-results.md) lists every statement of three publications, and each one that
-we do not meet, with the reason.
+labels of axes. [Published results](published-results.md) lists every statement of three publications, and the reason
+for each one that we do not meet.
 
 **Not validated.** No car of our own was measured. Not compared with any measurement: the four-poster, the sedan,
 rolling tyres, semi-active control, road runs at speed, wheel loads and fatigue damage, the comfort of a person on a
@@ -46,7 +46,7 @@ seat. For these the equations are verified, and their parameters are assumed or 
 model with your own measurement (`python -m vehicle compare`) before you trust an absolute value; differences between
 variants of one car depend less on its parameters.
 
-**How to read a row.** The tolerance is that of the test: above it the test fails. "Used" is the largest deviation as a
+**How to read a row.** Above the tolerance the test fails. "Used" is the largest deviation as a
 share of the tolerance, rounded up, and "< 1 %" below that. For several values the row shows the smallest and the
 largest magnitude; the largest deviation of all of them counts. **NO** marks a claim that does not hold. Each claim is
 a link to its test.

@@ -5,6 +5,7 @@ processor time of one thread, because waiting threads of OpenBLAS spin. Sums are
 """
 
 import os
+import sys
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -18,6 +19,8 @@ THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 _lock = Lock()
 _entered: Counter[int] = Counter()
 """Number of `one_blas_thread` blocks that each thread of this process is in."""
+_loaded_single = False
+"""True if NumPy and SciPy load their libraries with one thread, so that there is nothing to limit."""
 _postponed: dict[Any, int] = {}
 """Library to the number of threads to restore when no thread is in a block any more."""
 
@@ -56,7 +59,12 @@ def one_blas_thread() -> Iterator[None]:
 
 @cache
 def _libraries() -> tuple[Any, ...]:
-    """Return the controllers of the BLAS libraries of NumPy and SciPy; the search takes 3 ms."""
+    """Return the controllers of the BLAS libraries of NumPy and SciPy; none if they load with one thread.
+
+    The search takes 0.1 s in a process that does not need `scipy.linalg` otherwise, else 3 ms.
+    """
+    if _loaded_single:
+        return ()
     import scipy.linalg  # noqa: F401  # loads both libraries: a library loaded after the search would be missed
     from threadpoolctl import ThreadpoolController
 
@@ -86,8 +94,11 @@ def _restore(numbers: Mapping[Any, int]) -> None:
 
 def prefer_one_thread() -> None:
     """Set one thread for libraries that this process loads later, unless the user has set a number."""
+    global _loaded_single
     if not any(name in os.environ for name in THREADS):
         os.environ.update(dict.fromkeys(THREADS, "1"))
+        # A library that is loaded already keeps its number.
+        _loaded_single = "numpy" not in sys.modules
 
 
 @contextmanager

@@ -17,20 +17,20 @@ TITLE = "# Published results, figure by figure"
 WRITTEN_BY = "<!-- Written by `python -m scenarios.published`; never edit by hand. -->"
 
 INTRODUCTION = f"""\
-Three publications, and what this program computes for each statement in them. Every statement has a row: what is
-printed, what we compute, whether both agree, and why. Numbers come from `python -m scenarios.published`; the studies
+Three publications, and the result of this program for each of their statements. Every statement has a row: the
+printed value, ours, the verdict and its reason. Numbers come from `python -m scenarios.published`; the studies
 write large figures, notes and further numbers to `runs/published/STUDY/`.
 
 **What was read twice.** The thesis survives as a scan: text, tables with damaged exponents, and the labels of the
-axes of its figures; the curves are lost. All of it was read a second time; where both readings differ, the second
-holds. "Left" and "right" of the thesis may be those of someone who stands in front of the car and faces it.
+axes of its figures; the curves are lost. All of it was read twice; where both readings differ, the second one
+counts. "Left" and "right" of the thesis may be as seen from the front of the car.
 
 **What is not printed.** The thesis gives no band of its random inputs, no velocity that counts as slip, no mode
 shapes and no damping of the body, and it does not settle which wheel stands on the shaker. The half car has no
 numbers of its seat and no settling band. The choice of dampers has no parameters of its vehicles.
 
 **What was chosen, and on what.** What the thesis leaves open was chosen as one set on half of {len(EVIDENCE)} of its
-statements, which a stated seed drew; the other half was held out. The status of such a row says its half, `used` or
+statements, drawn by a stated seed; the other half was held out. The status of such a row contains its half, `used` or
 `held out`. A row is `fitted` if a parameter was fitted to it, in either half; `chosen` in the half that was used,
 and in the held-out half if an earlier choice had it in view; `predicted` where nothing was adjusted to it. Only
 `predicted` rows are evidence for the model. The vehicles of the damper study are not printed: rows to which they
@@ -47,13 +47,13 @@ such a row is `not testable`, unless our value is outside.
 A statement in words agrees by the rule of its row. A row is `undecided` where its verdict is not the same for our
 value and for {ERRORS:g} standard errors above and below it (over seeds, roads or windows), or where single seeds,
 roads or readings of the statement differ (`scenarios/verdict.py`): it does not count as agreeing. `own check` is no
-published result, `duplicate` is the statement of another row again, and `not testable` lacks something that the
-source does not tell: they are listed and never counted. Figures that show the same half second of the same road
+published result, `duplicate` repeats the statement of another row, and `not testable` lacks a value that the source
+does not give: they are listed and never counted. Figures that show the same half second of the same road
 count once.
 
-**What slip is.** The thesis does not say. Shares of time: |v| above 6 mm/s, chosen with the other open numbers. End
-of sticking, as in figures 3.12 and 3.38: above 1 mm/s, where the friction is saturated. The quarter car counts above
-0.1 mm/s (100 / eps). Rows that another definition would change give the values by the others.
+**What slip is.** The thesis does not define it. Shares of time: |v| above 6 mm/s, chosen with the other open numbers.
+End of sticking, as in figures 3.12 and 3.38: above 1 mm/s, where the friction is saturated. The quarter car counts
+above 0.1 mm/s (100 / eps). Rows that another definition would change give the values by the others.
 
 **Two cars.** The printed Ixx of 1000 kg m2 has a roll mode of 6.5 Hz, in the thesis as here; the measured car had
 5.8 Hz, and an axis of chapter 3 that holds a measurement holds that car too. Column `{BESIDE_NAME}` has our value

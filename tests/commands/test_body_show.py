@@ -31,6 +31,9 @@ def test_tables_and_files(car, tmp_path, capsys):
     body = car.trimmed_body
     assert "\ncompared with the car focus; --vehicle chooses another\n" in printed
     assert "mass [kg]              813.00     813.00       +0.00" in printed
+    # Ixz is the integral of xz dm, the opposite of the element of the tensor.
+    (products,) = (line.split()[3] for line in printed.splitlines() if line.startswith("Ixz [kg m2]"))
+    assert products != "0.0" and float(products) == pytest.approx(-body.inertia[0, 2], abs=0.06)
     assert "   2   25.500   3.00 %  torsion" in printed and "-0.0" not in printed
     assert "two different bodies" not in printed  # the frame has the mass properties of its vehicle
     modes, attachments, residuals = (rows_of(folder / f"{name}.csv") for name in ("modes", "attachments", "residuals"))

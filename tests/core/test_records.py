@@ -5,7 +5,7 @@ from typing import NamedTuple, get_type_hints
 import numpy as np
 import pytest
 
-from vehicle.core.records import core_layout, dtype, layout, packed, records
+from vehicle.core.records import LANE_BYTES, core_layout, dtype, layout, packed, records, stored
 from vehicle.engines.simulation.element_records import Layout
 from vehicle.engines.simulation.sampling import Samples
 from vehicle.engines.simulation.step_records import State, Weights
@@ -51,3 +51,12 @@ def test_another_type_shape_or_order_is_refused(wrong):
     right = np.zeros(3, dtype=np.int64)
     with pytest.raises(TypeError, match=r"RubberFriction\.limit: .* is no double of 1 dimensions"):
         packed("RubberFriction", Friction(right, right, np.ones(3), wrong))
+
+
+def test_a_stored_record_has_its_arrays_where_it_says():
+    record = Friction(np.arange(3), np.zeros(3, dtype=np.int64), np.array([1.5, 2.5, 3.5]), np.arange(3.0))
+    content, extents = stored("RubberFriction", record, begin := 4 * LANE_BYTES)
+    assert list(extents) == list(Friction._fields)
+    for name, (offset, size) in extents.items():
+        assert offset % LANE_BYTES == 0
+        assert content[offset - begin :][:size] == getattr(record, name).tobytes(), name

@@ -18,16 +18,20 @@ outputs.
 from __future__ import annotations
 
 import contextlib
+import gc
 import io
 import os
 import re
+import runpy
 import shlex
 import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+import warnings
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -100,18 +104,15 @@ def commands(block: str) -> list[Command]:
 def agrees(expected: str, line: str) -> bool:
     """True if a line of output has the text of the expected line, and its numbers within the tolerance."""
     expected, line = " ".join(expected.split()), " ".join(line.split())
-    pieces = NUMBER.split(expected)
-    pattern = "(" + NUMBER.pattern + ")"
-    regex = pattern.join(re.escape(piece).replace(re.escape("..."), ".*?") for piece in pieces)
-    match = re.fullmatch(regex, line)
-    if match is None:
-        return False
-    for text, number in zip(NUMBER.findall(expected), match.groups(), strict=True):
-        mantissa, _, exponent = text.lower().partition("e")
-        digit = 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
-        if abs(float(text) - float(number)) > max(0.01 * abs(float(text)), 1.01 * digit * ("." in mantissa)):
-            return False
-    return True
+    pieces = (re.escape(piece).replace(re.escape("..."), ".*?") for piece in NUMBER.split(expected))
+    match = re.fullmatch(f"({NUMBER.pattern})".join(pieces), line)
+    return match is not None and all(map(_close, NUMBER.findall(expected), match.groups()))
+
+
+def _close(text: str, number: str) -> bool:
+    mantissa, _, exponent = text.lower().partition("e")
+    digit = 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
+    return abs(float(text) - float(number)) <= max(0.01 * abs(float(text)), 1.01 * digit * ("." in mantissa))
 
 
 def first_difference(expected: list[str], lines: list[str]) -> str | None:
@@ -133,40 +134,90 @@ def first_difference(expected: list[str], lines: list[str]) -> str | None:
 WIDTH = {"COLUMNS": "80"}
 """Environment of the outputs on the pages: help texts are as wide as the terminal says."""
 
+BYTECODE = tempfile.TemporaryDirectory()
+"""Compiled modules that the processes of a session share."""
 
-def output_of(line: str, folder: Path, in_process: bool) -> tuple[int, str]:
+
+def in_process(line: str) -> Callable[[], object] | None:
+    """Return the call of a plain `python -m vehicle...`, `python -m scenarios...` or `python FILE.py`, or None."""
+    words = shlex.split(line)
+    if re.search(r"[|>;&*]", re.sub(r"'[^']*'|\"[^\"]*\"", "", line)):
+        return None
+    if re.fullmatch(r"python \S+\.py", line):
+        return partial(run_script, words[1])
+    if not re.match(r"python -m (vehicle|scenarios)\b", line):
+        return None
+    module = import_module(words[2])
+    if hasattr(module, "__path__"):
+        module = import_module(f"{words[2]}.__main__")
+    return partial(module.main, words[3:]) if words[2] != "scenarios" else module.main
+
+
+def run_script(file: str) -> int:
+    """Run a script of a page; the end of a process would close the files that it leaves open."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ResourceWarning)
+        runpy.run_path(file, run_name="__main__")
+        gc.collect()
+    return 0
+
+
+def output_of(line: str, folder: Path, call: Callable[[], Any] | None = None) -> tuple[int, str]:
     """Run a command in a folder and return its exit code and its output, both streams together.
 
     Args:
         line: command, as a user types it.
         folder: working directory.
-        in_process: run `python -m vehicle...` and `python -m scenarios...` in this process, which saves the imports.
+        call: `in_process(line)`, which saves the imports; None for a process of its own.
     """
-    words = shlex.split(line)
-    plain = not re.search(r"[|>;&*]", re.sub(r"'[^']*'|\"[^\"]*\"", "", line))
-    if in_process and plain and re.match(r"python -m (vehicle\b|scenarios\.)", line):
-        module = import_module(words[2])
-        if hasattr(module, "__path__"):
-            module = import_module(f"{words[2]}.__main__")
+    if call is not None:
         stream, wide = io.StringIO(), mock.patch.dict(os.environ, WIDTH)
         with wide, contextlib.chdir(folder), contextlib.redirect_stdout(stream), contextlib.redirect_stderr(stream):
             try:
-                code = module.main(words[3:])
+                code = call()
             except SystemExit as end:
                 code = int(end.code or 0)
         return code, stream.getvalue()
-    here = ROOT if in_process else folder
-    environment = {
-        **os.environ,
+    copied = (folder / "pyproject.toml").is_file()
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"} | {
         **WIDTH,
         "PATH": os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]]),
-        "PYTHONPATH": str(here),
+        "PYTHONPATH": str(folder if copied else ROOT),
+        "PYTHONPYCACHEPREFIX": BYTECODE.name,
     }
     done = subprocess.run(
         ["bash", "-c", line], cwd=folder, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
         timeout=HANG, check=False,
     )  # fmt: skip
     return done.returncode, done.stdout
+
+
+SHARED: dict[str, tuple[int, str, Path, dict[str, int]]] = {}
+"""Command to its exit code and output, the folder of the page that ran it, and the files that it wrote there."""
+
+
+def shared_output(line: str, folder: Path) -> tuple[int, str]:
+    """Run a command of a page in this process, once for all pages where it reads and replaces no file of the page."""
+    call, before = in_process(line), files_of(folder)
+    if call is None or any((folder / part).exists() for part in re.split(r"[\s=:,]+", line)):
+        return output_of(line, folder, call)
+    code, output, source, made = SHARED.get(line, (0, "", folder, {}))
+    if source == folder or before.keys() & made or not made.items() <= files_of(source).items():
+        code, output = output_of(line, folder, call)
+        made = dict(files_of(folder).items() - before.items())
+        SHARED[line] = code, output, folder, made
+        return code, output
+    for name in made:
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(source / name, folder / name)
+    return code, output
+
+
+def files_of(folder: Path) -> dict[str, int]:
+    """Return the files of a page, relative to its folder, with the time of their last change [ns]."""
+    return {
+        path.relative_to(folder).as_posix(): path.stat().st_mtime_ns for path in folder.rglob("*") if path.is_file()
+    }
 
 
 @dataclass
@@ -204,7 +255,7 @@ def execute(page: str, folder: Path, renew: bool = False) -> Execution:
         elif language == "diff":
             apply(block, folder)
         elif language == "python" and copied:
-            code, output = output_of(f"{shlex.quote(sys.executable)} -c {shlex.quote(block)}", folder, in_process=False)
+            code, output = output_of(f"{shlex.quote(sys.executable)} -c {shlex.quote(block)}", folder)
             assert code == 0, f"{page}: {output}"
         elif language == "python":
             with contextlib.chdir(folder), contextlib.redirect_stdout(io.StringIO()):
@@ -212,7 +263,7 @@ def execute(page: str, folder: Path, renew: bool = False) -> Execution:
         elif language == "console":
             shown: list[str] = []
             for command in commands(block):
-                code, output = output_of(command.line, folder, in_process=not copied)
+                code, output = output_of(command.line, folder) if copied else shared_output(command.line, folder)
                 lines = [line for line in output.rstrip("\n").split("\n") if not PROGRESS.fullmatch(line.strip())]
                 if not output.strip():
                     lines = []

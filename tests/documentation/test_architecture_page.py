@@ -2,7 +2,7 @@
 
 import re
 
-from tests.test_architecture import PACKAGE, ROOT, WINGS
+from tests.test_architecture import ROOT, WINGS
 from tools.flow_drawing import BOXES, TARGET, drawing
 
 PAGE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
@@ -22,10 +22,3 @@ def test_drawing_and_table_have_every_package():
         if rooms:
             assert sorted(re.findall(r"\w+", " ".join(BOXES[wing][4]))) == sorted(rooms)
             assert re.findall(r"\w+", rows[wing]) == list(rooms)
-
-
-def test_files_that_the_page_names_exist():
-    named = re.findall(r"`((?:vehicle|scenarios|tests|core|signals|model|engines|runs|commands)/[\w/.]+)`", PAGE)
-    named = [name for name in named if not name.endswith("/")]
-    assert len(named) > 20
-    assert [name for name in named if not (ROOT / name).exists() and not (PACKAGE / name).exists()] == []

@@ -1,6 +1,6 @@
 """Files, modules and classes that a page names exist: a page outlives a name of the code without a test."""
 
-import importlib
+import pkgutil
 import re
 import subprocess
 from functools import cache
@@ -80,16 +80,10 @@ def _is_module(name: str, written: set[str]) -> bool:
         return True
     if any(file.endswith(f"/{name.replace('.', '/')}.py") for file in written):
         return True
-    parts = name.split(".")
-    for count in range(len(parts), 0, -1):
-        try:
-            found: object = importlib.import_module(".".join(parts[:count]))
-        except ModuleNotFoundError:
-            continue
-        for part in parts[count:]:
-            found = getattr(found, part, None)
-        return found is not None
-    return False
+    try:
+        return pkgutil.resolve_name(name) is not None
+    except (ImportError, AttributeError):
+        return False
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))

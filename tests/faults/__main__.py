@@ -12,26 +12,27 @@ from pathlib import Path
 from tests.faults.cases import FAULTS
 from tests.faults.jobs import commands
 from tests.faults.table import ROOT, Count, build, counted, outcomes
+from tools.wrap_docs import wrapped
 
 PAGE = ROOT / "docs" / "faults.md"
 
 HEAD = """# Faults
 
-Nothing that was written is lost, shown as in the tests of SQLite: a preloaded library makes the n-th system call (open,
-read access, write, sync, rename, removal, memory map, close, new folder) of a command fail, or kills the process there.
-Each command replaces results of another input (`--force`). After each case the results must be those of before, byte
-for byte, or the new ones, complete; the exit code and the message must be true; what is left must be mentioned, and the
-next command must succeed, say what it found, and leave nothing of it.
+No written result is lost. This is tested as in SQLite: a preloaded library makes the n-th system call (open, read
+access, write, sync, rename, removal, memory map, close, new folder) of a command fail, or kills the process there. Each
+command replaces results of another input (`--force`). After each case the results must be those of before, byte for
+byte, or the new ones, complete; exit code and message must be correct; leftovers must be named, and the next command
+must succeed, report them and remove them.
 
 Several files that a command adds to a folder with others (`loads`, `spectra`, `road`, `fit-mount`, `fit-damper`) cannot
 be exchanged in one step: each is whole at any time, but after a kill between their renames some are new and some are
-earlier ones. The next command that reads them says so, and the same command, typed again, writes all.
+earlier ones. The next command that reads them reports this, and the same command, repeated, writes all.
 
 Each command that writes has a row, for each option and format that writes; a test compares them with the parsers. The
 rows "only writing" write small files in each way that the commands use, without a computation. `bench` replaces nothing
 and has none. A film is written by ffmpeg, a process of its own whose calls do not fail here: the rows of both films are
-of the calls of this process, its other files and the exchange, fewer for the film of a run; a test writes a
-film, and each other format, beyond a limit of the size of files. Files with the time that was computed (`summary.json`,
+of the calls of this process, its other files and the exchange, fewer for the film of a run; a test writes a film, and
+each other format, beyond a limit of the size of files. Files with the time that was computed (`summary.json`,
 `timing.csv`, `rows.jsonl`, `report.html` of a run) differ between two equal commands and are compared with their list
 of digests; all other files must be the same twice, byte for byte, in each format.
 
@@ -69,7 +70,7 @@ def page(table: dict[tuple[str, str], Count], names: Sequence[str], earlier: str
         f"- {name}, {fault}: {case['wrong']}" for (name, fault), c in table.items() for case in c.wrong
     )
     lines += ["", "What was wrong:", "", *(text[:400] for text in texts)] if texts else []
-    return "\n".join(lines) + "\n"
+    return wrapped("\n".join(lines) + "\n")
 
 
 def _rows(table: dict[tuple[str, str], Count], name: str) -> list[Cells]:

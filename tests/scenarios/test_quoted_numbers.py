@@ -38,7 +38,7 @@ def ours(pattern: str) -> list[float]:
 
 def predicted() -> list[str]:
     verdicts = [row["within"] for row in ROWS if row["status"] == "predicted"]
-    return [f"{count}" for count in (verdicts.count(True), len(verdicts), verdicts.count(None))]
+    return [f"{count}" for count in (len(verdicts), verdicts.count(True), verdicts.count(None))]
 
 
 def intervals() -> list[str]:
@@ -73,10 +73,10 @@ def first(pattern: str, digits: int) -> list[str]:
 N = r"(-?[\d.]+)"
 
 QUOTES: dict[str, Callable[[], list[str]]] = {
-    rf"{N} of {N} predicted rows agree, {N} undecided": predicted,
-    rf"of {N} rows with a printed interval our value is inside in {N}, not contradicted at 5 % in {N}": intervals,
-    rf"in addition {N} rows are fitted": lambda: number_of("fitted"),
-    rf"rows are fitted, {N} chosen": lambda: number_of("chosen"),
+    rf"Of {N} \[?published results\S* that nothing was fitted to, {N} agree and {N} are undecided": predicted,
+    rf"Of {N} results printed as an interval, our value is inside {N}, and {N} are not contradicted": intervals,
+    rf"{N} more are fitted": lambda: number_of("fitted"),
+    rf"more are fitted, {N} chosen": lambda: number_of("chosen"),
     rf"slip share[^|]*, right damper[^|]*\| {N} / {N} / {N} % \| {N} / {N} / {N} % \|": lambda: shares("right"),
     rf"slip share[^|]*, left damper[^|]*\| {N} / {N} / {N} % \| {N} / {N} / {N} % \|": lambda: shares("left"),
     rf"above {N} mm/s; the share above 1 mm/s": lambda: [f"{1e3 * CHOSEN.slip_velocity:g}"],

@@ -123,6 +123,26 @@ def test_libraries_are_found_whatever_is_imported_first(first):
     assert done.stdout.strip() == "True {1}"
 
 
+@pytest.mark.parametrize("given", [None, "3"])
+def test_a_command_has_one_thread_with_or_without_a_search_for_libraries(given, monkeypatch):
+    for name in THREADS:
+        monkeypatch.delenv(name, raising=False)
+    if given is not None:
+        monkeypatch.setenv("OPENBLAS_NUM_THREADS", given)
+    code = (
+        "from vehicle.commands.command_line import begin_process\nbegin_process()\n"
+        "from vehicle import threads\n"
+        "with threads.one_blas_thread():\n"
+        "    import numpy, scipy.linalg\n    from threadpoolctl import ThreadpoolController\n"
+        "    numbers = {b.num_threads for b in ThreadpoolController().select(user_api='blas').lib_controllers}\n"
+        "print(numbers, len(threads._libraries()) > 0)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=HANG, check=True, cwd=ROOT
+    )
+    assert done.stdout.strip() == f"{{1}} {given is not None}"
+
+
 def test_linear_algebra_of_public_functions_has_one_thread(three, monkeypatch):
     libraries = ThreadpoolController().select(user_api="blas").lib_controllers
     seen: dict[str, set[int]] = {}

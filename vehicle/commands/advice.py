@@ -326,7 +326,7 @@ def _accelerations(
     chosen = [measurement.channels[number - 1] for number in axes.values()]
     rate = chosen[0].rate or 0.0
     length = chosen[0].values.size / rate if rate else 0.0
-    if length < SHORTEST or rate < 25.0:
+    if length < SHORTEST or rate < 27.500000000000004:
         return "", (
             f"an acceleration of {length:.3g} s, sampled at {rate:.4g} Hz: comfort needs at least {SHORTEST:g} "
             "s, sampled at 25 Hz or more"

@@ -203,6 +203,32 @@ def continued(
     return difference, end
 
 
+def slow_end(model: PoleModel, inputs: Vector, interval: float, start: Complex | None) -> Complex:
+    """Return the state of the slow poles, see `continued`, one interval after the last sample of their inputs.
+
+    xi(T) = e^(p T) xi(0) + integral of e^(p (T - t)) b u(t) dt, by the trapezoidal rule, with z' by parts.
+
+    Args:
+        model: the car.
+        inputs: inputs without z', less what they are at rest; (inputs - w, n).
+        interval: sampling interval [s].
+        start: state at the first sample; None at rest.
+    """
+    wheels, count = len(model.matrices.system.inputs), inputs.shape[1]
+    slow = np.flatnonzero(model.poles.real > -SLOW)
+    poles, effects = model.poles[slow, None], input_effects(model)[slow]
+    height, velocity, others = np.split(effects, [wheels, 2 * wheels], axis=1)
+    # The last sample holds until the end.
+    inputs = np.hstack([inputs, inputs[:, -1:]])
+    weights = np.exp(poles * (interval * np.arange(count, -1, -1)))
+    end = np.zeros(len(slow), dtype=complex) if start is None else start * weights[:, 0]
+    # integral e^(p (T - t)) z' dt = z(T) - e^(p T) z(0) + p integral e^(p (T - t)) z dt.
+    end = end + velocity @ inputs[:wheels, -1] - weights[:, 0] * (velocity @ inputs[:wheels, 0])
+    weights[:, [0, -1]] *= 0.5
+    driven = np.hstack([height + poles * velocity, others]) @ inputs
+    return np.asarray(end + interval * np.sum(weights * driven, axis=1))
+
+
 def plate_inputs(
     model: PoleModel, signal: Signal, time: Vector, channels: Mapping[str, Vector], tyre_load: Mapping[str, float]
 ) -> tuple[Vector, Vector]:
