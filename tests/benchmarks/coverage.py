@@ -270,12 +270,8 @@ def tuning(repetitions: int) -> Rows:
 
 
 PARTS: dict[str, Callable[[int], Rows]] = {
-    "comfort": comfort,
-    "length": length,
-    "quantile": quantile,
-    "sobol": sobol,
-    "tuning": tuning,
-}
+    "comfort": comfort, "length": length, "quantile": quantile, "sobol": sobol, "tuning": tuning,
+}  # fmt: skip
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -9,13 +9,9 @@ from vehicle.engines.linear.motion_names import NAMED
 from vehicle.runs.car import Car
 
 CARS = (
-    ("focus", "stuck"),
-    ("focus", "sliding"),
-    ("focus_road", "stuck"),
-    ("focus_road_seated", "stuck"),
-    ("sedan", "stuck"),
-    ("sedan", "sliding"),
-)
+    ("focus", "stuck"), ("focus", "sliding"), ("focus_road", "stuck"), ("focus_road_seated", "stuck"),
+    ("sedan", "stuck"), ("sedan", "sliding"),
+)  # fmt: skip
 
 
 def main() -> None:

@@ -27,13 +27,10 @@ from vehicle.studies.tuning.posterior import EmulatedCar, emulated_car, posterio
 from vehicle.studies.tuning.response_cells import evaluated_cars
 
 FACTORS = {
-    "front.main_spring.stiffness": (0.6, 1.6),
-    "front.damper.viscous": (0.5, 2.0),
-    "front.damper.coulomb_friction": (0.5, 2.0),
-    "front.bushings.tyre.stiffness.z": (0.7, 1.4),
-    "front.parts.tyre.mass": (0.7, 1.4),
-    "front.bushings.suspension_mount.stiffness.z": (0.5, 2.0),
-}
+    "front.main_spring.stiffness": (0.6, 1.6), "front.damper.viscous": (0.5, 2.0),
+    "front.damper.coulomb_friction": (0.5, 2.0), "front.bushings.tyre.stiffness.z": (0.7, 1.4),
+    "front.parts.tyre.mass": (0.7, 1.4), "front.bushings.suspension_mount.stiffness.z": (0.5, 2.0),
+}  # fmt: skip
 """Bounds of the six parameters over the values of `focus_road`."""
 
 DEGRESSIVE = ("front.damper.viscous_law=degressive", "front.damper.coulomb_friction=1.0")

@@ -88,10 +88,7 @@ def compare(car: Car, signal: Signal, skip: float, title: str) -> None:
             scale * np.std(linear[0]) - 100.0,
             scale * np.std(odd + second) - 100.0,
         )
-        print(
-            f"{channel:<26}" + "".join(f"{value:9.2f}" for value in values),
-            flush=True,
-        )
+        print(f"{channel:<26}" + "".join(f"{value:9.2f}" for value in values), flush=True)
 
 
 def arcs(car: Car, motion: Motion) -> dict[str, Vector]:
@@ -165,12 +162,9 @@ def second_order_of(car: Car, signal: Signal, run: Recording) -> tuple[Motion, d
     )
     height = padded(np.array([plates.displacement[wheel] for wheel in wheels]), interval)
     motion = linear_motion(
-        car.matrices,
-        height - height.mean(axis=1, keepdims=True),
-        interval,
-        friction=padded(friction, interval),
+        car.matrices, height - height.mean(axis=1, keepdims=True), interval, friction=padded(friction, interval),
         slope=padded(slope, interval),
-    )
+    )  # fmt: skip
     damping = [
         equivalent_damping(damper.law, run[f"{damper.name}_velocity"], run[f"{damper.name}_force"])
         for damper in dampers

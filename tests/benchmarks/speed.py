@@ -66,12 +66,9 @@ BATCH = 16
 """Cars that are run at once."""
 
 PARTS = {
-    "position": "mjTIMER_POSITION",
-    "velocity": "mjTIMER_VELOCITY",
-    "control": "mjTIMER_ACTUATION",
-    "constraint": "mjTIMER_CONSTRAINT",
-    "advance": "mjTIMER_ADVANCE",
-}
+    "position": "mjTIMER_POSITION", "velocity": "mjTIMER_VELOCITY", "control": "mjTIMER_ACTUATION",
+    "constraint": "mjTIMER_CONSTRAINT", "advance": "mjTIMER_ADVANCE",
+}  # fmt: skip
 """Parts of a step that MuJoCo's timers know; `control` holds the callbacks, the rest is inertia and sensors."""
 
 Figures = dict[str, float | str | dict[str, float]]
@@ -83,6 +80,7 @@ class Effort:
 
     Attributes:
         repeats: interleaved repetitions of each measurement.
+        starts: repetitions of a start in a new process, after a first one.
         steps: steps of one repetition.
         seconds: length of the timed runs [s].
         accuracy_seconds: length of the runs that are compared with an eighth of the step [s].
@@ -90,6 +88,7 @@ class Effort:
     """
 
     repeats: int = 7
+    starts: int = 7
     steps: int = 2000
     seconds: float = 4.0
     accuracy_seconds: float = 60.0
@@ -170,18 +169,15 @@ def batch_factor(car: Car, signal: Signal) -> float:
     """Simulated time of all cars of a batch over its computing time, tables and all, channels of comfort and slip."""
     started = time.perf_counter()
     simulate_batch(
-        [car.poles] * BATCH,
-        signal,
-        dampers=[[damper.law for damper in car.vehicle.composition.dampers]] * BATCH,
-        record_rate=car.vehicle.solver.record_rate,
-        tyre_load=[car.model.static.tyre_load] * BATCH,
+        [car.poles] * BATCH, signal, dampers=[[damper.law for damper in car.vehicle.composition.dampers]] * BATCH,
+        record_rate=car.vehicle.solver.record_rate, tyre_load=[car.model.static.tyre_load] * BATCH,
         channels=[name for name in FEW if not name.endswith("_force")],
-    )
+    )  # fmt: skip
     return BATCH * signal.duration / (time.perf_counter() - started)
 
 
 def start_ms(statement: str, repeats: int) -> float:
-    """Return the processor time of a statement in a new process [ms]: the minimum of repetitions after a first run."""
+    """Return the processor time of a statement in a new process [ms]: minimum after a first run, or that run."""
     code = f"import time; begin = time.process_time(); {statement}; print(time.process_time() - begin)"
     command = [sys.executable, "-c", code]
     times = [subprocess.run(command, capture_output=True, text=True, check=True).stdout for _ in range(repeats + 1)]
@@ -191,18 +187,8 @@ def start_ms(statement: str, repeats: int) -> float:
 def shaker_ms(repeats: int) -> float:
     """Return the processor time of the command `shaker` with the reduced engine in a new process [ms]."""
     with tempfile.TemporaryDirectory() as folder:
-        words = [
-            "shaker",
-            "--input",
-            "low.csv",
-            "--engine",
-            "reduced",
-            "--output",
-            f"{folder}/run",
-            "--force",
-            "--quiet",
-        ]
-        return start_ms(f"import sys; sys.argv = {words}; from vehicle.commands.shaker import main; main()", repeats)
+        words = ["--input", "low.csv", "--engine", "reduced", "--output", f"{folder}/run", "--force", "--quiet"]
+        return start_ms(f"from vehicle.commands.shaker import main; main({words})", repeats)
 
 
 def accuracy(car: Car, seconds: float) -> Figures:
@@ -279,9 +265,9 @@ def measure(effort: Effort) -> Figures:
         "four_wheel_step_us": median(four_wheel),
         "four_wheel_step_ratio": median(four / two for four, two in zip(four_wheel, native, strict=True)),
         "four_wheel_reduced_realtime_factor": median(four_wheel_reduced),
-        "import_ms": start_ms("import vehicle", effort.repeats),
-        "shaker_ms": shaker_ms(effort.repeats),
-        "first_car_ms": start_ms("from vehicle import Car; Car.load('focus')", effort.repeats),
+        "import_ms": start_ms("import vehicle", effort.starts),
+        "shaker_ms": shaker_ms(effort.starts),
+        "first_car_ms": start_ms("from vehicle import Car; Car.load('focus')", effort.starts),
         "case_ms": min(case_ms(effort.cases) for _ in range(2)),
         "parts_us": parts["native"],
         "plain_parts_us": parts["plain"],

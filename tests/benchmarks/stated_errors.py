@@ -29,24 +29,15 @@ SPREAD = 0.2
 """Largest relative change of a number."""
 
 FIXED = (
-    ("sedan", "half_round:15", 20.0),
-    ("sedan", "cleat:10x50", 30.0),
-    ("focus_road", "cleat:5x50", 28.0),
-    ("focus_road", "cleat:10x50", 30.0),
-    ("focus_road", "pothole:20x300", 40.0),
-    ("focus_road", "C", 80.0),
-    ("kinematic_reference", "C", 80.0),
-    ("sedan", "C", 80.0),
-    ("focus_road_seated", "C", 60.0),
-)
+    ("sedan", "half_round:15", 20.0), ("sedan", "cleat:10x50", 30.0), ("focus_road", "cleat:5x50", 28.0),
+    ("focus_road", "cleat:10x50", 30.0), ("focus_road", "pothole:20x300", 40.0), ("focus_road", "C", 80.0),
+    ("kinematic_reference", "C", 80.0), ("sedan", "C", 80.0), ("focus_road_seated", "C", 60.0),
+)  # fmt: skip
 
 CHANNELS = {
-    "seat": "seat and seat rail",
-    "body": "body",
-    "knuckle": "knuckles",
-    "tyre": "tyre forces",
+    "seat": "seat and seat rail", "body": "body", "knuckle": "knuckles", "tyre": "tyre forces",
     "damper": "damper forces",
-}
+}  # fmt: skip
 
 
 def main() -> None:

@@ -45,14 +45,9 @@ SECONDS = 20.0
 def cases(count: int) -> list[Case]:
     """Cases of Sobol indices: ten parameters vary on the smooth road, the reduced engine."""
     road = RoadInput(
-        name="smooth road",
-        rms=ROAD_RMS["smooth"],
-        seed=0,
-        wheel="fl",
-        duration=SECONDS,
-        lead=LEAD_S,
+        name="smooth road", rms=ROAD_RMS["smooth"], seed=0, wheel="fl", duration=SECONDS, lead=LEAD_S,
         lower_band_edge=ROAD_EDGE_HZ,
-    )
+    )  # fmt: skip
     base = max(LEAST_BASE, 2 ** int(np.log2(max(24, 2 * count) / (len(RANGES) + 2))))
     points = sobol_sample(RANGES, base, seed=SEED)[:count].tolist()
     return list(table_cases([one.path for one in RANGES], points, [road], engine="reduced"))

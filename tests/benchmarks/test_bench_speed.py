@@ -14,7 +14,7 @@ from vehicle.signals.excitation.input_files import find_input
 
 def test_numbers_follow_a_slider_faster_than_a_car_is_made():
     """A changed parameter reuses the matrices of the car: less time than the car takes from its file."""
-    changed = numbers_ms("focus", on_road=False, repeats=5)
+    changed = numbers_ms("focus", on_road=False, repeats=3)
     drive = bench_drive(Car.load("focus"), read_signal(find_input("high.csv"), wheel="fl"), seconds=SECONDS)
     began = time.thread_time()
     numbers(Car.load("focus"), drive)
@@ -24,5 +24,5 @@ def test_numbers_follow_a_slider_faster_than_a_car_is_made():
 @pytest.mark.parametrize(("name", "picture"), [("focus", "run"), ("focus", "mode"), ("focus_road", "obstacle")])
 def test_frames_are_sent_to_a_window(name, picture):
     pytest.importorskip("viser", reason="viser is missing: pip install 'vehicle-on-shaker[bench]'")
-    rate, cost = frame_ms(name, picture, 1.0)
+    rate, cost = frame_ms(name, picture, 0.3)
     assert rate > 0.0 and cost > 0.0

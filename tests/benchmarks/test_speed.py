@@ -8,7 +8,7 @@ import pytest
 
 from tests.benchmarks import speed
 
-SMALL = speed.Effort(repeats=1, steps=50, seconds=0.5, accuracy_seconds=0.5, cases=1)
+SMALL = speed.Effort(repeats=1, starts=0, steps=50, seconds=0.25, accuracy_seconds=0.25, cases=1)
 TIMES = {"step_us", "plain_step_us", "realtime_factor", "reduced_realtime_factor"}
 TIMES |= {"reduced_few_realtime_factor", "four_wheel_step_us", "four_wheel_step_ratio"}
 TIMES |= {"four_wheel_reduced_realtime_factor", "batch_realtime_factor", "case_ms", "import_ms", "first_car_ms"}

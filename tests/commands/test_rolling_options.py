@@ -93,7 +93,7 @@ def test_a_speed_that_is_given_twice_is_refused(
 
 def test_studies_over_the_speed_of_a_road_are_refused() -> None:
     car, ride = Car.load("sedan"), road("A", 80, duration=3)
-    message = r"driving\.speed=1.*: the speed of the car is given twice, also by the road with 80 km/h"
+    message = r"driving\.speed=1.*: the road already sets another speed, 80 km/h"
     with pytest.raises(ConfigurationError, match=message):
         plan_sweep(car, {"driving.speed": [1.0, 20.0]}, ride)
     with pytest.raises(ConfigurationError, match=message):

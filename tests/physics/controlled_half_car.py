@@ -28,12 +28,9 @@ def half_car_spec(car, damper, step):
     for name, axle, arm in (("fr", car.front, -car.body.front_arm), ("rr", car.rear, car.body.rear_arm)):
         wheel = add_mass(body, f"wheel_{name}", axle.unsprung_mass, np.full(3, 1e-9), position=[arm, 0.0, 0.0])
         wheel.add_joint(
-            name=f"damper_{name}",
-            type=mujoco.mjtJoint.mjJNT_SLIDE,
-            axis=UP,
-            stiffness=[axle.suspension_stiffness, 0.0, 0.0],
-            frictionloss=1e-9,
-        )
+            name=f"damper_{name}", type=mujoco.mjtJoint.mjJNT_SLIDE, axis=UP,
+            stiffness=[axle.suspension_stiffness, 0.0, 0.0], frictionloss=1e-9,
+        )  # fmt: skip
         plate = spec.worldbody.add_body(name=f"plate_{name}", pos=[arm, 0.0, 1.0], mocap=True)
         tyre = element_law([0, 0, axle.tyre_stiffness], [0, 0, axle.tyre_damping])
         add_bushing(spec, f"tyre_{name}", wheel, plate, tyre)
@@ -47,12 +44,9 @@ def half_car_spec(car, damper, step):
 def _limb(parent, name, position, limb):
     body = add_mass(parent, name, limb.mass, np.full(3, 1e-9), position=position)
     body.add_joint(
-        name=name,
-        type=mujoco.mjtJoint.mjJNT_SLIDE,
-        axis=UP,
-        stiffness=[limb.stiffness, 0.0, 0.0],
+        name=name, type=mujoco.mjtJoint.mjJNT_SLIDE, axis=UP, stiffness=[limb.stiffness, 0.0, 0.0],
         damping=[limb.damping, 0.0, 0.0],
-    )
+    )  # fmt: skip
     return body
 
 

@@ -65,15 +65,9 @@ def swing(step, duration=0.2):
 
 def test_against_a_stiff_solver_with_second_order():
     solution = solve_ivp(
-        lambda _, y: [y[1], -(STIFFNESS * y[0] + table_force(y[1]) + REST) / MASS],
-        (0.0, 0.2),
-        [0.02, 0.0],
-        method="Radau",
-        t_eval=np.linspace(0.0, 0.2, 51),
-        rtol=1e-10,
-        atol=1e-13,
-        max_step=1e-3,
-    )
+        lambda _, y: [y[1], -(STIFFNESS * y[0] + table_force(y[1]) + REST) / MASS], (0.0, 0.2), [0.02, 0.0],
+        method="Radau", t_eval=np.linspace(0.0, 0.2, 51), rtol=1e-10, atol=1e-13, max_step=1e-3,
+    )  # fmt: skip
     steps = np.array([4e-3, 2e-3, 1e-3])
     errors = [np.max(np.abs(swing(step) - solution.y[0])) for step in steps]
     order = np.polyfit(np.log(steps), np.log(errors), 1)[0]

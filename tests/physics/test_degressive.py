@@ -64,15 +64,9 @@ def exact(friction, duration=0.3):
     """Return the same motion by a stiff solver, every 4 ms."""
     times = np.linspace(0.0, duration, round(duration / 4e-3) + 1)
     solution = solve_ivp(
-        lambda _, y: [y[1], -(STIFFNESS * y[0] + force_of(y[1], friction)) / MASS],
-        (0.0, duration),
-        [0.01, 0.0],
-        method="Radau",
-        t_eval=times,
-        rtol=1e-9,
-        atol=1e-13,
-        max_step=1e-3,
-    )
+        lambda _, y: [y[1], -(STIFFNESS * y[0] + force_of(y[1], friction)) / MASS], (0.0, duration), [0.01, 0.0],
+        method="Radau", t_eval=times, rtol=1e-9, atol=1e-13, max_step=1e-3,
+    )  # fmt: skip
     return solution.y[0]
 
 
@@ -127,9 +121,7 @@ def test_the_damper_of_the_car_follows_its_law(degressive_car, high_piece):
     run = degressive_car.run(high_piece)
     damper = degressive_car.vehicle.damper
     law = Degressive(
-        low_damping=damper.degressive_viscous,
-        high_damping=damper.viscous,
-        knee_velocity=damper.degressive_velocity,
+        low_damping=damper.degressive_viscous, high_damping=damper.viscous, knee_velocity=damper.degressive_velocity
     )
     velocity, force = run["damper_fr_velocity"], run["damper_fr_force"]
     sliding = np.abs(velocity) > 1e-3

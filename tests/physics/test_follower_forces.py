@@ -66,11 +66,9 @@ def test_a_force_turns_with_its_part_or_keeps_its_direction(axes):
     validated(
         "Applied forces",
         f"force and moment in the axes of the {axes} on an engine turned by 0.9 rad: generalised forces",
-        generalised[0] - generalised[1],
-        linear.T @ rotation @ FORCE + angular.T @ rotation @ MOMENT,
-        source="closed form: J' R f with the Jacobians of MuJoCo",
-        peak=1e-9,
-    )
+        generalised[0] - generalised[1], linear.T @ rotation @ FORCE + angular.T @ rotation @ MOMENT,
+        source="closed form: J' R f with the Jacobians of MuJoCo", peak=1e-9,
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("against", ["", "knuckle_fr"])
@@ -119,18 +117,14 @@ def test_both_engines_agree_on_a_mean_follower_force_that_shakes():
     precise, reduced = (car.run(level(car, 3.0), engine=kind, channels=names) for kind in ("mujoco", "reduced"))
     sizes = [np.std(reduced[name] - precise[name]) / np.std(precise[name]) for name in names]
     validated(
-        "Applied forces",
-        "engine with a mean follower force that shakes it, 14 Hz: both engines, difference over RMS",
-        sizes,
-        0.0,
-        source="second derivation: MuJoCo",
-        abs=5e-3,
-    )
+        "Applied forces", "engine with a mean follower force that shakes it, 14 Hz: both engines, difference over RMS",
+        sizes, 0.0, source="second derivation: MuJoCo", abs=5e-3,
+    )  # fmt: skip
     assert energies_of(precise).residual < 5e-3
 
 
 def test_axes_that_are_none_are_refused():
-    with pytest.raises(ConfigurationError, match=r"force\.push\.axes: found 'body', allowed are vehicle, part"):
+    with pytest.raises(ConfigurationError, match=r"force\.push\.axes: found 'body', must be one of vehicle, part"):
         pushed("body")
     wheel = {"force.a.on": "tyre_fr", "force.a.force": [0, 0, 1], "force.a.axes": "part", "driving.speed": 20.0}
     with pytest.raises(ConfigurationError, match=r"force\.a\.axes: found 'part' on tyre_fr, which turns with the"):

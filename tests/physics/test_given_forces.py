@@ -33,14 +33,10 @@ def test_a_run_records_its_forces_and_its_crankshaft(engine):
     torque = 15.0 + 20.0 * rise(time) * np.cos(4.0 * np.pi * turns + np.radians(30.0))
     speed = np.minimum(600.0 + 400.0 * time, 1200.0)
     validated(
-        "Applied forces",
-        f"recorded torque in a run-up from 600 to 1200 rpm, order 2 and a mean, {engine} engine",
-        run["torque_idle"][::20],
-        torque[::20],
-        source="closed form: 15 + 20 w cos(2 theta + 30 degrees), theta of a linear speed",
-        peak=1e-12,
-        unit="N m",
-    )
+        "Applied forces", f"recorded torque in a run-up from 600 to 1200 rpm, order 2 and a mean, {engine} engine",
+        run["torque_idle"][::20], torque[::20],
+        source="closed form: 15 + 20 w cos(2 theta + 30 degrees), theta of a linear speed", peak=1e-12, unit="N m",
+    )  # fmt: skip
     assert run["angle_crank"] == pytest.approx(2.0 * np.pi * turns, rel=1e-12)
     assert run["speed_crank"] == pytest.approx(speed, rel=1e-12)
     assert [run.recording.units[name] for name in names] == ["rad", "m/s2", "N m", "1/min"]
@@ -89,13 +85,9 @@ def test_a_frf_to_a_force_is_that_of_the_matrices(place):
     unit = np.array([amplitude * np.exp(1j * np.radians(phase)) for _, amplitude, phase in HARMONICS])
     found = car.force_frf(CHANNELS, lines, force="shake", damper="sliding")
     validated(
-        "Applied forces",
-        f"FRF to a force, {place}, 8 to 58 Hz: seat rail, knuckle and engine",
-        found * unit,
-        solved(car),
-        source="second derivation: matrices with the joints as constraints, line by line",
-        peak=1e-9,
-    )
+        "Applied forces", f"FRF to a force, {place}, 8 to 58 Hz: seat rail, knuckle and engine", found * unit,
+        solved(car), source="second derivation: matrices with the joints as constraints, line by line", peak=1e-9,
+    )  # fmt: skip
     stuck = car.force_frf(CHANNELS, lines, force="shake")
     # A damper that sticks takes the force along its slide.
     gone = place == "force along the slide of a damper"
@@ -133,9 +125,7 @@ def test_forces_that_are_not_there_are_refused():
     car, still = Car.load("focus", RAIL), Signal(time=np.arange(501) / 1e3, displacement={"fr": np.zeros(501)})
     with pytest.raises(VehicleError, match=r"force\.a\.enabled is false"):
         car.with_({"force.a.enabled": False}).run(still, engine="reduced", forces={"a": np.zeros(501)})
-    with pytest.raises(
-        VehicleError, match="force: unknown name 'shake', no force of this car; did you mean a"
-    ):
+    with pytest.raises(VehicleError, match="force: unknown name 'shake', no force of this car; did you mean a"):
         car.force_frf(["seat_rail_acc_z"], [5.0], force="shake")
     with pytest.raises(VehicleError, match="no channel 'force_a'"):
         car.run(still, engine="reduced", channels=["force_a"])  # it has no history

@@ -39,12 +39,9 @@ TRACK = {
 }
 GAP, DISC, LEAK, MEMBRANE, SEAT = 3e-4, 1.0, 60.0, 2e3, 2e6
 DECOUPLED = {
-    "hydromount.decoupler_gap": GAP,
-    "hydromount.decoupler_mass": DISC,
-    "hydromount.decoupler_damping": LEAK,
-    "hydromount.decoupler_stiffness": MEMBRANE,
-    "hydromount.decoupler_seat": SEAT,
-}
+    "hydromount.decoupler_gap": GAP, "hydromount.decoupler_mass": DISC, "hydromount.decoupler_damping": LEAK,
+    "hydromount.decoupler_stiffness": MEMBRANE, "hydromount.decoupler_seat": SEAT,
+}  # fmt: skip
 CHANNELS = ["engine_acc_z", "hydromount_force_z"]
 SOURCE = "closed form: Kr + i w cr + Kb Z / (Kb + Z), Z = -w^2 mt + i w ct"
 
@@ -224,11 +221,8 @@ def test_the_rows_move_with_the_fluid():
 
 def test_a_track_is_refused_where_the_attachment_couples_the_axes():
     mount: dict[str, Any] = {
-        "moving": "engine",
-        "carrier": "body",
-        "at": "hydromount",
-        "axes": ["engine_cog", "linear_mount"],
-    }
+        "moving": "engine", "carrier": "body", "at": "hydromount", "axes": ["engine_cog", "linear_mount"],
+    }  # fmt: skip
     mount |= {"stiffness": [1e5] * 3, "damping": [0.0] * 3, "rotational_stiffness": 0.0}
     mount |= {"chamber_stiffness": 1e5, "track_mass": 20.0, "track_damping": 100.0}
     table = read_table(FOCUS_FILE) | {"connection": {"extra": mount}}

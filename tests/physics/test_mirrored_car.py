@@ -18,30 +18,18 @@ FILE = vehicle_file("sedan")
 STEP_TABLE = {"displacement": [-0.002, 0.0001, 0.002], "force": [-1500.0, 40.0, 500.0]}
 FLUID = {"chamber_stiffness": 4e5, "track_mass": 80.0, "track_damping": 1200.0}
 DECOUPLER = {
-    "decoupler_gap": 5e-5,
-    "decoupler_mass": 1.0,
-    "decoupler_damping": 60.0,
-    "decoupler_stiffness": 2e3,
+    "decoupler_gap": 5e-5, "decoupler_mass": 1.0, "decoupler_damping": 60.0, "decoupler_stiffness": 2e3,
     "decoupler_seat": 2e5,
-}
+}  # fmt: skip
 RUBBER = {"friction_force": [40.0, 30.0, 40.0], "friction_stroke": [2e-4, 1e-4, 2e-4]}
 PENDULUM: dict[str, Any] = {
-    "moving": "engine",
-    "carrier": "body",
-    "at": [0.75, 0.3, 0.6],
-    "stiffness": [2e5, 1e5, 1e5],
-    "damping": [200.0, 100.0, 200.0],
-    "rotational_stiffness": 50.0,
-    "axes": ["pendulum_end", "linear_mount"],
-}
+    "moving": "engine", "carrier": "body", "at": [0.75, 0.3, 0.6], "stiffness": [2e5, 1e5, 1e5],
+    "damping": [200.0, 100.0, 200.0], "rotational_stiffness": 50.0, "axes": ["pendulum_end", "linear_mount"],
+}  # fmt: skip
 OF_A_SIDE: dict[str, Any] = {
-    "moving": "knuckle_fr",
-    "carrier": "body",
-    "at": [0.8, 0.5, 0.5],
-    "stiffness": [1e3, 2e3, 3e3],
-    "damping": [20.0, 20.0, 20.0],
-    "rotational_stiffness": 0.0,
-}
+    "moving": "knuckle_fr", "carrier": "body", "at": [0.8, 0.5, 0.5], "stiffness": [1e3, 2e3, 3e3],
+    "damping": [20.0, 20.0, 20.0], "rotational_stiffness": 0.0,
+}  # fmt: skip
 LOAD: dict[str, Any] = {"mass": 60.0, "at": [3.4, 0.2, 0.7], "inertia": [3.0, 4.0, 5.0], "products": [0.3, 0.2, 0.4]}
 
 

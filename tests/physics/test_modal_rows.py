@@ -4,14 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from tests.engines.simulation.row_model import (
-    TURN,
-    Stepper,
-    add_bushing,
-    add_flexible_body,
-    element_law,
-    empty_spec,
-)
+from tests.engines.simulation.row_model import TURN, Stepper, add_bushing, add_flexible_body, element_law, empty_spec
 from tests.model.flexbody.box_body import box_fields
 from tests.validation import validated
 from vehicle.model.flexbody.superelement import Superelement

@@ -123,25 +123,18 @@ def quarter_cars(law, tyre_damping=0.0):
     plain = matrices(tyre_damping)
     stiffness, share = presliding_elements(law).T
     sliders = SliderElements(
-        rows=plain.system.slide_rows,
-        dampers=np.arange(2),
-        stiffness=np.tile(stiffness, (2, 1)),
-        limit=np.tile(share, (2, 1)),
-        steepness=np.zeros(2),
-    )
+        rows=plain.system.slide_rows, dampers=np.arange(2), stiffness=np.tile(stiffness, (2, 1)),
+        limit=np.tile(share, (2, 1)), steepness=np.zeros(2),
+    )  # fmt: skip
     return dataclasses.replace(plain, sliders=sliders)
 
 
 def reduced(signal, law, step=None, tyre_damping=0.0):
     return simulate_reduced(
-        pole_model(quarter_cars(law, tyre_damping)),
-        signal,
-        dampers=[law] * 2,
-        record_rate=1000.0,
+        pole_model(quarter_cars(law, tyre_damping)), signal, dampers=[law] * 2, record_rate=1000.0,
         tyre_load={"fr": 1e6, "fl": 1e6},
-        channels=[*matrices().system.outputs, "damper_fr_velocity", "damper_fr_force"],
-        step=step,
-    )
+        channels=[*matrices().system.outputs, "damper_fr_velocity", "damper_fr_force"], step=step,
+    )  # fmt: skip
 
 
 QUARTER = damper(friction_law="presliding", presliding_stiffness=STIFFNESS)
@@ -220,14 +213,9 @@ def test_single_and_double_precision():
         channels=channels, step=5e-4,
     )  # fmt: skip
     single = simulate_reduced(
-        model,
-        ROAD,
-        dampers=[law] * 2,
-        record_rate=1000.0,
-        tyre_load={"fr": 1e6, "fl": 1e6},
-        channels=channels,
+        model, ROAD, dampers=[law] * 2, record_rate=1000.0, tyre_load={"fr": 1e6, "fl": 1e6}, channels=channels,
         step=5e-4,
-    )
+    )  # fmt: skip
     for name in channels:
         values = batch.channels[name]
         assert np.array_equal(values[0], values[2])

@@ -29,14 +29,9 @@ SLIP = 1e-3
 def road(size, seconds):
     """Return the road of the study, from rest."""
     return random_road(
-        rms=size,
-        seed=2006,
-        wheel="fr",
-        duration=seconds,
-        rate=1000.0,
-        lower_band_edge=1.0 / seconds,
+        rms=size, seed=2006, wheel="fr", duration=seconds, rate=1000.0, lower_band_edge=1.0 / seconds,
         upper_band_edge=100.0,
-    )
+    )  # fmt: skip
 
 
 @cache

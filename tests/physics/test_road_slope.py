@@ -33,9 +33,7 @@ def test_the_slope_of_a_drive_is_that_of_the_cams() -> None:
     start = slice(0, 4000)
     assert np.sum(rise[start]) == pytest.approx(np.sum(mean[start]), abs=0.02 * np.sum(np.abs(rise[start])))
     assert signal.identity() != replace(signal, slope_velocity={}).identity()
-    with pytest.raises(
-        DataError, match="slope velocity of fr; set it for the wheels with a displacement, fr, rr, or leave it out"
-    ):
+    with pytest.raises(DataError, match=r"slope velocity of fr; .* fr, rr"):
         replace(signal, slope_velocity={"fr": np.zeros(signal.time.size)})
     with pytest.raises(DataError, match="slope velocity of fr has shape"):
         replace(signal, slope_velocity={wheel: np.zeros(3) for wheel in ("fr", "rr")})

@@ -117,17 +117,9 @@ def test_rigid_car_is_the_single_track_car(tmp_path: Path, speed: float, trail: 
     cornering = {"front": 1.2e3, "rear": 2e3}
     stiff = {"carcass_lateral": 1e7, "carcass_longitudinal": 1e7, "trail": trail}
     car = rolling_car(
-        tmp_path,
-        speed,
-        mount=3 * (1e9,),
-        turning=1e6,
-        damping=1e5,
-        inertia=1e-3 / SPINS["tyre"],
-        tyre=stiff,
-        cornering=cornering,
-        vertical=1e9,
-        overrides=["driving.hold_frequency=0.02"],
-    )
+        tmp_path, speed, mount=3 * (1e9,), turning=1e6, damping=1e5, inertia=1e-3 / SPINS["tyre"], tyre=stiff,
+        cornering=cornering, vertical=1e9, overrides=["driving.hold_frequency=0.02"],
+    )  # fmt: skip
     cog = (BODY * COG[0] + sum(2 * sum(MASSES.values()) * position for position in AXLES.values())) / WHOLE
     omega, zeta = 2.0 * np.pi * 0.02, 0.7
     # The inertia of the wheels is nearly zero.
@@ -257,15 +249,12 @@ def test_varied_speed_and_tyre_are_those_of_a_car_that_is_built() -> None:
         assert np.max(np.abs(varied - other)) < 1e-8 * max(np.max(np.abs(other)), 1.0), name
 
 
-@pytest.mark.parametrize(
-    ("vehicle", "override", "message"),
-    [
-        ("focus", "driving.speed=20", "also stands on the ground without wheels"),
-        ("sedan", "front.hardpoints.tyre_patch.x=0.76", "or the load would drive"),
-        ("sedan", "front.parts.tyre.inertia.x=0.9", "must be round about the axle"),
-        ("sedan", "front.parts.brake_disc.offset.z=0.01", "must be round about the axle"),
-    ],
-)
+@pytest.mark.parametrize(("vehicle", "override", "message"), [
+    ("focus", "driving.speed=20", "also stands on the ground without wheels"),
+    ("sedan", "front.hardpoints.tyre_patch.x=0.76", "or the load would drive"),
+    ("sedan", "front.parts.tyre.inertia.x=0.9", "must be round about the axle"),
+    ("sedan", "front.parts.brake_disc.offset.z=0.01", "must be round about the axle"),
+])  # fmt: skip
 def test_cars_that_cannot_roll_are_refused(vehicle: str, override: str, message: str) -> None:
     from vehicle.errors import ConfigurationError
 

@@ -165,7 +165,7 @@ def test_matrices_have_the_tangent_at_rest(plain_car, variant):
 
 def test_small_and_large_vibrations_of_a_car(plain_car):
     """Rubber that does not slide is a spring; the energy of rubber that slides is accounted for."""
-    road = Road("A", speed=80, duration=3)
+    road = Road("A", speed=80, duration=2.5)
     spring = plain_car.with_(stiffened(plain_car)).run(road)
     stuck, sliding = (Car.load("focus_road", rubber(factor)).run(road) for factor in (400.0, 1.0))
     for name in ("seat rail z", "engine z", "knuckle fr z"):

@@ -87,13 +87,9 @@ def reduced(car):
     )
     names = [f"damper_{wheel}_{quantity}" for wheel in loads for quantity in ("velocity", "force", "coefficient")]
     return simulate_reduced(
-        pole_model(car_matrices(model, still)),
-        ROAD,
-        dampers=[damper_of(car)] * 2,
-        record_rate=1.0 / STEP,
-        tyre_load=loads,
-        channels=names,
-    )
+        pole_model(car_matrices(model, still)), ROAD, dampers=[damper_of(car)] * 2, record_rate=1.0 / STEP,
+        tyre_load=loads, channels=names,
+    )  # fmt: skip
 
 
 def gap(values, expected):

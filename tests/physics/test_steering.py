@@ -112,12 +112,8 @@ def test_both_engines_agree_on_nibble(grams):
     validated(
         "Applied forces",
         f"nibble of `sedan_steering` by {grams:g} g at 90 km/h: order 1 of rim, knuckle and seat in both engines",
-        reduced,
-        precise,
-        source="second derivation: MuJoCo",
-        rel=5e-3,
-        peak=1e-4,
-    )
+        reduced, precise, source="second derivation: MuJoCo", rel=5e-3, peak=1e-4,
+    )  # fmt: skip
 
 
 def test_nibble_has_its_resonance_where_the_wheels_meet_the_steering():

@@ -85,11 +85,7 @@ def test_the_beam_twists_about_its_shear_centre(reference):
     pose = lifted(reference, "rear").solve([travel, -travel])[0]
     require_pose("twist beam, wheels 1 mm against each other", pose, moved, turn)
     assert abs(pose.camber_deg) > 0.02 and abs(pose.toe_deg) > 1e-3
-    with pytest.raises(
-        SimulationError,
-        match=r"cannot reach wheel travels of .* mm .*; use less "
-        r"travel, or elastic bushings",
-    ):
+    with pytest.raises(SimulationError, match=r"cannot reach wheel travels of .* mm .*, or elastic bushings"):
         lifted(reference, "rear").solve([0.03, -0.03])
 
 

@@ -54,12 +54,10 @@ def test_grounded_modes_are_those_of_an_own_code() -> None:
     validated(
         "Applied forces",
         "decoupling, engine and torque arm of the sedan on their mounts, body fixed: squared natural frequencies",
-        np.array([(2.0 * np.pi * mode.frequency) ** 2 for mode in found.modes]),
-        squares[:6],
+        np.array([(2.0 * np.pi * mode.frequency) ** 2 for mode in found.modes]), squares[:6],
         source="second derivation: twelve degrees of freedom from points, stiffnesses and inertia of the vehicle file",
-        rel=1e-7,
-        unit="1/s2",
-    )
+        rel=1e-7, unit="1/s2",
+    )  # fmt: skip
     for mode, shape in zip(found.modes, shapes.T[:6], strict=True):
         table = shape[:6, None] * mass[:6, :6] * shape[None, :6]
         assert mode.table == pytest.approx(table / table.sum(), abs=1e-7)

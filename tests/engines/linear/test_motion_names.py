@@ -36,33 +36,27 @@ def named(vertical, frequency=12.0):
     return description(shares)
 
 
-@pytest.mark.parametrize(
-    ("vertical", "name"),
-    [
-        ((1, 1, 0, 0), "front wheel hop, sides in phase"),
-        ((0, 0, 1, -1), "rear wheel hop, sides opposite"),
-        ((1j, -0.9j, 0.3, 0.3), "front wheel hop, sides opposite"),
-        ((1, 0.2, 0, 0), "right front wheel hop"),
-        ((0, 0, 0.1, -3), "left rear wheel hop"),
-        ((1, 1, 1, 1), "front and rear wheel hop, sides in phase, axles in phase"),
-        ((1, 1, -1, -1), "front and rear wheel hop, sides in phase, axles opposite"),
-        ((1, -1, -1, 1), "front and rear wheel hop, sides opposite, axles opposite"),
-        ((1, 1, -1.1, -1), "rear wheel hop, sides in phase"),
-        ((1, 1, 1.2, -1.3), "rear wheel hop, sides opposite"),
-    ],
-)
+@pytest.mark.parametrize(("vertical", "name"), [
+    ((1, 1, 0, 0), "front wheel hop, sides in phase"),
+    ((0, 0, 1, -1), "rear wheel hop, sides opposite"),
+    ((1j, -0.9j, 0.3, 0.3), "front wheel hop, sides opposite"),
+    ((1, 0.2, 0, 0), "right front wheel hop"),
+    ((0, 0, 0.1, -3), "left rear wheel hop"),
+    ((1, 1, 1, 1), "front and rear wheel hop, sides in phase, axles in phase"),
+    ((1, 1, -1, -1), "front and rear wheel hop, sides in phase, axles opposite"),
+    ((1, -1, -1, 1), "front and rear wheel hop, sides opposite, axles opposite"),
+    ((1, 1, -1.1, -1), "rear wheel hop, sides in phase"),
+    ((1, 1, 1.2, -1.3), "rear wheel hop, sides opposite"),
+])  # fmt: skip
 def test_wheels_in_phase_opposite_and_alone(vertical, name):
     assert named(vertical) == name
 
 
 def test_two_names_where_no_motion_holds_half():
     thirds = motion_shares(
-        {"body": np.sqrt(np.array([0.0, 0.0, 0.45, 0.0, 0.0, 0.0], dtype=complex))},
-        {"body": 0.45, "flexible": 0.55},
-        np.sqrt(np.array([0.2, 0.35], dtype=complex)),
-        ("torsion", "mode 2"),
-        20.0,
-    )
+        {"body": np.sqrt(np.array([0.0, 0.0, 0.45, 0.0, 0.0, 0.0], dtype=complex))}, {"body": 0.45, "flexible": 0.55},
+        np.sqrt(np.array([0.2, 0.35], dtype=complex)), ("torsion", "mode 2"), 20.0,
+    )  # fmt: skip
     assert description(thirds) == "body heave (z) (45 %) with flexible body, mode 2 (35 %)"
     assert list(thirds)[2] == "flexible body, mode 1 (torsion)"
 
@@ -83,12 +77,9 @@ def test_rigid_rows_of_a_unit_against_its_bodies():
         masses[body] = np.diag([*[rng.uniform(1.0, 20.0)] * 3, 0.0, 0.0, 0.0])
         masses[body][3:, 3:] = root @ root.T
     matrices: Any = SimpleNamespace(
-        body_rows={body: rng.normal(size=(6, freedom)) for body in bodies},
-        body_masses=masses,
-        body_centres=centres,
-        carried_by={},
-        system=SimpleNamespace(inputs=("fr", "fl")),
-    )
+        body_rows={body: rng.normal(size=(6, freedom)) for body in bodies}, body_masses=masses, body_centres=centres,
+        carried_by={}, system=SimpleNamespace(inputs=("fr", "fl")),
+    )  # fmt: skip
     assert list(rigid_rows(matrices)) == ["wheel_fr"]
     velocity = {body: matrices.body_rows[body] @ rng.normal(size=freedom) for body in bodies}
     matrices.body_rows = {body: velocity[body][:, None] for body in bodies}

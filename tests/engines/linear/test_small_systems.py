@@ -24,23 +24,14 @@ def quarter_car(*, branch=(), tyre_damping=0.0, links=()):
     mass = np.sum([masses[name] * np.outer(row, row) for name, row in rows.items()], axis=0)
     six = {name: np.vstack([np.zeros((2, 2)), row, np.zeros((3, 2))]) for name, row in rows.items()}
     return plain_matrices(
-        mass=mass,
-        damping=np.diag([tyre_damping, 0.0]),
-        stiffness=np.diag([TYRE, SUSPENSION]),
-        constraints=links,
-        dampers=np.array([1]),
-        viscous=np.array([VISCOUS]),
-        branches=[[0.0, 1.0]] * len(branch),
-        branch_stiffness=[stiffness for stiffness, _ in branch],
-        branch_time=[time for _, time in branch],
-        plate_stiffness=np.array([[TYRE, 0.0], [0.0, 0.0]]),
-        plate_damping=np.array([[tyre_damping, 0.0], [0.0, 0.0]]),
-        tyre_stiffness=np.array([TYRE, TYRE]),
-        tyre_damping=np.array([tyre_damping, tyre_damping]),
-        outputs={"body_acc_z": rows["body"], "wheel_acc_z": rows["tyre_fr"]},
-        body_rows=six,
+        mass=mass, damping=np.diag([tyre_damping, 0.0]), stiffness=np.diag([TYRE, SUSPENSION]), constraints=links,
+        dampers=np.array([1]), viscous=np.array([VISCOUS]), branches=[[0.0, 1.0]] * len(branch),
+        branch_stiffness=[stiffness for stiffness, _ in branch], branch_time=[time for _, time in branch],
+        plate_stiffness=np.array([[TYRE, 0.0], [0.0, 0.0]]), plate_damping=np.array([[tyre_damping, 0.0], [0.0, 0.0]]),
+        tyre_stiffness=np.array([TYRE, TYRE]), tyre_damping=np.array([tyre_damping, tyre_damping]),
+        outputs={"body_acc_z": rows["body"], "wheel_acc_z": rows["tyre_fr"]}, body_rows=six,
         body_masses={name: np.diag([value] * 3 + [1.0] * 3) for name, value in masses.items()},
-    )
+    )  # fmt: skip
 
 
 def test_stuck_is_one_mass_on_the_tyre():
@@ -151,13 +142,7 @@ def test_unknown_channel():
 
 def test_groups_of_parts(car):
     names = ("body", "engine", "main_spring_upper_fr", "stabilizer_rod_fl", "tyre_fl")
-    assert [group_of(car.matrices, name) for name in names] == [
-        "body",
-        "engine",
-        "body",
-        "stabilizer",
-        "wheel_fl",
-    ]
+    assert [group_of(car.matrices, name) for name in names] == ["body", "engine", "body", "stabilizer", "wheel_fl"]
 
 
 def test_newtons_beside_metres_are_no_dependent_vectors(monkeypatch):

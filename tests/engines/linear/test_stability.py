@@ -65,9 +65,7 @@ def test_values_that_are_no_numbers_do_not_leave_a_run(car):
         values = recording["seat_rail_acc_z"].copy()
         values[400] = bad
         broken = dict(recording.channels) | {"seat_rail_acc_z": values}
-        with pytest.raises(
-            SimulationError, match=r"channel seat_rail_acc_z is \S+ m/s2 at t = 0\.4000 s: this is impossible"
-        ):
+        with pytest.raises(SimulationError, match=r"channel seat_rail_acc_z is \S+ m/s2 at t = 0\.4000 s"):
             require_finite(type(recording)(**{**fields(recording), "channels": broken}))
 
 

@@ -14,11 +14,7 @@ def sedan():
 
 @pytest.mark.parametrize(
     "changes",
-    [
-        ["body.mass=1300"],
-        ["body.cog=[2.3, 0.05, 0.95]"],
-        ["body.cog.z=1.0", "body.mass=1300", "body.inertia.iyy=2100"],
-    ],
+    [["body.mass=1300"], ["body.cog=[2.3, 0.05, 0.95]"], ["body.cog.z=1.0", "body.mass=1300", "body.inertia.iyy=2100"]],
 )
 def test_a_rigid_body_varied_is_the_body_built(sedan, changes):
     """M, C, K, rows, static loads within 1e-9; no MuJoCo model is made."""

@@ -167,19 +167,16 @@ def test_another_kind_of_element_or_another_place_is_built(car, changes):
     assert car.with_(changes)._from_terms is None
 
 
-@pytest.mark.parametrize(
-    "changes",
-    [
-        ["damper.viscos=1.0"],
-        ["damper.viscous=much"],
-        ["damper.viscous=-1.0"],
-        ["bushings.tyre.stiffness=1.0"],
-        ["main_spring.stiffness=1e3"],
-        ["body.frequency_scale=0.1"],
-        ["engine.parts.engine.mass=999.0", "bushings.hydromount.stiffness.z=0.0"],
-        ["bushings.suspension_mount.stiffness.z=0.0"],
-    ],
-)
+@pytest.mark.parametrize("changes", [
+    ["damper.viscos=1.0"],
+    ["damper.viscous=much"],
+    ["damper.viscous=-1.0"],
+    ["bushings.tyre.stiffness=1.0"],
+    ["main_spring.stiffness=1e3"],
+    ["body.frequency_scale=0.1"],
+    ["engine.parts.engine.mass=999.0", "bushings.hydromount.stiffness.z=0.0"],
+    ["bushings.suspension_mount.stiffness.z=0.0"],
+])  # fmt: skip
 def test_what_is_wrong_is_said_as_of_a_built_car(car, changes):
     varied, built = (
         outcome(lambda make=make: make(changes)) for make in (car.with_, lambda more: Car.load(None, more))

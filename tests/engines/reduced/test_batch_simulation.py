@@ -132,29 +132,19 @@ def test_set_valued_friction_under_a_sine():
     """A mass on a tyre over a plate, its damper to the ground: Den Hartog's oscillator, with stops, in closed form."""
     stiffness, limit, omega = 100.0, 18.0, 4.0
     system = plain_matrices(
-        mass=np.eye(2),
-        damping=np.zeros((2, 2)),
-        stiffness=stiffness * np.eye(2),
-        dampers=np.array([0, 1]),
-        viscous=np.zeros(2),
-        plate_stiffness=stiffness * np.eye(2),
-        plate_damping=np.zeros((2, 2)),
-        tyre_stiffness=np.full(2, stiffness),
-        tyre_damping=np.zeros(2),
-        outputs={"knuckle_fr_acc_z": np.array([1.0, 0.0])},
-        body_rows={"body": np.zeros((6, 2))},
+        mass=np.eye(2), damping=np.zeros((2, 2)), stiffness=stiffness * np.eye(2), dampers=np.array([0, 1]),
+        viscous=np.zeros(2), plate_stiffness=stiffness * np.eye(2), plate_damping=np.zeros((2, 2)),
+        tyre_stiffness=np.full(2, stiffness), tyre_damping=np.zeros(2),
+        outputs={"knuckle_fr_acc_z": np.array([1.0, 0.0])}, body_rows={"body": np.zeros((6, 2))},
         body_masses={"body": np.eye(6)},
-    )
+    )  # fmt: skip
     law = dataclasses.replace(load_vehicle().damper, viscous=0.0, coulomb_friction=limit)
     time = uniform_time(samples=4001, timestep=1e-3)
     plate = 0.3 * np.sin(omega * time)
     batch = run_many(
-        [pole_model(system)],
-        [[law, law]],
-        Signal(time=time, displacement={"fr": plate}),
-        [{"fr": 0.0, "fl": 0.0}],
+        [pole_model(system)], [[law, law]], Signal(time=time, displacement={"fr": plate}), [{"fr": 0.0, "fl": 0.0}],
         channels=["tyre_fr_force_z", "damper_fr_velocity"],
-    )
+    )  # fmt: skip
     exact = ExactStickSlip(1.0, stiffness, limit, 0.3 * stiffness, omega)
     pieces = exact.motion(4.0, 0.0, 0.0)
     assert 0.1 < sum(end - start for start, end, phase, _ in pieces if phase == 0) / 4.0 < 0.9
@@ -199,13 +189,9 @@ def test_only_the_car_outside_the_valid_range_is_reported(car):
     loads = [car.model.static.tyre_load, dict.fromkeys(("fr", "fl"), 1000000000.0)]
     batch = run_many([car.poles] * 2, [dampers(car, "coulomb")] * 2, violent, loads, channels=["seat_rail_acc_z"])
     single = simulate_reduced(
-        car.poles,
-        violent,
-        dampers=dampers(car, "coulomb"),
-        record_rate=1000.0,
-        tyre_load=loads[0],
+        car.poles, violent, dampers=dampers(car, "coulomb"), record_rate=1000.0, tyre_load=loads[0],
         channels=["seat_rail_acc_z"],
-    )
+    )  # fmt: skip
     assert len(single.statistics.warnings) > len(batch.statistics[1].warnings)
     assert [text[:20] for text in batch.statistics[0].warnings] == [text[:20] for text in single.statistics.warnings]
     assert not batch.statistics[0].within_validity

@@ -29,28 +29,19 @@ def stop(wheel):
     """The stop of a damper as a law over displacement."""
     curve = Curve.through(STOPS["displacement"], STOPS["force"])
     return DisplacementLaw(
-        name=f"stop of damper {wheel + 1}",
-        element=(STOP, wheel, 0),
-        row=np.eye(6)[2 + 3 * wheel],
-        plate=-1,
-        breakpoints=curve.knots,
-        changes=np.diff(curve.slopes),
-    )
+        name=f"stop of damper {wheel + 1}", element=(STOP, wheel, 0), row=np.eye(6)[2 + 3 * wheel], plate=-1,
+        breakpoints=curve.knots, changes=np.diff(curve.slopes),
+    )  # fmt: skip
 
 
 def tyre(wheel):
     """A tyre that cannot pull as a law over displacement."""
     stiffness = CAR.wheel.tyre_stiffness
     return DisplacementLaw(
-        name="tyre",
-        element=(BUSHING, wheel, 2),
-        row=np.eye(6)[1 + 3 * wheel],
-        plate=wheel,
-        breakpoints=np.array([LOAD / stiffness]),
-        changes=np.array([-stiffness]),
-        rate_time=TYRE_DAMPING / stiffness,
+        name="tyre", element=(BUSHING, wheel, 2), row=np.eye(6)[1 + 3 * wheel], plate=wheel,
+        breakpoints=np.array([LOAD / stiffness]), changes=np.array([-stiffness]), rate_time=TYRE_DAMPING / stiffness,
         one_sided=True,
-    )
+    )  # fmt: skip
 
 
 CASES = {"a bump stop": (stop,), "a tyre that lifts off": (tyre,), "both": (stop, tyre)}
@@ -71,13 +62,9 @@ RUN: dict[str, Any] = {
 
 def reduced(case, step):
     return simulate_reduced(
-        pole_model(quarter_cars(case)),
-        ROAD_OF_STOPS,
-        dampers=[damper(coulomb_friction=0.0)] * 2,
-        tyre_load=dict.fromkeys(("fr", "fl"), LOAD),
-        step=step,
-        **RUN,
-    )
+        pole_model(quarter_cars(case)), ROAD_OF_STOPS, dampers=[damper(coulomb_friction=0.0)] * 2,
+        tyre_load=dict.fromkeys(("fr", "fl"), LOAD), step=step, **RUN,
+    )  # fmt: skip
 
 
 def solved(case):
@@ -167,12 +154,7 @@ def test_a_batch_follows_the_single_run():
     )
     for index, car in enumerate(cars):
         single = simulate_reduced(
-            pole_model(car),
-            ROAD_OF_STOPS,
-            dampers=run["dampers"][0],
-            tyre_load=run["tyre_load"][0],
-            step=5e-4,
-            **RUN,
+            pole_model(car), ROAD_OF_STOPS, dampers=run["dampers"][0], tyre_load=run["tyre_load"][0], step=5e-4, **RUN
         )
         for name in RUN["channels"]:
             error = np.std(batch.channels[name][index] - single[name]) / np.std(single[name])
@@ -229,12 +211,9 @@ def test_the_force_of_a_stop_in_a_batch():
     for index, car in enumerate(cars):
         one = simulate_reduced(models[index], signal, dampers=laws[index], tyre_load=car.static.tyre_load, **run)
         without = simulate_reduced(
-            models[index],
-            signal,
-            dampers=[dataclasses.replace(law, stop=None) for law in laws[index]],
-            tyre_load=car.static.tyre_load,
-            **run,
-        )
+            models[index], signal, dampers=[dataclasses.replace(law, stop=None) for law in laws[index]],
+            tyre_load=car.static.tyre_load, **run,
+        )  # fmt: skip
         force = one["damper_fr_force"]
         assert np.std(batch.channels["damper_fr_force"][index] - force) < 1e-4 * np.std(force)
         assert np.std(without["damper_fr_force"] - force) > 0.1 * np.std(force)

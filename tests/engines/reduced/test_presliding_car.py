@@ -39,7 +39,7 @@ def test_every_channel_against_mujoco(level):
     )  # fmt: skip
     # Comfort is right: a note names the channels that are not.
     statistics = reduced.recording.statistics
-    assert not statistics.warnings and any("wrong by about" in text for text in statistics.notices) == large
+    assert not statistics.warnings and any("RMS about" in text for text in statistics.notices) == large
     validated(
         "Reduced engine", f"comfort over that of MuJoCo, presliding friction, class {level}",
         reduced.comfort().weighted.overall / stepped.comfort().weighted.overall, 1.0,

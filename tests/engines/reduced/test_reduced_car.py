@@ -119,7 +119,7 @@ def test_auto_is_reduced_until_the_motion_is_large(car, high_piece):
     assert run.recording.statistics.engine == "mujoco" and "knuckle_fl" in run.engine_reason
     # Without stated errors the rotation decides.
     unknown = car.run(large, engine="reduced", channels=["damper_fr_velocity"]).recording.statistics
-    assert f"is valid up to {LARGEST_ANGLE:g} rad: use the MuJoCo engine" in unknown.warnings[0]
+    assert f"is valid up to {np.degrees(LARGEST_ANGLE):.3g} deg" in unknown.warnings[0]
 
 
 def test_a_tyre_that_would_lift_off_is_named(car):

@@ -30,10 +30,7 @@ ROAD = random_road(rms=2e-3, seed=2006, wheel="fr", duration=8.0, lower_band_edg
 
 def matrices(tyre_damping=0.0):
     """Two independent quarter cars; coordinates body, wheel, damper over wheel, for the right and the left."""
-    side = {
-        "mass": np.diag([CAR.body.mass, CAR.wheel.mass, 0.0]),
-        "stiffness": np.zeros((3, 3)),
-    }
+    side = {"mass": np.diag([CAR.body.mass, CAR.wheel.mass, 0.0]), "stiffness": np.zeros((3, 3))}
     damper, spring, mount = np.array([0.0, 1.0, 1.0]), np.array([1.0, -1.0, 0.0]), np.array([1.0, -1.0, -1.0])
     side["mass"] += CAR.damper.mass * np.outer(damper, damper)
     side["stiffness"] += CAR.spring.stiffness * np.outer(spring, spring) + CAR.mount.stiffness * np.outer(mount, mount)
@@ -49,19 +46,12 @@ def matrices(tyre_damping=0.0):
         outputs[f"damper_top_{wheel}_acc_z"] = row
         outputs[f"suspension_mount_{wheel}_acc_z"] = np.eye(6)[first]
     return plain_matrices(
-        mass=both["mass"],
-        damping=tyre_damping * wheels.T @ wheels,
-        stiffness=both["stiffness"],
-        dampers=np.array([2, 5]),
-        viscous=np.full(2, CAR.damper.damping),
-        plate_stiffness=CAR.wheel.tyre_stiffness * wheels,
-        plate_damping=tyre_damping * wheels,
-        tyre_stiffness=np.full(2, CAR.wheel.tyre_stiffness),
-        tyre_damping=np.full(2, tyre_damping),
-        outputs=outputs,
-        body_rows={"body": np.zeros((6, 6))},
-        body_masses={"body": np.eye(6)},
-    )
+        mass=both["mass"], damping=tyre_damping * wheels.T @ wheels, stiffness=both["stiffness"],
+        dampers=np.array([2, 5]), viscous=np.full(2, CAR.damper.damping),
+        plate_stiffness=CAR.wheel.tyre_stiffness * wheels, plate_damping=tyre_damping * wheels,
+        tyre_stiffness=np.full(2, CAR.wheel.tyre_stiffness), tyre_damping=np.full(2, tyre_damping), outputs=outputs,
+        body_rows={"body": np.zeros((6, 6))}, body_masses={"body": np.eye(6)},
+    )  # fmt: skip
 
 
 def damper(**changes):
@@ -76,13 +66,10 @@ def damper(**changes):
 
 def reduced(signal, **changes):
     return simulate_reduced(
-        pole_model(matrices()),
-        signal,
-        dampers=[damper(**changes)] * 2,
-        record_rate=1000.0,
+        pole_model(matrices()), signal, dampers=[damper(**changes)] * 2, record_rate=1000.0,
         tyre_load={"fr": 1e6, "fl": 1e6},
         channels=[*matrices().system.outputs, "damper_fr_velocity", "damper_fl_velocity", "damper_fr_force"],
-    )
+    )  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -139,12 +126,9 @@ def test_friction_against_the_stiff_solver(solved):
 def test_stribeck_against_the_stiff_solver():
     """A smooth Stribeck law, mild enough that both see the same steepness at rest."""
     changes = {
-        "friction_law": "stribeck",
-        "coulomb_friction": 40.0,
-        "stribeck_friction": 75.0,
-        "stribeck_velocity": 0.03,
+        "friction_law": "stribeck", "coulomb_friction": 40.0, "stribeck_friction": 75.0, "stribeck_velocity": 0.03,
         "stribeck_exponent": 3.5,
-    }
+    }  # fmt: skip
 
     law = Clamped(
         law=Stribeck(
@@ -183,13 +167,10 @@ def test_a_plate_that_is_raised_and_moves_when_the_run_begins():
         states.append(step @ states[-1])
     wheel, rate, plate = np.array(states)[:, [1, n + 1, 2 * n]].T
     run = simulate_reduced(
-        pole_model(model),
-        Signal(time=time, displacement={"fr": height + speed * time}),
-        dampers=[damper(coulomb_friction=0.0)] * 2,
-        record_rate=1000.0,
-        tyre_load={"fr": 1e6, "fl": 1e6},
+        pole_model(model), Signal(time=time, displacement={"fr": height + speed * time}),
+        dampers=[damper(coulomb_friction=0.0)] * 2, record_rate=1000.0, tyre_load={"fr": 1e6, "fl": 1e6},
         channels=["tyre_fr_force_z"],
-    )
+    )  # fmt: skip
     expected = 1e6 + CAR.wheel.tyre_stiffness * (plate - wheel) + damping * (speed - rate)
     # Everything is linear: exact to the round-off of the load.
     validated(

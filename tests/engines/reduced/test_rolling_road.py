@@ -50,14 +50,10 @@ def run_reduced(car: Car, signal: Signal, *, present_load: bool = True, step: fl
         present_load, step: see `simulate_reduced`.
     """
     return simulate_reduced(
-        car.poles,
-        signal,
-        dampers=[damper.law for damper in car.vehicle.composition.dampers],
-        record_rate=car.vehicle.solver.record_rate,
-        tyre_load=car.static.tyre_load,
-        present_load=present_load,
+        car.poles, signal, dampers=[damper.law for damper in car.vehicle.composition.dampers],
+        record_rate=car.vehicle.solver.record_rate, tyre_load=car.static.tyre_load, present_load=present_load,
         step=step,
-    )
+    )  # fmt: skip
 
 
 def rms(values: Vector) -> float:

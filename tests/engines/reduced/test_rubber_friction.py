@@ -30,14 +30,11 @@ def law(wheel, elements):
     """Rubber friction of a mount as a law over displacement."""
     stroke = elements.limit / elements.stiffness
     return DisplacementLaw(
-        name=f"mount {wheel} along z",
-        element=(BUSHING, wheel, 2),
-        row=np.concatenate([np.zeros(3 * wheel), MOUNT, np.zeros(3 - 3 * wheel)]),
-        plate=-1,
+        name=f"mount {wheel} along z", element=(BUSHING, wheel, 2),
+        row=np.concatenate([np.zeros(3 * wheel), MOUNT, np.zeros(3 - 3 * wheel)]), plate=-1,
         breakpoints=np.concatenate([-stroke, stroke]),
-        changes=np.concatenate([elements.stiffness, -elements.stiffness]),
-        friction=True,
-    )
+        changes=np.concatenate([elements.stiffness, -elements.stiffness]), friction=True,
+    )  # fmt: skip
 
 
 def quarter_cars(factor=1.0, stroke=STROKE, held=0.0):
@@ -55,19 +52,11 @@ def mount_rows(car):
     row, tangent = car.laws[0].row, car.laws[0].elements[0].sum()
     none = np.zeros((2, count))
     return LoadRows(
-        names=("suspension_travel_mount", "mount_force_z"),
-        static=np.zeros(2),
-        displacement=np.array([row, tangent * row]),
-        velocity=none,
-        acceleration=none,
-        branch=np.zeros((2, 0)),
-        height=np.zeros((2, plates)),
-        height_rate=np.zeros((2, plates)),
-        friction=np.zeros((2, 2)),
-        law=np.array([[0.0, 0.0], [1.0, 0.0]]),
-        slope=np.zeros((2, 0)),
-        applied=np.zeros((2, 0)),
-    )
+        names=("suspension_travel_mount", "mount_force_z"), static=np.zeros(2),
+        displacement=np.array([row, tangent * row]), velocity=none, acceleration=none, branch=np.zeros((2, 0)),
+        height=np.zeros((2, plates)), height_rate=np.zeros((2, plates)), friction=np.zeros((2, 2)),
+        law=np.array([[0.0, 0.0], [1.0, 0.0]]), slope=np.zeros((2, 0)), applied=np.zeros((2, 0)),
+    )  # fmt: skip
 
 
 def reduced(car, signal=SHORT, step=2e-4, channels=tuple(CHANNELS), **changes):
@@ -158,12 +147,9 @@ def test_a_batch_follows_the_single_run():
 
     def batch(group):
         return simulate_batch(
-            [pole_model(car) for car in group],
-            SHORT,
-            dampers=[[damper(coulomb_friction=0.0)] * 2] * len(group),
-            tyre_load=[RUN["tyre_load"]] * len(group),
-            **run,
-        )
+            [pole_model(car) for car in group], SHORT, dampers=[[damper(coulomb_friction=0.0)] * 2] * len(group),
+            tyre_load=[RUN["tyre_load"]] * len(group), **run,
+        )  # fmt: skip
 
     together, alone = batch(cars), batch(cars[1:2])
     for index, car in enumerate(cars):

@@ -25,13 +25,9 @@ RMS = 5e-3
 """RMS of the plates [m]: vertical accelerations of the wheels as on class B at 80 km/h."""
 
 WITHOUT_FRICTION = [
-    "front.damper.viscous_law=linear",
-    "front.damper.viscous=2500",
-    "front.damper.coulomb_friction=0",
-    "rear.damper.coulomb_friction=0",
-    "driving.speed=22",
-    "solver.timestep=0.0005",
-]
+    "front.damper.viscous_law=linear", "front.damper.viscous=2500", "front.damper.coulomb_friction=0",
+    "rear.damper.coulomb_friction=0", "driving.speed=22", "solver.timestep=0.0005",
+]  # fmt: skip
 """Changes that leave `kinematic_reference` and `sedan` nonlinear by their geometry alone."""
 
 
@@ -85,14 +81,10 @@ def test_rotation_of_a_part_by_hand() -> None:
     places = equations.products(still._replace(displacement=displacement)).places[:, 0]
     row = equations.channels.index("knuckle_rl_acc_x")
     validated(
-        "Reduced engine",
-        "second-order displacement of a knuckle on an arm that rotates by 0.7 mrad",
-        1e9 * places[row : row + 3],
-        1e9 * 0.5 * np.cross(angle, np.cross(angle, arm)),
-        source="closed form: theta x (theta x r) / 2",
-        peak=1e-5,
-        unit="nm",
-    )
+        "Reduced engine", "second-order displacement of a knuckle on an arm that rotates by 0.7 mrad",
+        1e9 * places[row : row + 3], 1e9 * 0.5 * np.cross(angle, np.cross(angle, arm)),
+        source="closed form: theta x (theta x r) / 2", peak=1e-5, unit="nm",
+    )  # fmt: skip
 
 
 def test_what_is_even_in_the_road_is_the_second_order_of_the_equations_of_motion() -> None:
@@ -110,22 +102,19 @@ def test_what_is_even_in_the_road_is_the_second_order_of_the_equations_of_motion
         validated(
             "Reduced engine",
             f"part of an acceleration {place} that keeps its sign with the road, largest difference in share of it",
-            max(error for channel, error in errors.items() if channel.startswith(names)),
-            0.0,
+            max(error for channel, error in errors.items() if channel.startswith(names)), 0.0,
             source="second derivation: products of the linear motion in the equations, without solver and integrator",
             abs=tolerance,
-        )
+        )  # fmt: skip
     reduced = {channel: motion_of("kinematic_reference", channel, motion) for channel in even}
     up, down = last_period("kinematic_reference", 1.0), last_period("kinematic_reference", -1.0)
     odd = {channel: 0.5 * (up[channel] - down[channel]) for channel in even}
     validated(
         "Reduced engine",
         "part of an acceleration that changes its sign with the road, largest difference in share of it",
-        max(float(np.std(odd[channel] - reduced[channel]) / np.std(odd[channel])) for channel in even),
-        0.0,
-        source="second derivation: MuJoCo on a road and the same road upside down",
-        abs=0.01,
-    )
+        max(float(np.std(odd[channel] - reduced[channel]) / np.std(odd[channel])) for channel in even), 0.0,
+        source="second derivation: MuJoCo on a road and the same road upside down", abs=0.01,
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("name", ["kinematic_reference", "sedan"])
@@ -154,11 +143,9 @@ def test_second_order_from_patterns_of_the_motion(name: str) -> None:
     validated(
         "Reduced engine",
         f"{name}: second order of knuckles, seat and body from patterns, largest difference in share of the channel",
-        max(shares),
-        0.0,
-        source="second derivation: equations of motion at each sample, dynamic stiffness at each line",
-        abs=0.005,
-    )
+        max(shares), 0.0,
+        source="second derivation: equations of motion at each sample, dynamic stiffness at each line", abs=0.005,
+    )  # fmt: skip
     assert max(float(np.std(expected[channel]) / np.std(motion_of(name, channel, motion))) for channel in names) > 0.2
 
 
@@ -179,11 +166,9 @@ def test_third_order_is_not_taken_for_second(monkeypatch: pytest.MonkeyPatch) ->
     validated(
         "Reduced engine",
         "second order of the vertical tyre forces with patterns of twice the size, largest difference in share of it",
-        float(np.max(errors)),
-        0.0,
-        source="closed form: the second order does not depend on the size of the patterns",
+        float(np.max(errors)), 0.0, source="closed form: the second order does not depend on the size of the patterns",
         abs=0.01,
-    )
+    )  # fmt: skip
 
 
 def motion_of(name: str, channel: str, motion: Motion) -> Vector:

@@ -40,16 +40,10 @@ def table_of(gain, laws, element):
     """Return the table of a car with one idle pole and the gains of its dampers."""
     d = len(laws)
     factors = CarFactors(
-        columns=[0],
-        lines=0,
-        integrated=np.arange(1),
-        pairs=0,
-        plate_inputs=0,
-        step=np.zeros((1, 3 + 2 * d), dtype=complex),
-        direct=np.zeros((1, 2 * d + 2), dtype=complex),
-        slip=np.zeros((d, 1), dtype=complex),
-        gains=(np.zeros((d, 1)), gain, np.zeros((d, d))),
-    )
+        columns=[0], lines=0, integrated=np.arange(1), pairs=0, plate_inputs=0,
+        step=np.zeros((1, 3 + 2 * d), dtype=complex), direct=np.zeros((1, 2 * d + 2), dtype=complex),
+        slip=np.zeros((d, 1), dtype=complex), gains=(np.zeros((d, 1)), gain, np.zeros((d, d))),
+    )  # fmt: skip
     no_sensors = Outputs(poles=np.zeros((0, 1), dtype=complex), height=np.zeros((0, 1)), velocity=np.zeros((0, 1)))
     return CarTable([factors], [laws], np.zeros((2, 1)), element, [no_sensors])
 

@@ -69,12 +69,9 @@ def add_bushing(spec, name, moving, carrier, law, *, at=(0.0, 0.0, 0.0), on_carr
     moving.add_site(name=f"bushing/{name}/moving", pos=at)
     carrier.add_site(name=f"bushing/{name}/carrier", pos=on_carrier)
     spec.add_equality(
-        name=f"bushing/{name}",
-        type=mujoco.mjtEq.mjEQ_CONNECT,
-        objtype=mujoco.mjtObj.mjOBJ_SITE,
-        name1=f"bushing/{name}/moving",
-        name2=f"bushing/{name}/carrier",
-    )
+        name=f"bushing/{name}", type=mujoco.mjtEq.mjEQ_CONNECT, objtype=mujoco.mjtObj.mjOBJ_SITE,
+        name1=f"bushing/{name}/moving", name2=f"bushing/{name}/carrier",
+    )  # fmt: skip
     spec.add_numeric(name=f"law/bushing/{name}", data=law)
 
 
@@ -105,12 +102,9 @@ def add_damper(spec, body, parameters, *, stiffness=0.0, pieces=(), rest=0.0, sl
     stiffness and share of the limit of the elements of presliding friction.
     """
     body.add_joint(
-        name="damper_fr",
-        type=mujoco.mjtJoint.mjJNT_SLIDE,
-        axis=[1.0, 0.0, 0.0],
-        stiffness=stiffness,
+        name="damper_fr", type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[1.0, 0.0, 0.0], stiffness=stiffness,
         frictionloss=parameters[2],
-    )
+    )  # fmt: skip
     spec.add_equality(
         name="damper_fr", type=mujoco.mjtEq.mjEQ_JOINT, objtype=mujoco.mjtObj.mjOBJ_JOINT, name1="damper_fr"
     )

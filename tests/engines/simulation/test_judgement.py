@@ -17,24 +17,20 @@ def balance(residual, work=10.0):
 def test_limits_of_the_residual():
     assert judge_energy(balance(9e-3), 1000.0, 1e-3) == ()
     (warning,) = judge_energy(balance(2e-2), 1000.0, 1e-3)
-    assert warning.startswith("energy balance: 0.2 J of 10 J put in by the plates are missing (residual 0.02)")
+    assert warning.startswith("energy balance: 0.2 J of 10 J put in") and "(residual 0.02)" in warning
     # Only a residual that falls with the step is an error of the step: work that is not counted stays.
-    assert "repeat the run with --set solver.timestep=0.0005: if the residual falls" in warning
-    with pytest.raises(
-        SimulationError,
-        match=r"^energy balance: .*residual 0\.06\), must be at most 0\.05: "
-        r"the time steps are too long",
-    ):
+    assert "--set solver.timestep=0.0005" in warning
+    with pytest.raises(SimulationError, match=r"^energy balance: .*residual 0\.06\), must be at most 0\.05"):
         judge_energy(balance(6e-2), 1000.0, 1e-3)
     # A still plate, or one that does next to nothing, has no balance to judge.
     assert judge_energy(balance(1.0, work=1e-8), 1000.0, 1e-3) == ()
     # Plates that end lower than they began: the work of lifting comes back.
     assert judge_energy(Energies(work_in=0.02, dissipated=0.8, stored=-0.781), 1000.0, 1e-3) == ()
     (warning,) = judge_energy(Energies(work_in=0.02, dissipated=0.8, stored=-0.76), 1000.0, 1e-3)
-    assert warning.startswith("energy balance: 0.02 J of 0.8 J dissipated are missing (residual 0.025)")
+    assert warning.startswith("energy balance: 0.02 J of 0.8 J dissipated") and "(residual 0.025)" in warning
     # Powers of a few samples a period cannot be summed.
     (coarse,) = judge_energy(balance(0.2), 50.0, 1e-3)
-    assert "50 Hz are too few samples a second" in coarse
+    assert "; 50 Hz " in coarse
 
 
 def test_item_52_a_friction_line_too_steep_for_the_vehicle_file(car, high_piece):

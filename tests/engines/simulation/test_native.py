@@ -75,10 +75,7 @@ def test_an_offset_that_does_not_fit_is_an_error(
     structures.offsets.cache_clear()
     with pytest.raises(MissingPartError) as caught:
         simulate(car.model, second)
-    assert str(caught.value) == (
-        f"MuJoCo {mujoco.__version__} is not as its declarations (mujoco.introspect) say at {named}, so compiled code "
-        "would read wrong numbers; install the tested version: pip install -c constraints.txt mujoco"
-    )
+    assert f"MuJoCo {mujoco.__version__} " in str(caught.value) and f" at {named}, " in str(caught.value)
 
 
 @pytest.mark.parametrize("name", structures.POINTERS)

@@ -137,10 +137,10 @@ def test_a_part_that_turns_too_far_gives_a_warning(tmp_path):
     signal = Signal(time=time, displacement={wheel: 0.06 * lift * (wheel == "fl") for wheel in car.vehicle.wheels})
     # Without stated errors, as in an FMU, the rotation alone tells the range.
     (warning, *_) = simulated_run(car, signal, None, "reduced", None, stated=False)[1].statistics.warnings
-    part, angle = re.match(r"(\w+) rotates by (\S+) rad", warning).groups()  # type: ignore[union-attr]
+    part, angle = re.match(r"(\w+) rotates by (\S+) deg", warning).groups()  # type: ignore[union-attr]
     fmu = written(car, tmp_path)
     for share, expected in ((0.8, False), (1.25, True)):
-        height = 0.06 * share * LARGEST_ANGLE / float(angle) * lift
+        height = 0.06 * share * LARGEST_ANGLE / np.radians(float(angle)) * lift
         instance = Instance(fmu)
         for z, rate in zip(height[1:], np.gradient(height, time)[1:], strict=True):
             instance.set({"plate_fl_displacement": z, "plate_fl_velocity": rate})

@@ -72,7 +72,5 @@ def test_item_27_hardpoints_that_the_body_does_not_have_are_refused(other):
 def test_item_27_a_missing_interface_node_is_refused(other):
     vehicle, body = other
     places = vehicle.composition.attachments() | {"brace": (0.8, 0.44, 1.4)}
-    with pytest.raises(
-        DataError, match=r"no node at the attachment brace of the car, \[0\.8, 0\.44, 1\.4\] m; the nearest"
-    ):
+    with pytest.raises(DataError, match=r"attachment brace of the car, \[0\.8, 0\.44, 1\.4\] m"):
         attached_nodes(body, places)

@@ -9,39 +9,21 @@ from vehicle.model.parameters.vehicle import load_vehicle
 
 # Appendix E of Bommer 2006, per side [kg]; the split of damper and spring and the torque arm are assumed.
 APPENDIX_E = {
-    "a_arm": 4.05,
-    "knuckle": 7.05,
-    "tyre": 15.9,
-    "brake_disc": 4.95,
-    "caliper": 3.55,
-    "steering_rod": 1.00,
-    "stabilizer_half": 2.20 / 2,
-    "stabilizer_rod": 0.20,
-    "damper_bottom": 3.20 / 2,
-    "damper_top": 3.20 / 2,
-    "main_spring_lower": 2.40 / 2,
-    "main_spring_upper": 2.40 / 2,
-    "suspension_mount": 0.95,
-}
+    "a_arm": 4.05, "knuckle": 7.05, "tyre": 15.9, "brake_disc": 4.95, "caliper": 3.55, "steering_rod": 1.00,
+    "stabilizer_half": 2.20 / 2, "stabilizer_rod": 0.20, "damper_bottom": 3.20 / 2, "damper_top": 3.20 / 2,
+    "main_spring_lower": 2.40 / 2, "main_spring_upper": 2.40 / 2, "suspension_mount": 0.95,
+}  # fmt: skip
 
 SIGN = {"fr": 1.0, "fl": -1.0}
 HANGS_ON = {
-    "a_arm": ("lower_ball", "arm_front", "arm_rear"),
-    "knuckle": ("lower_ball", "damper_bottom", "wheel_center"),
-    "tyre": ("wheel_center",),
-    "brake_disc": ("wheel_center",),
-    "caliper": ("wheel_center",),
-    "damper_bottom": ("damper_bottom", "spring_lower"),
-    "damper_top": ("spring_lower", "strut_top"),
-    "suspension_mount": ("strut_top",),
-    "main_spring_lower": ("spring_lower",),
-    "main_spring_upper": ("strut_top",),
-    "steering_rod": ("tie_outer", "tie_inner"),
-    "stabilizer_half": ("stab_body", "stab_end"),
-    "stabilizer_rod": ("stab_end", "stab_rod_top"),
-    "engine": ("engine_cog",),
+    "a_arm": ("lower_ball", "arm_front", "arm_rear"), "knuckle": ("lower_ball", "damper_bottom", "wheel_center"),
+    "tyre": ("wheel_center",), "brake_disc": ("wheel_center",), "caliper": ("wheel_center",),
+    "damper_bottom": ("damper_bottom", "spring_lower"), "damper_top": ("spring_lower", "strut_top"),
+    "suspension_mount": ("strut_top",), "main_spring_lower": ("spring_lower",), "main_spring_upper": ("strut_top",),
+    "steering_rod": ("tie_outer", "tie_inner"), "stabilizer_half": ("stab_body", "stab_end"),
+    "stabilizer_rod": ("stab_end", "stab_rod_top"), "engine": ("engine_cog",),
     "torque_arm": ("bottom_engine", "bottom_body"),
-}
+}  # fmt: skip
 """Points whose mean is the centre of gravity, but for an offset."""
 
 
@@ -124,17 +106,12 @@ def test_sites_lie_on_their_hardpoints(car):
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     expected = {
-        "bushing/tyre_fr": "tyre_patch_fr",
-        "bushing/suspension_mount_fl": "strut_top_fl",
-        "bushing/arm_rear_fr": "arm_rear_fr",
-        "bushing/rear_support_left": "rear_support_left",
-        "bushing/hydromount": "hydromount",
-        "bushing/torque_arm_engine": "bottom_engine",
-        "ball/arm_front_fl": "arm_front_fl",
-        "ball/tie_inner_fr": "tie_inner_fr",
-        "ball/stab_body_fr": "stab_body_fr",
+        "bushing/tyre_fr": "tyre_patch_fr", "bushing/suspension_mount_fl": "strut_top_fl",
+        "bushing/arm_rear_fr": "arm_rear_fr", "bushing/rear_support_left": "rear_support_left",
+        "bushing/hydromount": "hydromount", "bushing/torque_arm_engine": "bottom_engine",
+        "ball/arm_front_fl": "arm_front_fl", "ball/tie_inner_fr": "tie_inner_fr", "ball/stab_body_fr": "stab_body_fr",
         "ball/stab_rod_top_fl": "stab_rod_top_fl",
-    }
+    }  # fmt: skip
     for connection, point in expected.items():
         for end in ("moving", "carrier"):
             np.testing.assert_allclose(data.site(f"{connection}/{end}").xpos, points[point], atol=1e-12)

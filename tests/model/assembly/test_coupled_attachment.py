@@ -18,12 +18,9 @@ from vehicle.runs.car import Car
 SOFT = Bushing(stiffness=(6e5, 3e5, 5e5), damping=(1000.0, 100.0, 2000.0), rotational_stiffness=100.0)
 STIFF = Bushing(stiffness=(3e7, 3e6, 0.0), damping=(1000.0, 100.0, 0.0), rotational_stiffness=100.0)
 MOUNT = Hydromount(
-    stiffness=(4e5, 8e5, 4e5),
-    damping=(1000.0, 100.0, 0.0),
-    rotational_stiffness=100.0,
-    maxwell_stiffness=1e5,
+    stiffness=(4e5, 8e5, 4e5), damping=(1000.0, 100.0, 0.0), rotational_stiffness=100.0, maxwell_stiffness=1e5,
     maxwell_damping=2000.0,
-)
+)  # fmt: skip
 
 
 def flexibility():
@@ -79,9 +76,7 @@ def test_an_ideal_joint_becomes_the_sheet_metal_itself():
 
 def test_a_table_in_series_is_rejected():
     table = replace(SOFT, table_z=ForceTable(displacement=(-0.01, 0.0, 0.01), force=(-100.0, 0.0, 100.0)))
-    with pytest.raises(
-        ConfigurationError, match=r"engine\.bushings\.mount\.table_z: found a table, but the body is flexible"
-    ):
+    with pytest.raises(ConfigurationError, match=r"engine\.bushings\.mount\.table_z: found a table"):
         coupled_law(connection(table), flexibility())
 
 
@@ -143,5 +138,5 @@ def test_both_engines_run_it_and_the_energy_closes(truncated, high_piece):
 def test_a_limit_below_all_modes_is_refused():
     with pytest.raises(ConfigurationError, match=r"body\.modes_up_to: found 5 Hz, below the first mode at 1"):
         Car.load(None, ["body.modes_up_to=5"]).model  # noqa: B018
-    with pytest.raises(ConfigurationError, match=r"body\.modes_up_to: needs flexible = true and"):
+    with pytest.raises(ConfigurationError, match=r"body\.modes_up_to: .* flexible = true and"):
         Car.load(None, ["body.modes_up_to=35", "body.attachment_flexibility=false"])

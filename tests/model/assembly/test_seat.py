@@ -108,9 +108,7 @@ def test_a_second_seat_has_the_name_of_its_table():
     names = [output.name for output in vehicle_of(table, SEATED.parent).composition.outputs]
     assert names.count("seat") == 1 and "seat_passenger" in names
     table["seat"]["driver"]["hardpoints"] = {"rail": "seat_rial"}
-    with pytest.raises(
-        ConfigurationError, match=r"found 'seat_rial', must be coordinates, the name of a point of \[hardpoints\]"
-    ):
+    with pytest.raises(ConfigurationError, match="found 'seat_rial', must be coordinates"):
         vehicle_of(table, SEATED.parent)
 
 

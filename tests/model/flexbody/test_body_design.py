@@ -43,15 +43,11 @@ def test_interface_and_output_points_are_those_of_the_vehicle_alone():
 
 
 BAD = {
-    "misspelt key": (
-        "freedom = 0.15",
-        "fredom = 0.15",
-        "nodes.arm_front.fredom: unknown parameter; did you mean",
-    ),
+    "misspelt key": ("freedom = 0.15", "fredom = 0.15", "nodes.arm_front.fredom: unknown parameter; did you mean"),
     "a mass missing": (
         "mass = 4.0  # [kg] assumed: A-arm bracket of the subframe\n",
         "",
-        "nodes.arm_front.mass: missing; this parameter must be given [kg]",
+        "nodes.arm_front.mass: missing",
     ),
     "negative mass": ("mass = 4.0", "mass = -4.0", "nodes.arm_front.mass: found -4.0 kg, must be greater than 0.0"),
     "text for a number": ("mass = 4.0", 'mass = "four"', "nodes.arm_front.mass: found 'four', must be a number"),
@@ -76,7 +72,7 @@ BAD = {
     "node made twice": (
         "[nodes.sill_rear]",
         "[nodes.cowl_right]\nplace = [1.0, 0.0, 1.0]\nmass = 1.0\nfreedom = 1.0\n[nodes.sill_rear]",
-        "nodes: cowl_right defined twice; rename one entry",
+        "nodes: cowl_right defined twice",
     ),
     "member to nowhere": (
         '"rail_front-arm_front"',
@@ -93,26 +89,18 @@ BAD = {
     "half a section": (
         "wall = 0.0018  # [m] assumed: nominal section\n",
         "",
-        ("members.front_rails.between: the section has width; must have width and wall (a tube) or area (a strut)"),
+        ("members.front_rails.between: the section has width"),
     ),
     "tube and strut": ("width = 0.055", "area = 1e-5\nwidth = 0.055", "the section has width, wall, area; must have"),
     "factor of zero": ("factor = 1.0962", "factor = 0.0", "members.front_rails.factor: found 0.0, must be greater"),
-    "a node without a tube": (
-        '"seat-seat_rail"',
-        '"seat_rail-seat_rail_right"',
-        "nodes: seat could turn freely, because no tube ends there; add members with width and wall",
-    ),
+    "a node without a tube": ('"seat-seat_rail"', '"seat_rail-seat_rail_right"', "nodes: seat could turn freely"),
     "nodes in one place": (
         "[0.15, 0.52, 0.82]",
         "[0.877, 0.548, 1.23]",
         "members.front_rails: rail_front_right at [0.877, 0.548, 1.23] m and strut_top_fr are 0 m apart, must be",
     ),
     "half a mode": ("mode_count = 9 ", "mode_count = 8.5 ", "mode_count: found 8.5, must be a whole number"),
-    "damping in percent": (
-        "damping_ratio = 0.03",
-        "damping_ratio = 3.0",
-        "damping_ratio: found 3.0, must be at",
-    ),
+    "damping in percent": ("damping_ratio = 0.03", "damping_ratio = 3.0", "damping_ratio: found 3.0, must be at"),
     "format": ('"body design 1"', '"body design 7"', "format: found 'body design 7', must be one of body design 1"),
     "cut off": ("[members.front_rails]", "[members.front", "not a TOML file"),
 }
@@ -140,7 +128,5 @@ def test_more_modes_than_a_frame_has_are_refused(tmp_path):
     file = tmp_path / "small.toml"
     file.write_text(head.replace("mode_count = 9", "mode_count = 13") + body + members + "width = 0.05\nwall = 0.001\n")
     vehicle = load_vehicle()
-    with pytest.raises(
-        ConfigurationError, match="mode_count: found 13, must be at most 12, the elastic modes of 6 nodes"
-    ):
+    with pytest.raises(ConfigurationError, match="mode_count: found 13, must be at most 12"):
         body_frame(read_design(file), vehicle.points, NodeProperties.of_body(vehicle.body, 0.0))

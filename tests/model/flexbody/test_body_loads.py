@@ -101,21 +101,15 @@ def test_a_load_of_nothing_is_none_and_grows_by_the_short_way():
     assert Car.load("focus", ["load.trunk.mass=0", override]).with_(["load.trunk.mass=80"])._from_terms is None
 
 
-@pytest.mark.parametrize(
-    ("overrides", "message"),
-    [
-        (["load.a.mass=80"], r"load\.a\.at: missing"),
-        (["load.a.mass=-1", "load.a.at=seat"], r"load\.a\.mass: found -1\.0 kg, must be at least 0"),
-        (["load.a.mass=1", "load.a.at=seet"], r"load\.a\.at: unknown point 'seet'; did you mean seat"),
-        (["load.a.mass=1", "load.a.at=seat", "load.a.on=nose"], r"load\.a\.on: unknown part 'nose'; did you mean"),
-        (
-            ["load.a.mass=1", "load.a.at=seat", "load.a.on=main_spring_upper_fr"],
-            r"did you mean main_sp",
-        ),
-        (["load.a.mass=1", "load.a.at=seat", "load.a.inertia=[1, 1, 9]"], r"load\.a\.inertia: .* the two smaller"),
-        (["load.a.mass=1", "load.a.at=seat", "load.a.weight=2"], r"unknown parameter load\.a\.weight"),
-    ],
-)
+@pytest.mark.parametrize(("overrides", "message"), [
+    (["load.a.mass=80"], r"load\.a\.at: missing"),
+    (["load.a.mass=-1", "load.a.at=seat"], r"load\.a\.mass: found -1\.0 kg, must be at least 0"),
+    (["load.a.mass=1", "load.a.at=seet"], r"load\.a\.at: unknown point 'seet'; did you mean seat"),
+    (["load.a.mass=1", "load.a.at=seat", "load.a.on=nose"], r"load\.a\.on: unknown part 'nose'; did you mean"),
+    (["load.a.mass=1", "load.a.at=seat", "load.a.on=main_spring_upper_fr"], r"did you mean main_sp"),
+    (["load.a.mass=1", "load.a.at=seat", "load.a.inertia=[1, 1, 9]"], r"load\.a\.inertia: .* the two smaller"),
+    (["load.a.mass=1", "load.a.at=seat", "load.a.weight=2"], r"unknown parameter load\.a\.weight"),
+])  # fmt: skip
 def test_loads_that_are_none_are_refused(overrides, message):
     with pytest.raises(ConfigurationError, match=message):
         load_vehicle(None, overrides)

@@ -25,17 +25,14 @@ def test_the_mass_follows_from_the_length_in_consistent_units(length):
     assert units_of(None, None).length == "m"
 
 
-@pytest.mark.parametrize(
-    ("mass", "length", "unit", "says"),
-    [
-        (0.81, "mm", "kg", 'Set --mass-unit "t"'),
-        (0.81, "m", None, 'Set --mass-unit "t"'),
-        (813e3, "mm", None, 'Set --mass-unit "kg"'),
-        (813e6, "mm", None, 'Set --mass-unit "g"'),
-        (1e11, "m", "kg", "Check the mass matrix"),
-        (813.0 / 0.45 * 175.0, "in", None, 'Set --mass-unit "kg"'),
-    ],
-)
+@pytest.mark.parametrize(("mass", "length", "unit", "says"), [
+    (0.81, "mm", "kg", 'Set --mass-unit "t"'),
+    (0.81, "m", None, 'Set --mass-unit "t"'),
+    (813e3, "mm", None, 'Set --mass-unit "kg"'),
+    (813e6, "mm", None, 'Set --mass-unit "g"'),
+    (1e11, "m", "kg", "Check the mass matrix"),
+    (813.0 / 0.45 * 175.0, "in", None, 'Set --mass-unit "kg"'),
+])  # fmt: skip
 def test_another_unit_of_mass_is_refused_with_its_option(mass, length, unit, says):
     with pytest.raises(DataError, match=r"unit of mass is wrong|units of mass differ") as caught:
         require_mass(mass, 813.0, units_of(length, unit))

@@ -84,9 +84,7 @@ CASES = {
     "residual of words": toml(text(RESIDUAL, 'residual_flexibility_m_per_n = [["a"'), "must be numbers"),
     "rotation rows": toml(line("rotation", "rotation_per_m_sqrt_kg = [[0.0, 0.0, 0.0]]"), "4 rows of three finite"),
     "rotation NaN": toml(text("[[0.01, 0.01", "[[nan, 0.01"), "4 rows of three finite"),
-    "mass of one node": toml(
-        text("position_m", "mass_kg = 30.0\nposition_m"), "node 2: key 'mass_kg' is missing; set it for every node"
-    ),
+    "mass of one node": toml(text("position_m", "mass_kg = 30.0\nposition_m"), "node 2: key 'mass_kg' is missing"),
     "masses twice": Case(
         "masses.toml",
         text(
@@ -102,9 +100,7 @@ CASES = {
     "shapes of mm and tonnes": toml(shapes(larger), "from mm and tonnes: divide by sqrt(1000)"),
     "shape a number": toml(scalar("shape_per_sqrt_kg"), "mode 1, shape_per_sqrt_kg: found 0 rows"),
     "edges a number": toml(scalar("edges"), "edges: 5 is not a pair of node names"),
-    "edge of lists": toml(
-        text('["corner_0", "corner_1"]', '["corner_0", ["corner_1"]]'), "is not a pair of node names"
-    ),
+    "edge of lists": toml(text('["corner_0", "corner_1"]', '["corner_0", ["corner_1"]]'), "is not a pair of node"),
     "TOML cut off": toml(cut(0.6), "not valid TOML, perhaps cut off: Unclosed"),
     "TOML of format 7": toml(text("superelement 2", "superelement 7"), "format is 'modal superelement 7'"),
     "npz cut off": npz(cut(0.7), "not a valid npz, perhaps truncated"),
@@ -137,17 +133,13 @@ CASES = {
     "frd broken line": Case(
         "modes.frd", text("-1.00000E-02 0.0", "-1.0000*E-02 0.0"), ("import", "FILE"), "is not a line of a"
     ),
-    "frd node nowhere": Case(
-        "modes.frd", line(" -1         9-1", None), ("import", "FILE"), "node 9 of the modes has no position"
-    ),
+    "frd node nowhere": Case("modes.frd", line(" -1         9-1", None), ("import", "FILE"), "node 9 of the modes"),
     "frd of a static step": Case("modes.frd", text("MODAL", "STATI"), ("import", "FILE"), "no modes; write *NODE FILE"),
     "no .mas": Case("job.mas", gone, JOB, " mas is missing. CalculiX"),
     "no .dof": Case("job.dof", gone, JOB, " dof is missing. CalculiX"),
     ".sti empty": Case("job.sti", holds(b""), JOB, "0 rows"),
     ".sti NaN": Case("job.sti", line("1 1 ", "1 1 nan"), JOB, "row 1 contains a number that is not finite"),
-    ".sti cut off": Case(
-        "job.sti", cut(0.501), JOB, "job.sti: stiffness: degree of freedom 1 of node 51 has no stiffness"
-    ),
+    ".sti cut off": Case("job.sti", cut(0.501), JOB, "job.sti: stiffness: degree of freedom 1 of node 51 has no"),
     ".mas one number": Case("job.mas", holds(b"1\n2\n"), JOB, "found 1 numbers in each of 2 rows"),
     ".sti half rows": Case("job.sti", line("1 1 ", "1.5 1 3.0"), JOB, "found 1.5, must be a whole number"),
     ".dof direction 7": Case("job.dof", line("1.6", "1.7"), JOB, "directions 1 to 7, must be 1 to 6"),
@@ -171,9 +163,7 @@ CASES = {
     "abaqus direction": Case("K.txt", line("1,1,1,1", "1,0,1,1,5.0"), ABAQUS, "K.txt: found directions 0 to"),
     "mat truncated": Case("both.mat", cut(0.4), ("import", "both.mat:K", *MATLAB), "both.mat: "),
     "mat of text": Case("both.mat", nothing, ("import", "both.mat:text", *MATLAB), "must be a matrix of real numbers"),
-    "mat complex": Case(
-        "both.mat", nothing, ("import", "both.mat:complex", *MATLAB), "must be a matrix of real numbers"
-    ),
+    "mat complex": Case("both.mat", nothing, ("import", "both.mat:complex", *MATLAB), "must be a matrix of real"),
     "mat unknown": Case("both.mat", nothing, ("import", "both.mat:KK", *MATLAB), "no variable 'KK'; choose from K, M"),
     "mat no choice": Case("both.mat", nothing, ("import", "both.mat", *MATLAB), "choose one of them with"),
     "nodes of two numbers": Case("nodes.csv", line("1,", "1,0.0,0.4"), MARKET, "is not a line of *node"),
@@ -191,9 +181,7 @@ CASES = {
     "map of an unknown point": Case(
         "map.csv", text("strut", "nose"), (*UFF, "--point-nodes", "map.csv"), "the car has no point 'nose_top_fr'"
     ),
-    "map to no node": Case(
-        "map.csv", text("fr,1", "fr,999"), (*UFF, "--point-nodes", "map.csv"), "no node '999', which is chosen for"
-    ),
+    "map to no node": Case("map.csv", text("fr,1", "fr,999"), (*UFF, "--point-nodes", "map.csv"), "no node '999'"),
     "map twice": Case(
         "map.csv",
         text("strut_top_fr,1", "seat,1\nseat,2"),
@@ -202,16 +190,12 @@ CASES = {
     ),
     "no map": Case("map.csv", gone, (*UFF, "--point-nodes", "map.csv"), "map.csv: cannot be read"),
     "uff without nodes": Case("modes.uff", modes(with_positions=False), UFF, "20 of them have no position. Export"),
-    "uff without modal mass": Case(
-        "modes.uff", modes(modal_mass=0.0), UFF, "the modal mass is missing, so the shape has no"
-    ),
+    "uff without modal mass": Case("modes.uff", modes(modal_mass=0.0), UFF, "the modal mass is missing, so the"),
     "uff without modes": Case("modes.uff", modes(count=0), UFF, "modes.uff"),
     "uff in radians": Case("modes.uff", modes(speed=2.0 * np.pi), (*UFF, "--up-to", "300"), "probably rad/s"),
     "uff in millimetres": Case("modes.uff", modes(modal_mass=1e-6), UFF, "Use shapes with modal masses of 1 kg"),
     "uff cut off": Case("modes.uff", cut(0.7), UFF, "modes.uff"),
-    "uff without points": Case(
-        "modes.uff", modes(points=POINTS[5:]), UFF, "points of the car have no node of the body within"
-    ),
+    "uff without points": Case("modes.uff", modes(points=POINTS[5:]), UFF, "points of the car have no node of the"),
     "no file": Case("modes.uff", gone, UFF, "modes.uff", 2),
     "up to nan": option("--up-to", "nan", says="--up-to nan: must be above 0"),
     "up to below": option("--up-to", "-5", says="--up-to -5"),
@@ -229,9 +213,7 @@ CASES = {
     "unit of a universal file": option("--length-unit", "mm", says="a universal file states its units in dataset"),
     "matrices in mm": Case("K.mtx", nothing, (*MARKET, "--length-unit", "mm"), "Set --length-unit m."),
     "matrices in t": Case("K.mtx", nothing, (*MARKET, "--mass-unit", "t"), 'Set --mass-unit "kg".'),
-    "job in g": Case(
-        "job.sti", nothing, (*JOB, "--mass-unit", "g"), "mass: found 0.275 kg with lengths in m, masses in g"
-    ),
+    "job in g": Case("job.sti", nothing, (*JOB, "--mass-unit", "g"), "mass: found 0.275 kg with lengths in m"),
     "frd in mm": Case("modes.frd", nothing, ("import", "FILE", "--length-unit", "mm"), "Set --length-unit m."),
     "frd in t": Case("modes.frd", nothing, ("import", "FILE", "--mass-unit", "t"), 'Set --mass-unit "kg".'),
     "method of modes": option("--method", "rubin", says="--method: belongs to stiffness and mass"),

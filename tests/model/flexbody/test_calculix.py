@@ -91,8 +91,7 @@ def accelerance(body, attachments):
 
 
 @pytest.mark.parametrize(
-    ("up_to", "method", "allowed"),
-    [(80.0, "free-free", 0.025), (120.0, "free-free", 0.01), (80.0, "rubin", 0.01)],
+    ("up_to", "method", "allowed"), [(80.0, "free-free", 0.025), (120.0, "free-free", 0.01), (80.0, "rubin", 0.01)]
 )
 def test_driving_point_frf_of_modes_and_residual_against_the_matrices(
     body, attachments, accelerance, up_to, method, allowed

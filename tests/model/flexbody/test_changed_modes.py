@@ -46,12 +46,12 @@ def test_what_is_changed_stands_in_the_file_of_a_run(changed, tmp_path):
         "no such mode": ("body.modes.12.frequency_factor=1.1", r"^body\.modes\.12: \S+ has modes 1 to 9; "),
         "left out": (
             "body.modes.9.frequency_factor=1.1",
-            r"^body\.modes\.9: \S+ has modes 1 to 4 up to body\.modes_up_to = 30 Hz; ",
+            "^body\\.modes\\.9: \\S+ has modes 1 to 4 up to body\\.modes_up_to = 30 Hz",
         ),
         "zero": ("body.modes.2.frequency_factor=0", "frequency_factor: found 0.0, must be at least 0.1"),
         "overdamped": ("body.modes.2.damping_ratio=0.9", "must be at most 0.3 .trimmed bodies have 0.01 to 0.08"),
         "no number": ("body.modes.first.damping_ratio=0.1", "did you mean"),
-        "which mode": ("frequency_factor=1.1", "or one of 995 others; give more of its path"),
+        "which mode": ("frequency_factor=1.1", "or one of 995 others"),
     }.values(),
 )
 def test_a_change_of_no_mode_is_refused(change, message):
@@ -64,7 +64,7 @@ def test_a_table_that_is_no_number_is_refused(car, tmp_path):
     file = tmp_path / "vehicle.toml"
     text = write_text(car.vehicle)
     file.write_text(text + "\n[body.modes.torsion]\nfrequency_factor = 1.1\n", encoding="utf-8")
-    with pytest.raises(ConfigurationError, match=r"body\.modes\.torsion: must be the number of a mode from 1"):
+    with pytest.raises(ConfigurationError, match=r"body\.modes\.torsion: must be a mode number, at least 1"):
         Car.load(file)
 
 

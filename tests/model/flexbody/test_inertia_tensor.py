@@ -40,13 +40,9 @@ def test_tensor_and_parallel_axis_agree_with_sums_over_points():
     m, r = rng.uniform(1.0, 4.0, 20), rng.normal(loc=[2.0, 0.3, 1.0], size=(20, 3))
     x, y, z = r.T
     origin = inertia_tensor(
-        ixx=m @ (y**2 + z**2),
-        iyy=m @ (x**2 + z**2),
-        izz=m @ (x**2 + y**2),
-        ixy=m @ (x * y),
-        izx=m @ (z * x),
+        ixx=m @ (y**2 + z**2), iyy=m @ (x**2 + z**2), izz=m @ (x**2 + y**2), ixy=m @ (x * y), izx=m @ (z * x),
         iyz=m @ (y * z),
-    )
+    )  # fmt: skip
     cog = m @ r / m.sum()
     arm = r - cog
     direct = sum(mi * (a @ a * np.eye(3) - np.outer(a, a)) for mi, a in zip(m, arm, strict=True))

@@ -88,12 +88,9 @@ def test_a_body_moved_as_a_whole_has_the_same_modes(tmp_path):
 
     inertia = body.inertia
     inertia = dataclasses.replace(
-        inertia,
-        ixx=inertia.ixx + moved(1, 1) + moved(2, 2),
-        iyy=inertia.iyy + moved(0, 0) + moved(2, 2),
-        izz=inertia.izz + moved(0, 0) + moved(1, 1),
-        izx=inertia.izx + moved(0, 2),
-    )
+        inertia, ixx=inertia.ixx + moved(1, 1) + moved(2, 2), iyy=inertia.iyy + moved(0, 0) + moved(2, 2),
+        izz=inertia.izz + moved(0, 0) + moved(1, 1), izx=inertia.izx + moved(0, 2),
+    )  # fmt: skip
     changed = dataclasses.replace(body, cog=tuple(new), inertia=inertia)
     points = {name: shifted(point) for name, point in vehicle.points.items()}
     nodes = {
@@ -162,9 +159,7 @@ def test_a_rigid_body_takes_its_attachments_from_either_file():
     for engine in ("mujoco", "reduced"):
         assert rms(built, engine) == rms(imported, engine)
         assert rms(built, engine) != rms(Car.load(None, [*RIGID, "body.attachment_flexibility=false"]), engine)
-    with pytest.raises(
-        ConfigurationError, match=r"the file 'nothing\.toml' is neither in the folder of the vehicle file nor"
-    ):
+    with pytest.raises(ConfigurationError, match=r"the file 'nothing\.toml' is neither"):
         _ = Car.load(None, [*RIGID, "body.superelement=nothing.toml"]).model
 
 
@@ -174,9 +169,7 @@ FILES = ("body_design.toml", "trimmed_body.toml")
 
 def test_an_imported_body_says_how_far_its_nodes_may_be(tmp_path):
     strict = ["body.superelement=trimmed_body.toml", "hardpoints.strut_top.z=1.234"]
-    with pytest.raises(
-        DataError, match=r"is 'strut_top_fr' at \[0.877, 0.548, 1.23\] m, 4 mm away, must be at most 1 mm"
-    ):
+    with pytest.raises(DataError, match=r"'strut_top_fr' at \[0.877, 0.548, 1.23\] m, 4 mm away, must be at most 1 mm"):
         _ = Car.load(None, strict).model
     assert Car.load(None, [*strict, "body.flexible=false"]).model.model.nv > 0  # what is rigid reaches everywhere
     (tmp_path / "car.toml").write_text(FOCUS_FILE.read_text(encoding="utf-8"), encoding="utf-8")

@@ -102,23 +102,16 @@ def test_nodes_and_names_may_be_given(tmp_path):
         read_matrices(path, None, None, None)
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "message"),
-    [
-        (
-            "DMIG,KAAX,0,6,2",
-            "DMIG,KAAX,0,9,2",
-            "KAAX is another matrix: the matrix form is 9, must be 6 (symmetric) or 1 (square)",
-        ),
-        ("DMIG,KAAX,0,6,2", "DMIG,KAAX,0,6,4", "the number type is 4, must be 1 or 2 (real)"),
-        ("DMIG,KAAX,0,6,2,0\n", "", "matrix column comes before the header line of its"),
-        ("DMIG,KAAX,1,1,,1,1,", "DMIG,KAAX,1,1,,1,0,", "component 0 of 1, must be 1 to 6. Component 0 is a scalar"),
-        ("DMIG,KAAX,1,1,,1,1,", "DMIG,KAAX,1,1,,1,1,x", "could not convert string to float"),
-        ("DMIG,KAAX,1,1,,1,1,", "DMIG,KAAX,1,1,,1,1,inf,,1,2,", "inf is not finite"),
-        ("DMIG,KAAX,1,2,", "DMIG,KAAX,1,1,", "occurs twice"),
-        ("GRID,1,,", "GRID,1,7,", "position is in coordinate system 7"),
-    ],
-)
+@pytest.mark.parametrize(("old", "new", "message"), [
+    ("DMIG,KAAX,0,6,2", "DMIG,KAAX,0,9,2", "KAAX is another matrix: the matrix form is 9, must be 6"),
+    ("DMIG,KAAX,0,6,2", "DMIG,KAAX,0,6,4", "the number type is 4, must be 1 or 2 (real)"),
+    ("DMIG,KAAX,0,6,2,0\n", "", "matrix column comes before the header line of its"),
+    ("DMIG,KAAX,1,1,,1,1,", "DMIG,KAAX,1,1,,1,0,", "component 0 of 1, must be 1 to 6. Component 0 is a scalar"),
+    ("DMIG,KAAX,1,1,,1,1,", "DMIG,KAAX,1,1,,1,1,x", "could not convert string to float"),
+    ("DMIG,KAAX,1,1,,1,1,", "DMIG,KAAX,1,1,,1,1,inf,,1,2,", "inf is not finite"),
+    ("DMIG,KAAX,1,2,", "DMIG,KAAX,1,1,", "occurs twice"),
+    ("GRID,1,,", "GRID,1,7,", "position is in coordinate system 7"),
+])  # fmt: skip
 def test_broken_punch_files_are_refused(tmp_path, old, new, message):
     path = punch(tmp_path / "job.pch", "free")
     text = path.read_text()

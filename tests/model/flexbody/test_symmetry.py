@@ -13,14 +13,11 @@ def test_nodes_face_their_counterpart_themselves_or_none():
     assert mirror_nodes(POSITIONS).tolist() == [1, 0, 2, -1]
 
 
-@pytest.mark.parametrize(
-    ("right", "left", "centre", "expected"),
-    [
-        ([0.1, 0.2, 0.3], [0.1, -0.2, 0.3], [0.4, 0.0, 0.5], 1.0),
-        ([0.1, 0.2, 0.3], [-0.1, 0.2, -0.3], [0.0, 0.4, 0.0], -1.0),
-        ([0.1, 0.2, 0.3], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0], 0.0),
-    ],
-)
+@pytest.mark.parametrize(("right", "left", "centre", "expected"), [
+    ([0.1, 0.2, 0.3], [0.1, -0.2, 0.3], [0.4, 0.0, 0.5], 1.0),
+    ([0.1, 0.2, 0.3], [-0.1, 0.2, -0.3], [0.0, 0.4, 0.0], -1.0),
+    ([0.1, 0.2, 0.3], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0], 0.0),
+])  # fmt: skip
 def test_parity_of_pure_shapes(right, left, centre, expected):
     shape = np.array([[right, left, centre, [0.0, 0.0, 0.0]]])
     shape /= np.sqrt(np.sum(MASS[:, None] * shape[0] ** 2))

@@ -32,14 +32,11 @@ def test_setting_stays_within_the_damper(law):
     np.testing.assert_array_equal(found, one_by_one)
 
 
-@pytest.mark.parametrize(
-    ("law", "wanted"),
-    [
-        ("skyhook", lambda b, w: 3000.0 * b),
-        ("groundhook", lambda b, w: -3000.0 * w),
-        ("hybrid", lambda b, w: 1500.0 * np.where(b * (b - w) > 0, b, 0) - 1500.0 * np.where(w * (b - w) < 0, w, 0)),
-    ],
-)
+@pytest.mark.parametrize(("law", "wanted"), [
+    ("skyhook", lambda b, w: 3000.0 * b),
+    ("groundhook", lambda b, w: -3000.0 * w),
+    ("hybrid", lambda b, w: 1500.0 * np.where(b * (b - w) > 0, b, 0) - 1500.0 * np.where(w * (b - w) < 0, w, 0)),
+])  # fmt: skip
 def test_continuous_law_comes_nearest_to_the_force_it_asks_for(law, wanted):
     rng = np.random.default_rng(4)
     body, wheel = rng.normal(size=(2, 300))

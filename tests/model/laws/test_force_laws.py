@@ -26,12 +26,9 @@ from vehicle.model.parameters.force_elements import FRICTION_LAWS, NUMBERS
 from vehicle.model.parameters.vehicle import load_vehicle
 
 STRIBECK = {
-    "friction_limit": 65.0,
-    "static_limit": 125.0,
-    "stribeck_velocity": 0.03,
-    "stribeck_exponent": 3.5,
+    "friction_limit": 65.0, "static_limit": 125.0, "stribeck_velocity": 0.03, "stribeck_exponent": 3.5,
     "smoothing": 1e3,
-}
+}  # fmt: skip
 LAWS = [
     Degressive(low_damping=15000.0, high_damping=1500.0, knee_velocity=0.02),
     Coulomb(friction_limit=75.0, smoothing=1e3),
@@ -116,11 +113,8 @@ def test_stribeck_follows_3_2():
 @pytest.mark.parametrize("word", ["coulomb", "stribeck"])
 def test_the_record_of_a_damper_is_its_law(word):
     numbers: dict[str, Any] = {
-        "coulomb_friction": 65.0,
-        "stribeck_friction": 125.0,
-        "stribeck_velocity": 0.03,
-        "stribeck_exponent": 2.0,
-    }
+        "coulomb_friction": 65.0, "stribeck_friction": 125.0, "stribeck_velocity": 0.03, "stribeck_exponent": 2.0,
+    }  # fmt: skip
     valve: dict[str, Any] = {"viscous_law": "degressive", "degressive_viscous": 15000.0, "degressive_velocity": 0.02}
     damper = dataclasses.replace(load_vehicle().damper, friction_law=word, **numbers, **valve)
     record = pack(damper)
@@ -156,60 +150,35 @@ BAD = [
     (
         Coulomb,
         {"friction_limit": np.array([1.0, np.nan]), "smoothing": 1e5},
-        "Coulomb.friction_limit: found nan N, must be a finite number (friction limit Fd in sliding)",
+        "friction_limit: found nan N, must be a finite number",
     ),
-    (
-        Coulomb,
-        {"friction_limit": "much", "smoothing": 1e5},
-        "Coulomb.friction_limit: found 'much', must be a number [N]",
-    ),
-    (Coulomb, {"friction_limit": True, "smoothing": 1e5}, "Coulomb.friction_limit: found True, must be a number [N]"),
+    (Coulomb, {"friction_limit": "much", "smoothing": 1e5}, "friction_limit: found 'much', must be a number [N]"),
+    (Coulomb, {"friction_limit": True, "smoothing": 1e5}, "friction_limit: found True, must be a number [N]"),
     (
         Degressive,
         {"low_damping": 1.0, "high_damping": 1.0, "knee_velocity": -0.1},
-        "Degressive.knee_velocity: found -0.1 m/s, must be at least 0.0",
+        "knee_velocity: found -0.1 m/s, must be at least 0.0",
     ),
-    (
-        Coulomb,
-        {"friction_limit": 75.0, "smoothing": 0.0},
-        "Coulomb.smoothing: found 0.0 s/m, must be greater than 0.0",
-    ),
-    (
-        Coulomb,
-        {"friction_limit": -75.0, "smoothing": 1e5},
-        "Coulomb.friction_limit: found -75.0 N, must be at least 0.0",
-    ),
+    (Coulomb, {"friction_limit": 75.0, "smoothing": 0.0}, "smoothing: found 0.0 s/m, must be greater than 0.0"),
+    (Coulomb, {"friction_limit": -75.0, "smoothing": 1e5}, "friction_limit: found -75.0 N, must be at least 0.0"),
     (
         Coulomb,
         {"friction_limit": 75.0, "smoothing": np.array([1e5, -1.0])},
-        "Coulomb.smoothing: found -1.0 s/m, must be greater than 0.0",
+        "smoothing: found -1.0 s/m, must be greater than 0.0",
     ),
-    (
-        Switch,
-        {"limit": 50.0, "band": 0.0, "return_time": 1e-3},
-        "Switch.band: found 0.0 m/s, must be greater than 0.0",
-    ),
-    (
-        Switch,
-        {"limit": 50.0, "band": 1e-6, "return_time": -1.0},
-        "Switch.return_time: found -1.0 s, must be greater than 0.0",
-    ),
+    (Switch, {"limit": 50.0, "band": 0.0, "return_time": 1e-3}, "band: found 0.0 m/s, must be greater than 0.0"),
+    (Switch, {"limit": 50.0, "band": 1e-6, "return_time": -1.0}, "return_time: found -1.0 s, must be greater than 0.0"),
     (
         Stribeck,
         {**STRIBECK, "static_limit": 60.0},
-        "Stribeck.static_limit: found 60.0 N, must be at least the friction limit 65.0 N; "
-        "raise static_limit or lower friction_limit",
+        "static_limit: found 60.0 N, must be at least the friction limit 65.0 N",
     ),
-    (
-        Stribeck,
-        {**STRIBECK, "stribeck_velocity": 0.0},
-        "Stribeck.stribeck_velocity: found 0.0 m/s, must be greater than 0.0",
-    ),
-    (Kelvin, {"stiffness": -1.0, "damping": 0.0}, "Kelvin.stiffness: found -1.0 N/m, must be at least 0.0"),
+    (Stribeck, {**STRIBECK, "stribeck_velocity": 0.0}, "stribeck_velocity: found 0.0 m/s, must be greater than 0.0"),
+    (Kelvin, {"stiffness": -1.0, "damping": 0.0}, "stiffness: found -1.0 N/m, must be at least 0.0"),
     (
         Maxwell,
         {"stiffness": 1.0, "branch_stiffness": -1.0, "branch_damping": 1.0},
-        "Maxwell.branch_stiffness: found -1.0 N/m, must be at least 0.0",
+        "branch_stiffness: found -1.0 N/m, must be at least 0.0",
     ),
 ]
 
@@ -218,7 +187,7 @@ BAD = [
 def test_bad_parameters_are_refused_by_name(law, values, message):
     with pytest.raises(ConfigurationError) as caught:
         law(**values)
-    assert str(caught.value) == message
+    assert str(caught.value).startswith(f"{law.__name__}.{message}")
 
 
 def test_a_law_whose_numbers_no_damper_must_have_is_refused_at_import(monkeypatch):

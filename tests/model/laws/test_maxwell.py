@@ -49,17 +49,14 @@ def test_an_absent_branch_has_the_static_stiffness():
             element.loss_peak()
 
 
-@pytest.mark.parametrize(
-    "element",
-    [
-        Kelvin(stiffness=5e5, damping=1000.0),
-        Kelvin(stiffness=5e5, damping=0.0),
-        Kelvin(stiffness=0.0, damping=1000.0),
-        ENGINE_MOUNT,
-        HYDROMOUNT,
-        Maxwell(stiffness=0.0, branch_stiffness=1e5, branch_damping=2000.0),
-    ],
-)
+@pytest.mark.parametrize("element", [
+    Kelvin(stiffness=5e5, damping=1000.0),
+    Kelvin(stiffness=5e5, damping=0.0),
+    Kelvin(stiffness=0.0, damping=1000.0),
+    ENGINE_MOUNT,
+    HYDROMOUNT,
+    Maxwell(stiffness=0.0, branch_stiffness=1e5, branch_damping=2000.0),
+])  # fmt: skip
 @pytest.mark.parametrize("local", [1e4, 7e5, 1e8])
 def test_a_spring_in_series_adds_compliances_at_every_frequency(element, local):
     stiffness = element.complex_stiffness(OMEGA)

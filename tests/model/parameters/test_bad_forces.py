@@ -11,31 +11,22 @@ FORCES: dict[str, tuple[dict[str, object], str]] = {
     "unknown part": ({**ON, "on": "engin"}, "force.a.on: unknown part 'engin'; did you mean engine"),
     "the world": ({**ON, "on": "world"}, "force.a.on: unknown part 'world'"),
     "a plate": ({**ON, "on": "plate_fr"}, "force.a.on: unknown part 'plate_fr'"),
-    "unknown point": (
-        {**ON, "at": "engine_cg"},
-        "force.a.at: unknown point 'engine_cg'; did you mean engine_cog",
-    ),
+    "unknown point": ({**ON, "at": "engine_cg"}, "force.a.at: unknown point 'engine_cg'; did you mean engine_cog"),
     "unknown joint": ({"joint": "spin"}, "force.a.joint: 'spin' is not a hinge or slide; did you mean"),
-    "joint and part": ({"joint": "damper_fr", "on": "engine"}, "force.a.on: belongs to a force on a part"),
+    "joint and part": ({"joint": "damper_fr", "on": "engine"}, "force.a.on: found with joint"),
     "force and moment": ({**ON, "force": [0, 0, 1]}, "found both of force and moment"),
-    "neither": ({"on": "engine"}, "found none of force and moment"),
+    "neither": ({"on": "engine"}, "found neither of force and moment"),
     "no direction": ({**ON, "moment": [0, 0, 0]}, "force.a.moment: found [0.0, 0.0, 0.0]; must be three numbers"),
-    "its own reaction": (
-        {**ON, "against": "engine"},
-        "force.a.against: found 'engine', which is the part that the force acts on",
-    ),
+    "its own reaction": ({**ON, "against": "engine"}, "force.a.against: found 'engine'"),
     "order zero": ({**ON, "harmonics": [[0, 40, 0]]}, "of order 0; for the constant part set mean"),
     "negative order": ({**ON, "harmonics": [[-1, 40, 0]]}, "the order must be above 0"),
     "an order twice": ({**ON, "harmonics": [[2, 40, 0], [2, 10, 90]]}, "repeats order 2"),
     "negative amplitude": ({**ON, "harmonics": [[2, -40, 0]]}, "the amplitude must be at least 0"),
     "not a number": ({**ON, "harmonics": [[2, float("nan"), 0]]}, "must be three finite numbers"),
     "two numbers": ({**ON, "harmonics": [[2, 40]]}, "must be three finite numbers: order, amplitude, phase [deg]"),
-    "angle and frequency": ({**ON, "angle": "crank"}, "force.a.angle: give either an angle"),
-    "neither of them": ({**ON, "frequency": None}, "force.a.angle: give either an angle"),
-    "unknown angle": (
-        {**ON, "frequency": None, "angle": "wheel"},
-        ("unknown angle 'wheel'; did you mean wheel_"),
-    ),
+    "angle and frequency": ({**ON, "angle": "crank"}, "force.a.angle: set either"),
+    "neither of them": ({**ON, "frequency": None}, "force.a.angle: set either"),
+    "unknown angle": ({**ON, "frequency": None, "angle": "wheel"}, ("unknown angle 'wheel'; did you mean wheel_")),
     "half an order of a wheel": (
         {**ON, "frequency": None, "angle": "wheel_fr", "harmonics": [[0.5, 40, 0]]},
         "a wheel has whole orders",
@@ -74,15 +65,12 @@ def test_a_wrong_force_is_refused(case):
         ({"front.nonuniformity.runout": [[1, -1e-4, 0]]}, "add 180 degrees to the phase"),
         (
             {"rear.right.nonuniformity.runout": [[1, 1e-4, 0]], "rear.right.nonuniformity.rfv": [[1, 20, 0]]},
-            "rear.right.nonuniformity.rfv: found together with runout; remove one of them",
+            "rear.right.nonuniformity.rfv: found together with runout",
         ),
         ({"front.brake_variation.torque": [[1, 20]]}, "front.brake_variation.torque: found [1.0, 20.0], must be three"),
         ({"front.brake_variation.torque": [[1, 20, 0], [1, 5, 0]]}, "repeats order 1"),
         ({"front.brake_variation.torque": [[1, 2e3, 0]]}, "2000 N m, must be at most 1000 N m"),
-        (
-            {"front.nonuniformity.tfv": [[1, 20, 0]]},
-            ("unknown parameter front.nonuniformity.tfv; did you mean"),
-        ),
+        ({"front.nonuniformity.tfv": [[1, 20, 0]]}, ("unknown parameter front.nonuniformity.tfv; did you mean")),
         ({"crank.rpm": 12000}, "crank.rpm: found 12000.0 1/min, must be at most 10000.0 (engines idle at 600 to 1000)"),
         (
             {"crank.rpm": 750, "crank.end_rpm": 200, "crank.run_up_time": 9},
@@ -104,21 +92,13 @@ def car_with(**force: object) -> Car:
 def test_a_force_that_cannot_act_in_a_run_is_refused():
     shake = {"on": "engine", "moment": [0, 1, 0], "harmonics": [[2, 40, 0]]}
     smooth = road("level", 100, duration=3)
-    with pytest.raises(
-        ConfigurationError, match=r"crank does not turn; set the speed of the crankshaft .*--set crank\.rpm"
-    ):
+    with pytest.raises(ConfigurationError, match=r"crank does not turn; .*--set crank\.rpm"):
         car_with(**shake, angle="crank").run(smooth)
     with pytest.raises(ConfigurationError, match="wheel_fr does not turn; the wheels stand; drive on a road"):
         car_with(**shake, angle="wheel_fr").run("low.csv")
-    with pytest.raises(
-        ConfigurationError, match=r"solver\.record_rate: found 1000 Hz, must be at least 2000 Hz, or a force of"
-    ):
+    with pytest.raises(ConfigurationError, match=r"solver\.record_rate: found 1000 Hz, must be at least 2000 Hz"):
         car_with(**shake, frequency=150.0).run(smooth)
-    with pytest.raises(
-        ConfigurationError,
-        match=r"solver\.timestep: found 0\.001 s, must be at most "
-        r".* for a force of 100 Hz",
-    ):
+    with pytest.raises(ConfigurationError, match=r"solver\.timestep: found 0\.001 s, must be at most .* 100 Hz"):
         car_with(**shake, frequency=50.0).with_({"solver.timestep": 1e-3}).run(smooth)
     with pytest.raises(ConfigurationError, match="moves no plate, and sedan has no force that shakes it; add a force"):
         Car.load("sedan").run(smooth)
@@ -139,8 +119,7 @@ ABOUT_THE_AXLE: dict[str, tuple[dict[str, object], str]] = {
     "torque in the joint": ({"joint": "spin_rr", "mean": 10.0}, "a mean moment of 10 N m about the axle of wheel rr"),
     "force off the axle": (
         {"on": "tyre_fl", "at": "tyre_patch_fl", "force": [1, 0, 0], "mean": 100.0},
-        "a mean moment of -30.5 N m about the axle of wheel fl, which turns freely, so there is no equilibrium; "
-        "set on=knuckle_fl",
+        "a mean moment of -30.5 N m about the axle of wheel fl",
     ),
 }
 

@@ -56,12 +56,9 @@ VALID = (
 )
 
 WRONG = {
-    "gravitation=9.81": "9.81 is not of type 'object'",
-    "body.masss=800": "'masss' was unexpected",
-    "body.mass=heavy": "'heavy' is not of type 'number'",
-    "body.mass=50": "50 is less than the minimum of 100.0",
-    "body.flexible=1": "1 is not of type 'boolean'",
-    "body.cog=[2.1, 0.0]": r"\[2.1, 0.0\] is too short",
+    "gravitation=9.81": "9.81 is not of type 'object'", "body.masss=800": "'masss' was unexpected",
+    "body.mass=heavy": "'heavy' is not of type 'number'", "body.mass=50": "50 is less than the minimum of 100.0",
+    "body.flexible=1": "1 is not of type 'boolean'", "body.cog=[2.1, 0.0]": r"\[2.1, 0.0\] is too short",
     "driving.speed=-1": "-1 is less than the minimum of 0.0",
     "solver.timestep=1": "1 is greater than the maximum of 0.005",
     "front.hardpoints.strut_topp=[0.9, 0.5, 1.2]": "'strut_topp' was unexpected",
@@ -76,7 +73,7 @@ WRONG = {
     "outputs.head={on='body'}": "'at' is a required property",
     "load.trunk={mass=-80, at=[3.6, 0, 0.7]}": "-80 is less than the minimum of 0.0",
     "shaker_wheel=xx": "'xx' is not one of",
-}
+}  # fmt: skip
 
 
 def focus(text: str = "") -> dict[str, Any]:

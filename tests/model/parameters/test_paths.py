@@ -61,7 +61,7 @@ def test_an_override_of_another_table_with_the_same_key_is_no_second_value():
 
 def test_a_speed_that_is_no_number_does_not_agree_with_the_one_before():
     assert require_speed_once(["driving.speed=20"], 20.0)
-    with pytest.raises(ConfigurationError, match="given twice"):
+    with pytest.raises(ConfigurationError, match=r"driving\.speed=fast: .* 72 km/h of --speed, 20 m/s"):
         require_speed_once(["driving.speed=20", "driving.speed=fast"], 20.0)
 
 
@@ -81,31 +81,19 @@ def test_values_arrive_where_their_paths_say(car):
     assert overrides_of(car.vehicle, {}) == ()
 
 
-@pytest.mark.parametrize(
-    "path",
-    [
-        "bushings.suspension_mount.stifness.z",
-        "bushings.suspension_mount.stiffness",
-        "bushings.suspension_mount.stiffness.w",
-        "damper.friction_law",
-        "damper",
-        "body.flexible",
-        "w",
-    ],
-)
+@pytest.mark.parametrize("path", [
+    "bushings.suspension_mount.stifness.z", "bushings.suspension_mount.stiffness",
+    "bushings.suspension_mount.stiffness.w", "damper.friction_law", "damper", "body.flexible", "w",
+])  # fmt: skip
 def test_a_path_that_is_no_number_is_refused_with_the_nearest(car, path):
     for use in (lambda: overrides_of(car.vehicle, {path: 1.0}), lambda: value_of(car.vehicle, path)):
-        with pytest.raises(
-            ConfigurationError, match=f"parameter {path}: is not a number of the vehicle; did you mean "
-        ):
+        with pytest.raises(ConfigurationError, match=f"parameter {path}: .*; did you mean "):
             use()
 
 
 def test_the_nearest_path_has_its_axis(car):
     for misspelt in ("bushings.suspension_mount.stifness.z", "suspension_mount.stifness.z"):
-        with pytest.raises(
-            ConfigurationError, match=r"did you mean front\.bushings\.suspension_mount\.stiffness\.z\?$"
-        ):
+        with pytest.raises(ConfigurationError, match=r"did you mean front\.bushings\.suspension_mount\.stiffness\.z"):
             value_of(car.vehicle, misspelt)
 
 
@@ -130,7 +118,7 @@ def test_the_end_of_a_path_is_enough_where_it_can_mean_one_thing_only(car):
         load_vehicle(None, ["maxwell_stiffness=1", "mass=1"])
     assert str(caught.value) == (
         "--set mass=1: parameter mass is ambiguous: it may be body.mass, engine.parts.engine.mass, "
-        "engine.parts.torque_arm.mass, front.parts.a_arm.mass or one of 12 others; give more of its path"
+        "engine.parts.torque_arm.mass, front.parts.a_arm.mass or one of 12 others; write more of its path"
     )
     with pytest.raises(ConfigurationError, match=r"parameter stiffness\.z: is not a number of the vehicle; .* may"):
         value_of(car.vehicle, "stiffness.z")
@@ -155,9 +143,7 @@ def test_optional_keys_are_given_where_the_law_has_them():
     arm = next(one.law for one in links if one.name == "arm_front_fl")
     assert arm is not None and arm.damping == (9.0, 9.0, 9.0)
     for text, near in (("gas_forse=1", "damper.gas_force"), ("*.stopp=1", "damper.stop"), ("w.tabel_x=1", "table_x")):
-        with pytest.raises(
-            ConfigurationError, match=rf"^--set {re.escape(text)}: unknown parameter .* did you mean .*{near}\?$"
-        ):
+        with pytest.raises(ConfigurationError, match=rf"^--set {re.escape(text)}: unknown .* did you mean .*{near}\?$"):
             load_vehicle(None, [text])
     with pytest.raises(ConfigurationError, match="parameter table_x is ambiguous: it may be"):
         load_vehicle(None, ["table_x=1"])
@@ -165,12 +151,9 @@ def test_optional_keys_are_given_where_the_law_has_them():
 
 def test_units_are_those_of_the_fields(car):
     units = {
-        "damper.viscous": "N s/m",
-        "bushings.tyre.stiffness": "N/m",
-        "bushings.tyre.stiffness.z": "N/m",
-        "parts.engine.mass": "kg",
-        "hardpoints.strut_top.x": "m",
-    }
+        "damper.viscous": "N s/m", "bushings.tyre.stiffness": "N/m", "bushings.tyre.stiffness.z": "N/m",
+        "parts.engine.mass": "kg", "hardpoints.strut_top.x": "m",
+    }  # fmt: skip
     assert {path: unit_of(car.vehicle, path) for path in units} == units
     for path in ("damper", "body.flexible", "front.template", "outputs.seat.on"):
         with pytest.raises(ConfigurationError, match=f"parameter {path}: is not a value of a vehicle"):

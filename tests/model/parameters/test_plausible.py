@@ -14,7 +14,7 @@ from vehicle.runs.car import Car
 ABSURD = {
     "wheel centre below the plate": (
         "hardpoints.wheel_center.z=0.3",
-        "hardpoints.wheel_center.z less hardpoints.tyre_patch.z: found -0.1 m, must be 0.15 to 0.7 m (loaded ",
+        "hardpoints.wheel_center.z less hardpoints.tyre_patch.z: found -0.1 m, must be 0.15 to 0.7 m",
     ),
     "patch above the wheel centre": (
         "hardpoints.tyre_patch.z=0.8",
@@ -22,68 +22,53 @@ ABSURD = {
     ),
     "patch beside the wheel": (
         "hardpoints.tyre_patch.x=1.5",
-        "hardpoints.tyre_patch.x less hardpoints.wheel_center.x: found 0.65 m, must be -0.2 to 0.2 m (",
+        "hardpoints.tyre_patch.x less hardpoints.wheel_center.x: found 0.65 m, must be -0.2 to 0.2 m",
     ),
     "a point below the plate": (
         "hardpoints.lower_ball.z=0.3",
-        (
-            "hardpoints.lower_ball.z: found 0.3 m, must be at least 0.4 m, the height of the plate "
-            "(hardpoints.tyre_patch.z)"
-        ),
+        ("hardpoints.lower_ball.z: found 0.3 m, must be at least 0.4 m, the height of the plate"),
     ),
     "rear support without stiffness": (
         "bushings.rear_support.stiffness.z=0",
-        "bushings.rear_support.stiffness.z: found 0 N/m, must be at least 5000 N/m (it supports the rear of the car; ",
+        "bushings.rear_support.stiffness.z: found 0 N/m, must be at least 5000 N/m",
     ),
     "strut mount without stiffness": (
         "bushings.suspension_mount.stiffness.z=0",
-        "bushings.suspension_mount.stiffness.z: found 0 N/m, must be at least 10000 N/m (",
+        "bushings.suspension_mount.stiffness.z: found 0 N/m, must be at least 10000 N/m",
     ),
     "tyre without stiffness": (
         "bushings.tyre.stiffness=[0, 0, 0]",
-        "bushings.tyre.stiffness.x: found 0 N/m, must be at least 10000 N/m (the tyre carries the car; ",
+        "bushings.tyre.stiffness.x: found 0 N/m, must be at least 10000 N/m",
     ),
     "mount of ten tonnes": (
         "parts.suspension_mount.mass=1e4",
-        "parts.suspension_mount.mass: found 10000 kg, must be 0.02 to 150 kg (mass of a part: a bolt of ",
+        "parts.suspension_mount.mass: found 10000 kg, must be 0.02 to 150 kg",
     ),
-    "knuckle of a microgram": (
-        "parts.knuckle.mass=1e-9",
-        "parts.knuckle.mass: found 1e-09 kg, must be 0.02 to 150 kg (",
-    ),
-    "engine in grams": (
-        "parts.engine.mass=220000",
-        "parts.engine.mass: found 220000 kg, must be 20 to 1000 kg (an electric motor has 30 kg, ",
-    ),
+    "knuckle of a microgram": ("parts.knuckle.mass=1e-9", "parts.knuckle.mass: found 1e-09 kg, must be 0.02 to 150 kg"),
+    "engine in grams": ("parts.engine.mass=220000", "parts.engine.mass: found 220000 kg, must be 20 to 1000 kg"),
     "engine inertia in kg cm2": (
         "parts.engine.inertia=[151700, 68800, 151700]",
-        "parts.engine.inertia.x: found 151700 kg m2, must be 0.00022 to 220 kg m2 (radius of gyration: ",
+        "parts.engine.inertia.x: found 151700 kg m2, must be 0.00022 to 220 kg m2",
     ),
     "offset in mm": ("parts.caliper.offset.x=120", "parts.caliper.offset.x: found 120 m, must be -1 to 1 m ("),
-    "body of 16 kg": ("body.mass=16", "body.mass: found 16.0 kg, must be at least 100.0 (without engine and axles "),
-    "body of 100 tonnes": ("body.mass=100000", "body.mass: found 100000.0 kg, must be at most 5000.0 (without engine "),
-    "centre of gravity in mm": (
-        "body.cog=[2157, 0, 1011]",
-        "body.cog.x: found 2157 m, must be 0.45 to 3.9 m (between the outermost hardpoints; ",
-    ),
+    "body of 16 kg": ("body.mass=16", "body.mass: found 16.0 kg, must be at least 100.0"),
+    "body of 100 tonnes": ("body.mass=100000", "body.mass: found 100000.0 kg, must be at most 5000.0"),
+    "centre of gravity in mm": ("body.cog=[2157, 0, 1011]", "body.cog.x: found 2157 m, must be 0.45 to 3.9 m"),
     "height of it in mm": ("body.cog.z=1011", "body.cog.z: found 1011 m, must be 0.4 to 1.85 m ("),
     "inertia without its thousands": (
         "body.inertia.iyy=5.268",
-        "body.inertia.iyy: found 5.268 kg m2, must be 32.52 to 17621.6 kg m2 (about the origin; radius of ",
+        "body.inertia.iyy: found 5.268 kg m2, must be 32.52 to 17621.6 kg m2",
     ),
     "gravity of 500": ("gravity=500", "gravity: found 500.0 m/s2, must be at most 30.0 (9.81 on Earth; "),
     "stiffness of 1e12": (
         "bushings.tyre.stiffness.z=1e12",
-        "bushings.tyre.stiffness: found 1000000000000.0 N/m, must be at most 10000000000.0 (a block of steel of 5 cm ",
+        "bushings.tyre.stiffness: found 1000000000000.0 N/m, must be at most 10000000000.0",
     ),
     "a law that is off": (
         "damper.stribeck_velocity=1e300",
-        "damper.stribeck_velocity: found 1e+300 m/s, must be at most 10.0 (dampers on a shaker move by ",
+        "damper.stribeck_velocity: found 1e+300 m/s, must be at most 10.0",
     ),
-    "body modes at 20 kHz": (
-        "body.frequency_scale=1000",
-        "body.frequency_scale: found 1000.0, must be at most 20.0 (a body 400 times as stiff is rigid: ",
-    ),
+    "body modes at 20 kHz": ("body.frequency_scale=1000", "body.frequency_scale: found 1000.0, must be at most 20.0"),
 }
 
 
@@ -99,17 +84,15 @@ def test_absurd_values_are_refused_when_the_car_is_read(case):
 IMPOSSIBLE = {
     "first mode at 3 Hz": (
         ["body.frequency_scale=0.16"],
-        r"body\.frequency_scale: found 0\.16, which puts the first mode of the body \(19\S* Hz in "
-        r"body\.superelement = body_design\.toml\) at 3\.04 Hz, allowed are 5 Hz and more",
+        r"body\.frequency_scale: found 0\.16, .* \(19\S* Hz .*body_design\.toml\) at 3\.04 Hz, must be at least 5 Hz",
     ),
     "first mode at 0.001 Hz": (
         ["body.frequency_scale=5e-5"],
-        r"body\.frequency_scale: .* at 0\.00095 Hz, allowed are ",
+        r"body\.frequency_scale: .* at 0\.00095 Hz, must be at least 5 Hz",
     ),
     "springs too soft to carry": (
         ["main_spring.stiffness=1000"],
-        r"main_spring\.stiffness: too soft for the weight it carries \(body\.mass 813 kg, gravity 9\.81 m/s2\): it "
-        r"would sag by 1\.6\d m, allowed are 0\.5 m",
+        r"main_spring\.stiffness: .*\(body\.mass 813 kg, gravity 9\.81 m/s2\).* 1\.6\d m, must be at most 0\.5 m",
     ),
     "engine on threads": (
         [
@@ -117,7 +100,7 @@ IMPOSSIBLE = {
             "bushings.hydromount.stiffness=[1, 1, 1]",
             "bushings.hydromount.maxwell_stiffness=0",
         ],
-        r"bushings\.hydromount\.stiffness\.x: too soft for the weight it carries",
+        r"bushings\.hydromount\.stiffness\.x: ",
     ),
     "a car that tips forward": (
         # Rigid: no masses at the nodes of the design have this centre of gravity and inertia.
@@ -126,15 +109,12 @@ IMPOSSIBLE = {
             *("body.inertia.izz=2000", "body.inertia.ixy=82.03"),
             "body.flexible=false",
         ],
-        r"body\.cog: found \[0\.8, 0\.0, 1\.011\] m\. The car would tip over, because rear support right would carry "
-        r"-\d+ N; the centre of gravity must lie between the points where the car stands on the ground",
+        r"body\.cog: found \[0\.8, 0\.0, 1\.011\] m\. .*rear support right would carry -\d+ N",
     ),
     "inertia with a turned sign": (
         ["body.inertia.izx=-1800"],
-        r"body\.inertia: ixx 1000, .*izx -1800, .* kg m2 about the origin: with body\.mass \(813 kg\) at body\.cog .* "
-        r"the principal moments about the centre of gravity are -3097, 656\.7 and 4081 kg m2\. For a real body, all "
-        r"must be positive, and the sum of the two smaller at least the largest \(-2440 >= 4081\?\)\. The nearest "
-        r"physical tensor differs by 3\.26e\+03 kg m2, must be at most 81\.6 \(2% of the largest\)\. Check signs",
+        r"body\.inertia: ixx 1000, .*izx -1800, .* the origin: with body\.mass \(813 kg\) .* -3097, 656\.7 and 4081 "
+        r"kg m2.*\(-2440 >= 4081\?\).* 3\.26e\+03 kg m2, must be at most 81\.6 \(2%",
     ),
     "inertia of 1e30": (["body.inertia.izx=1e30"], r"body\.inertia: ixx 1000, .*differs by 1e\+30 kg m2"),
     "mass against inertia": (
@@ -153,12 +133,8 @@ def test_impossible_cars_are_refused_when_they_are_built(case):
 
 
 ROAD_VEHICLES = {
-    "a light body": [
-        *("body.mass=300", "body.inertia.ixx=443", "main_spring.stiffness=12000"),
-    ],
-    "a heavy one": [
-        *("body.mass=1600", "main_spring.stiffness=60000"),
-    ],
+    "a light body": [*("body.mass=300", "body.inertia.ixx=443", "main_spring.stiffness=12000")],
+    "a heavy one": [*("body.mass=1600", "main_spring.stiffness=60000")],
     "on the moon": ["gravity=1.62"],
     "weightless": ["gravity=0"],
     "no stabilizer": ["stabilizer.torsional_stiffness=0"],

@@ -15,20 +15,17 @@ def test_values_and_bounds():
     assert parsed_variation("--vary", "law=file.csv").listed() == ("file.csv",)
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("damper.viscous", "must be PATH=A,B,C, PATH=A:B:N or PATH=A:B"),
-        ("=1:2", "must be PATH=A,B,C"),
-        ("a=1,,2", "must be PATH=A,B,C"),
-        ("a=x:2", "all are numbers"),
-        ("a=1:inf", "all are numbers"),
-        ("a=1:2:3:4", "all are numbers"),
-        ("a=2:2", "the lower bound must be below the upper one"),
-        ("a=1:2:2.5", "found 2.5 values, must be a whole number of at least 2"),
-        ("a=1:2:1", "found 1 values"),
-    ],
-)
+@pytest.mark.parametrize(("text", "message"), [
+    ("damper.viscous", "must be PATH=A,B,C, PATH=A:B:N or PATH=A:B"),
+    ("=1:2", "must be PATH=A,B,C"),
+    ("a=1,,2", "must be PATH=A,B,C"),
+    ("a=x:2", "all are numbers"),
+    ("a=1:inf", "all are numbers"),
+    ("a=1:2:3:4", "all are numbers"),
+    ("a=2:2", "the lower bound must be below the upper one"),
+    ("a=1:2:2.5", "found 2.5 values, must be a whole number of at least 2"),
+    ("a=1:2:1", "found 1 values"),
+])  # fmt: skip
 def test_other_texts(text, message):
     with pytest.raises(ConfigurationError) as caught:
         parsed_variation("--vary", text)

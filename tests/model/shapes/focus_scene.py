@@ -8,19 +8,11 @@ from vehicle.model.shapes import Part, Shape
 from vehicle.model.shapes.scene import car_shapes as scene
 
 CORNER = {
-    "a_arm": "lower_arm",
-    "knuckle": "knuckle",
-    "tyre": "wheel",
-    "brake_disc": "brake_disc",
-    "caliper": "caliper",
-    "damper_bottom": "damper_tube",
-    "damper_top": "damper_rod",
-    "suspension_mount": "top_mount",
-    "main_spring": "coil_spring",
-    "steering_rod": "steering_rod",
-    "stabilizer_half": "stabilizer_half",
+    "a_arm": "lower_arm", "knuckle": "knuckle", "tyre": "wheel", "brake_disc": "brake_disc", "caliper": "caliper",
+    "damper_bottom": "damper_tube", "damper_top": "damper_rod", "suspension_mount": "top_mount",
+    "main_spring": "coil_spring", "steering_rod": "steering_rod", "stabilizer_half": "stabilizer_half",
     "stabilizer_rod": "stabilizer_rod",
-}
+}  # fmt: skip
 
 
 def car_shapes(points: Mapping[str, np.ndarray]) -> dict[str, Shape]:

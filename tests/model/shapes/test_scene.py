@@ -12,19 +12,9 @@ from vehicle.model.shapes import SHELL, Part, Shape, part_shapes
 OPEN = {"body_shell", "body_lining", "body_trim", "body_lamps_front", "body_lamps_rear", "body_plates", "body_glass"}
 """sheets by nature: panels, panes and fields of colour on the paint"""
 PARTS_OF_A_SIDE = (
-    "a_arm",
-    "knuckle",
-    "tyre",
-    "brake_disc",
-    "caliper",
-    "damper_bottom",
-    "damper_top",
-    "suspension_mount",
-    "main_spring",
-    "steering_rod",
-    "stabilizer_half",
-    "stabilizer_rod",
-)
+    "a_arm", "knuckle", "tyre", "brake_disc", "caliper", "damper_bottom", "damper_top", "suspension_mount",
+    "main_spring", "steering_rod", "stabilizer_half", "stabilizer_rod",
+)  # fmt: skip
 MAX_STL_BYTES = 1.30e6  # all files of the scene are kept in the repository
 STL_HEADER, STL_TRIANGLE = 84, 50
 

@@ -211,16 +211,16 @@ def test_the_engine_and_its_reason_are_told_before_the_runs():
     (note,) = plan_sweep(car, change, roads).engine_notes()
     assert note.startswith("engine mujoco on road_C_50 (1 of 2 inputs), at least for the first car: ")
     assert re.search(
-        r"is valid up to 0\.05 rad; --engine reduced takes about \d+ s for all 2 runs \(on class C comfort", note
+        r"is valid up to 2\.86 deg; --engine reduced takes about \d+ s for all 2 runs \(on class C comfort", note
     )
     assert plan_sweep(car, change, roads[:1]).engine_notes() == ()
     (note,) = plan_sweep(car, change, roads, SweepSettings(engine="reduced")).engine_notes()
     assert note.startswith("outside the valid range of the reduced engine on road_C_50, at least for the first car: ")
-    assert "is valid up to 0.05 rad (on class C comfort within" in note
+    assert "is valid up to 2.86 deg (on class C comfort within" in note
     # Where a linear tyre pulls, no difference from MuJoCo is stated.
     rough = [Road("D", speed=100.0, duration=4.0)]
     (note,) = plan_sweep(car, change, rough, SweepSettings(engine="reduced")).engine_notes()
-    assert "so the result is invalid; to let it lift off: --set AXLE" in note and "class C" not in note
+    assert "--set AXLE.bushings.tyre.one_sided=true" in note and "class C" not in note
     assert plan_sweep(car, change, roads[:1], SweepSettings(engine="reduced")).engine_notes() == ()
     # Whoever asks for MuJoCo hears what the other engine costs, and whether it applies.
     for inputs, means in ((roads[:1], "inside its valid range (comfort within 0.1 %)"), (roads, "outside its valid")):

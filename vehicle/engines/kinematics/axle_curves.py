@@ -67,9 +67,6 @@ def design_slopes(axle: AxleStatics, *, opposite: bool = False, load: Vector | N
 def opposite_rates(axle: AxleStatics) -> tuple[float, float]:
     """Compute the wheel rate of an axle for opposite travel in two parts, both [N/m].
 
-    Args:
-        axle: axle with bushings.
-
     Returns:
         Rate without springs on hinges, and what these add: an anti-roll bar, the torsion of a beam.
 

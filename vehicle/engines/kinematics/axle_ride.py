@@ -80,7 +80,7 @@ class AxleRide:
     """Ride parameters of one wheel of an axle; see the equations of this module.
 
     Attributes:
-        wheel, tyre: rate and damping of the suspension at the wheel, and those of the tyre.
+        wheel, tyre: rate and damping of the suspension at the wheel, and of the tyre.
         unsprung_mass, sprung_mass: of one wheel [kg]; the sprung mass is nan without gravity.
         spring_load: N of one wheel [N].
         roll_springs: roll stiffness of the axle by springs, bushings and preloads [N m/rad].

@@ -290,7 +290,7 @@ class AxleStatics:
         return force, stiffness
 
     def _constraints(self, travel: Sequence[float]) -> tuple[Vector, Vector, Vector]:
-        """Return Jacobian, reaction directions and gaps of the ideal joints, followed by those of the wheel heights.
+        """Return Jacobian, reaction directions and gaps of the ideal joints, then of the wheel heights.
 
         The height is that of the wheel centre, its reaction the load on the contact point.
         """
@@ -302,7 +302,7 @@ class AxleStatics:
         return np.vstack(rows), np.vstack(reacting), self._open(gaps, travel)
 
     def _open(self, gaps: Vector, travel: Sequence[float]) -> Vector:
-        """Return the gaps of the ideal joints, followed by those of the wheel heights [m]."""
+        """Return the gaps of the ideal joints, then of the wheel heights [m]."""
         raised = [self.places(index)[0][2] - begin[0][2] for index, begin in enumerate(self.at_rest)]
         return np.concatenate([gaps.ravel(), np.array(raised) - travel])
 

@@ -110,9 +110,6 @@ def roll_centre(right: WheelMotion, left: WheelMotion) -> tuple[float, float]:
 
     In the transverse plane a contact point moves at a right angle to the line to its swing centre, so that line rises
     inwards by v_out / v_z. The lines of both wheels meet in the roll centre.
-
-    Args:
-        right, left: motions for opposite travel.
     """
     rises = [wheel.side * wheel.contact_velocity[1] / wheel.contact_velocity[2] for wheel in (right, left)]
     (y1, z1), (y2, z2) = right.contact[1:], left.contact[1:]

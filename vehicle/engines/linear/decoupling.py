@@ -7,7 +7,7 @@ With the velocity p = (v, w) of the centre of gravity of the part and M = diag(m
 their sum is 1. The share of a motion is the sum of its row. Products of inertia couple two rotations, so that single
 terms, and rarely a share, may be negative. In the car the modes are those of the car; grounded, the body is fixed,
 mounts have their static tangent at the operating point, and Maxwell branches and damping are left out. Parts between
-the part and the body, as a torque arm or the fluid of a mount, are free.
+the part and the body, such as a torque arm or the fluid of a mount, are free.
 
 Torque roll axis: the axis s = J^-1 e about which a free part turns under a torque about the crankshaft e. The torque
 excites one mode alone if K s = W^2 M s with K of the mounts over the six motions; W^2 = s'Ks / s'Ms, the residual is
@@ -94,8 +94,8 @@ def decoupling(
 
     Args:
         matrices: matrices of the assembled car.
-        part: a part that moves freely on its mounts, as "engine".
-        grounded: fix the body; by default the modes are those of the car.
+        part: a part that moves freely on its mounts, for example "engine".
+        grounded: fix the body; by default, modes of the whole car.
         stuck: True for locked dampers of the car.
         crankshaft: direction of the crankshaft.
 

@@ -98,7 +98,7 @@ class DisplacementLaw:
 
     @property
     def stiffness_increase(self) -> float:
-        """Slope of the steepest segment less that of the segment at rest [N/m], the softer of two at a breakpoint."""
+        """Slope of the steepest segment less the slope at rest [N/m], the softer of two at a breakpoint."""
         # At rest on a breakpoint, the car is in two segments; the step uses the tangent between both.
         at_rest = self.changes * (self.breakpoints == 0.0)
         below = np.signbit(self.breakpoints)

@@ -102,7 +102,7 @@ class Equations:
         preload, preloads = self.rows.weights.preload, np.tile(self.preload, (size, 1))
         # Forces g of laws act along their elements like preloads, with the opposite sign.
         np.subtract.at(preloads.T, self.law_rows, laws.T[self.laws])
-        # Views of MuJoCo's arrays: to ask for one takes as long as to fill it.
+        # Views of MuJoCo's arrays: creating one takes as long as filling it.
         qpos, qvel, mocap, sites, matrices = data.qpos, data.qvel, data.mocap_pos, data.site_xpos, data.xmat
         spatial = data.cvel
         passive, bias, applied, tyres = data.qfrc_passive, data.qfrc_bias, data.qfrc_applied, self.rows.layout.tyres

@@ -5,7 +5,7 @@
 at each frequency W of the forces, s = jW, with their complex amplitudes in l; see `vehicle.engines.linear.system`. The
 run-outs r of the tyres act by B = Bk + s Bc, Bc without that of slopes, and the velocities of their treads as slips v.
 Without friction the dampers have the slope of their curve at rest: the softest segment, which C contains, counts only
-at the velocities where it lies; and friction elements of bushings, as those of a rack, have no stiffness. Where
+at the velocities where it lies; and friction elements of bushings, for example of a rack, have no stiffness. Where
 friction holds, both dampers and bushings stick.
 """
 
@@ -34,7 +34,7 @@ def forced_response(
 
     Returns:
         Amplitudes of Re(Z exp(jWt)) [m/s2], (forces, channels, frequencies in the order of `matrices.lines`); their sum
-        over the forces is the answer of the car.
+        over the forces is the response of the car.
     """
     system = matrices.system
     if not stuck:
@@ -64,12 +64,7 @@ def force_amplitudes(matrices: CarMatrices) -> Complex:
 
 
 def unit_response(
-    matrices: CarMatrices,
-    channels: Sequence[str],
-    frequencies: Sequence[float],
-    forces: Indices,
-    *,
-    stuck: bool,
+    matrices: CarMatrices, channels: Sequence[str], frequencies: Sequence[float], forces: Indices, *, stuck: bool
 ) -> Complex:
     """Return Z of Re(Z exp(jWt)) of acceleration channels per unit of applied forces; (forces, channels, frequencies).
 

@@ -62,7 +62,7 @@ def path_shares(
         car: compiled and trimmed car.
         matrices: matrices of the car.
         loads: element forces of the car as rows over its motion.
-        channel: acceleration channel of a point on the body, as "seat_rail_acc_z".
+        channel: acceleration channel of a point on the body, for example "seat_rail_acc_z".
         frequency: natural frequency of the mode [Hz]; the mode nearest to it is taken.
         stuck: True for locked dampers, False for their viscous part without friction.
 

@@ -107,13 +107,7 @@ def _partial_fractions(omega: Vector, poles: Complex, residues: Complex) -> Comp
     return sums.reshape(*poles.shape[:-1], output_count, lines)
 
 
-def _solved(
-    form: FirstOrder,
-    s: Complex,
-    rows: Vector,
-    by_displacement: Vector,
-    by_rate: Vector,
-) -> Complex:
+def _solved(form: FirstOrder, s: Complex, rows: Vector, by_displacement: Vector, by_rate: Vector) -> Complex:
     """Return the frequency response by solving a linear system at each line, shape (..., o, m)."""
     matrices = s[:, None, None] * np.eye(form.state.shape[-1]) - form.state[..., None, :, :]
     right_side = by_displacement[..., None, :] + s[:, None] * by_rate[..., None, :]

@@ -50,7 +50,7 @@ class LinearSystem:
         cyclic: positions of the cyclic coordinates; (c,).
         constraints: Jc; (k, n).
         load: l, direction of the applied force; (..., n).
-        outputs: name -> coefficients of the coordinates followed by those of the inputs; (..., n + w).
+        outputs: name -> coefficients of the coordinates, then of the inputs; (..., n + w).
         slides: laws of the sliding pairs; empty if their forces are given from outside.
     """
 

@@ -49,8 +49,8 @@ class CarVariant:
 
     Attributes:
         matrices: its matrices.
-        static: its static loads; the residual is that of the linear car.
-        change: coordinates of the reference car over those of the modified car.
+        static: its static loads, with the residual of the linear car.
+        change: coordinates of the reference car over the coordinates of the modified car.
     """
 
     matrices: CarMatrices

@@ -17,15 +17,7 @@ from vehicle.engines.reduced.load_outputs import load_outputs
 from vehicle.engines.reduced.plate_samples import InputSamples, plate_samples
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 from vehicle.engines.reduced.step_factors import CarFactors
-from vehicle.engines.reduced.table_layout import (
-    BLOCK,
-    INNER_BLOCK,
-    LANES,
-    PAST,
-    SINGLE,
-    TILE,
-    aligned_table,
-)
+from vehicle.engines.reduced.table_layout import BLOCK, INNER_BLOCK, LANES, PAST, SINGLE, TILE, aligned_table
 from vehicle.engines.reduced.validity import Validity, check_stride, rotating_bodies, tyre_outputs
 from vehicle.engines.simulation.recorded_acceleration import AHEAD, WEIGHTS
 from vehicle.engines.simulation.recording import Statistics

@@ -60,7 +60,7 @@ def slope_loads(
     tyre_forces: Mapping[str, Vector],
     tyre_load: Mapping[str, float],
 ) -> Vector:
-    """Return what the forces of rolling tyres on slopes add to loads, beyond that of the static load and z'; (l, n).
+    """Return the loads by forces of rolling tyres on slopes, beyond the static load and z'; (l, n).
 
     Args:
         model: pole model of the car.

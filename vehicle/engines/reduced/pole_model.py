@@ -1,4 +1,4 @@
-"""Car as a sum over its poles: nonlinear forces are those of dampers and of laws over one displacement each.
+"""Car as a sum over its poles, with nonlinear forces of dampers and of laws over one displacement each.
 
 With the matrices of `vehicle.engines.linear` (dampers sliding, ideal joints eliminated) the state x = (y, y', f_b)
 obeys

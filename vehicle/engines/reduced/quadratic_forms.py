@@ -31,7 +31,7 @@ PERIOD = 4096
 """Samples of the motion that gives the patterns."""
 
 FORCE_LEVEL = 1000.0
-"""RMS of forces of dampers and laws over that of the velocities of plates, for the patterns [N s/m]."""
+"""RMS of the forces of dampers and laws over the RMS of the plate velocities, for the patterns [N s/m]."""
 
 AMPLITUDE = 1e-4
 """Largest coordinate of a pattern in an evaluation [rad, m]. The third order moves what is stated of an RMS by up to

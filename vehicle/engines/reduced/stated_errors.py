@@ -46,7 +46,7 @@ def weighted_squares(point: str, acceleration: Vector, interval: float) -> float
     """Return the sum of the squares of weighted accelerations over axes and samples [m2/s4].
 
     Args:
-        point: point with a comfort value; its weighting is that of `vehicle.runs.car.Run.comfort`.
+        point: point with a comfort value; weighted as by `vehicle.runs.car.Run.comfort`.
         acceleration: along x, y, z [m/s2]; (3, n).
         interval: sampling interval [s].
     """
@@ -122,7 +122,7 @@ def error_sentence(errors: Mapping[str, float]) -> str:
     if off:
         texts = [f"{100.0 * errors[name]:+.0f} % ({name})" for name in off[:NAMED]]
         more = f" and {len(off) - NAMED} more" if len(off) > NAMED else ""
-        parts = [f"the RMS wrong by about {', '.join(texts)}{more}"]
+        parts = [f"RMS about {', '.join(texts)}{more}"]
     if not off:
         large = [name for name in by_size if abs(errors[name]) > NAMED_ERROR]
         comfort = [name for name in large if name in comfort] or large
@@ -131,8 +131,8 @@ def error_sentence(errors: Mapping[str, float]) -> str:
         size = 100.0 * errors[worst]
         text = "less than 0.1 %" if abs(size) < 0.1 else f"{size:+.1f} %"
         value, _, point = worst.partition("@")
-        parts.append(f"{value} comfort ({point.replace('_', ' ')}) {'by' if off else 'wrong by'} {text}")
-    return f"the linear geometry of the reduced engine makes {', '.join(parts)}" if parts else ""
+        parts.append(f"{value} comfort ({point.replace('_', ' ')}) {text}")
+    return f"errors from the linear geometry of the reduced engine: {', '.join(parts)}" if parts else ""
 
 
 def messages(errors: Mapping[str, float], read: Collection[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:

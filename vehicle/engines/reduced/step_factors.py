@@ -303,10 +303,7 @@ def _steepness(model: PoleModel) -> Vector:
     groups = 0.5 * sliders.stiffness.sum(axis=1)
     dampers = sliders.steepness if len(groups) else stiff
     return np.stack(
-        [
-            np.concatenate([np.zeros(d + len(groups)), slopes[:, 0]]),
-            np.concatenate([dampers, groups, slopes[:, 1]]),
-        ]
+        [np.concatenate([np.zeros(d + len(groups)), slopes[:, 0]]), np.concatenate([dampers, groups, slopes[:, 1]])]
     )
 
 

@@ -27,7 +27,7 @@ INNER_BLOCK = 64
 """Samples in an inner block, after which outputs are computed: their states fit in the cache of a core."""
 
 TILE = 3
-"""Outputs that are computed together: those of three axes."""
+"""Outputs that are computed together: three axes."""
 
 PAST = 2 * AHEAD
 """Samples before a block that are needed for the accelerations in the block."""

@@ -76,8 +76,8 @@ class Validity:
         largest = max(self.angles, key=lambda body: self.angles[body])
         if not self.within_limits:
             messages.append(
-                f"{largest} rotates by {self.angles[largest]:.3f} rad, but the reduced engine with its linear "
-                f"geometry is valid up to {self.limit:g} rad{REMEDY}"
+                f"{largest} rotates by {np.degrees(self.angles[largest]):.3g} deg, but the linear geometry of the "
+                f"reduced engine is valid up to {np.degrees(self.limit):.3g} deg{REMEDY}"
             )
         for wheel, load in self.loads.items():
             if load < 0.0 and wheel not in self.one_sided:

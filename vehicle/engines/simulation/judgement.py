@@ -34,8 +34,8 @@ def require_samples(samples: float, channels: int) -> None:
     """
     if samples < 1.0 - 1e-6:
         raise ConfigurationError(
-            f"solver.record_rate: the signal has {number(samples, 2)} intervals of the recorded samples, must be "
-            "at least 1; give a longer signal"
+            f"solver.record_rate: the signal lasts {number(samples, 2)} sampling intervals, must be at least 1; "
+            "give a longer signal"
         )
     needed, there = 8.0 * samples * channels, physical_memory()
     if needed > 0.5 * there:
@@ -58,7 +58,7 @@ def require_finite(recording: Recording) -> None:
             bad = int(np.argmin(np.abs(values) < LARGEST))
             raise SimulationError(
                 f"channel {name} is {values[bad]:.3g} {recording.units[name]} at t = {recording.time[bad]:.4f} "
-                "s: this is impossible for a car; check the input and the parameters that you changed"
+                "s, impossible for a car; check the input and the parameters that you changed"
             )
 
 
@@ -82,16 +82,16 @@ def judge_energy(energies: Energies, rate: float, step: float) -> tuple[str, ...
     if missing <= ENERGY_ROUND_OFF or residual <= RESIDUAL_WARNED:
         return ()
     whole = f"{lost:.3g} J dissipated" if lost > work else f"{energies.work_in:.3g} J put in by the plates"
-    said = f"energy balance: {missing:.3g} J of {whole} are missing (residual {number(residual, 2)})"
+    said = f"energy balance: {missing:.3g} J of {whole} are unaccounted for (residual {number(residual, 2)})"
     if rate < BALANCED_RATE:
-        return (f"{said}; this says little, because {rate:g} Hz are too few samples a second for the sum",)
+        return (f"{said}; {rate:g} Hz is too low a sample rate to judge the balance",)
     smaller = f"--set solver.timestep={0.5 * step:g}"
     if residual > RESIDUAL_FAILED:
         raise SimulationError(
             f"{said}, must be at most {RESIDUAL_FAILED:g}: the time steps are too long for the force laws of "
-            f"this car. Set a smaller step, as {smaller}, or check the parameters that you changed"
+            f"this car. Set a smaller step, for example {smaller}, or check the parameters that you changed"
         )
     return (
-        f"{said}, usual is up to {RESIDUAL_WARNED:g}; repeat the run with {smaller}: if the residual falls, the step "
-        "was too long; if it stays, the balance lacks a work, and the channels are as exact as their change shows",
+        f"{said}, usually below {RESIDUAL_WARNED:g}; repeat the run with {smaller}: if the residual falls, the step "
+        "was too long; if it stays, the balance lacks a work term, and the change of the channels is their error",
     )

@@ -163,7 +163,7 @@ class Recorder:
         return self.rows.whole(self.new_poses[new], self.buffers.modal_position[self.pose_index[index] - self.done])
 
     def _stored_energy(self, half: float) -> float:
-        """Return the kinetic, elastic and gravity energy [J] at the present time; store that of the rubber friction."""
+        """Return the kinetic, elastic and gravity energy [J] at present; store the energy of the rubber friction."""
         # Use the generated model: the armature of the integration is not a mass of the car.
         model, rows = self.car.model, self.rows
         e, state, preload = rows.layout, rows.state, rows.weights.preload
@@ -216,15 +216,12 @@ class Recorder:
 
     def _row_acceleration(self, solved: Vector) -> Vector:
         """Return the acceleration of the element rows, from f = -D J a; (chunk, n, 3)."""
-        return -self._local(solved) / self.rows.weights.impedance
+        # The rotation between world and element axes is neglected.
+        return np.asarray(-solved[:, self.rows.layout.bushings.rows] / self.rows.weights.impedance)
 
     def _branch_force(self, solved: Vector, past: Vector) -> Vector:
         """Return the force of the Maxwell branches; (chunk, n, 3)."""
         return past + self.rows.weights.slope * self._row_acceleration(solved)
-
-    def _local(self, forces: Vector) -> Vector:
-        """Return the forces of the element rows, neglecting the rotation between world and element axes."""
-        return np.asarray(forces[:, self.rows.layout.bushings.rows])
 
     def flush(self, motion: PlateArrays, index: int, every: int) -> None:
         """Compute channels and energies of the buffered samples and clear the buffers."""

@@ -39,7 +39,7 @@ class Statistics:
         energies: energy balance; None for the reduced engine, whose matrices contain no parts.
         notices: messages about the computation.
         within_validity: False for a motion outside the valid range of the engine, which needs another engine.
-        errors: what linear geometry makes of the RMS of each channel, as a share with its sign; empty if unknown.
+        errors: relative error of the RMS of each channel from linear geometry, with its sign; empty if unknown.
     """
 
     engine: str
@@ -95,9 +95,7 @@ class Recording:
     def only(self, channels: Sequence[str]) -> Recording:
         """Return the recording with a subset of its channels."""
         return replace(
-            self,
-            channels={name: self[name] for name in channels},
-            units={name: self.units[name] for name in channels},
+            self, channels={name: self[name] for name in channels}, units={name: self.units[name] for name in channels}
         )
 
     @property

@@ -38,7 +38,7 @@ def functions() -> ctypes.CDLL:
     """Return the core with the types of its functions, and with the offsets of this process's MuJoCo.
 
     Raises:
-        MissingPartError: there is no core for this platform, or MuJoCo is not as its declarations say.
+        MissingPartError: there is no core for this platform, or MuJoCo differs from its declarations.
     """
     library, located = core(), offsets()
     for name, (result, *arguments) in SIGNATURES.items():

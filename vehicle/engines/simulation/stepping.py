@@ -34,11 +34,7 @@ LARGEST_STATE = 1e8
 
 
 def simulate(
-    car: CarModel,
-    signal: Signal,
-    *,
-    progress: Progress | None = None,
-    requested: Sequence[str] = (),
+    car: CarModel, signal: Signal, *, progress: Progress | None = None, requested: Sequence[str] = ()
 ) -> Recording:
     """Run a car on its shaker plates; the recording is sampled at `solver.record_rate`.
 

@@ -177,6 +177,6 @@ def offsets() -> Offsets:
         )
     except LookupError as error:
         raise MissingPartError(
-            f"MuJoCo {mujoco.__version__} is not as its declarations (mujoco.introspect) say at {error.args[0]}, so "
-            "compiled code would read wrong numbers; install the tested version: pip install -c constraints.txt mujoco"
+            f"MuJoCo {mujoco.__version__} differs from its declarations (mujoco.introspect) at {error.args[0]}, so "
+            "compiled code would read wrong values; install the tested version: pip install -c constraints.txt mujoco"
         ) from None

@@ -11,7 +11,7 @@ NO_LOAD = 1e-6
 """Maximum load of a tyre that has left its plate over its static load: round-off in both engines, 1e-10 and 1e-8."""
 
 SMALL_PULL = 0.085
-"""Maximum RMS of the pull of linear tyres over that of their dynamic load without a warning. Against tyres that lift
+"""Maximum RMS of the pull of linear tyres over the RMS of their dynamic load without a warning. Against tyres that lift
 off, 11 runs of shipped and new cars on classes C and D: up to 8.1 % comfort differs by at most 0.7 %, its axes by 1.6 %
 and the RMS of tyre loads by 1.7 %; at 9.1 % by 0.4, 1.6 and 2.2 %, at 15 % by 1.2, 2.3 and 5.6 %."""
 
@@ -37,8 +37,8 @@ def pulling_tyres(forces: Mapping[str, Vector], record_rate: float) -> tuple[tup
     if pull > SMALL_PULL:
         return (f"{text}{PULLS}",), ()
     return (), (
-        f"{text}the pull of the linear tyre is {100.0 * pull:.1f} % of its dynamic load (RMS), which "
-        "moves comfort, its axes and the RMS of tyre loads by less than 2 %",
+        f"{text}the linear tyre pulls with {100.0 * pull:.1f} % of its dynamic load (RMS), which "
+        "changes comfort, its axes and the RMS of tyre loads by less than 2 %",
     )
 
 

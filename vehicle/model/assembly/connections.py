@@ -140,10 +140,7 @@ def _rolling_law(tyre: Tyre, speed: float) -> ElementLaw:
     time = np.divide(slip, speed * carcass, out=np.zeros(3), where=carcass > 0.0)
     vertical = np.array([0.0, 0.0, 1.0])
     return ElementLaw(
-        stiffness=vertical * tyre.stiffness,
-        damping=vertical * tyre.damping,
-        branch_stiffness=carcass,
-        branch_time=time,
+        stiffness=vertical * tyre.stiffness, damping=vertical * tyre.damping, branch_stiffness=carcass, branch_time=time
     )
 
 

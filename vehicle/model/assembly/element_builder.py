@@ -51,11 +51,7 @@ VIEWER_IMPEDANCE = 0.99
 MIN_FRICTION = 1e-9
 """Friction [N] of a damper without friction, so that its row exists."""
 
-KINDS = {
-    "ball": mujoco.mjtJoint.mjJNT_BALL,
-    "hinge": mujoco.mjtJoint.mjJNT_HINGE,
-    "slide": mujoco.mjtJoint.mjJNT_SLIDE,
-}
+KINDS = {"ball": mujoco.mjtJoint.mjJNT_BALL, "hinge": mujoco.mjtJoint.mjJNT_HINGE, "slide": mujoco.mjtJoint.mjJNT_SLIDE}
 
 
 class ElementBuilder:
@@ -181,11 +177,7 @@ class ElementBuilder:
     def _connect_rows(self, name: str, sites: tuple[str, str], connection: PlacedConnection, *, ideal: bool) -> None:
         """Add three rows between two sites, with the shape of the body node at the connection."""
         row = self.spec.add_equality(
-            name=name,
-            type=mujoco.mjtEq.mjEQ_CONNECT,
-            objtype=mujoco.mjtObj.mjOBJ_SITE,
-            name1=sites[0],
-            name2=sites[1],
+            name=name, type=mujoco.mjtEq.mjEQ_CONNECT, objtype=mujoco.mjtObj.mjOBJ_SITE, name1=sites[0], name2=sites[1]
         )
         if ideal:
             # Ideal joint: the reference acceleration of MuJoCo, critically damped, as stiff as the step allows.

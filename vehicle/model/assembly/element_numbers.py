@@ -19,13 +19,7 @@ from vehicle.model.laws import control_laws
 from vehicle.model.laws.damper import actuator_parameters, damper_curve, pack
 from vehicle.model.laws.presliding import presliding_elements
 from vehicle.model.parameters.body import TrimmedBody
-from vehicle.model.parameters.composition import (
-    JointSpring,
-    PlacedConnection,
-    PlacedDamper,
-    PlacedPart,
-    PlacedSpring,
-)
+from vehicle.model.parameters.composition import JointSpring, PlacedConnection, PlacedDamper, PlacedPart, PlacedSpring
 from vehicle.model.parameters.force_elements import Damper, Tyre
 from vehicle.model.parameters.force_table import ForceTable
 from vehicle.model.parameters.placed_force import PlacedForce

@@ -24,12 +24,7 @@ PART_GROUP = 2
 
 
 def visible_shapes(vehicle: Vehicle, *, rig: bool = True) -> dict[str, Shape]:
-    """Return the shapes of a car and its rig at the design position, by name; parts without a known role are rods.
-
-    Args:
-        vehicle: the car.
-        rig: include the plates and their supports.
-    """
+    """Return the shapes of a car and its rig at the design position, by name; parts without a known role are rods."""
     car = vehicle.composition
     points = {name: np.array(point) for name, point in car.points.items()}
     corners = {
@@ -83,10 +78,7 @@ def _reach(car: Composition, name: str, local_points: Mapping[str, Point]) -> di
 
 
 def add_shapes(
-    spec: mujoco.MjSpec,
-    shapes: Mapping[str, Shape],
-    origins: Mapping[str, Vector],
-    springs: Iterable[PlacedSpring],
+    spec: mujoco.MjSpec, shapes: Mapping[str, Shape], origins: Mapping[str, Vector], springs: Iterable[PlacedSpring]
 ) -> None:
     """Add a visible mesh for every shape to a specification; masses, inertias and joints do not change.
 

@@ -55,12 +55,7 @@ def local_stiffness(length: float, section: BeamSection) -> Vector:
     )
     for dofs, stiffness, sign in planes:
         s, q = sign * 6.0 * length, length**2
-        bending = [
-            [12.0, s, -12.0, s],
-            [s, 4.0 * q, -s, 2.0 * q],
-            [-12.0, -s, 12.0, -s],
-            [s, 2.0 * q, -s, 4.0 * q],
-        ]
+        bending = [[12.0, s, -12.0, s], [s, 4.0 * q, -s, 2.0 * q], [-12.0, -s, 12.0, -s], [s, 2.0 * q, -s, 4.0 * q]]
         # An index of (4, 1) and (4,) addresses the 4 x 4 block of these degrees of freedom.
         k[np.array(dofs)[:, None], dofs] = stiffness / length**3 * np.array(bending)
     return k

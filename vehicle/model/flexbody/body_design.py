@@ -12,8 +12,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.beam import BeamSection
 from vehicle.model.parameters.hardpoints import Point, mirrored
 from vehicle.model.parameters.quantity import quantity, validate
-from vehicle.model.parameters.toml_file import build, read_table
-from vehicle.wording import did_you_mean
+from vehicle.model.parameters.toml_file import build, did_you_mean, read_table
 
 FORMAT = "body design 1"
 _SIDES = (("_fr", "_fl"), ("_rr", "_rl"), ("_right", "_left"))
@@ -142,8 +141,8 @@ class BodyDesign:
                 hardpoint = node.mirror or name
                 similar = did_you_mean(hardpoint, [*points, *(key.removesuffix("_fr") for key in points)])
                 raise ConfigurationError(
-                    f"nodes.{name}: the vehicle has no hardpoint {hardpoint}{similar} Set the place of the node, or "
-                    "name it after a hardpoint"
+                    f"nodes.{name}: the vehicle has no hardpoint {hardpoint}{similar} "
+                    "Set the place of the node, or name it after a hardpoint"
                 )
         names = [name for nodes in positions.values() for name in nodes]
         duplicates = sorted({name for name in names if names.count(name) > 1})
@@ -153,10 +152,6 @@ class BodyDesign:
 
     def member_ends(self, group: str, placed: Mapping[str, Mapping[str, Point]]) -> list[tuple[str, str]]:
         """Return the end nodes of every member of a group.
-
-        Args:
-            group: name of the group.
-            placed: node positions returned by `placed`.
 
         Raises:
             ConfigurationError: a member names an unknown node or connects a node with itself.

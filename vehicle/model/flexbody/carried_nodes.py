@@ -17,7 +17,7 @@ def with_carried_nodes(body: Superelement, points: Mapping[str, Point]) -> Super
     """Add a massless node to a body at each point without a node; masses and modes of the body do not change.
 
     The added node follows the rigid motion t + theta x (r - c) with the best weighted fit to its carrier nodes, weights
-    1 / distance^2: a bracket that spreads its force over the surrounding structure (as RBE3 of Nastran does).
+    1 / distance^2: a bracket that spreads its force over the surrounding structure (like RBE3 of Nastran).
 
     Args:
         body: body model.

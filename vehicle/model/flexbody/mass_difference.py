@@ -39,10 +39,6 @@ def powers_of_thousand(mass: float, other: float) -> int:
 def require_unit_of_mass(model: Superelement, body: TrimmedBody) -> None:
     """Check that the mass of a body model is in kg, by comparison with the vehicle file.
 
-    Args:
-        model: body model without attached masses.
-        body: body of the vehicle file.
-
     Raises:
         DataError: the masses differ by about a power of 1000.
     """

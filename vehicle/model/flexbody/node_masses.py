@@ -7,7 +7,7 @@ and mounts may change little, so that no interface node becomes a concentrated m
 The masses are symmetric about y = 0: products Ixy and Iyz about the centre of gravity are zero, independent of the
 vehicle file (published: 82 and -50 kg m2). The thesis measured the rigid-body properties separately from the modes and
 published no mode shape. With these products, 43 nodes need one side of the car some tens of kilograms heavier at the
-bottom and lighter at the top, and the modes of this body are far more asymmetric than those of a car. A body design may
+bottom and lighter at the top, and its modes are far more asymmetric than the modes of a car. A body design may
 set a minimum Ixx about the centre of gravity for the fit of the node masses (`least_ixx`): no set of positive masses
 has the published 1000 kg m2, which violates the triangle inequality; the thesis itself suggests 1200. The rigid inertia
 of the complete car keeps the products and the Ixx of the vehicle file.
@@ -33,13 +33,7 @@ _MAX_STEPS = 50
 
 
 def matched_masses(
-    guess: Vector,
-    freedom: Vector,
-    positions: Vector,
-    *,
-    mass: float,
-    cog: Vector,
-    inertia_about_cog: Vector,
+    guess: Vector, freedom: Vector, positions: Vector, *, mass: float, cog: Vector, inertia_about_cog: Vector
 ) -> Vector:
     """Return the positive masses [kg], (n,), nearest to an estimate that have a given mass, CoG and inertia.
 

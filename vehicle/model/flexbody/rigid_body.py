@@ -85,9 +85,5 @@ def _rigid_body(mass: float, cog: Point, inertia: BodyInertia) -> RigidBody:
     for array in (position, physical.inertia):
         array.flags.writeable = False
     return RigidBody(
-        mass=mass,
-        cog=position,
-        inertia=physical.inertia,
-        report=physical.describe(),
-        repaired=physical.repaired,
+        mass=mass, cog=position, inertia=physical.inertia, report=physical.describe(), repaired=physical.repaired
     )

@@ -194,7 +194,7 @@ def _rigid(body: Superelement) -> Iterator[str]:
         return
     low_moment, middle, top = np.linalg.eigvalsh(rigid.inertia)
     if low_moment <= 1e-9 * top:
-        yield "node_mass: all mass is on one line, so the body has no inertia about this line. Add mass beside it."
+        yield "node_mass: all mass is on one line, so the body has no inertia about this line. Add mass off this line."
     if not np.allclose(rigid.inertia, np.transpose(rigid.inertia), rtol=0.0, atol=_SYMMETRY * top):
         yield f"inertia: {np.asarray(rigid.inertia).tolist()} kg m2 is not symmetric."
     # I1 + I2 - I3 = 2 times the integral of z^2 dm, z along the axis of I3: at least 0 for real masses.

@@ -10,7 +10,7 @@ from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.model.flexbody.mass_properties import MassProperties
 from vehicle.model.flexbody.superelement import Superelement
-from vehicle.wording import did_you_mean
+from vehicle.model.parameters.toml_file import did_you_mean
 
 FORMAT = "modal superelement 2"
 _OLDER = "modal superelement 1"
@@ -148,10 +148,6 @@ def _tables(content: dict[str, Any], table_type: str, older: bool) -> list[dict[
 
 def numbers(value: Any, where: str) -> Vector:
     """Convert a value to a regular array of numbers.
-
-    Args:
-        value: number or nested lists of numbers.
-        where: item named in messages.
 
     Raises:
         DataError: rows of different length, or entries other than numbers.

@@ -18,7 +18,7 @@ The law `fmu` takes its coefficient, within the limits, from a controller in an 
 Once a period the controller reads both velocities and holds its demand until the next reading. The damper receives the
 demand after the delay, and follows with its maximum rate; c v opposes v at every instant.
 
-The functions are for arrays, the batches of lumped models; those of the complete car, in both engines, are `demanded`
+The functions are for arrays, the batches of lumped models; both engines of the complete car use `demanded`
 and `act` of `vehicle/core/source/laws.h`.
 
 Source: Karnopp, Crosby, Harwood (1974) for skyhook; Ahmadian (1997) for groundhook and hybrid.

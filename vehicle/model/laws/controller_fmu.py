@@ -71,7 +71,7 @@ STATUS = {
     4: "reports a fatal error",
     5: "has not finished its step (asynchronous steps are not supported)",
     NOT_FINITE: f"returns a {COEFFICIENT} that is not a finite number",
-    TERMINATED: "asks to end the simulation",
+    TERMINATED: "requests the end of the simulation",
 }
 """Meaning of the status of a failed """
 
@@ -260,10 +260,7 @@ class Controller:
         record = self.record = packed(
             "Controller",
             {
-                "call": {
-                    "function": ctypes.cast(core().core_controller_step, ctypes.c_void_p).value or 0,
-                    "memory": 0,
-                },
+                "call": {"function": ctypes.cast(core().core_controller_step, ctypes.c_void_p).value or 0, "memory": 0},
                 **dict(zip(("set", "step", "get"), functions, strict=True)),
                 "instance": int(getattr(slave.component, "value", slave.component)),
                 "status": 0,

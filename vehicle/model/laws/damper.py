@@ -60,7 +60,7 @@ def pack(damper: Damper) -> npt.NDArray[Any]:
 def damper_curve(damper: Damper) -> Curve:
     """Return force over velocity without friction and gas.
 
-    For a controlled damper it is that of its softest setting, for a law by address the tangent at rest.
+    A controlled damper has its softest setting, a law by address its tangent at rest.
 
     Raises:
         ConfigurationError: the law by address is not registered in this process.

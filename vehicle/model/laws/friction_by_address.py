@@ -4,9 +4,8 @@
 
 with the parameter Fd = `coulomb_friction` of the damper and its velocity v, positive in extension. Both engines call it
 where they read the limit of any friction law, once in a step (`friction_limit` of `vehicle/core/source/laws.h`). The
-force near rest is that of all laws, clamp(c v, L) with c = (2/pi) L eps. A law with a state of its own, as a bristle,
-cannot be brought in this way: it needs a memory for each damper, which the engines set to rest and advance once in a
-step.
+force near rest is clamp(c v, L) with c = (2/pi) L eps, as in all laws. A law with a state of its own, such as bristles,
+cannot be brought in this way: it needs a memory for each damper, which the engines advance once in a step.
 """
 
 from dataclasses import dataclass, field

@@ -22,7 +22,7 @@ class ForceLaw(Protocol):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Constant:
-    """F = F0, as the force of a gas."""
+    """F = F0, for example the force of a gas."""
 
     value: Numbers
 

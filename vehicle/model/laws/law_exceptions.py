@@ -4,7 +4,7 @@ C calls the function through ctypes or numba, which passes an exception to `sys.
 the run continue. So a hook collects the first exception, and the run is discarded.
 
 There is one hook for the runs of all threads, and the hook of before has all other exceptions. A law that is called in
-a thread without a run, as one of the core, ends the runs of all threads: it is not known whose law it is.
+a thread without a run, for example of the core, ends the runs of all threads: it is not known whose law it is.
 """
 
 import gc
@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 from vehicle.errors import ConfigurationError, SimulationError
 
 FUNCTIONS: dict[str, Any] = {}
-"""Function of each registered law by the title of the law, as "damper law 'valve'"."""
+"""Function of each registered law by the title of the law, for example "damper law 'valve'"."""
 
 
 def register_function(title: str, function: Any) -> None:

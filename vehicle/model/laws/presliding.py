@@ -20,7 +20,7 @@ from vehicle.model.parameters.force_elements import Damper
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Presliding(Coulomb):
-    """L = Fd in sliding, as Coulomb friction."""
+    """L = Fd in sliding, like Coulomb friction."""
 
 
 def presliding_elements(damper: Damper) -> Vector:

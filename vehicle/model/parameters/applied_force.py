@@ -76,7 +76,7 @@ class AppliedForce:
     )
     reference_frequency: float | None = quantity(
         "Hz",
-        "amplitudes are those at this frequency and grow with its square; not given: constant amplitudes",
+        "frequency of the given amplitudes, which grow with its square; default: constant amplitudes",
         above=0.0, at_most=500.0, default=None,
     )  # fmt: skip
     mean: float = quantity(
@@ -88,7 +88,7 @@ class AppliedForce:
     file: str | None = quantity("-", "file with a measured history, instead of harmonics", is_file=True, default=None)
     channel: str | None = quantity(
         "-",
-        "channel of the file by number, name or pattern; not given: the only channel in N or N m",
+        "channel of the file by number, name or pattern; default: the only channel in N or N m",
         is_file=True,
         default=None,
     )
@@ -104,14 +104,14 @@ class AppliedForce:
         validate(self)
         if self.file is None and (self.channel, self.unit, self.ends_at_zero) != (None, None, False):
             raise ConfigurationError(
-                "AppliedForce.file: file is missing, although channel, unit or ends_at_zero is set, which belong to it"
+                "AppliedForce.file: missing, but channel, unit or ends_at_zero is set; set file, or remove them"
             )
         if self.file is not None and self.harmonics:
-            raise ConfigurationError("AppliedForce.file: found together with harmonics; define two forces for both")
+            raise ConfigurationError("AppliedForce.file: found together with harmonics; keep one, or define two forces")
         require_harmonics("AppliedForce.harmonics", self.harmonics)
         if self.harmonics and (self.angle is None) == (self.frequency is None):
             raise ConfigurationError(
-                "AppliedForce.angle: give either an angle (crank, or a wheel, for example wheel_fr) or a frequency [Hz]"
+                "AppliedForce.angle: set either angle (crank, or a wheel, for example wheel_fr) or frequency [Hz]"
             )
 
     def amplitudes(self, speed: float) -> dict[float, complex]:

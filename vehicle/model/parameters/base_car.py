@@ -16,7 +16,7 @@ from vehicle.model.parameters.whole_body import body_moves, followers, put
 def vehicle_table(path: Path, above: tuple[Path, ...] = ()) -> dict[str, Any]:
     """Read a vehicle file; with `base = "focus_road"` it contains only the differences from that car.
 
-    Tables are merged with those of the base, key by key; a table with a template replaces the table of the base. The
+    Tables are merged with the base, key by key; a table with a template replaces the table of the base. The
     inertia of the body follows another mass or CoG (`vehicle.model.parameters.whole_body`).
 
     Args:

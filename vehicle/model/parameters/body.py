@@ -32,12 +32,12 @@ class BodyMode(Validated):
         "factor on the natural frequency of this mode",
         at_least=0.1,
         at_most=10.0,
-        why="a mode a hundred times as stiff or soft is not the same body",
+        why="beyond a factor of 100 in stiffness it is another body",
         default=1.0,
     )
     damping_ratio: float | None = quantity(
         "-",
-        "share of critical damping of this mode; not given: damping of the body model",
+        "share of critical damping of this mode; default: damping of the body model",
         at_least=0.0,
         at_most=0.3,
         why="trimmed bodies have 0.01 to 0.08",
@@ -76,7 +76,7 @@ class TrimmedBody:
         above=0.0,
         at_least=100.0,
         at_most=5000.0,
-        why="without engine and axles the body of a micro car has 200 kg, that of a loaded van 3000 kg",
+        why="without engine and axles: 200 kg in a micro car, 3000 kg in a loaded van",
     )
     cog: Point = quantity("m", "centre of gravity", length=3)
     inertia: BodyInertia
@@ -91,7 +91,7 @@ class TrimmedBody:
     attachment_flexibility: bool = True
     modes_up_to: float | None = quantity(
         "Hz",
-        "modes above this frequency act statically (residual flexibility); not given: all modes are kept",
+        "modes above this frequency act statically (residual flexibility); default: all modes are kept",
         above=0.0,
         default=None,
     )
@@ -100,13 +100,13 @@ class TrimmedBody:
         "factor on all natural frequencies of the flexible modes",
         above=0.0,
         at_most=20.0,
-        why="a body 400 times as stiff is rigid: flexible = false",
+        why="for a body more than 400 times stiffer set flexible = false",
         default=1.0,
     )
     model_mass: float | None = quantity(
         "kg",
-        "mass of the body that the elastic model describes; its masses are scaled by mass / model_mass; not "
-        "given: they stay unchanged",
+        "mass of the body that the elastic model describes; its masses are scaled by mass / model_mass; "
+        "default: no scaling",
         above=0.0,
         default=None,
     )
@@ -118,18 +118,18 @@ class TrimmedBody:
         for number in self.modes:
             if not (number.isascii() and number.isdigit() and 1 <= int(number) <= MAX_MODES and number[0] != "0"):
                 raise ConfigurationError(
-                    f"TrimmedBody.modes.{number}: must be the number of a mode from 1, as body.modes.3"
+                    f"TrimmedBody.modes.{number}: must be a mode number, at least 1, for example body.modes.3"
                 )
         if self.flexible and self.superelement is None:
             raise ConfigurationError(
-                "TrimmedBody.superelement: missing; a flexible body needs a body design or a modal superelement, as "
-                "body_design.toml of the package; a rigid body (flexible = false) needs no model"
+                "TrimmedBody.superelement: missing; a flexible body needs a body design or a modal superelement, for "
+                "example body_design.toml of the package; for a rigid body set flexible = false"
             )
 
         if self.modes_up_to is not None and not (self.flexible and self.attachment_flexibility):
             raise ConfigurationError(
-                "TrimmedBody.modes_up_to: needs flexible = true and attachment_flexibility = true, which keep "
-                "the flexibility of the higher modes; set both, or leave modes_up_to out"
+                "TrimmedBody.modes_up_to: works only with flexible = true and attachment_flexibility = true, which "
+                "keep the flexibility of the higher modes; set both, or leave modes_up_to out"
             )
 
     @property

@@ -10,12 +10,7 @@ from vehicle.model.parameters.vehicle import Vehicle
 
 
 def body_notices(vehicle: Vehicle, overrides: Iterable[str]) -> list[str]:
-    """Return a notice for each override of mass or CoG of the body: the changes that followed.
-
-    Args:
-        vehicle: the car.
-        overrides: texts "path=value" of the car.
-    """
+    """Return a notice for each override of mass or CoG of the body: the changes that followed."""
     body, texts = vehicle.body, {text.partition("=")[0].strip(): text.strip() for text in overrides}
     notices = _notices(vehicle, texts)
     moments = ", ".join(f"{name} {getattr(body.inertia, name):.6g}" for name in MOMENTS[:3])
@@ -29,12 +24,7 @@ def body_notices(vehicle: Vehicle, overrides: Iterable[str]) -> list[str]:
 
 
 def body_rules(vehicle: Vehicle, paths: Iterable[str]) -> list[str]:
-    """Return a notice for mass and CoG of the body if a study varies them: the changes that follow.
-
-    Args:
-        vehicle: the car.
-        paths: varied parameters.
-    """
+    """Return a notice for mass and CoG of the body if a study varies them: the changes that follow."""
     return _notices(vehicle, {path: path for path in paths})
 
 

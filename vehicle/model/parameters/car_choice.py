@@ -19,7 +19,7 @@ class CarChoice:
 
     Attributes:
         vehicle: vehicle file; by default the car of Bommer 2006.
-        overrides: changed parameters, as "path=value".
+        overrides: changed parameters, for example "path=value".
     """
 
     vehicle: Path | None = None
@@ -38,10 +38,6 @@ class CarChoice:
 
     def require_once(self, option: str, texts: Sequence[str]) -> None:
         """Check that the parameters that an option sets are not changed to another value too.
-
-        Args:
-            option: name, for the message.
-            texts: "path=value".
 
         Raises:
             ConfigurationError: a change sets one of these parameters.

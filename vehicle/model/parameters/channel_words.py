@@ -9,7 +9,6 @@
 from collections.abc import Iterable, Sequence
 
 from vehicle.errors import ConfigurationError
-from vehicle.wording import choose_from
 
 SYNONYMS = {
     "front left": "fl",
@@ -30,7 +29,7 @@ def channel_named(text: str, names: Iterable[str]) -> str:
     """Return the channel with a name, or the channel whose name contains all words and the fewest further words.
 
     Args:
-        text: name of a channel, or words in any order, as "seat rail z" or "knuckle front left vertical".
+        text: name of a channel, or words in any order, for example "seat rail z" or "knuckle front left vertical".
         names: names of the channels.
 
     Raises:
@@ -46,10 +45,10 @@ def channel_named(text: str, names: Iterable[str]) -> str:
     extras = {name: len(name.split("_")) for name in channels if tokens and tokens <= set(name.split("_"))}
     shortest = [name for name, count in extras.items() if count == min(extras.values())]
     if len(shortest) != 1:
-        if extras:
-            raise ConfigurationError(f"channel {text!r}: matches several; choose from {', '.join(extras)}")
-        near = choose_from("_".join(spoken_text.split()), channels)
-        raise ConfigurationError(f"channel {text!r}: no channel has these words{near}")
+        problem = "no channel has" if not extras else "several channels have"
+        raise ConfigurationError(
+            f"channel {text!r}: {problem} these words; choose from {', '.join(extras or channels)}"
+        )
     return shortest[0]
 
 

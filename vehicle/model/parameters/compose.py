@@ -46,7 +46,7 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
 
     Args:
         table: vehicle file, see `read_table`.
-        folders: folders of user templates, searched before those of the package.
+        folders: folders of user templates, searched before the package.
 
     Returns:
         All elements, placed and named; parents before their children.

@@ -58,7 +58,7 @@ class _WithLaw:
     tables: tuple[str, ...]
 
     def with_numbers(self, file: Mapping[str, Any], built: Built) -> Self:
-        """Return the element with the numbers of another vehicle file; `built` are those of earlier elements."""
+        """Return the element with the numbers of another vehicle file; `built`: numbers of earlier elements."""
         return replace(self, law=_numbers(type(self.law), file, self.tables, built))  # type: ignore[type-var]
 
 
@@ -77,7 +77,7 @@ class PlacedPart:
     """A rigid part on its parent.
 
     Attributes:
-        name: name in the model, as "knuckle_fr".
+        name: name in the model, for example "knuckle_fr".
         parent: name of the part that carries it; "world", or "body" for the trimmed body.
         cog: centre of gravity [m].
         numbers: mass and inertia, of the right side; a `Load` for a load of the vehicle file.
@@ -88,7 +88,7 @@ class PlacedPart:
         seat: point at which a part is fixed to the trimmed body [m]; None for other parts.
         path, tables: see the module.
         center: mean of the points that define the centre of gravity, without the offset of the numbers [m].
-        rod: ends of a part whose inertia is that of a rod, right side [m]; None for other parts.
+        rod: ends of a part with the inertia of a rod, right side [m]; None for other parts.
     """
 
     name: str
@@ -106,7 +106,7 @@ class PlacedPart:
     rod: tuple[Point, Point] | None = field(default=None, compare=False)
 
     def with_numbers(self, file: Mapping[str, Any], built: Built) -> PlacedPart:
-        """Return the part with the numbers of another vehicle file; `built` are those of earlier elements."""
+        """Return the part with the numbers of another vehicle file; `built`: numbers of earlier elements."""
         if isinstance(self.numbers, Load):
             return replace(self, numbers=_numbers(Load, file, self.tables, built))
         numbers = _numbers(Part, file, self.tables, built)
@@ -133,12 +133,12 @@ class PlacedConnection(_WithLaw):
         law: numbers of the force law; None for an ideal ball joint.
         ground: True for a contact with the ground.
         path, tables: see the module.
-        axes: axes of the law; None: those of the carrier.
+        axes: axes of the law; None: axes of the carrier.
         rolling: data of a rolling tyre; None for all other connections.
         radius: loaded radius R of a round tyre at rest [m]; 0 for all other connections.
         lowest_stiffness: limit of the template along each axis [N/m].
         reason: reason of that limit.
-        mirrored: True if the table along y is that of the right side, and the connection is on the left.
+        mirrored: True if the table along y belongs to the right side, and the connection is on the left.
     """
 
     name: str
@@ -248,8 +248,8 @@ class PlacedWheel:
     """Placed wheel with the plate below.
 
     Attributes:
-        name: name of the wheel, as "fr".
-        axle: name of its instance, as "front".
+        name: name of the wheel, for example "fr".
+        axle: name of its instance, for example "front".
         side: +1 for a right wheel, -1 for a left wheel.
         part: name of the rolling part.
         plate: name of the plate.
@@ -281,9 +281,9 @@ class Composition:
 
     Attributes:
         parts, connections, springs, joint_springs, dampers, outputs, wheels, forces: elements, parents before children.
-        speeds: angular speed [rad/s] of "crank" and of each wheel, as "wheel_fr"; 0 at rest.
+        speeds: angular speed [rad/s] of "crank" and of each wheel, for example "wheel_fr"; 0 at rest.
         crank_run_up: run-up of the crankshaft, whose highest speed is in `speeds`; None at constant speed.
-        points: hardpoints by name, as "strut_top_fr" [m].
+        points: hardpoints by name, for example "strut_top_fr" [m].
         kinds: parameter class of each table of the vehicle file, by its path.
         meanings: meaning of each hardpoint, by its path.
     """
@@ -338,7 +338,7 @@ class Composition:
         return None if left else replace(self, **updated)
 
     def turning(self, name: str | None = None) -> tuple[str, float]:
-        """Return name and angular speed [rad/s] of what turns.
+        """Return name and angular speed [rad/s] of a rotating part or of a force with a frequency.
 
         Args:
             name: crank, a wheel, or a force with a frequency; by default the angle of the first force.
@@ -351,7 +351,7 @@ class Composition:
         first = next((force.law.angle or force.name for force in self.forces if force.harmonics), None)
         chosen = name or first or next(iter(speeds), None)
         if chosen not in speeds:
-            message = f"these turn: {', '.join(speeds)}" if speeds else "nothing turns; set --speed or crank.rpm"
+            message = f"choose from {', '.join(speeds)}" if speeds else "set --speed or crank.rpm"
             raise ConfigurationError(f"angle: found {chosen!r}, which does not turn; {message}")
         return chosen, speeds[chosen]
 

@@ -34,15 +34,14 @@ def _speed(file: str, channel: str, changed: int) -> tuple[tuple[float, ...], tu
     measured = _channel(read_record(file), file, channel)
     where = f"{file}: the speed {measured.name!r}"
     if measured.axis is None or measured.kind != "time":
-        raise DataError(f"{where} has no times; give the file a column of time")
+        raise DataError(f"{where} has no times; add a time column")
     time, rpm = np.asarray(measured.axis, dtype=float), np.asarray(measured.values, dtype=float)
     if time.size < 2 or not np.isfinite([time, rpm]).all() or np.any(np.diff(time) <= 0.0):
         raise DataError(f"{where} has a gap or decreasing times; repair the record")
     low, high = float(np.min(rpm)), float(np.max(rpm))
     if low < 0.0 or not 0.0 < high <= HIGHEST_RPM:
         raise DataError(
-            f"{where} is {low:g} to {high:g} 1/min, must be 0 to {HIGHEST_RPM:g} 1/min; set crank.channel to "
-            "another channel"
+            f"{where} is {low:g} to {high:g} 1/min, must be 0 to {HIGHEST_RPM:g} 1/min; set another crank.channel"
         )
     return tuple((time - time[0]).tolist()), tuple((rpm * np.pi / 30.0).tolist())
 

@@ -38,8 +38,8 @@ def require_curve(where: str, key: str, positions: Sequence[float], forces: Sequ
         ConfigurationError: a wrong number of points, or the first wrong point.
     """
     if len(positions) != len(forces):
-        raise ConfigurationError(f"{where}.force: found {len(forces)} numbers for {len(positions)} of {key}; set "
-                                 "a force for each")  # fmt: skip
+        raise ConfigurationError(f"{where}.force: found {len(forces)} forces for {len(positions)} values of "
+                                 f"{key}; set one force for each")  # fmt: skip
     if not 2 <= len(positions) <= MAX_POINTS:
         raise ConfigurationError(f"{where}.{key}: found {len(positions)} points, must be 2 to {MAX_POINTS}; leave "
                                  "out points on a straight line")  # fmt: skip
@@ -131,7 +131,7 @@ def _file(folder: Path, name: str, path: str) -> Path:
 
 
 def _beside(folder: Path, name: str) -> Path:
-    """Return a file beside the vehicle file; if none is there, that in the working folder, as `--set` is typed."""
+    """Return a file in the folder of the vehicle file, otherwise in the working folder, where `--set` is typed."""
     beside, typed = folder / name, Path(name)
     return typed if typed.is_file() and not beside.exists() else beside
 
@@ -168,7 +168,7 @@ def _numbers(table: Mapping[str, Any], file: Path, path: str) -> tuple[dict[str,
         rows = list(zip(points["displacement"], points["force"], strict=True))
         return _within(path, lambda: spring_of_points(rows, "table", str(file))), file.name
     if of_points:
-        raise ConfigurationError(f"{path}: {file} is a property file; name it one level higher: "
+        raise ConfigurationError(f"{path}: {file} is a property file; set it one level higher: "
             f"{'.'.join(above)}.{'stop.bump.curve' if name == 'stop' else 'curve'}")  # fmt: skip
     properties = _within(path, lambda: read_property_file(file))
     if damper or (properties.file_type == "dpr" and {"left", "right"} & set(above)):

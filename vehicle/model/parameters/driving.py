@@ -54,7 +54,7 @@ class Driving(Validated):
 
     @property
     def words(self) -> str:
-        """State of the tyres for summaries and captions, as "rolling at 80 km/h"."""
+        """State of the tyres for summaries and captions, for example "rolling at 80 km/h"."""
         return tyre_words([self])
 
 
@@ -91,7 +91,7 @@ class Crank(Validated):
 
     rpm: float | None = quantity(
         "1/min",
-        "speed of the crankshaft; in a run-up the speed at its beginning",
+        "speed of the crankshaft; in a run-up, at its beginning",
         at_least=300.0,
         at_most=HIGHEST_RPM,
         why="engines idle at 600 to 1000",
@@ -99,7 +99,7 @@ class Crank(Validated):
     )
     end_rpm: float | None = quantity(
         "1/min",
-        "speed at the end of a run-up; not given: constant speed",
+        "speed at the end of a run-up; default: constant speed",
         at_least=300.0,
         at_most=HIGHEST_RPM,
         default=None,
@@ -110,7 +110,7 @@ class Crank(Validated):
     file: str | None = quantity("-", "file with a measured speed over time, instead of rpm", is_file=True, default=None)
     channel: str | None = quantity(
         "-",
-        "channel of the file by number or name; not given: the only channel in 1/min or rpm",
+        "channel of the file by number or name; default: the only channel in 1/min or rpm",
         is_file=True,
         default=None,
     )
@@ -118,14 +118,14 @@ class Crank(Validated):
     def __post_init__(self) -> None:
         validate(self)
         if (self.rpm is None) == (self.file is None):
-            raise ConfigurationError("Crank.rpm: give either rpm or the file of a measured speed")
+            raise ConfigurationError("Crank.rpm: set either rpm or file, the measured speed")
         if (self.end_rpm is None) != (self.run_up_time is None):
             raise ConfigurationError("Crank.end_rpm: a run-up needs end_rpm and run_up_time; set both")
         if self.file is None and self.channel is not None:
-            raise ConfigurationError("Crank.file: missing, although channel is set, which belongs to a file")
+            raise ConfigurationError("Crank.file: missing, but channel is set; set file, or remove channel")
         if self.file is not None and self.end_rpm is not None:
             raise ConfigurationError(
-                "Crank.end_rpm: belongs to rpm, but a file is set, which contains the whole run-up; leave end_rpm out"
+                "Crank.end_rpm: found together with file, which already contains the run-up; leave end_rpm out"
             )
 
     @property
@@ -178,18 +178,14 @@ def require_speed_once(texts: Iterable[str], speed: float) -> bool:
         if not agrees:
             road = "its recorded speed" if math.isnan(speed) else f"{3.6 * speed:.4g} km/h of --speed, {speed:.4g} m/s"
             raise ConfigurationError(
-                f"{text.strip()}: the speed of the car is given twice, also by the road with {road}; leave "
-                "driving.speed out and set --speed, or set --tyre standing for tyres that do not roll"
+                f"{text.strip()}: the road already sets another speed, {road}; leave driving.speed out and set "
+                "--speed, or set --tyre standing for tyres that do not roll"
             )
     return agrees
 
 
 def tyre_words(cars: Iterable[Driving]) -> str:
-    """Return the state of the tyres in one or several runs: "standing", "rolling at 50, 80 and 120 km/h".
-
-    Args:
-        cars: driving state of each run.
-    """
+    """Return the state of the tyres in one or several runs: "standing", "rolling at 50, 80 and 120 km/h"."""
     speeds = sorted({car.speed for car in cars})
     rolling = [f"{3.6 * speed:.4g}" for speed in speeds if speed > 0.0]
     listed = " and ".join(part for part in (", ".join(rolling[:-1]), *rolling[-1:]) if part)

@@ -67,7 +67,7 @@ class EngineOrders:
     highest_order: float = quantity("-", "highest order that is applied", at_least=1.0, at_most=16.0, default=6.0)
     at: Point | None = quantity(
         "m",
-        "middle of the cylinders on the crankshaft; not given: centre of gravity of the engine",
+        "middle of the cylinders on the crankshaft; default: centre of gravity of the engine",
         length=3,
         default=None,
     )

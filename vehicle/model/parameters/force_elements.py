@@ -14,10 +14,10 @@ from vehicle.model.parameters.semi_active_damper import PASSIVE, SemiActiveDampe
 from vehicle.model.parameters.tested_range import TestedRange
 from vehicle.names import AXES
 
-STIFFEST: dict[str, Any] = {"at_most": 1e10, "why": "a block of steel of 5 cm has 1e10 N/m"}
+STIFFEST: dict[str, Any] = {"at_most": 1e10, "why": "a 5 cm steel block has 1e10 N/m"}
 STRONGEST: dict[str, Any] = {"at_most": 1e6, "why": "a truck's damper has 1e5 N s/m"}
 MOVING: dict[str, Any] = {"at_least": 1e-6, "at_most": 10.0, "why": "dampers on a shaker move by 1e-6 to a few m/s"}
-RUBBED: dict[str, Any] = {"at_most": 1e6, "why": "seals have 50 to 500 N; 1e5 N lock a damper completely"}
+RUBBED: dict[str, Any] = {"at_most": 1e6, "why": "seals have 50 to 500 N; 1e5 N locks any damper"}
 TWISTED: dict[str, Any] = {"at_most": 1e6, "why": "a stabilizer bar has 1e4 N m/rad"}
 
 FRICTION_LAWS = tuple(name for (name,) in listed("laws.h", "EACH_FRICTION_LAW", "F"))
@@ -27,8 +27,8 @@ LIFTS = "would lift off its plate"
 """Words of a warning about a linear tyre whose load is negative."""
 
 PULLS = (
-    "the linear tyre then pulls the wheel down, so the result is invalid; to let it lift off: "
-    "--set AXLE.bushings.tyre.one_sided=true, for example with front as AXLE"
+    "the linear tyre then pulls the wheel down, so the result is invalid; let it lift off with "
+    "--set AXLE.bushings.tyre.one_sided=true, AXLE for example front"
 )
 """Effect and remedy in such a warning."""
 
@@ -57,13 +57,13 @@ class LinearBushing:
         if self.one_sided and self.table_z is not None:
             raise ConfigurationError(
                 f"{type(self).__name__}.one_sided: found true together with table_z; a one-sided contact "
-                "needs a stiffness; remove one of both"
+                "needs a stiffness; remove one of them"
             )
 
 
 NO_FRICTION: Point = (0.0, 0.0, 0.0)
 SHORTEST_STROKE = 1e-6
-"""Minimum friction stroke [m] of an axis with friction: shorter strokes are a hundredth of those of thin rubber."""
+"""Minimum friction stroke [m] of an axis with friction: a hundredth of the stroke of thin rubber."""
 
 
 def _friction_force() -> Any:
@@ -101,7 +101,7 @@ class Bushing(LinearBushing):
                 other = "one_sided" if self.one_sided else f"table_{axis}"
                 raise ConfigurationError(
                     f"{type(self).__name__}.friction_force.{axis}: found {force!r} N together with {other}; rubber "
-                    "friction needs a two-sided element with a stiffness; remove one of both"
+                    "friction needs a two-sided element with a stiffness; remove one of them"
                 )
 
 
@@ -138,8 +138,8 @@ class Tyre(LinearBushing):
         at_most=0.1, why="a third of half the contact length by the brush model, 0.02 to 0.04 m", default=0.0,
     )  # fmt: skip
     rolling_radius: float | None = quantity(
-        "m", "effective rolling radius, for forces that turn with the wheel; not given: height of the wheel "
-            "centre, which is 3 to 5 % less", above=0.1, at_most=1.0, default=None,
+        "m", "effective rolling radius, for forces that turn with the wheel; default: height of the wheel "
+            "centre, 3 to 5 % less", above=0.1, at_most=1.0, default=None,
     )  # fmt: skip
 
 
@@ -152,7 +152,7 @@ class Hydromount:
 
     K(s) = Kz1 + Dz1 s + Kz2 Dz2 s / (Dz2 s + Kz2) + Kb Z / (Kb + Z) with Z = mt s^2 + ct s. A decoupler
     gives way to the pressure in parallel with the track, with md, cd and its membrane Km, beyond the gap its seat too.
-    Rubber friction acts as that of `Bushing`.
+    For rubber friction see `Bushing`.
     """
 
     stiffness: Point = quantity("N/m", "Kx, Ky, Kz1", at_least=0.0, length=3, **STIFFEST)
@@ -169,23 +169,27 @@ class Hydromount:
         **STIFFEST,
     )  # fmt: skip
     track_mass: float | None = quantity(
-        "kg", "mt, mass of the fluid in the track, as at the rubber: rho L Ap^2/At", default=None, **TRACKED
+        "kg", "mt, mass of the fluid in the track, referred to the rubber: rho L Ap^2/At", default=None, **TRACKED
     )
     track_damping: float | None = quantity(
-        "N s/m", "ct, linear flow resistance of the track, as at the rubber", at_least=0.0, default=None, **STRONGEST
+        "N s/m",
+        "ct, linear flow resistance of the track, referred to the rubber",
+        at_least=0.0,
+        default=None,
+        **STRONGEST,
     )
     friction_force: Point = _friction_force()
     friction_stroke: Point = _friction_stroke()
 
     decoupler_gap: float | None = quantity(
-        "m", "free displacement of the decoupler to each side, as at the rubber", at_least=2e-5, at_most=0.02,
+        "m", "free displacement of the decoupler to each side, referred to the rubber", at_least=2e-5, at_most=0.02,
         why="decouplers of engine mounts move by 0.1 to 1 mm", default=None,
     )  # fmt: skip
     decoupler_mass: float | None = quantity(
-        "kg", "md, mass of the decoupler and its fluid, as at the rubber", default=None, **TRACKED
+        "kg", "md, mass of the decoupler and its fluid, referred to the rubber", default=None, **TRACKED
     )
     decoupler_damping: float | None = quantity(
-        "N s/m", "cd, flow resistance of the decoupler, as at the rubber", at_least=0.0, default=None, **STRONGEST
+        "N s/m", "cd, flow resistance of the decoupler, referred to the rubber", at_least=0.0, default=None, **STRONGEST
     )
     decoupler_stiffness: float | None = quantity(
         "N/m", "Km, membrane of the decoupler, which centres it", above=0.0, at_least=1.0, default=None, **STIFFEST
@@ -370,7 +374,7 @@ class Damper:
         """Check that the presliding curve rises to the limit, with falling slopes that begin with K."""
         ends, slopes = self.presliding_force, self.presliding_slope
         if len(ends) != len(slopes) or not 1 <= len(ends) <= MAX_SLIDERS:
-            numbers = f"found {len(slopes)} numbers for the {len(ends)} of presliding_force"
+            numbers = f"found {len(slopes)} values, but presliding_force has {len(ends)}"
             raise ConfigurationError(f"Damper.presliding_slope: {numbers}; set a slope for each, 1 to {MAX_SLIDERS}")
         orders = ("force", ends, ends[::-1], "rise to 1"), ("slope", slopes, slopes, "fall from 1")
         for name, values, falling, shape in orders:

@@ -21,7 +21,7 @@ class ForceTable:
 
     @property
     def opposite(self) -> ForceTable:
-        """Table -F(-x) of the opposite direction, as that of the y axis on the other side of a car."""
+        """Table -F(-x) of the opposite direction, for the y axis on the other side of a car."""
         return ForceTable(
             displacement=tuple(-x for x in reversed(self.displacement)), force=tuple(-f for f in reversed(self.force))
         )

@@ -1,4 +1,4 @@
-"""Forces of a vehicle file on any part, and those of its turning wheels, placed."""
+"""Placement of the forces of a vehicle file: on parts, on joints, of turning wheels and engines."""
 
 import cmath
 import math
@@ -17,11 +17,10 @@ from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.instance import Instance
 from vehicle.model.parameters.placed_force import NONE, PlacedForce
 from vehicle.model.parameters.quantity import NAME_PATTERN
-from vehicle.model.parameters.toml_file import build, convert
-from vehicle.wording import did_you_mean
+from vehicle.model.parameters.toml_file import build, convert, did_you_mean
 
 PLACE_KEYS = ("on", "at", "force", "moment", "axes", "against", "joint")
-"""Keys of a force other than those of its history."""
+"""Keys of a force that place it; the others describe its history."""
 
 AXES_OF = ("vehicle", "part")
 """Axes of the direction of a force: those of the vehicle, or of the part that it acts on, which turn with it."""
@@ -42,7 +41,7 @@ class ForceTargets:
         points: hardpoints by name [m].
         joints: kind of each hinge and slide by its name.
         spinning: parts that turn with a rolling wheel.
-        speeds: angular speed [rad/s] of each angle: crank, and each wheel, as "wheel_fr"; 0 at rest.
+        speeds: angular speed [rad/s] of each angle: crank, and each wheel, for example "wheel_fr"; 0 at rest.
         run_up: run-up of the crankshaft, whose highest speed is in `speeds`; None at constant speed.
     """
 
@@ -88,7 +87,7 @@ def force_targets(
 
 
 def new_tables(overrides: Iterable[str]) -> list[str]:
-    """Return the paths of overrides that set keys of a load, a force or an output, optional in a vehicle file."""
+    """Return the paths of overrides that set keys of a load or of a force, which are optional in a vehicle file."""
     keys = "|".join((*PLACE_KEYS, *AppliedForce.__dataclass_fields__))
     texts = list(overrides)
     names = [text.partition("=")[0].strip() for text in texts]
@@ -116,24 +115,24 @@ def further_force(name: str, value: Any, targets: ForceTargets) -> PlacedForce:
         return _torque(path, table, targets, law, speed)
     directions = [key for key in ("force", "moment") if key in table]
     if len(directions) != 1:
-        number = "both" if directions else "none"
-        raise ConfigurationError(f"{path}: found {number} of force and moment; set exactly one of them, as a direction")
+        number = "both" if directions else "neither"
+        raise ConfigurationError(f"{path}: found {number} of force and moment; set the direction of one of them")
     direction = _direction(f"{path}.{directions[0]}", table[directions[0]])
     if directions == ["moment"]:
         _require_torque(path, law)
     axes = convert(str, table.get("axes", AXES_OF[0]), f"{path}.axes")
     if axes not in AXES_OF:
-        raise ConfigurationError(f"{path}.axes: found {axes!r}, allowed are {', '.join(AXES_OF)}")
+        raise ConfigurationError(f"{path}.axes: found {axes!r}, must be one of {', '.join(AXES_OF)}")
     on = named_part(path, table, "on", {*targets.parts})
     if axes == "part" and on in targets.spinning:
         raise ConfigurationError(
-            f"{path}.axes: found 'part' on {on}, which turns with the wheel; instead set harmonics over the "
-            "angle of the wheel along two axes of the vehicle, as for an imbalance"
+            f"{path}.axes: found 'part' on {on}, which turns with the wheel; instead set two forces along "
+            "axes of the vehicle, with harmonics over the angle of the wheel, like an imbalance"
         )
     against = named_part(path, table, "against", {*targets.parts}) if "against" in table else ""
     if against == on:
         raise ConfigurationError(
-            f"{path}.against: found {against!r}, which is the part that the force acts on; name another part"
+            f"{path}.against: found {against!r}, the part that the force acts on; name another part"
         )
     at = named_point(path, table, targets.points)[0] if "at" in table else targets.parts[on]
     return PlacedForce(
@@ -172,7 +171,7 @@ def _torque(path: str, table: Mapping[str, Any], targets: ForceTargets, law: App
     """Return the torque of a table on a joint."""
     for key in ("on", "at", "force", "moment", "axes", "against"):
         if key in table:
-            raise ConfigurationError(f"{path}.{key}: belongs to a force on a part; a torque on a joint has no {key}")
+            raise ConfigurationError(f"{path}.{key}: found with joint, whose torque has no {key}; remove one of them")
     joint = convert(str, table["joint"], f"{path}.joint")
     if joint not in targets.joints:
         near = did_you_mean(joint, targets.joints)

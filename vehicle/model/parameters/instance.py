@@ -18,11 +18,10 @@ from vehicle.model.parameters.hardpoints import Point, mirrored, require_point
 from vehicle.model.parameters.quantity import NAME_PATTERN
 from vehicle.model.parameters.template import read_template
 from vehicle.model.parameters.tested_range import merged_law
-from vehicle.model.parameters.toml_file import build, convert
+from vehicle.model.parameters.toml_file import build, convert, did_you_mean
 from vehicle.model.parameters.topology import Template
 from vehicle.model.parameters.wheel_forces import WHEEL_FORCES
 from vehicle.names import SIDE_SIGN
-from vehicle.wording import did_you_mean
 
 T = TypeVar("T")
 RIGHT, LEFT = SIDE_SIGN
@@ -167,7 +166,7 @@ class Instance:
         return (*SIDE_SIGN, None) if self.template.mirrored else (None,)
 
     def label(self, name: str, side: str | None) -> str:
-        """Return the name of an element in the model, as "knuckle_fr", "cushion_driver" or "engine"."""
+        """Return the name of an element in the model, for example "knuckle_fr", "cushion_driver" or "engine"."""
         if self.template.wheel is not None:
             corner = {"front": "f", "rear": "r"}.get(self.name, f"{self.name}_")
             return f"{name}_{corner}{side[0]}" if side else f"{name}_{self.name}"
@@ -249,7 +248,7 @@ def instances(
 
     Args:
         table: vehicle file, see `read_table`.
-        folders: folders of user templates, searched before those of the package.
+        folders: folders of user templates, searched before the package.
         points: hardpoints of the file [m].
 
     Raises:

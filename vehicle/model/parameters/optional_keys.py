@@ -30,10 +30,6 @@ TABLES = (ForceTable, SemiActiveDamper, TestedRange)
 def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
     """Return the paths that a vehicle file does not contain but may contain, those of the sides last.
 
-    Args:
-        table: vehicle file, see `read_table`.
-        folder: folder of the file.
-
     Raises:
         ConfigurationError: its templates or their keys are wrong.
     """

@@ -19,7 +19,7 @@ DEFAULT = "default"
 """Source of a parameter that the vehicle file leaves out."""
 
 CHANGED = "set, or computed from set values"
-"""Source of a parameter whose value is not that of the vehicle file."""
+"""Source of a parameter whose value differs from the vehicle file."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -73,7 +73,7 @@ def parameter_list(vehicle: Vehicle, file: Path | None, folder: Path | None = No
     Args:
         vehicle: parameters of the car.
         file: vehicle file of the car; None for a car from no file, whose values have no sources.
-        folder: folder of user templates; by default that of the file.
+        folder: folder of user templates; by default the folder of the file.
 
     Raises:
         ConfigurationError: the file cannot be read.
@@ -193,7 +193,7 @@ def _parameter(vehicle: Vehicle, path: str, value: Any, source: str) -> Paramete
 
 
 def range_text(declared: Mapping[str, Any]) -> str:
-    """Return the permitted values of a parameter, as "0 to 0.9", "> 0" or "coulomb, stribeck"; empty if all are."""
+    """Return the permitted values of a parameter, for example "0 to 0.9" or "coulomb, stribeck"; empty: all."""
     if declared.get("choices"):
         return ", ".join(declared["choices"])
     low, above, high = (declared.get(key) for key in ("at_least", "above", "at_most"))

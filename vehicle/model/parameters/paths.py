@@ -1,7 +1,7 @@
 """Parameters by their dotted paths: list, values, units and overrides.
 
-A path names the tables down to a value, as "front.bushings.suspension_mount.stiffness"; the component of a vector is
-the last name, as in "front.bushings.suspension_mount.stiffness.z". The end of a path is sufficient if it is unique, as
+A path names the tables down to a value, for example "front.bushings.suspension_mount.stiffness", and a component by its
+axis, "front.bushings.suspension_mount.stiffness.z". The end of a path is sufficient if it is unique:
 "suspension_mount.stiffness.z". A vehicle file may define further names in the table `alias`.
 """
 
@@ -66,7 +66,7 @@ def _only(matches: Sequence[str], path: str) -> str:
     if len(matches) > 1:
         more = f" or one of {len(matches) - SHOWN} others" if len(matches) > SHOWN else ""
         raise ConfigurationError(
-            f"parameter {path} is ambiguous: it may be {', '.join(matches[:SHOWN])}{more}; give more of its path"
+            f"parameter {path} is ambiguous: it may be {', '.join(matches[:SHOWN])}{more}; write more of its path"
         )
     return matches[0]
 
@@ -101,7 +101,7 @@ def _missing(table: Mapping[str, Any], path: str, candidates: Iterable[str]) -> 
     if not law.endswith("viscous_law"):
         return ConfigurationError(f"unknown parameter {path}; did you mean {nearest(path, candidates)}?")
     return ConfigurationError(
-        f"unknown parameter {path}, because {law} = {value_at(table, law)} has none; to add it, set --set "
+        f"unknown parameter {path}: {law} = {value_at(table, law)} has none; to add it, set --set "
         f"{law}=linear --set {path}=VALUE"
     )
 
@@ -252,25 +252,21 @@ def value_of(vehicle: Any, path: str) -> float:
         default = component(declared.get("default"), path)
         if _is_number(default):
             return float(default)
-        raise ConfigurationError(f"parameter {path}: is not given in this vehicle and has no default; set its value")
+        raise ConfigurationError(f"parameter {path}: not set in this vehicle, and without a default; set its value")
     try:
         value = value_at(table, full_path(table, path))
         if _is_number(value):
             return float(value)
-        raise ConfigurationError(f"did you mean {nearest(path, _numbers(table))}?")
+        reason = ""
     except ConfigurationError as error:
         # For a misspelt path, show the nearest number, not the nearest text.
-        misspelt = str(error).startswith("unknown parameter")
-        reason = f"did you mean {nearest(path, _numbers(table))}?" if misspelt else str(error)
-        raise ConfigurationError(f"parameter {path}: is not a number of the vehicle; {reason}") from None
+        reason = "" if str(error).startswith("unknown parameter") else str(error)
+    reason = reason or f"did you mean {nearest(path, _numbers(table))}?"
+    raise ConfigurationError(f"parameter {path}: is not a number of the vehicle; {reason}")
 
 
 def overrides_of(vehicle: Any, values: Mapping[str, float]) -> tuple[str, ...]:
     """Return overrides "path=value" of numbers, for `override`.
-
-    Args:
-        vehicle: the car.
-        values: path to value.
 
     Raises:
         ConfigurationError: a path does not lead to a number of the car.
@@ -287,12 +283,7 @@ def unit_of(car: Any, path: str) -> str:
 
 
 def unit_of_override(vehicle: Any, path: str) -> str:
-    """Return the unit of the parameters that an override sets; empty for a text and for a key that the file lacks.
-
-    Args:
-        vehicle: the vehicle.
-        path: see `meant`.
-    """
+    """Return the unit of the parameters that an override sets; empty for a text and for a key that the file lacks."""
     try:
         first, *_ = meant(vehicle.table, path)
     except ConfigurationError:
@@ -301,12 +292,7 @@ def unit_of_override(vehicle: Any, path: str) -> str:
 
 
 def values_of_override(vehicle: Any, path: str) -> list[Any]:
-    """Return the different values that an override would replace; empty for keys that the file lacks.
-
-    Args:
-        vehicle: the vehicle.
-        path: see `meant`.
-    """
+    """Return the different values that an override would replace; empty for keys that the file lacks."""
     try:
         values = [value_at(vehicle.table, whole) for whole in meant(vehicle.table, path)]
     except ConfigurationError:
@@ -318,7 +304,7 @@ def quantity_of(car: Any, path: str) -> Mapping[str, Any]:
     """Return the declaration of a parameter, see `quantity`: unit, meaning, range.
 
     Args:
-        car: a vehicle, or a parameter class, as QuarterCar.
+        car: a vehicle, or a parameter class, for example QuarterCar.
         path: path of a value or of a component; for a class the whole path.
 
     Raises:
@@ -367,17 +353,12 @@ def _is_number(value: Any) -> bool:
 def parsed_value(assignment: str, text: str, old: Any) -> Any:
     """Parse the value of an override; a word without quotes is a text if the old value is a text.
 
-    Args:
-        assignment: the override, for messages.
-        text: text of the value.
-        old: value that is replaced.
-
     Raises:
         ConfigurationError: the text is not a TOML value, or a change of the old value such as +20 or 125%.
     """
     if _is_number(old) and RELATIVE.search(text):
         raise ConfigurationError(
-            f"--set {assignment}: must be the new value, not a change of the present one, which is {old:g}"
+            f"--set {assignment}: must be the new value itself, not a change of the present value {old:g}"
         )
     if DECIMAL.fullmatch(text):
         return float(text)  # the most frequent case; the TOML parser is slow

@@ -194,14 +194,10 @@ def _damper(i: Instance, e: topology.Damper, side: str | None) -> PlacedDamper:
 
 
 def placed_outputs(car: Mapping[str, Instance], further: Sequence[PlacedOutput]) -> list[PlacedOutput]:
-    """Return the outputs of the instances, then those of the vehicle file.
+    """Return the outputs of the instances, then of the vehicle file.
 
     An output marked `first` keeps its plain name in the first instance, where it takes precedence over an output of
     the vehicle file.
-
-    Args:
-        car: instances by name.
-        further: outputs of the vehicle file.
     """
     outputs, firsts = list[PlacedOutput](), set[str]()
     for instance in car.values():

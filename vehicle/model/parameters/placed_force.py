@@ -8,7 +8,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.applied_force import AppliedForce
 from vehicle.model.parameters.driving import RunUp
 from vehicle.model.parameters.hardpoints import Point
-from vehicle.wording import did_you_mean
+from vehicle.model.parameters.toml_file import did_you_mean
 
 NONE = (0.0, 0.0, 0.0)
 """Direction of a force or moment that is absent."""
@@ -34,8 +34,8 @@ class PlacedForce:
         path: path of its table in the vehicle file.
         unit: "N", or "N m" of a moment and of a torque in a hinge; "m" and "m/s" of the motion below a tyre.
         run_up: run-up of its angle; None for a constant speed.
-        tyre: wheel whose tyre it changes, as "fr"; empty for a force or a torque.
-        given: history from Python, a `RecordedForce`, in place of that of the law; None without one.
+        tyre: wheel whose tyre it changes, for example "fr"; empty for a force or a torque.
+        given: history from Python, a `RecordedForce`, which replaces the history of the law; None without one.
     """
 
     name: str
@@ -76,7 +76,7 @@ class PlacedForce:
 
     @property
     def recorded(self) -> bool:
-        """True if its history is that of a file or from Python."""
+        """True if its history comes from a file or from Python."""
         return self.law.enabled and bool(self.law.file or self.given)
 
     @property
@@ -96,7 +96,7 @@ def force_named(name: str, forces: Sequence[PlacedForce], *, own: bool = False) 
     Args:
         name: its name.
         forces: forces of a car.
-        own: only those of a table [force.NAME].
+        own: only forces of a table [force.NAME].
 
     Raises:
         ConfigurationError: the car has no force of this name.

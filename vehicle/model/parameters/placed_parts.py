@@ -10,9 +10,9 @@ from vehicle.model.parameters.composition import PlacedJoint, PlacedPart
 from vehicle.model.parameters.hardpoints import Point, cross, mirrored
 from vehicle.model.parameters.instance import Instance, elements
 from vehicle.model.parameters.rigid_part import Part
+from vehicle.model.parameters.toml_file import did_you_mean
 from vehicle.model.parameters.topology import Joint
 from vehicle.names import SIDE_SIGN
-from vehicle.wording import did_you_mean
 
 
 @dataclass(slots=True)
@@ -46,9 +46,7 @@ def _held_parts(car: Mapping[str, Instance]) -> dict[str, _Held]:
             label, parent = i.part(child, side), i.part(joint.parent, side)
             where = f"{i.template.file}: joint of {child}"
             if name not in i.template.parts:
-                raise ConfigurationError(
-                    f"{where}: is not a part of this template, so a joint cannot hold it; name a part of the template"
-                )
+                raise ConfigurationError(f"{where}: is not a part of this template; name one of its parts")
             if parent == "body" and (joint.kind != "fixed" or joint.at is None):
                 raise ConfigurationError(
                     f"{where}: a part on the trimmed body must be fixed, with a point in at; for a moving part use "
@@ -83,8 +81,8 @@ def _remedy(i: Instance, name: str) -> str:
     if sided := next((ref for ref in itertools.chain.from_iterable(refs) if ":" in ref), ""):
         half = sided.partition(":")[0]
         return (
-            f"its joint names a side ({sided}), so it exists once. Name no side: an axle of one piece has {half} as a "
-            f'half on each side, joined by {{ kind = "fixed", child = "{half}:right", parent = "{half}:left" }}'
+            f"its joint names a side ({sided}), so it exists once. Leave the side out: a one-piece axle consists "
+            f'of two halves {half}, joined by {{ kind = "fixed", child = "{half}:right", parent = "{half}:left" }}'
         )
     return 'add a joint, or set kind = "free" and add connections'
 
@@ -119,7 +117,7 @@ def _placed_part(label: str, part: _Held) -> PlacedPart:
     if numbers.inertia is None:
         if len(template.points) < 2:
             raise ConfigurationError(
-                f"{i.name}.parts.{name}.inertia: missing; only a rod between two points may leave it out"
+                f"{i.name}.parts.{name}.inertia: missing; only a rod between two points needs none"
             )
         start, end = (mirrored(i.point(point, side), sign) for point in template.points[:2])
         rod = (start, end)

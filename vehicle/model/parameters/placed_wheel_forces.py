@@ -44,12 +44,7 @@ def wheel_forces(
 
 
 def _forces(
-    wheel: PlacedWheel,
-    table: str,
-    values: Any,
-    targets: ForceTargets,
-    tyre: PlacedConnection | None,
-    spin: str,
+    wheel: PlacedWheel, table: str, values: Any, targets: ForceTargets, tyre: PlacedConnection | None, spin: str
 ) -> list[PlacedForce]:
     """Return the forces of a table of a wheel, with its rolling tyre and its joint on the hub if it turns."""
     angle = f"wheel_{wheel.name}"

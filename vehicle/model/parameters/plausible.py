@@ -88,7 +88,7 @@ def require_parts(vehicle: Vehicle) -> None:
             limits = (part.mass * low**2, part.mass * high**2, f"{why}, at {part.mass:g} kg")
             _within(f"{path}.inertia.{axis}", moment, "kg m2", limits)
         for axis, offset in zip(AXES, part.offset, strict=True):
-            limits = (-OFFSET_M, OFFSET_M, "parts lie near their hardpoints; probably mm: set metres")
+            limits = (-OFFSET_M, OFFSET_M, "parts lie near their hardpoints; a value in mm? set metres")
             _within(f"{path}.offset.{axis}", offset, "m", limits)
 
 
@@ -131,7 +131,7 @@ def require_body(vehicle: Vehicle) -> None:
     body, every = vehicle.body, list[Point](vehicle.points.values())
     for index, axis in enumerate(AXES):
         low, high = min(point[index] for point in every), max(point[index] for point in every)
-        why = "between the outermost hardpoints; a centre of gravity in metres lies inside the car"
+        why = "inside the car, between the outermost hardpoints"
         _within(f"body.cog.{axis}", body.cog[index], "m", (low, high, why))
     low, high, why = BODY_GYRATION
     at_cog = body.inertia.about == "cog"
@@ -170,12 +170,12 @@ def require_rolling(vehicle: Vehicle) -> None:
                 )
         if tyre.moving == wheel.part:
             raise ConfigurationError(
-                f'{tyre.path}: its template fixes {wheel.part} to the hub; use a joint of kind = "spin", as '
-                f"wheel.toml has; {remedy}"
+                f'{tyre.path}: its template fixes {wheel.part} to the hub; use a joint of kind = "spin", like '
+                f"wheel.toml; {remedy}"
             )
         if abs(wheel.center[0] - wheel.patch[0]) > ROUND:
             raise ConfigurationError(
-                f"{wheel.paths[1]}.x: found {wheel.patch[0]:g} m, must be {wheel.center[0]:g} m as "
+                f"{wheel.paths[1]}.x: found {wheel.patch[0]:g} m, must be {wheel.center[0]:g} m, equal to "
                 f"{wheel.paths[0]}.x, or the load would drive or brake the rolling wheel"
             )
         spinning = {part.name for part in car.parts if part.parent == wheel.part and not part.joints} | {wheel.part}
@@ -205,12 +205,6 @@ def _require_no_mean_about(force: PlacedForce, wheel: PlacedWheel, spinning: set
     """Check that a force has no mean moment M about the axle of a rolling wheel, which nothing at rest balances.
 
     A steady M drives or brakes the wheel: the road exerts M/R along x at the contact, and the car takes its reaction.
-
-    Args:
-        force: applied force.
-        wheel: rolling wheel.
-        spinning: parts that turn with the wheel.
-        hub: part that carries the wheel.
 
     Raises:
         ConfigurationError: M is not zero.

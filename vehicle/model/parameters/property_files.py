@@ -32,10 +32,10 @@ Point = tuple[float, float]
 
 
 def require_type(file: PropertyFile, *allowed: str) -> None:
-    """Check that a property file is that of an element of the right type.
+    """Check that a property file describes the right type of element.
 
     Raises:
-        DataError: it is that of another element.
+        DataError: it describes another type.
     """
     if file.file_type not in allowed:
         needed = " or ".join(f"a {NAMES[name]} ({name!r})" for name in allowed)
@@ -102,8 +102,8 @@ def _turning(file: PropertyFile) -> float:
     if max(slopes) - min(slopes) > TURNING_AGREES * max(map(abs, slopes)):
         raise DataError(
             f"{file.path}: TX, TY, TZ_CURVE have {', '.join(f'{slope:.4g}' for slope in slopes)} N m/rad at "
-            "rest; but a bushing has a single number for all axes; set rotational_stiffness [N m/rad] in the "
-            "same section of the vehicle file"
+            "rest, but a bushing has one rotational stiffness for all axes; set rotational_stiffness [N m/rad] in "
+            "the same section of the vehicle file"
         )
     return sum(slopes) / len(slopes)
 

@@ -20,7 +20,7 @@ def is_coordinate(vehicle: Any, path: str) -> bool:
 
     Args:
         vehicle: the vehicle.
-        path: path of a component, as "front.hardpoints.strut_top.z".
+        path: path of a component, for example "front.hardpoints.strut_top.z".
 
     Raises:
         ConfigurationError: the path does not lead to a quantity.
@@ -147,10 +147,6 @@ class Variation:
 
 def parsed_variation(option: str, text: str) -> Variation:
     """Parse the text of an option: `PATH=A,B,C` values, `PATH=A:B:N` equally spaced values, `PATH=A:B` bounds.
-
-    Args:
-        option: name of the option, for messages.
-        text: value of the option.
 
     Raises:
         ConfigurationError: an unknown form, descending bounds, or a number of values below 2.

@@ -1,18 +1,18 @@
-"""Channels that a run records besides those of every run."""
+"""Channels that a run records on request."""
 
 from __future__ import annotations
 
+from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from vehicle.errors import ConfigurationError
-from vehicle.wording import did_you_mean
 
 if TYPE_CHECKING:
     from vehicle.model.parameters.vehicle import Vehicle
 
 
 def recorded_channels(text: str, vehicle: Vehicle) -> tuple[str, ...]:
-    """Return the channels that a run records: the default channels, then those of a text.
+    """Return the channels that a run records: the default channels, then the channels of a text.
 
     Args:
         text: "loads", "all", or names separated by commas.
@@ -26,7 +26,8 @@ def recorded_channels(text: str, vehicle: Vehicle) -> tuple[str, ...]:
     names = [name.strip() for name in text.split(",")]
     for name in names:
         if name not in vehicle.channels and name not in more:
-            nearest = did_you_mean(name, (*more, *vehicle.channels), cutoff=0.6)
+            close = get_close_matches(name, (*more, *vehicle.channels), n=1)
+            nearest = f"; did you mean {close[0]}?" if close else ""
             raise ConfigurationError(
                 f"--channels: the car has no channel {name!r}; give loads, all, or names, for example "
                 f"{vehicle.load_channels[0]},{vehicle.load_channels[-1]}{nearest}"

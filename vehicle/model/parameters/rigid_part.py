@@ -10,7 +10,7 @@ from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.quantity import quantity, validate
 
 ROD_RADIUS = 0.01
-"""Default radius [m] of a rod without inertia, assumed: that of a steering or stabilizer rod."""
+"""Default radius [m] of a rod without inertia, assumed: a steering or stabilizer rod."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -20,7 +20,7 @@ class Part:
     mass: float = quantity("kg", "mass", above=0.0)
     inertia: Point | None = quantity(
         "kg m2",
-        "Ixx, Iyy, Izz about the part's own centre of gravity; by default those of a rod between its first two points",
+        "Ixx, Iyy, Izz about the part's own centre of gravity; default: a rod between its first two points",
         above=0.0,
         length=3,
         default=None,
@@ -32,7 +32,7 @@ class Part:
         default=(0.0, 0.0, 0.0),
     )
     between: tuple[str, ...] | None = quantity(
-        "-", "hardpoints whose mean is the centre of gravity; by default those of the template", default=None
+        "-", "hardpoints whose mean is the centre of gravity; default: the points of the template", default=None
     )
     radius: float = quantity(
         "m",
@@ -84,7 +84,7 @@ class Part:
         if a + b < c * (1.0 - 1e-9):
             raise ConfigurationError(
                 f"Part.inertia: found {list(self.inertia)} kg m2; the sum of the two smaller must be at least "
-                f"the largest (it is {c - a - b:.3g} kg m2 less), as for every real body"
+                f"the largest (it is {c - a - b:.3g} kg m2 less), as in every real body"
             )
         self._require_products(self.inertia)
 

@@ -42,9 +42,7 @@ class SemiActiveDamper:
     law: str = quantity("-", "control law", choices=(PASSIVE, *LAWS, FMU), default=PASSIVE)
     fmu: str | None = quantity("-", "file of the FMU that controls the damper (law = fmu)", is_file=True, default=None)
     fmu_sha256: str | None = quantity(
-        "-",
-        "SHA-256 that the FMU must have; the permission to run it is the user's own: vehicle trust",
-        default=None,
+        "-", "SHA-256 of the FMU; each user permits it to run with: vehicle trust", default=None
     )
     minimum_damping: float = quantity("N s/m", "softest setting cmin", at_least=0.0)
     maximum_damping: float = quantity("N s/m", "firmest setting cmax", above=0.0, at_most=1e6)

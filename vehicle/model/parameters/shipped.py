@@ -6,7 +6,6 @@ from importlib import resources
 from pathlib import Path
 
 from vehicle.errors import ConfigurationError
-from vehicle.wording import did_you_mean
 
 VEHICLES = Path(str(resources.files("vehicle.model"))) / "vehicles"
 FOCUS_FILE = VEHICLES / "focus" / "vehicle.toml"
@@ -30,16 +29,15 @@ def vehicle_file(path: Path | str) -> Path:
     path = Path(path)
     if path.suffix == ".json":
         raise ConfigurationError(
-            f"{path}: is no vehicle file: read are TOML files of cars, their folders and the names of shipped cars "
-            f"({', '.join(CARS)}), and in a vehicle file property files of Adams Car, for example curve = FILE.dpr"
+            f"{path}: is not a vehicle file; give a TOML file of a car, its folder, or a shipped car "
+            f"({', '.join(CARS)}). A property file of Adams Car belongs in a vehicle file, for example curve = FILE.dpr"
         )
     if path.is_dir() and (path / "vehicle.toml").is_file():
         return path / "vehicle.toml"
     if path.suffix or path.exists() or path.name != str(path):
         return path
     if path.name not in CARS:
-        near = did_you_mean(path.name, CARS, cutoff=0.6)
-        raise ConfigurationError(f"{path}: is neither a file nor a shipped car, {', '.join(CARS)}{near}")
+        raise ConfigurationError(f"{path}: is neither a file nor a shipped car; shipped cars are {', '.join(CARS)}")
     return VEHICLES / path / "vehicle.toml"
 
 

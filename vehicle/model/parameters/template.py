@@ -16,9 +16,8 @@ from typing import Any
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.quantity import NAME_PATTERN
 from vehicle.model.parameters.template_file import LISTS, read_template_file
-from vehicle.model.parameters.toml_file import build
+from vehicle.model.parameters.toml_file import build, did_you_mean
 from vehicle.model.parameters.topology import RolePart, SteeringAxis, Template, Wheel
-from vehicle.wording import did_you_mean
 
 SHIPPED = Path(str(resources.files("vehicle.model"))) / "templates"
 FREE_PORTS = ("body", "world", "plate")
@@ -38,7 +37,7 @@ def read_template(name: str, options: Iterable[str], folders: Iterable[Path]) ->
     Args:
         name: name of the file, without its extension.
         options: tables of the vehicle file that enable a `use` with `when`.
-        folders: folders searched before that of the package.
+        folders: folders searched before the package.
 
     Raises:
         ConfigurationError: a missing template, an unknown key, or a name that does not exist; with file and table.
@@ -49,12 +48,7 @@ def read_template(name: str, options: Iterable[str], folders: Iterable[Path]) ->
 
 
 def own_templates(names: Iterable[str], folders: Iterable[Path]) -> list[Path]:
-    """Return the user files of templates and of the templates that they include.
-
-    Args:
-        names: names of the templates.
-        folders: see `read_template`.
-    """
+    """Return the user files of templates and of the templates that they include."""
     files, listed = dict[str, Path](), list(names)
     for name in listed:
         path = next(folder / f"{name}.toml" for folder in (*folders, SHIPPED) if (folder / f"{name}.toml").is_file())
@@ -107,7 +101,7 @@ def _merged(name: str, options: frozenset[str], searched: tuple[Path, ...], abov
             else "the file is neither in the folder of the vehicle file nor in the package"
         )
         raise ConfigurationError(
-            f"template {name!r}: {reason}{did_you_mean(name, set(names) - {name})} Templates: {', '.join(names)}"
+            f"template {name!r}: {reason}{did_you_mean(name, set(names) - {name})} Templates are {', '.join(names)}"
         )
     template = read_template_file(path)
     chosen = [use for use in template.pop("use") if use.get("when") is None or use["when"] in options]

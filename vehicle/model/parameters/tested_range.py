@@ -40,19 +40,19 @@ class TestedRange:
         at_least=0.0, at_most=10.0, length=2, default=None,
     )  # fmt: skip
     amplitude: Range | None = quantity(
-        "m", "smallest and largest amplitude of the tests, half of peak to peak; a note without effect", at_least=0.0,
+        "m", "smallest and largest amplitude of the tests, half of peak to peak; for information only", at_least=0.0,
         at_most=1.0, length=2, default=None,
     )  # fmt: skip
     frequency: Range | None = quantity(
-        "Hz", "lowest and highest frequency of the tests; a note without effect", at_least=0.0, at_most=1e4, length=2,
+        "Hz", "lowest and highest frequency of the tests; for information only", at_least=0.0, at_most=1e4, length=2,
         default=None,
     )  # fmt: skip
     temperature: Range | None = quantity(
-        "degC", "lowest and highest temperature of the tests; a note without effect", at_least=-273.15, at_most=1e3,
+        "degC", "lowest and highest temperature of the tests; for information only", at_least=-273.15, at_most=1e3,
         length=2, default=None,
     )  # fmt: skip
     current: Range | None = quantity(
-        "A", "lowest and highest coil current of the tests; a note without effect", at_least=-100.0, at_most=100.0,
+        "A", "lowest and highest coil current of the tests; for information only", at_least=-100.0, at_most=100.0,
         length=2, default=None,
     )  # fmt: skip
 

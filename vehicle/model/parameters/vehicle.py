@@ -35,7 +35,7 @@ class Solver(Validated):
 
     record_rate: float = quantity("Hz", "sampling rate of the recorded channels", at_least=125.0, at_most=1e5)
     timestep: float | None = quantity(
-        "s", "time step [s]; not given: the largest one that keeps the calculation stable and accurate", at_least=1e-6,
+        "s", "time step [s]; default: the largest stable and accurate step", at_least=1e-6,
         at_most=0.005, default=None,
     )  # fmt: skip
 
@@ -53,7 +53,7 @@ class Head(Validated):
     gravity: float = quantity("m/s2", "gravity", at_least=0.0, at_most=30.0, why="9.81 on Earth; 0: no weight")
     shaker_wheel: str = quantity(
         "-",
-        "wheel whose plate moves if the name of a displacement column states no wheel",
+        "wheel that a displacement column moves if its name contains no wheel",
         choices=tuple(CORNERS.values()),
         default="fr",
     )
@@ -79,7 +79,7 @@ class Vehicle:
         table: vehicle file with overrides, nested tables; cars with equal tables are equal.
         name: name of the car.
         gravity: gravity [m/s2].
-        shaker_wheel: wheel that a shaker drives by default, as "fr".
+        shaker_wheel: wheel that a shaker drives by default, for example "fr".
         shaker_wheel_in_source: side of that wheel in the words of the source: "right", "left" or "unsaid".
         body: trimmed body.
         solver: numerics.
@@ -103,12 +103,12 @@ class Vehicle:
 
     @property
     def points(self) -> Mapping[str, Point]:
-        """Hardpoints by name, as "strut_top_fr" [m]."""
+        """Hardpoints by name, for example "strut_top_fr" [m]."""
         return self.composition.points
 
     @property
     def wheels(self) -> tuple[str, ...]:
-        """Names of the wheels with a plate, as "fr"."""
+        """Names of the wheels with a plate, for example "fr"."""
         return tuple(wheel.name for wheel in self.composition.wheels)
 
     @property
@@ -129,7 +129,7 @@ class Vehicle:
         return (*self.acceleration_channels, *wheel_channels(self.wheels, dampers))
 
     def wheel_text(self, wheel: str, *, source: bool = True) -> str:
-        """Return a wheel for captions, by side and by channel, as "driver's left front wheel (fl)".
+        """Return a wheel for captions, by side and by channel, for example "driver's left front wheel (fl)".
 
         Args:
             wheel: name of the wheel.
@@ -288,10 +288,6 @@ def vehicle_of(table: Mapping[str, Any], folder: Path | None = None) -> Vehicle:
 def overridden(file: Path, overrides: Iterable[str]) -> dict[str, Any]:
     """Read a vehicle file and replace or add values.
 
-    Args:
-        file: TOML file.
-        overrides: texts "path.to.parameter=value".
-
     Raises:
         ConfigurationError: the file or an override is wrong.
     """
@@ -306,11 +302,6 @@ def overridden(file: Path, overrides: Iterable[str]) -> dict[str, Any]:
 
 def varied_file(table: Mapping[str, Any], overrides: Iterable[str], folder: Path) -> dict[str, Any]:
     """Return a vehicle file after one variation, see `varied_table`, with the absolute path of a given body model.
-
-    Args:
-        table: vehicle file; not changed.
-        overrides: texts "path.to.parameter=value".
-        folder: folder of the file.
 
     Raises:
         ConfigurationError: an override is wrong.

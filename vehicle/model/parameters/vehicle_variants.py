@@ -39,9 +39,6 @@ class VehicleVariants:
     def variant(self, overrides: Sequence[str]) -> Vehicle:
         """Return the vehicle after one variation.
 
-        Args:
-            overrides: texts "path=value".
-
         Raises:
             ConfigurationError: a name or a value is wrong.
         """

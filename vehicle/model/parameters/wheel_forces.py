@@ -22,7 +22,7 @@ LARGEST_VARIATION = 1000.0
 class Imbalance(Validated):
     """Mass on the rim that turns with the wheel: a force of m r (V/R)^2 from the axle to the mass.
 
-    The mass is that of the imbalance alone: it is no part of the mass of the wheel, and its weight, 0.3 % of the force
+    The mass is the imbalance alone: it is no part of the mass of the wheel, and its weight, 0.3 % of the force
     at 80 km/h, is left out.
     """
 

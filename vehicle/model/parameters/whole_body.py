@@ -23,11 +23,6 @@ _PRODUCTS = {"ixy": (0, 1), "izx": (2, 0), "iyz": (1, 2)}
 def varied_table(table: Mapping[str, Any], overrides: Sequence[str], optional: Optional = list) -> dict[str, Any]:
     """Return a vehicle file after one variation: with other values, and with the changes that follow for the body.
 
-    Args:
-        table: vehicle file, see `read_table`; not changed.
-        overrides: texts "path=value".
-        optional: see `meant`.
-
     Raises:
         ConfigurationError: see `override`.
     """

@@ -60,7 +60,7 @@ class Part:
         role: key of `ROLES`; `none` for an invisible part; any other name for rods between the points.
         points: attachment points of the part by name, at the design position [m] in the vehicle frame.
         around: further points required by the role, by the names used in the role.
-        suffix: suffix of the names of part and shapes, as `_fr`; empty for a single part.
+        suffix: suffix of the names of part and shapes, for example `_fr`; empty for a single part.
         carrier: part to which this part is attached; the bolts move with the carrier.
         left: true: drawn as the mirror image of the right side.
         sizes: drawn sizes that replace entries of `SIZES`.

@@ -270,10 +270,7 @@ def stabilizer_half(points: Points, size: Sizes) -> list[Piece]:
     bar = tube(path, STABILIZER_RADIUS, sides=6)
     eye = placed(drum(0.017, -0.007, 0.007, bevel=0.002, sections=10), end, points["stab_rod_top"] - end)
     rubber = placed(ring(STABILIZER_RADIUS, 0.024, -0.018, 0.018, sections=10), bushing, ACROSS)
-    return [
-        Piece("", joined(bar, eye), palette.LINK),
-        Piece("stabilizer_bushing", rubber, palette.RUBBER, held=True),
-    ]
+    return [Piece("", joined(bar, eye), palette.LINK), Piece("stabilizer_bushing", rubber, palette.RUBBER, held=True)]
 
 
 def stabilizer_clamp(points: Points) -> trimesh.Trimesh:

@@ -21,7 +21,7 @@ from vehicle.model.flexbody.sources.body_matrices import BodyMatrices
 from vehicle.model.flexbody.sources.free_body_modes import FreeModes, residual_vectors
 
 DEPENDENT = 1e-10
-"""Flexibility over the largest [1] below which attachments are linearly dependent, as two attachments at a node."""
+"""Flexibility over the largest [1] below which attachments are linearly dependent, such as two at one node."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

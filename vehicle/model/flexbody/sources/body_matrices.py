@@ -133,7 +133,7 @@ class BodyMatrices(BodyNodes):
             where = self.nodes[self.node[loose[0]]]
             raise DataError(
                 f"stiffness: degree of freedom {self.direction[loose[0]] + 1} of node {where} has no stiffness, "
-                f"and {loose.size - 1} others neither. Leave them out, or connect the node."
+                f"nor have {loose.size - 1} others. Leave them out, or connect the node."
             )
 
     def scaled(self, length: float, mass: float) -> BodyMatrices:
@@ -202,7 +202,7 @@ class BodyMatrices(BodyNodes):
         if lowest <= 1e-9 * highest:
             raise DataError(
                 f"mass: all mass is on one line (principal moments of inertia {lowest:.3g} to {highest:.3g} kg "
-                "m2). Add rotational inertia to the point masses, or mass beside the line."
+                "m2). Add rotational inertia to the point masses, or mass off this line."
             )
         return MassProperties(mass=mass, cog=cog, inertia=inertia)
 

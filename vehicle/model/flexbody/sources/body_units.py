@@ -1,4 +1,4 @@
-"""Units of finite-element bodies: with force in N (or lbf) and time in s, the unit of length determines that of mass.
+"""Units of finite-element bodies: with N (or lbf) and s, the unit of length determines the unit of mass.
 
 Newton's law in consistent units: N = t mm/s2 = kg m/s2, lbf = (lbf s2/in) in/s2. K in N/mm requires M in tonnes.
 """
@@ -16,7 +16,7 @@ from vehicle.model.flexbody.superelement_checks import HIGHEST_FIRST_MODE, LOWES
 from vehicle.model.parameters.hardpoints import Point
 
 _SAME_SIZE = 5.0
-"""Maximum factor between the extent of a body and that of the points of its car [1]: cars are 1.3 to 2 times as long as
+"""Maximum factor between the extents of a body and of the points of its car [1]: cars are 1.3 to 2 times as long as
 their outermost points, and units of length differ by a factor of 25 or more."""
 _LEVEL = 1000.0**0.25
 """Factor above which the scale of shapes is nearer to another unit of mass [1]: half of sqrt(1000) on a log scale."""

@@ -9,11 +9,7 @@ from vehicle.arrays import Indices
 from vehicle.errors import DataError
 from vehicle.model.flexbody.sources.body_matrices import BodyMatrices, rounding_of
 from vehicle.model.flexbody.sources.deck import Deck, read_deck
-from vehicle.model.flexbody.sources.text_matrices import (
-    coordinate_matrix,
-    nodes_and_directions,
-    rows_of_numbers,
-)
+from vehicle.model.flexbody.sources.text_matrices import coordinate_matrix, nodes_and_directions, rows_of_numbers
 
 INSIDE = 3
 """Number of nodes that CalculiX adds to a brick C3D8I: their displacements are the amplitudes of its nine incompatible

@@ -154,11 +154,7 @@ def _all(body: BodyMatrices, shift: float) -> tuple[Vector, Vector]:
 
 
 def lowest_modes(
-    body: BodyMatrices,
-    shift: float,
-    limit: float,
-    solve: Callable[[Vector], Vector],
-    count: int = FIRST_GUESS,
+    body: BodyMatrices, shift: float, limit: float, solve: Callable[[Vector], Vector], count: int = FIRST_GUESS
 ) -> tuple[Vector, Vector]:
     """Compute the lowest modes by Lanczos iteration until an eigenvalue exceeds a limit.
 

@@ -33,7 +33,7 @@ def read_matrices(stiffness: Path, mass: Path | None, dofs: Path | None, nodes: 
     """Read stiffness and mass matrix of a body, in the units of the source.
 
     Args:
-        stiffness, mass: Matrix Market, as `*EXPORT,...,MMF` of ANSYS; Harwell-Boeing, as `HBMAT` of ANSYS; `.mat` of
+        stiffness, mass: Matrix Market (`*EXPORT,...,MMF` of ANSYS); Harwell-Boeing (`HBMAT` of ANSYS); `.mat` of
             MATLAB, "FILE.mat:NAME" to select one of several matrices; `.mtx` or text of `*MATRIX OUTPUT` of Abaqus,
             rows "node, direction, node, direction, value", which need no list of degrees of freedom; text "row column
             value"; DMIG of Nastran, both matrices in one file.

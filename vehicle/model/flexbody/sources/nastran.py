@@ -30,7 +30,7 @@ class BulkData:
 
     Attributes:
         matrices: matrix name -> stored entries, (node, component, node, component) -> value.
-        others: name of a matrix of another form or type, as a load vector -> why it is neither K nor M.
+        others: name of a matrix of another form or type, such as a load vector -> why it is neither K nor M.
         positions: node number -> position, in the unit of the file.
     """
 

@@ -14,7 +14,7 @@ from vehicle.arrays import Indices, Vector
 from vehicle.errors import DataError
 
 _NAMES = re.compile(r"(?!nan|inf)[a-z_]\w*([\s,]+[a-z_]\w*)*", re.IGNORECASE)
-"""Header line of column names, as "node,direction". Headers with units in brackets do not match."""
+"""Header line of column names, for example "node,direction". Headers with units in brackets do not match."""
 
 
 def text_of(path: Path, advice: str = "", *, encoding: str = "ascii", errors: str = "strict") -> str:
@@ -37,11 +37,6 @@ def text_of(path: Path, advice: str = "", *, encoding: str = "ascii", errors: st
 
 def rows_of_numbers(path: Path, columns: int, *, separator: str = ",") -> Vector:
     """Read a text file with rows of numbers of equal length, shape (rows, columns); skip a header line of names.
-
-    Args:
-        path: text file.
-        columns: required number of columns.
-        separator: separator of the numbers besides blanks.
 
     Raises:
         DataError: the file is unreadable, empty or truncated, or has entries
