@@ -19,6 +19,7 @@ from vehicle.runs.car import Car, Run
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.excitation.signal_file import read_signal
+from vehicle.wording import speak_options
 
 
 class PresentTest:
@@ -79,6 +80,8 @@ def pytest_configure(config):
     folder = tempfile.mkdtemp(prefix="configuration-")
     config.add_cleanup(lambda: shutil.rmtree(folder, ignore_errors=True))
     os.environ["XDG_CONFIG_HOME"] = folder
+    # Messages are written with options; tests/test_wording.py reads them in Python.
+    speak_options()
     present = PresentTest()
     # Not as functions of this file: pytest does not ask a conftest about fixtures of the session.
     config.pluginmanager.register(present, "present test")

@@ -13,6 +13,7 @@ Every fault of `tools/mutations.py` is seen by the product alone, whatever part 
 REST = {
     "benchmarks/": "benchmarks run whole",
     "core/test_binaries.py::test_all_eleven_libraries": "the core is compiled for eleven platforms",
+    "documentation/test_examples.py::test_an_example_runs": "every example runs",
     "documentation/test_executed_pages.py": "every command and example of the pages runs",
     "documentation/test_gallery.py": "every page of the gallery runs",
     "documentation/test_site.py": "the documentation is built",

@@ -14,7 +14,7 @@ from vehicle.commands import OLDER
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "vehicle"
 
-EVERYWHERE = {"arrays", "digits", "errors", "leftovers", "names", "settings", "stored"}
+EVERYWHERE = {"arrays", "digits", "errors", "leftovers", "names", "settings", "stored", "wording"}
 """May be used by every room."""
 
 WINGS = {
@@ -49,6 +49,7 @@ ROOMS: dict[str, set[str]] = {
     "stored": set(),
     "threads": set(),
     "version": set(),
+    "wording": set(),
     "core": {"replacement"},
     "analysis": {"threads"},
     "formats": {"analysis"},

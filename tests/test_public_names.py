@@ -67,11 +67,13 @@ def test_the_package_is_imported_without_any_of_its_modules() -> None:
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines() == [
         f"['vehicle.handed_down'] {len(vehicle.__all__)}",
-        "['vehicle.errors', 'vehicle.handed_down']",
+        "['vehicle.errors', 'vehicle.handed_down', 'vehicle.wording']",
         "True",
     ]
 
 
 def test_a_wrong_name_lists_the_right_ones() -> None:
-    with pytest.raises(AttributeError, match="no attribute 'Kar'; public names are Car, "):
+    with pytest.raises(AttributeError, match="'Kar'; did you mean Car"):
         vehicle.Kar  # noqa: B018
+    with pytest.raises(AttributeError, match="'xyz'; choose from Car, "):
+        vehicle.xyz  # noqa: B018

@@ -169,7 +169,8 @@ __all__ = list(_MODULES)
 def __getattr__(name: str) -> Any:
     """Return a public name, imported at its first use."""
     if name not in _MODULES:
-        raise AttributeError(f"module 'vehicle' has no attribute {name!r}; public names are {', '.join(_MODULES)}")
+        near = import_module("vehicle.wording").choose_from(name, _MODULES)
+        raise AttributeError(f"module 'vehicle' has no attribute {name!r}{near}")
     value = getattr(import_module(_MODULES[name]), name)
     globals()[name] = value
     return value

@@ -2,12 +2,12 @@
 
 import sys
 from collections.abc import Sequence
-from difflib import get_close_matches
 from importlib import import_module
 
 from vehicle.commands import COMMANDS, module_of
 from vehicle.commands.command_line import begin_process, run_command
 from vehicle.errors import ConfigurationError
+from vehicle.wording import did_you_mean
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -51,8 +51,7 @@ def _print(typed: Sequence[str]) -> None:
         print(completion_script("".join(typed[1:2])), end="")
         return
     if typed and typed[0] not in ("-h", "--help"):
-        close = get_close_matches(typed[0], COMMANDS, n=1)
-        nearest = f"; did you mean {close[0]}?" if close else ""
+        nearest = did_you_mean(typed[0], COMMANDS, cutoff=0.6)
         raise ConfigurationError(f"unknown command {typed[0]!r}; must be one of {', '.join(COMMANDS)}{nearest}")
     print("usage: python -m vehicle COMMAND [options]; `COMMAND --help` lists the options of a command\n")
     for name in COMMANDS:

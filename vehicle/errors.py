@@ -3,11 +3,17 @@
 from collections.abc import Mapping
 from typing import Any
 
+from vehicle.wording import in_words
+
 
 class VehicleError(Exception):
     """Base class of all errors; the message contains the fault, its location, the value, the limits and the remedy."""
 
     exit_code = 4
+
+    def __str__(self) -> str:
+        """Return the message, with options in a command and with arguments in Python."""
+        return in_words(super().__str__())
 
 
 class ConfigurationError(VehicleError):

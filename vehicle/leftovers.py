@@ -11,6 +11,8 @@ import sys
 from contextlib import suppress
 from pathlib import Path
 
+from vehicle.wording import in_words
+
 _NOTICES = logging.getLogger("vehicle.results")
 _NOTICES.addHandler(logging.lastResort or logging.StreamHandler(sys.stderr))
 _NOTICES.propagate = False
@@ -31,7 +33,7 @@ _mentioned: set[tuple[str, int]] = set()
 def say(*sentences: str) -> None:
     """Print notices on standard error, a line for each; the logger `vehicle.results` of `logging`."""
     for sentence in sentences:
-        _NOTICES.warning("notice: %s", sentence)
+        _NOTICES.warning("notice: %s", in_words(sentence))
 
 
 def work_of(goal: Path) -> Path:

@@ -73,7 +73,7 @@ def test_the_wheel_runs_in_an_empty_folder(tmp_path):
     assert len(json.loads(done.stdout)["modes"]) > 20
     # The shipped inputs are part of it.
     done = run("shaker", "--input", "lov.csv", "--debug")
-    assert done.returncode == 2 and "Did you mean low.csv?" in done.stderr
+    assert done.returncode == 2 and "did you mean low.csv?" in done.stderr
     assert done.stderr.endswith("low.csv, mid.csv, pitch.csv, roll.csv, warp.csv\n")
     # And it is the installed package that answered, not the sources that this test runs in.
     assert str(installed) in done.stderr

@@ -22,6 +22,7 @@ from vehicle.commands.printable import printable_streams
 from vehicle.errors import ConfigurationError, OutputError, VehicleError
 from vehicle.signals.records.finding import FindingError
 from vehicle.threads import prefer_one_thread
+from vehicle.wording import in_command
 
 Settings = TypeVar("Settings")
 
@@ -52,7 +53,7 @@ def run_command(job: Callable[[], None], *, debug: bool = False) -> int:
     previous = {number: signal.signal(number, _interrupt) for number in (signal.SIGINT, signal.SIGTERM)}
     asked_to_end.clear()
     lost = _stand_in_for_closed_streams()
-    with printable_streams():
+    with printable_streams(), in_command():
         return _exit_code(job, previous, lost, debug=debug)
 
 

@@ -56,6 +56,26 @@ def test_every_plot_returns_axes_and_draws_on_those_of_the_user(run, response, t
         assert one.plot(ax=axis) is axis and len(axis.lines) == 2 * drawn
         colours = [line.get_color() + str(line.get_linestyle()) for line in axis.lines]
         assert len(set(colours)) == min(len(colours), 5)  # a second plot goes on with the colours
+    mixed = run.psd(["seat rail z", "damper force fr", "knuckle fr z"])
+    axes = mixed.plot()
+    units = {each.name: each.unit for each in mixed.channels}
+    assert units["damper_fr_force"] == "N" and axes.shape == (3, 3)
+    for one, first in zip(axes.T, axes.T[0:1].repeat(3, axis=0), strict=True):
+        same = units[one[0].get_title()] == units[first[0].get_title()]
+        assert all(a.get_shared_y_axes().joined(a, b) == same for a, b in zip(one, first, strict=True))
+    assert [axis.get_ylabel() for axis in axes[0]] == ["density [(m/s²)²/Hz]", "", "density [N²/Hz]"]
+    _, axis = pyplot.subplots()
+    for refused in (mixed.plot, lambda ax: [run.plot(name, ax=ax) for name in ("damper force fr", "seat rail z")]):
+        with pytest.raises(ConfigurationError, match=r"ax: .* N"):
+            refused(ax=axis)
+    again = mixed.plot(ax=axes)
+    assert [len({line.get_color() for line in axis.lines}) for axis in again[0]] == [2, 2, 2]
+    softer = run.car.with_({"damper.viscous": 900}).run(run.signal, "reduced")
+    for plot in (lambda one, ax: one.plot("seat rail z", ax), lambda one, ax: one.frf("seat rail z").plot(ax),
+                 lambda one, ax: one.psd("seat rail z").plot(ax)):  # fmt: skip
+        _, axis = pyplot.subplots()
+        texts = [text.get_text() for text in (plot(run, axis), plot(softer, axis))[1].get_legend().get_texts()]
+        assert texts[0].startswith("focus") and "damper.viscous" not in texts[0] and "damper.viscous=900" in texts[-1]
     _, axis = pyplot.subplots()
     assert run.plot("seat rail z", ax=axis) is axis
     np.testing.assert_array_equal(axis.lines[0].get_ydata(), run["seat_rail_acc_z"])
@@ -69,9 +89,9 @@ def test_words_name_a_channel(run):
     np.testing.assert_array_equal(run["damper velocity front left"], run["damper_fl_velocity"])
     assert run.frf("seat rail z").names == ("seat_rail_acc_z",)
     assert run.psd("knuckle fr z").channels[0].name == "knuckle_fr_acc_z"
-    with pytest.raises(ConfigurationError, match=r"channel 'steering wheel z': no channel has these words; choose"):
+    with pytest.raises(ConfigurationError, match=r"channel 'steering wheel z'.*choose from"):
         run.frf("steering wheel z")
-    with pytest.raises(ConfigurationError, match=r"'damper velocity': several channels have .* choose from damper_f"):
+    with pytest.raises(ConfigurationError, match=r"'damper velocity'.* choose from damper_f"):
         run["damper velocity"]
 
 
@@ -97,19 +117,12 @@ def test_tables_hold_the_channels(run, response):
 @pytest.mark.parametrize(("library", "call"), [("pandas", "to_dataframe"), ("xarray", "to_xarray")])
 def test_a_missing_library_is_one_sentence(library, call, run, monkeypatch):
     monkeypatch.setitem(sys.modules, library, None)
-    with pytest.raises(MissingPartError) as caught:
-        getattr(run, call)()
-    assert str(caught.value) == (
-        f"{call} needs {library}, which is not installed; install it with: pip install 'vehicle-on-shaker[notebook]'"
-    )
-
-
-def test_tables_of_orders_need_the_same_library(monkeypatch):
-    monkeypatch.setitem(sys.modules, "pandas", None)
     one = np.ones((1, 1))
     lines = OrderLines(orders=one[0], frequency=one[0], amplitude=one.astype(complex), error=one, segments=1)
-    with pytest.raises(MissingPartError, match="to_dataframe needs pandas, which is not installed"):
-        named_orders(lines, ("seat_rail_acc_z",), ("m/s2",), "crank").to_dataframe()
+    orders = named_orders(lines, ("seat_rail_acc_z",), ("m/s2",), "crank")
+    for each in (run, orders) if library == "pandas" else (run,):
+        with pytest.raises(MissingPartError, match=rf"{call}.*{library}.*pip install '.*\[notebook\]'"):
+            getattr(each, call)()
 
 
 def test_a_drawn_line_keeps_its_extremes():
@@ -138,5 +151,5 @@ def test_spectra_and_both_comfort_values(run):
 def test_files_of_a_run(run, tmp_path):
     assert (run.save(tmp_path / "run") / "summary.json").exists()
     assert "<h1>" in run.report(tmp_path / "run.html").read_text(encoding="utf-8")
-    with pytest.raises(ConfigurationError, match="do not store; run the car with engine='mujoco'"):
+    with pytest.raises(ConfigurationError, match=r"run\.mp4.*engine='mujoco'"):
         run.film(tmp_path / "run.mp4")

@@ -106,7 +106,7 @@ def test_a_miss_lists_the_names(tmp_path, monkeypatch):
     with pytest.raises(ConfigurationError) as caught:
         find_input("lov.csv")
     assert str(caught.value) == (
-        "input 'lov.csv' is neither a file nor a shipped input. Did you mean low.csv? "
+        "input 'lov.csv' is neither a file nor a shipped input; did you mean low.csv? "
         "Set the path of a measurement file or one of: bump_1p5mm.csv, bump_7p5mm.csv, four_plates.csv, heave.csv, "
         "high.csv, low.csv, mid.csv, pitch.csv, roll.csv, warp.csv"
     )

@@ -3,8 +3,10 @@
 import functools
 
 import numpy as np
+import pytest
 
-from vehicle import Car, road, sweep
+from vehicle import Car, ConfigurationError, optimise, road, sweep
+from vehicle.studies.sweeps.function_measure import NamedFunctions
 
 RIDE = road("C", 80, duration=3)
 VARY = {"front.damper.viscous": [1500.0]}
@@ -42,3 +44,40 @@ def test_partial_functions_and_objects_have_a_name():
     ]
     assert tables[0][0] > 0.0
     np.testing.assert_array_equal(tables[0], tables[1])
+
+
+def rail(run):
+    return run["seat rail z"].std()
+
+
+def test_functions_and_figures_by_name():
+    car = Car.load("focus")
+    table = sweep(car, VARY, RIDE, measure={"my number": rail, "comfort": "weighted"}, engine="reduced")
+    run = car.with_({"front.damper.viscous": 1500.0}).run(RIDE, "reduced")
+    assert dict(table.units) == {"my number": "?", "comfort": "m/s2"}
+    # A variant has its matrices from terms of the car, those of a loaded car to 1e-10.
+    for name, value in (("my number", rail(run)), ("comfort", run.comfort().weighted.overall)):
+        assert table.column(name)[0] == pytest.approx(value, rel=1e-9)
+    with pytest.raises(ConfigurationError, match=r"measure 'x'.*'comfrt'"):
+        sweep(car, VARY, RIDE, measure={"x": "comfrt"})
+    with pytest.raises(ConfigurationError, match=r"measure 'both'.*dictionary"):
+        NamedFunctions({"both": lambda run: {"a": 1.0}})(run)
+
+
+@pytest.mark.parametrize("more", [{"jobs": 2}, {"time_limit": 60.0}])
+def test_a_function_that_other_processes_cannot_load_is_refused(more):
+    measures = (lambda run: 1.0, {"x": lambda run: 1.0}, Scaled(lambda: 2.0))
+    for measure in measures:
+        with pytest.raises(ConfigurationError, match=r"measure: .*jobs=1"):
+            sweep(Car.load("focus"), VARY, RIDE, measure=measure, engine="reduced", **more)
+
+
+def test_a_search_by_a_function():
+    pytest.importorskip("pymoo")
+    found = optimise(Car.load("focus"), {"damper.viscous": (800, 4000)}, RIDE, {"my number": rail, "travel": "travel"},
+                     cars=16, population=8)  # fmt: skip
+    best = found.cars["best my number"].run(RIDE, "reduced")
+    assert rail(best) <= min(rail(car.run(RIDE, "reduced")) for car in found.cars.values())
+    with pytest.raises(ConfigurationError, match=r"measure: .*jobs=1"):
+        optimise(Car.load("focus"), {"damper.viscous": (800, 4000)}, RIDE, {"x": lambda run: 1.0}, cars=8, population=8,
+                 jobs=2)  # fmt: skip

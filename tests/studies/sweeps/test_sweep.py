@@ -104,7 +104,7 @@ def test_a_failed_run_is_a_row_with_its_reason():
     assert not good.reason and good.values["peak"] > 0.0
     assert [case.label for case, _ in table.failed] == [cases[0].label]
     assert math.isnan(table.column("peak")[0]) and table.column("peak")[1] == good.values["peak"]
-    with pytest.raises(ConfigurationError, match="no column 'peek'; choose from peak"):
+    with pytest.raises(ConfigurationError, match="no column 'peek'; did you mean peak"):
         table.column("peek")
 
 

@@ -6,6 +6,13 @@ from typing import Any
 from vehicle.drawing.notebook.picture import card, frame_drawing, line_drawing
 
 
+def car_label(car: Any) -> str:
+    """Return the name of a car in a legend: its file and its first two changes."""
+    changes = [text for text in car.overrides if not text.startswith(("driving.", "outputs."))]
+    shown = [*changes[:2], *([f"{len(changes) - 2} more"] if len(changes) > 2 else [])]
+    return ", ".join([str(car.vehicle.name), *shown])
+
+
 def car_card(car: Any) -> str:
     """Return HTML of a `vehicle.runs.car.Car`."""
     from vehicle.drawing.rendering.wireframe import car_wireframe

@@ -1,7 +1,7 @@
 """FRFs of a run with the names of their channels, and their display in a notebook."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -23,10 +23,12 @@ class RunResponse(FrequencyResponse):
     Attributes:
         names: channels of the rows.
         plate: description of the input.
+        car: car of the run, for the legend.
     """
 
     names: tuple[str, ...]
     plate: str
+    car: str
 
     def __repr__(self) -> str:
         """Return a summary in one line."""
@@ -64,7 +66,7 @@ class RunResponse(FrequencyResponse):
         look: dict[str, Any] = {"sharex": True, "height_ratios": (2.2, 1.0, 0.9)}
         title = f"Frequency responses to {self.plate}"
         axes = open_axes(ax, (8.0, 7.2), 3 if rows > 1 else 1, title=title, **look)
-        draw_response(axes, self, self.names)
+        draw_response(axes, self, [f"{self.car}: {name}" for name in self.names])
         return plain(axes)
 
     def to_dataframe(self) -> Any:
@@ -74,12 +76,6 @@ class RunResponse(FrequencyResponse):
         return frame
 
 
-def named(response: FrequencyResponse, names: tuple[str, ...], plate: str) -> RunResponse:
-    """Return FRFs with channel names and a description of the input."""
-    values = {field.name: getattr(response, field.name) for field in fields(FrequencyResponse)}
-    return RunResponse(**values, names=names, plate=plate)
-
-
 def require_moving(recording: Recording, wheel: str | None) -> None:
     """Raise a DataError if the plate of a wheel does not move."""
     moving = recording.excited
@@ -87,7 +83,9 @@ def require_moving(recording: Recording, wheel: str | None) -> None:
         raise DataError(f"wheel {wheel}: its plate is at rest, so there is no FRF; choose from {', '.join(moving)}")
 
 
-def of_wheel(all_responses: Sequence[MotionResponse], wheel: str | None, names: tuple[str, ...]) -> RunResponse:
+def of_wheel(
+    all_responses: Sequence[MotionResponse], wheel: str | None, names: tuple[str, ...], car: str
+) -> RunResponse:
     """Return the response to a wheel, by default to the first motion."""
     asked = all_responses[0].first if wheel is None else wheel
     chosen = next(number for number, group in enumerate(all_responses) if asked in group.motion)
@@ -96,7 +94,8 @@ def of_wheel(all_responses: Sequence[MotionResponse], wheel: str | None, names: 
     moved = tuple(all_responses[chosen].motion)
     plate = f"plate_{moved[0]}_displacement" if len(moved) == 1 else f"the plates {', '.join(moved)} together"
     reasons = (*([note] if note else []), *response.reasons)
-    return named(replace(response, reasons=reasons), names, plate)
+    values = {field.name: getattr(response, field.name) for field in fields(FrequencyResponse)}
+    return RunResponse(**values | {"reasons": reasons}, names=names, plate=plate, car=car)
 
 
 def responses(

@@ -1,5 +1,6 @@
 """Axes of a figure that a user of Python edits: a new figure in the style of the program, or the axes of the user."""
 
+import re
 from typing import Any
 
 import numpy as np
@@ -44,6 +45,18 @@ def open_axes(
     if title:
         figure.suptitle(title, fontsize=11)
     return np.asarray(axes, dtype=object)
+
+
+def label_once(axis: Any, label: str) -> None:
+    """Label the vertical axis with a quantity and its unit in brackets.
+
+    Raises:
+        ConfigurationError: the axes show curves in another unit.
+    """
+    present, new = (re.search(r"\[(.*)\]", text, re.DOTALL) for text in (axis.get_ylabel(), label))
+    if axis.lines and present and new and present[1] != new[1]:
+        raise ConfigurationError(f"ax: shows curves in {present[1]}, and these are in {new[1]}; set other axes")
+    axis.set_ylabel(label)
 
 
 def plain(axes: Axes) -> Any:

@@ -91,7 +91,8 @@ def new_tables(overrides: Iterable[str]) -> list[str]:
     keys = "|".join((*PLACE_KEYS, *AppliedForce.__dataclass_fields__))
     texts = list(overrides)
     names = [text.partition("=")[0].strip() for text in texts]
-    return new_loads(texts) + [name for name in names if re.fullmatch(rf"force\.[A-Za-z0-9_-]+\.({keys})", name)]
+    new = re.compile(rf"force\.[A-Za-z0-9_-]+\.({keys})|outputs\.[A-Za-z0-9_-]+\.(on|at)")
+    return new_loads(texts) + [name for name in names if new.fullmatch(name)]
 
 
 def further_force(name: str, value: Any, targets: ForceTargets) -> PlacedForce:

@@ -23,6 +23,7 @@ from vehicle.model.parameters.shipped import FOCUS_FILE, vehicle_file
 from vehicle.model.parameters.toml_file import build, convert
 from vehicle.model.parameters.whole_body import varied_table
 from vehicle.names import AXES, CORNERS, SIDE_SIGN, acceleration_channels, wheel_channels, wheel_words
+from vehicle.wording import choose_from
 
 FIRST_STEP = 1e-3
 """Default time step [s] before it is checked; small enough for steel and rubber of a car up to 100 Hz."""
@@ -163,7 +164,7 @@ class Vehicle:
         for name in channels:
             if name not in existing:
                 channel_type = "channel" if len(existing) >= len(self.channels) else "acceleration channel"
-                raise ConfigurationError(f"no {channel_type} {name!r}; choose from {', '.join(existing)}")
+                raise ConfigurationError(f"no {channel_type} {name!r}{choose_from(name, existing)}")
 
     @property
     def seated(self) -> bool:
@@ -353,5 +354,5 @@ def load_file(path: Path | None = None, overrides: Iterable[str] = ()) -> tuple[
     except ConfigurationError as error:
         if path is None:
             raise
-        text = str(error)
+        text = error.args[0]
         raise ConfigurationError(text if text.startswith((str(path), "--set")) else f"{path}: {text}") from None

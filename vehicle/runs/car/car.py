@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from filecmp import cmp
 from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict
@@ -26,7 +27,7 @@ from vehicle.engines.simulation.stepping import Progress
 from vehicle.errors import ConfigurationError
 from vehicle.handed_down import HANDED
 from vehicle.leftovers import mention
-from vehicle.model.flexbody.body_model import body_model
+from vehicle.model.flexbody.body_model import body_model, own_body_file
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.laws.controller_fmu import require_controllers
 from vehicle.model.parameters.further_forces import new_tables
@@ -88,8 +89,8 @@ class Car:
         """Read a car from a vehicle file.
 
         Args:
-            path: TOML file, or the name of a shipped car; that of Bommer 2006 by default.
-            overrides: path to value, as {"damper.coulomb_friction": 93.75}; or texts "damper.coulomb_friction=93.75".
+            path: TOML file, or the name of a shipped car; default: the car of Bommer 2006.
+            overrides: {"damper.coulomb_friction": 93.75}, or texts "damper.coulomb_friction=93.75".
 
         Raises:
             ConfigurationError: the file, a name or a value is wrong.
@@ -103,18 +104,11 @@ class Car:
         return car
 
     def with_(self, overrides: Overrides) -> Car:
-        """Return a variant of this car with changed parameters; fast for many variants.
+        """Return a car with other parameters; this car is not changed.
 
-        The variation acts on the current values of this car, also on those that an earlier variation has set: values
-        that depend on the mass or the CoG of the body follow from them (docs/vehicle-file.md). `overrides` of the
-        variant lists the values of all steps, so that `Car.load(file, variant.overrides)` loads the same car.
-
-        If the changes affect only parameters of laws and masses, the matrices and static loads of the variant come from
-        terms of this car, computed once (`vehicle.engines.linear.variant_matrices`), and its MuJoCo model is built at
-        its first use. Every other variant is built like a loaded car.
-
-        Args:
-            overrides: changes in the form of `load`, in addition to those of this car.
+        Changes add to earlier ones; the inertia of the body follows another mass or CoG (docs/vehicle-file.md).
+        `overrides` lists all steps: `Car.load(file, variant.overrides)` loads the same car.
+        Variants of laws and masses are fast: their matrices come from terms of this car, computed once.
 
         Raises:
             ConfigurationError: a name or a value is wrong.
@@ -128,6 +122,22 @@ class Car:
         car.origin = {"file": self.origin["file"], "overrides": list(car.overrides)}
         car._base, car._step = self, tuple(more)
         return car
+
+    def with_channel(self, name: str, at: str | Sequence[float], *, on: str = "body") -> Car:
+        """Return this car with a further output point: channels `NAME_acc_x`, `_y`, `_z`.
+
+        Args:
+            name: name of the point, for example "tunnel".
+            at: coordinates in the design position [m], or the name of a hardpoint.
+            on: part that the point moves with.
+
+        Raises:
+            ConfigurationError: the car has an output of this name, or lacks the part or the hardpoint.
+        """
+        if any(output.name == name for output in self.vehicle.composition.outputs):
+            raise ConfigurationError(f"with_channel: the car already has an output {name!r}; choose another name")
+        point = at if isinstance(at, str) else np.asarray(at).tolist()
+        return self.with_({f"outputs.{name}.at": point, f"outputs.{name}.on": on})
 
     # Made by the first variant: a cycle, and the cars of a sweep must be freed without the garbage collector.
     @cached_property
@@ -167,21 +177,13 @@ class Car:
         return path
 
     def show(self) -> CarData:
-        """Return masses, loads, stiffnesses, frequencies, geometry and parameters of the car; `print` shows them.
-
-        Raises:
-            SimulationError: an axle has no equilibrium near its design position.
-        """
+        """Return masses, loads, stiffnesses, frequencies, geometry and parameters; `print` shows them."""
         from vehicle.runs.car.car_data import car_data
 
         return car_data(self)
 
     def search(self, words: str = "") -> list[Parameter]:
-        """Return the parameters with all words in their path or meaning, with value, unit, range and source.
-
-        Args:
-            words: words separated by spaces; all parameters by default.
-        """
+        """Return the parameters (default: all) with these words in path or meaning: value, unit, range, source."""
         from vehicle.runs.car.car_data import car_parameters
 
         return [parameter for parameter in car_parameters(self) if parameter.matches(words)]
@@ -190,11 +192,11 @@ class Car:
         """Return a parameter with value, unit, range and source; every path that `with_` sets has one.
 
         Args:
-            path: whole path or its end, as "front.damper.viscous" or "damper.viscous", or of a component of a vector,
-                as "tyre.stiffness.z"; with a leading "*." of all parameters with this end, if they are equal.
+            path: whole path or its end, for example "front.damper.viscous" or "damper.viscous"; of one component
+                "tyre.stiffness.z"; "*.damper.viscous" for all parameters with this end, if they are equal.
 
         Raises:
-            ConfigurationError: no parameter (with the nearest path) or several have this path, or it is a table.
+            ConfigurationError: no parameter or several have this path, or it is a table.
         """
         from vehicle.runs.car.car_data import source_file
 
@@ -203,6 +205,18 @@ class Car:
     @cached_property
     def _optional(self) -> list[str]:
         return optional_paths(self.vehicle.table, self._home)
+
+    def __eq__(self, other: object) -> bool:
+        """True if all parameters and the body models are equal, however the values were set."""
+        if not isinstance(other, Car):
+            return NotImplemented
+        body, others = (own_body_file(car.vehicle, car.folder) for car in (self, other))
+        same = body == others or bool(body and others and cmp(body, others, shallow=False))
+        return same and self.vehicle == other.vehicle
+
+    def __hash__(self) -> int:
+        """Return the hash of name and wheels, which equal cars share."""
+        return hash((self.vehicle.name, self.vehicle.wheels))
 
     def __repr__(self) -> str:
         """One line."""
@@ -278,10 +292,7 @@ class Car:
 
     @one_blas_thread()
     def check(self, engine: str = "mujoco") -> None:
-        """Check the car before a run, once for each engine.
-
-        Args:
-            engine: engine of the run, see `run`; the time step is checked for "mujoco" only.
+        """Check once that the car is stable and, for "mujoco", that its time step is small enough.
 
         Raises:
             ConfigurationError: the car cannot be built, is unstable, or its time step is too large.
@@ -298,9 +309,7 @@ class Car:
 
     @one_blas_thread()
     def stepped(self) -> Car:
-        """Return this car with a sufficiently small time step: the given step, else the largest that passes all checks.
-
-        The step of a shipped car is only the first to try: nobody who changes another number of it has set the step.
+        """Return this car with the time step of its file, or the largest step that passes all checks.
 
         Raises:
             ConfigurationError: the given step is too large, or no step is small enough.
@@ -321,13 +330,13 @@ class Car:
     def matrix_frf(
         self, channels: Sequence[str], frequency: npt.ArrayLike, *, damper: str = "stuck", wheel: str | None = None
     ) -> Complex:
-        """Return linear FRFs [m/s2 per m] at given frequencies, shape (channels, frequencies).
+        """Return linear FRFs of acceleration channels to a plate [m/s2 per m], shape (channels, frequencies).
 
         Args:
             channels: names of acceleration channels.
             frequency: frequencies [Hz].
             damper: state of all dampers, "stuck" or "sliding".
-            wheel: wheel whose plate moves; the shaker wheel by default.
+            wheel: wheel on the plate; default: the shaker wheel.
         """
         return plate_frf(self, channels, frequency, is_stuck(damper), wheel or self.vehicle.shaker_wheel)
 
@@ -335,18 +344,12 @@ class Car:
     def force_frf(
         self, channels: Sequence[str], frequency: npt.ArrayLike, *, force: str, damper: str = "stuck"
     ) -> Complex:
-        """Return linear FRFs to an applied force [m/s2 per N or N m], shape (channels, frequencies).
+        """Return linear FRFs to an applied force [m/s2 per N or N m]; further arguments as in `matrix_frf`.
 
         H(jw) of (s^2 M + s C + K) u = l, s = jw, with the row l of the force; its history plays no part.
 
         Args:
-            channels: names of acceleration channels.
-            frequency: frequencies [Hz].
-            force: name of a force, as "crank_torque" of [force.crank_torque].
-            damper: state of all dampers, "stuck" or "sliding".
-
-        Raises:
-            ConfigurationError: the force or the channel does not exist.
+            force: name of a force, for example "crank_torque" of [force.crank_torque].
         """
         return force_frf(self, channels, frequency, is_stuck(damper), force)
 
@@ -354,43 +357,38 @@ class Car:
     def run(
         self,
         source: Signal | Road | Path | str,
-        progress: Progress | None = None,
-        *,
         engine: str = "mujoco",
+        *,
+        progress: Progress | None = None,
         channels: Sequence[str] | None = None,
         skip: float | None = None,
         forces: Mapping[str, GivenForce] | None = None,
     ) -> Run:
-        """Simulate the car on a signal or a road.
+        """Simulate the car on a signal or a road; `run.engine_reason` is the reason for the choice of the engine.
 
         Args:
-            source: displacement of the plates; a file of it or the name of a shipped one, as "low.csv"; or a road, as
-                road("C", 80), on which the tyres roll.
-            progress: called with the finished fraction now and then (MuJoCo only; the reduced engine is done at once).
-            engine: "mujoco"; "reduced", faster (3 times; sweeps tens), all laws but linear geometry; "auto": "reduced",
-                and "mujoco" if the motion leaves the valid range.
-            channels: names of the recorded channels, those on request (`vehicle.requested_channels`) among
-                them; by default all but those.
-            skip: time at the beginning that comfort and slip shares leave out [s]; by default 0, on a road until the
-                last wheel has risen with it, at least 2.
-            forces: histories of forces by name, as {"crank_torque": values}, in place of those of the vehicle file:
-                values at the times of the signal, or a function of the times [s] that returns them [N or N m].
-
-        Returns:
-            The run; `run.recording.statistics.engine` is the engine, `run.engine_reason` the reason for its choice.
+            source: displacement of the plates: a `Signal`, a file, or the name of a shipped file, for example
+                "low.csv"; or a road, for example road("C", 80), on which the tyres roll.
+            engine: "mujoco"; "reduced", 3 times faster (sweeps tens), with all laws but linear geometry; "auto":
+                "reduced", and "mujoco" if the motion leaves the valid range.
+            progress: called with the finished fraction (MuJoCo only).
+            channels: names of the recorded channels; default: all but those on request
+                (`vehicle.requested_channels`).
+            skip: time at the beginning that comfort and slip shares leave out [s]; default: 0, on a road at least 2,
+                until the last wheel has risen with it.
+            forces: {"crank_torque": values}, in place of the history in the vehicle file: values at the times of the
+                signal, or a function of the times [s] that returns them [N or N m].
 
         Raises:
-            ConfigurationError: the engine, a channel or a force does not exist, a value is out of range,
-                the car is unstable, or the time step of MuJoCo is too large.
-            DataError: a file cannot be read or holds bad data.
-            MissingPartError: there is no compiled core for this platform.
-            SimulationError: the run could not be carried through.
+            ConfigurationError: an unknown engine, channel or force, a value out of range, or an unstable car.
+            DataError: a file cannot be read, or its data are bad.
+            SimulationError: the run failed.
         """
         if isinstance(source, Road):
             signal = (drive := source.under(self.vehicle, self.overrides)).signal()
             start = evaluation_start({drive.name: signal.duration}, skip, drive.skip)
             car, named = self.with_(drive.overrides) if drive.overrides else self, replace(signal, source=drive.name)
-            run = car.run(named, progress, engine=engine, channels=channels, skip=start, forces=forces)
+            run = car.run(named, engine, progress=progress, channels=channels, skip=start, forces=forces)
             return replace(run, road=drive.summary(signal))
         wheel = self.vehicle.shaker_wheel
         signal = source if isinstance(source, Signal) else read_signal(find_input(source), wheel=wheel)

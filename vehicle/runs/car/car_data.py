@@ -20,6 +20,7 @@ from vehicle.runs.car.axle_data import AxleData, axle_data
 from vehicle.runs.car.motion_figures import MotionFigure, damper_notes, motion_figures
 from vehicle.runs.car.usual_figures import UsualFigure, usual_figures
 from vehicle.threads import one_blas_thread
+from vehicle.wording import in_words
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -76,7 +77,7 @@ class CarData:
         """All values but the parameters, as text."""
         from vehicle.runs.car.car_text import car_text
 
-        return car_text(self)
+        return in_words(car_text(self))
 
     def summary(self) -> dict[str, Any]:
         """Return all values as plain numbers and texts, for JSON; None for a value that is not defined."""

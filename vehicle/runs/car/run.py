@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vehicle.arrays import Vector
-from vehicle.drawing.notebook.cards import run_card
+from vehicle.drawing.notebook.cards import car_label, run_card
 from vehicle.drawing.notebook.frames import recording_dataset, recording_frame
 from vehicle.drawing.notebook.run_orders import RunOrderCut, RunOrders, named_cut, named_orders
 from vehicle.drawing.notebook.run_response import RunResponse, of_wheel, require_moving, responses
@@ -103,7 +103,7 @@ class Run:
         names = self._named(channels) if channels is not None else self._main_channels()
         axes = open_axes(ax, (9.0, 1.0 + 1.7 * len(names)), len(names), sharex=True)
         units = self.recording.units
-        draw_histories(axes, self.time, {name: (self[name], units[name]) for name in names})
+        draw_histories(axes, self.time, {name: (self[name], units[name]) for name in names}, car_label(self.car))
         return plain(axes)
 
     def to_dataframe(self) -> Any:
@@ -145,10 +145,9 @@ class Run:
     ) -> RunResponse:
         """FRFs of acceleration channels to the plate displacement, 1 to 50 Hz, with coherence and random error.
 
-        The FRFs end at the end of the band of the signal.
-
-        If several plates move independently, the FRF refers to the plate of one wheel, and the coherence is the
-        multiple coherence with all plates. Plates with equal motion count as one, with the FRF to this motion.
+        The FRFs end at the end of the band of the signal. If several plates move independently, the FRF refers to the
+        plate of one wheel, and the coherence is the multiple coherence with all plates. Plates with equal motion count
+        as one, with the FRF to this motion.
 
         Args:
             channels: names or words, as "seat rail z"; all acceleration channels by default.
@@ -165,7 +164,7 @@ class Run:
         """
         require_moving(self.recording, wheel)
         names = self._accelerations(channels)
-        return of_wheel(self.frfs(names, window=window), wheel, names)
+        return of_wheel(self.frfs(names, window=window), wheel, names, car_label(self.car))
 
     def frfs(
         self, channels: str | Sequence[str] | None = None, *, window: float | None = None
@@ -184,15 +183,14 @@ class Run:
     def comfort(self, point: str = "seat_rail") -> RunComfort:
         """Return both comfort values over the evaluated span, by axis and overall [m/s2].
 
-        `unweighted` is the RMS in 2 to 50 Hz (Bommer 2006); the band ends at the end of the band of the signal.
+        `unweighted` is the RMS in 2 to 50 Hz (Bommer 2006), at most up to the end of the band of the signal.
         `weighted` is the RMS weighted as on a seat (ISO 2631-1: Wk, Wd), at `steering_wheel_rim` as on a steering wheel
         (Giacomin et al. 2004: Ws). At the seat rail of a car with a seat, `cushion` has both on the cushion and
-        `seat_value` the SEAT value. Report, `summary.json`, sweeps and searches have the same values, under the names
-        of `values`: bitwise with the MuJoCo engine, within 1e-5 with the reduced engine, which computes many cars in
-        single precision.
+        `seat_value` the SEAT value. Report, `summary.json`, sweeps and searches have the same values under the names of
+        `values`, those of the reduced engine within 1e-5 (many cars are computed in single precision).
 
         Args:
-            point: output point of the car, as "seat_rail".
+            point: output point of the car, for example "seat_rail".
         """
 
         def at(name: str) -> Vector:
@@ -272,14 +270,14 @@ class Run:
         return named_cut(cut, names, tuple(self.recording.units[name] for name in names))
 
     def psd(self, channels: str | Sequence[str] | None = None) -> RunSpectra:
-        """Return density, third octaves and cumulative RMS of accelerations, weighted too on seat and seat rail.
+        """Return density, third octaves and cumulative RMS of channels, weighted too on seat and seat rail.
 
         Args:
-            channels: names or words of acceleration channels, as "seat rail z"; by default seat rail, a seat with an
-                occupant, and the vertical motion of the knuckles.
+            channels: names or words of channels of any unit, for example "seat rail z"; default: seat rail, a seat with
+                an occupant, and the vertical acceleration of the knuckles.
 
         Raises:
-            ConfigurationError: a channel is not recorded or no acceleration.
+            ConfigurationError: a channel is not recorded.
             DataError: the record is too short.
         """
         vehicle = self.car.vehicle
@@ -290,11 +288,13 @@ class Run:
                 self.recording,
                 source,
                 f"{source}, {span}, tyres {vehicle.driving.words}",
-                None if channels is None else self._accelerations(channels),
+                None if channels is None else self._named(channels),
                 begin=self.skip,
                 seated=vehicle.seated,
                 road=self.road,
-            )
+                accelerations=False,
+            ),
+            car_label(self.car),
         )
 
     def save(self, folder: Path | str, *, force: bool = False) -> Path:

@@ -16,6 +16,7 @@ from vehicle.runs.comparison.record_comparison import RecordComparison
 from vehicle.signals.formats.csv_table import table_text
 from vehicle.signals.records.counterpart import PARTS
 from vehicle.signals.records.group_delays import GroupDelay
+from vehicle.wording import choose_from
 
 SHOWN = 12
 """Maximum number of rows of a table on the console."""
@@ -95,7 +96,7 @@ class Comparison:
         pictures = pictures_of(self)
         wanted = next(iter(pictures)) if name is None else name
         if wanted not in pictures:
-            raise ConfigurationError(f"no picture {wanted!r}; choose from {', '.join(pictures)}")
+            raise ConfigurationError(f"no picture {wanted!r}{choose_from(wanted, pictures)}")
         picture = pictures[wanted]
         title = f"{self.measured} and {self.run}"
         axes = open_axes(ax, picture.size, picture.rows, picture.columns, title=title, **picture.options)

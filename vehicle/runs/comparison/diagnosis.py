@@ -19,6 +19,7 @@ from vehicle.signals.records.finding import Finding, FindingError, added, findin
 from vehicle.signals.records.gravity import axis_of_role
 from vehicle.signals.records.measured import read_measured
 from vehicle.signals.records.run_findings import beside_run
+from vehicle.wording import in_words
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
@@ -47,7 +48,7 @@ class Diagnosis:
 
     def __repr__(self) -> str:
         """Return the findings, a line for each."""
-        return "\n".join(self.findings) or "no findings"
+        return in_words("\n".join(self.findings)) or "no findings"
 
 
 def diagnose(

@@ -24,6 +24,7 @@ from vehicle.runs.figures.figure import Details, Figure
 from vehicle.runs.figures.rows import SEAT, axis_weighting
 from vehicle.runs.figures.turning_figures import ORDER_FREQUENCY
 from vehicle.signals.analysis.weighting import WEIGHTINGS
+from vehicle.wording import did_you_mean
 
 FORMS = {
     "channels": "CHANNELS", "over": "CHANNELS", "band": "LOW-HIGH", "weighting": "WEIGHTING", "wheels": "WHEELS",
@@ -184,8 +185,9 @@ def chosen_figure(text: str, vehicle: Vehicle, option: str = "figure") -> Chosen
         whole, name = name, max(beginnings, key=len, default=name)
         parts = [whole[len(name) + 1 :], *parts] if beginnings else parts
     if name not in available(vehicle):
-        forms = ", ".join(map(form_of, available(vehicle)))
-        raise ConfigurationError(f"{option} {text!r}: {vehicle.name} has no figure {name!r}; choose from {forms}")
+        near = did_you_mean(name, available(vehicle), cutoff=0.6)
+        near = near or f"; choose from {', '.join(map(form_of, available(vehicle)))}"
+        raise ConfigurationError(f"{option} {text!r}: {vehicle.name} has no figure {name!r}{near}")
     try:
         chosen = ChosenFigure(quantity=name, **_details(FIGURES[name], parts))
     except (ConfigurationError, ValueError):

@@ -65,9 +65,7 @@ def tiles(run: FinishedRun) -> Markup:
         total = value.weighted
         label = f"weighted acceleration at the {point.replace('_', ' ')}, {' to '.join(reactions(total))}"
         values.append((f"{number(total)} m/s²", label))
-    slipping = (
-        "in slip" if run.friction else f"faster than {1e3 * summary.slip_share.get('slip_velocity', 0.0):g} mm/s"
-    )
+    slipping = "in slip" if run.friction else f"faster than {1e3 * summary.slip_share.get('slip_velocity', 0.0):g} mm/s"
     values += [
         (f"{number(100 * share, 2)} %", f"of the time {slipping}, {side_of(wheel, shares)} damper")
         for wheel, share in shares.items()

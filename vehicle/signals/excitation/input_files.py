@@ -1,9 +1,9 @@
 """Find input files by path or by the name of a shipped input."""
 
-from difflib import get_close_matches
 from pathlib import Path
 
 from vehicle.errors import ConfigurationError
+from vehicle.wording import did_you_mean
 
 INPUT_FOLDER = Path(__file__).resolve().parents[1] / "inputs"
 """Folder of the shipped inputs, part of the package; `python -m scenarios.inputs.make_inputs` writes them."""
@@ -23,10 +23,9 @@ def find_input(name: str | Path) -> Path:
     names = shipped_inputs()
     if path.name == str(name) and path.name in names:
         return INPUT_FOLDER / path.name
-    close = get_close_matches(path.name, names, n=1)
-    hint = f" Did you mean {close[0]}?" if close else ""
+    hint = did_you_mean(path.name, names, cutoff=0.6)
     raise ConfigurationError(
-        f"input {str(name)!r} is neither a file nor a shipped input.{hint} Set the path of a measurement file or "
+        f"input {str(name)!r} is neither a file nor a shipped input{hint or '.'} Set the path of a measurement file or "
         f"one of: {', '.join(names)}"
     )
 

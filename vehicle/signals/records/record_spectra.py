@@ -162,6 +162,7 @@ def recorded_spectra(
     seated: bool = True,
     road: Mapping[str, object] | None = None,
     frequency_range: tuple[float, float] = RANGE,
+    accelerations: bool = True,
 ) -> RecordSpectra:
     """Return the spectra of time histories; further arguments and errors like `record_spectra`.
 
@@ -172,10 +173,11 @@ def recorded_spectra(
         begin: beginning of the evaluated span [s].
         seated: True if the point "seat" is on a seat.
         road: road of the run, as in `summary.json`; None for a run on plates.
+        accelerations: refuse channels of another unit.
     """
     step = float(record.time[-1] - record.time[0]) / (record.time.size - 1)
     evaluated = slice(max(round((begin - float(record.time[0])) / step), 0) if begin else 0, None)
-    names = _chosen(channels, record.units, name, (*([SEAT] if seated else []), *BY_DEFAULT))
+    names = _chosen(channels, record.units, name, (*([SEAT] if seated else []), *BY_DEFAULT), accelerations)
     histories = {name: record.channels[name][evaluated] for name in names}
     return RecordSpectra(
         name=name,
@@ -186,9 +188,9 @@ def recorded_spectra(
 
 
 def _chosen(
-    channels: Sequence[str] | None, units: Mapping[str, str], name: str, by_default: Sequence[str]
+    channels: Sequence[str] | None, units: Mapping[str, str], name: str, by_default: Sequence[str], accelerations: bool
 ) -> list[str]:
-    """Return the channels whose spectra are computed; all must be accelerations."""
+    """Return the channels whose spectra are computed."""
     if channels is None:
         pattern = re.compile("|".join(by_default))
         if names := [channel for channel in units if pattern.fullmatch(channel)]:
@@ -198,7 +200,7 @@ def _chosen(
         )
     if missing := next((channel for channel in channels if channel not in units), None):
         raise ConfigurationError(f"{name} has no channel {missing!r}; choose from {', '.join(units)}")
-    if other := next((channel for channel in channels if units[channel] != "m/s2"), None):
+    if accelerations and (other := next((channel for channel in channels if units[channel] != "m/s2"), None)):
         raise ConfigurationError(
             f"{name}: {other} is in {units[other] or 'no unit'}; spectra are of accelerations [m/s2]"
         )

@@ -38,9 +38,13 @@ from vehicle.studies.optimisation.variables import problem_of, require_bounds, t
 from vehicle.studies.sweeps.case_evaluation import evaluate
 from vehicle.studies.sweeps.executors import StandingExecutor, process_pool
 from vehicle.studies.sweeps.figure_inputs import require_on_inputs
-from vehicle.studies.sweeps.measure import measure_of
+from vehicle.studies.sweeps.function_measure import RunFunction, require_picklable
+from vehicle.studies.sweeps.measure import Measure, chosen_measure, measure_of
 from vehicle.studies.sweeps.study_size import state_size
 from vehicle.studies.sweeps.sweep_inputs import Inputs, common_start, file_of, inputs_of, require_speed_of_roads
+
+Objectives = Sequence[str] | Mapping[str, RunFunction | str]
+"""Objectives of a search: names of figures, or numbers by name, each a function of a run or the name of a figure."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -75,6 +79,7 @@ class SearchPlan:
         )
         with ExitStack() as held:
             if settings.executor is not None or settings.jobs > 1:
+                require_picklable(trials.measure)
                 make = settings.executor or partial(process_pool, settings.jobs)
                 executor = make if isinstance(make, Executor) else held.enter_context(StandingExecutor(make))
                 trials = replace(trials, evaluate=on_executor(executor, trials.measure))
@@ -103,7 +108,7 @@ def plan_search(
     car: Car,
     vary: Mapping[str, Sequence[float]] | Sequence[Range],
     inputs: Inputs,
-    minimise: Sequence[str],
+    minimise: Objectives,
     settings: SearchSettings,
 ) -> SearchPlan:
     """Check the arguments of a search and return the search; arguments and errors as in `optimise`."""
@@ -114,9 +119,16 @@ def plan_search(
     if len(set(names)) < len(names):
         raise ConfigurationError(f"inputs {', '.join(names)}: equal names; rename a file, or use each input once")
     start = common_start(sources, settings.skip)
-    criteria = parsed_criteria(minimise, settings.maximise, settings.limits, names)
-    figures = {criterion.number: chosen_figure(criterion.number, vehicle, criterion.option) for criterion in criteria}
-    measure = measure_of(vehicle, figures, start, errors=False)
+    functions = dict(minimise) if isinstance(minimise, Mapping) else {}
+    criteria = parsed_criteria(list(minimise), settings.maximise, settings.limits, names)
+    figures = {
+        criterion.number: chosen_figure(criterion.number, vehicle, criterion.option)
+        for criterion in criteria
+        if criterion.number not in functions
+    }
+    measure: Measure = measure_of(vehicle, figures, start, errors=False)
+    if functions:
+        measure = chosen_measure(functions | {name: name for name in figures}, vehicle, start)
     criteria = tuple(replace(criterion, unit=measure.units[criterion.number]) for criterion in criteria)
     problem = problem_of(vehicle, _ranges(vary), criteria, names)
     # Both ends of a range: a search over the speed of a road gives it twice.
@@ -154,7 +166,7 @@ def optimise(
     car: Car,
     vary: Mapping[str, Sequence[float]] | Sequence[Range],
     inputs: Inputs,
-    minimise: Sequence[str],
+    minimise: Objectives,
     settings: SearchSettings,
 ) -> FoundCars:
     """Search for the parameters of a car with the best compromise of comfort, tyre load and travel (NSGA-II).
@@ -164,8 +176,9 @@ def optimise(
         vary: path to (lower, upper) bound in the unit of the parameter, e.g. {"front.damper.viscous": (800, 4000)};
             "*.damper.viscous" sets all dampers alike.
         inputs: files, names of shipped files, roads, signals; one or several.
-        minimise: objectives: figures of the catalogue, e.g. "unweighted", "tyre_load" or "travel"; with several inputs
-            "weighted@NAME", "weighted@mean" or "weighted@worst".
+        minimise: objectives: figures, for example "weighted", "tyre_load" or "travel", with several inputs
+            "weighted@NAME", "weighted@mean" or "weighted@worst"; or {"my number": function of a run, "travel":
+            "travel"}.
 
     Returns:
         The Pareto front and its named cars; `print` shows them, `write` writes all files.

@@ -20,6 +20,7 @@ from vehicle.studies.optimisation.search_files import OtherFront, agreement, num
 from vehicle.studies.optimisation.trials import Trials
 from vehicle.studies.sweeps.case import all_tyre_words
 from vehicle.studies.sweeps.case_table import Cases
+from vehicle.wording import in_words
 
 STILL = 0.005
 """Maximum relative growth of the hypervolume in the last quarter of a converged search."""
@@ -60,7 +61,7 @@ class FoundCars:
 
     def __str__(self) -> str:
         """Return the table of the named cars."""
-        return self.text()
+        return in_words(self.text())
 
     def plot(self, ax: Any = None) -> Any:
         """Plot the cars tried and the front over the first two objectives, or the convergence of a single one.

@@ -12,6 +12,7 @@ from typing import Any, Self
 
 from vehicle.errors import ConfigurationError, MissingPartError, SimulationError
 from vehicle.threads import one_blas_thread, one_thread_each
+from vehicle.wording import is_command, speak_options
 
 DASK = "dask://"
 
@@ -55,10 +56,10 @@ class ThisProcess(Executor):
 def process_pool(jobs: int) -> ProcessPoolExecutor:
     """Return a pool of processes with one thread each, so that rounding does not depend on the number of workers."""
     with one_thread_each():
-        pool = ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), initializer=_ready)
+        pool = ProcessPoolExecutor(jobs, get_context("spawn"), _ready, (is_command(),))
         # The processes inherit the environment when they start, so start them now and not at the first run.
         try:
-            for future in [pool.submit(_ready) for _ in range(jobs)]:
+            for future in [pool.submit(_ready, is_command()) for _ in range(jobs)]:
                 future.result()
         except BrokenExecutor:
             pool.shutdown(wait=False)
@@ -131,8 +132,10 @@ def worker_remedy(executor: Executor) -> str:
     return f"start workers, for example: dask worker {address} --nthreads 1" if address else "start its workers"
 
 
-def _ready() -> None:
+def _ready(of_command: bool) -> None:
     """Initialise a worker: import the modules of a run, ignore interrupts, and end with the parent process."""
+    if of_command and not is_command():
+        speak_options()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     importlib.import_module("vehicle.runs.car")
     parent = parent_process()

@@ -1,15 +1,35 @@
-"""Measure of a sweep by a function of a run."""
+"""Measure of a sweep or a search by functions of a run."""
 
 import functools
+import math
+import pickle
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 from uuid import uuid4
 
+from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Run
 
 RunFunction = Callable[[Run], float | Mapping[str, float]]
 """Function of a run that returns a number or a dictionary of numbers."""
+
+
+@dataclass(frozen=True, slots=True)
+class NamedFunctions:
+    """Numbers of a run by name: each a function of the run, or the name of a figure."""
+
+    functions: Mapping[str, RunFunction | str]
+
+    def __call__(self, run: Run) -> dict[str, float]:
+        """Return the numbers; NaN for an infinite figure, as in a table of figures."""
+        numbers = {}
+        for name, function in self.functions.items():
+            value = run.figure(function) if isinstance(function, str) else function(run)
+            if isinstance(value, Mapping):
+                raise ConfigurationError(f"measure {name!r}: its function returned a dictionary, must be a number")
+            numbers[name] = math.nan if isinstance(function, str) and math.isinf(value) else float(value)
+        return numbers
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -41,3 +61,18 @@ class FunctionMeasure:
         while isinstance(function, functools.partial):
             function = function.func
         return str(getattr(function, "__name__", type(function).__name__))
+
+
+def require_picklable(measure: object) -> None:
+    """Check that a measure can be sent to other processes.
+
+    Raises:
+        ConfigurationError: a lambda or a function inside another function.
+    """
+    try:
+        pickle.dumps(measure)
+    except (pickle.PicklingError, AttributeError, TypeError) as error:
+        raise ConfigurationError(
+            f"measure: other processes cannot load it ({error}); define the function at the top of a module, or set "
+            "jobs=1 without executor and time_limit"
+        ) from None

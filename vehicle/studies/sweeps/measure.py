@@ -20,7 +20,7 @@ from vehicle.runs.figures.run_batch import Runs, single
 from vehicle.runs.figures.turning_figures import ORDER_FREQUENCY
 from vehicle.runs.figures.value import values_of
 from vehicle.signals.analysis.ride_comfort import ERROR, comfort_columns, comfort_units, wave_names
-from vehicle.studies.sweeps.function_measure import FunctionMeasure, RunFunction
+from vehicle.studies.sweeps.function_measure import FunctionMeasure, NamedFunctions, RunFunction
 
 
 @runtime_checkable
@@ -242,15 +242,15 @@ def comfort_measure(vehicle: Vehicle, skip: float) -> ComfortMeasure:
     return ComfortMeasure(skip=skip, wheels=wheels, seat=vehicle.seated)
 
 
-MeasureChoice = Measure | RunFunction | str | Sequence[str] | None
-"""Measure of a sweep: names of figures, a function of a run, an object, or nothing for comfort."""
+MeasureChoice = Measure | RunFunction | Mapping[str, RunFunction | str] | str | Sequence[str] | None
+"""Measure of a sweep: names of figures, functions of a run by name, a function, an object, or nothing for comfort."""
 
 
 def chosen_measure(measure: MeasureChoice, vehicle: Vehicle, skip: float) -> Measure:
     """Return the measure of a setting: comfort by default, figures by their names, a function, or a measure itself.
 
     Args:
-        measure: names of figures, a function of a run, or a measure; comfort by default.
+        measure: names of figures; a function of a run, or several by name; or a measure; comfort by default.
         skip: excluded time at the beginning [s].
 
     Raises:
@@ -260,6 +260,12 @@ def chosen_measure(measure: MeasureChoice, vehicle: Vehicle, skip: float) -> Mea
         return comfort_measure(vehicle, skip)
     if isinstance(measure, Measure):
         return measure
+    if isinstance(measure, Mapping):
+        units = {
+            name: chosen_figure(each, vehicle, f"measure {name!r}").unit_in() if isinstance(each, str) else "?"
+            for name, each in measure.items()
+        }
+        return FunctionMeasure(function=NamedFunctions(dict(measure)), skip=skip, units=units)
     if callable(measure):
         return FunctionMeasure(function=measure, skip=skip)
     names = [measure] if isinstance(measure, str) else measure

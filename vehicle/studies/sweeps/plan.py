@@ -244,7 +244,7 @@ def require_paths(vehicle: Path | None, overrides: Sequence[str], changes: Seque
     try:
         overridden(file, [*overrides, *changes])
     except ConfigurationError as error:
-        raise ConfigurationError(str(error).replace("--set ", "varied parameter ", 1)) from None
+        raise ConfigurationError(error.args[0].replace("--set ", "varied parameter ", 1)) from None
 
 
 def _idle_notes(

@@ -17,6 +17,7 @@ from vehicle.studies.sweeps.case_keys import CaseKeys
 from vehicle.studies.sweeps.case_result import Block
 from vehicle.studies.sweeps.dispatcher import Dispatcher
 from vehicle.studies.sweeps.executors import ThisProcess, process_pool
+from vehicle.studies.sweeps.function_measure import require_picklable
 from vehicle.studies.sweeps.measure import Measure
 from vehicle.studies.sweeps.program import libraries, program_digest
 from vehicle.studies.sweeps.store import ROWS, StoredRows
@@ -50,6 +51,10 @@ def sweep_cases(cases: Sequence[Case], measure: Measure, settings: RunSettings) 
         SimulationError: the executor broke and cannot be created again; finished rows are stored.
     """
     folder, progress = settings.folder, settings.progress
+    # A run in this process cannot be stopped.
+    apart = settings.jobs > 1 or settings.time_limit is not None
+    if apart or settings.executor:
+        require_picklable(measure)
     key_of, each = CaseKeys(measure), _one_of_each(cases)
     for case in each:
         key_of(case)  # raises the error of an input or a vehicle file before the first run
@@ -72,8 +77,6 @@ def sweep_cases(cases: Sequence[Case], measure: Measure, settings: RunSettings) 
             state_size(each, len(todo), measure, settings)
             if progress is not None:
                 progress(done / len(cases))
-            # A run in this process cannot be stopped.
-            apart = settings.jobs > 1 or settings.time_limit is not None
             dispatcher = Dispatcher(
                 settings.executor or (partial(process_pool, settings.jobs) if apart else ThisProcess),
                 measure,

@@ -24,6 +24,7 @@ from vehicle.studies.sweeps.case import Case, parameter_cells
 from vehicle.studies.sweeps.case_result import Result, Row
 from vehicle.studies.sweeps.store import StoredRows
 from vehicle.studies.sweeps.sweep_ranking import ranked_cars, ranking_lines
+from vehicle.wording import choose_from
 
 INPUT, ENGINE, REASON = "input", "engine", "failed because"
 """Heads of the columns without unit."""
@@ -48,7 +49,7 @@ class SweepTable:
     def column(self, name: str) -> Vector:
         """Return the values of a column, NaN for a failed run; (cases,)."""
         if name not in self.units:
-            raise ConfigurationError(f"no column {name!r}; choose from {', '.join(self.units)}")
+            raise ConfigurationError(f"no column {name!r}{choose_from(name, self.units)}")
         return np.array([result.values.get(name, math.nan) for result in self.results])
 
     @property
