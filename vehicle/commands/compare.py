@@ -235,8 +235,8 @@ def _run(
     loads = {*(asked.record.channels if asked.record else ())} - set(car.vehicle.channels)
     run = car.run(
         signal,
-        console.progress("simulation"),
         engine=settings.engine,
+        progress=console.progress("simulation"),
         channels=(*car.vehicle.channels, *sorted(loads)) if loads else None,
     )
     return run, channels

@@ -77,7 +77,7 @@ def test_the_reduced_engine_does_not_depend_on_the_step(high_piece):
 def test_a_run_is_rejected_before_it_begins(high_piece):
     begun: list[float] = []
     with pytest.raises(ConfigurationError, match=r"^solver\.timestep: found 0\.001 s, .*stiffness\.z"):
-        Car.load(None, [MOUNT.format(3e7), "solver.timestep=0.001"]).run(high_piece, begun.append)
+        Car.load(None, [MOUNT.format(3e7), "solver.timestep=0.001"]).run(high_piece, progress=begun.append)
     assert not begun
 
 

@@ -12,10 +12,11 @@ from typing import TypeVar
 
 import numpy as np
 
-from vehicle.engines.reduced.batch_simulation import BatchRuns, simulate_batch
+from vehicle.engines.reduced.batch_simulation import COARSE_STEP, BatchRuns, simulate_batch
 from vehicle.engines.reduced.table_layout import LANES
 from vehicle.engines.reduced.validity import REMEDY
 from vehicle.engines.simulation.judgement import require_finite, require_samples
+from vehicle.engines.simulation.recording import Recording
 from vehicle.errors import SimulationError, VehicleError
 from vehicle.model.parameters.force_elements import LIFTS
 from vehicle.model.parameters.vehicle import Vehicle
@@ -292,3 +293,17 @@ def _failed(error: Exception, started: float | None = None) -> Result:
     """Return the result of a failed run with its error message."""
     seconds = 0.0 if started is None else clock.perf_counter() - started
     return Result(reason=f"{type(error).__name__}: {error}", seconds=seconds)
+
+
+def recordings_of(cases: Sequence[Case], channels: Sequence[str]) -> list[Recording]:
+    """Return time histories of cars on one input, simulated as a batch with the reduced engine as in a sweep.
+
+    Args:
+        cases: runs on one input of cars with equal `batch_key`; the engine of a case is ignored.
+        channels: names of the recorded channels.
+    """
+    cars, signal = [_car_of(case) for case in cases], signal_of(cases[0].source)
+    simulated = _simulated(cars, signal, channels, COARSE_STEP)
+    for row in range(len(simulated)):
+        require_finite(simulated.recording(row))
+    return [simulated.recording(row) for row in range(len(simulated))]
