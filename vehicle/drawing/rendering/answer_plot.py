@@ -58,7 +58,7 @@ def plot_changes(path: Path, changes: Mapping[str, Sequence[Change]], title: str
             axis.barh(rows, percent, color=colours, height=0.7)
             axis.axvline(0.0, color=INK, linewidth=0.8)
             texts = [f"{value:+.1f} %" if abs(value) < 10.0 else f"{value:+.0f} %" for value in percent]
-            # Beside the words, so that a phone shows both without scrolling.
+            # A phone shows the labels without scrolling, the bars not.
             labels = [f"{change.label}: {text}" for change, text in zip(of_run, texts, strict=True)]
             axis.set_yticks(rows, labels)
             axis.invert_yaxis()
