@@ -113,7 +113,7 @@ def parameter_rows(changed: Sequence[tuple[str, str, Sequence[str]]]) -> list[tu
     return [(named(path, parameter_words(path)), unit, *values) for path, unit, values in changed]
 
 
-DIFFERENCES = {"s": "s", "%": "percentage points"}
+DIFFERENCES = {"s": "s", "%": "points"}
 """Units compared by a difference instead of a ratio, with the unit of the difference: a time counts from the start of
 the record, and a share may be near zero."""
 
