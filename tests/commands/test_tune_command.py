@@ -172,7 +172,7 @@ def test_posterior_of_the_record_and_a_rival_law(record, tmp_path, capsys):
         (["--samples", "64"], "belongs to --posterior", 2),
         (["--record", "FILE", *MAP, *("--parameters", BOUNDS[0]), "--posterior"], "--posterior needs measured FRFs", 3),
         (["--record", "FILE", *MAP], "the parameters to fit are missing", 2),
-        (["--record", "FILE", *MAP, "--parameters", "damper.viscous=1,2"], "contains values, must be two bounds", 2),
+        (["--record", "FILE", *MAP, "--parameters", "damper.viscous=1,2"], "damper.viscous=1,2: contains values", 2),
         (["--record", "FILE", *MAP, "--parameters", "damper.viscous=3e3:4e3"], "0 < lower < start < upper", 2),
         (["--record", "FILE", *MAP[2:], *("--parameters", BOUNDS[0])], "contains no moving plate", 3),
         (["--record", "FILE", *("--parameters", BOUNDS[0])], "set --map CHANNEL=NAME", 3),

@@ -216,7 +216,7 @@ def test_a_run_up_tells_what_its_speed_does_to_a_peak():
 
 
 REFUSED: dict[str, tuple[dict[str, object], str]] = {
-    "no such channel": ({"channel": "X"}, "force.a.channel 'X' matches no channel; set a number"),
+    "no such channel": ({"channel": "X"}, "force.a.channel 'X' matches no channel"),
     "unit of a moment": ({"channel": "torque"}, "channel 1 'torque' is a moment in [Nm]; force.a needs N, kN or lbf"),
     "no unit": ({"channel": "plain"}, "has no unit; set force.a.unit to N, kN or lbf"),
     "unknown unit": ({"channel": "plain", "unit": "kp"}, "has the unknown unit 'kp'; set force.a.unit to N, kN or lbf"),

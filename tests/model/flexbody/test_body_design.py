@@ -50,13 +50,13 @@ BAD = {
         "nodes.arm_front.mass: missing",
     ),
     "negative mass": ("mass = 4.0", "mass = -4.0", "nodes.arm_front.mass: found -4.0 kg, must be greater than 0.0"),
-    "text for a number": ("mass = 4.0", 'mass = "four"', "nodes.arm_front.mass: found 'four', must be a number"),
+    "text for a number": ("mass = 4.0", 'mass = "four"', "nodes.arm_front.mass: must be a number [kg], not 'four'"),
     "two coordinates": ("[0.15, 0.52, 0.82]", "[0.15, 0.52]", "nodes.rail_front.place: found (0.15, 0.52), must be"),
     "left side": ("[0.15, 0.52, 0.82]", "[0.15, -0.52, 0.82]", "nodes.rail_front.place: found y = -0.52 m, must be"),
     "place and mirror": (
         'mirror = "seat_rail"',
         'place = [2.0, 0.3, 0.7]\nmirror = "seat_rail"',
-        "nodes.seat_rail_right.mirror: found together with place",
+        "nodes.seat_rail_right.mirror: cannot be used together with place",
     ),
     "no such hardpoint": (
         "[nodes.strut_top]",
@@ -85,7 +85,7 @@ BAD = {
         "members.front_rails.between: found 'seat-seat', must be 'a-b', 'a=b' crosswise, or 'a' across the",
     ),
     "chain of three": ('"rail_front-arm_front"', '"cowl-seat-arm_rear"', "found 'cowl-seat-arm_rear', must be"),
-    "no members": ('between = ["rail_front"]', "between = []", "members.rail_bumper.between: found an empty list"),
+    "no members": ('between = ["rail_front"]', "between = []", "members.rail_bumper.between: the list is empty"),
     "half a section": (
         "wall = 0.0018  # [m] assumed: nominal section\n",
         "",
@@ -101,7 +101,7 @@ BAD = {
     ),
     "half a mode": ("mode_count = 9 ", "mode_count = 8.5 ", "mode_count: found 8.5, must be a whole number"),
     "damping in percent": ("damping_ratio = 0.03", "damping_ratio = 3.0", "damping_ratio: found 3.0, must be at"),
-    "format": ('"body design 1"', '"body design 7"', "format: found 'body design 7', must be one of body design 1"),
+    "format": ('"body design 1"', '"body design 7"', "format: must be one of body design 1, not 'body design 7'"),
     "cut off": ("[members.front_rails]", "[members.front", "not a TOML file"),
 }
 

@@ -225,7 +225,7 @@ CASES = {
     "output exists": option("--output", "box.toml", says="exists; give --force to replace it, or another name"),
     "output in a file": option("--output", "map.csv/body.toml", says="map.csv is a file, not a folder"),
 }
-REFUSED = {"run.op2": "Nastran OP2", "run.RST": "ANSYS results", "file.full": "HBMAT,k", "a.odb": "*MATRIX OUTPUT",
+REFUSED = {"run.op2": "Nastran OP2", "run.RST": "ANSYS", "file.full": "HBMAT,k", "a.odb": "*MATRIX OUTPUT",
            "b.mnf": "Adams modal neutral file"}  # fmt: skip
 CASES |= {name: Case("modes.uff", nothing, ("import", name), says) for name, says in REFUSED.items()}
 

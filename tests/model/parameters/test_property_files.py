@@ -180,14 +180,14 @@ BAD = {
     "a point": ("front.dpr", dpr([(0, 0)]), "has 1 points, must be at least 2"),
     "falling": ("front.dpr", dpr([(-1, 1), (1, -1)]), ("front.damper.force: found -1.0 N after 1.0 N, must not "
         "decrease")),
-    "another": ("front.dpr", FILES["front.spr"], r"a spring \('spr'\), must be of a damper \('dpr'\)"),
-    "damper as spring": ("front.spr", dpr(), r"a damper \('dpr'\), must be of a spring \('spr'\)"),
-    "tyre": ("front.spr", dpr().replace("'dpr'", "'tir'"), r"of type 'tir', must be of a spring"),
+    "another": ("front.dpr", FILES["front.spr"], r"a spring \('spr'\), not for a damper \('dpr'\)"),
+    "damper as spring": ("front.spr", dpr(), r"a damper \('dpr'\), not for a spring \('spr'\)"),
+    "tyre": ("front.spr", dpr().replace("'dpr'", "'tir'"), r"of type 'tir', not for a spring"),
     "bracket": ("front.dpr", dpr().replace("[CURVE]", "[CURVE"), r"'\[CURVE' has no ']' at its end"),
     "no damping": ("arm.bus", FILES["arm.bus"].replace("FZ_DAMPING", "FZ_D"), r"\[DAMPING\] lacks FX_DAMPING.*set da"),
     "no axis": ("arm.bus", FILES["arm.bus"].replace("[FZ_CURVE]", "[FW_CURVE]"), r"the block \[FZ_CURVE\] is missing"),
     "stop with force": ("front.bum", property_file("bum", {"CURVE": BUMP[1:]}), "a stop must have 0 N at its contact"),
-    "rebound as bump": ("front.bum", FILES["front.reb"], r"a rebound stop \('reb'\), must be of a bump stop"),
+    "rebound as bump": ("front.bum", FILES["front.reb"], r"a rebound stop \('reb'\), not for a bump stop"),
     "one side": ("front.spr", property_file("spr", {"CURVE": [(10, 300), (100, 3000)]}), "must contain 0"),
 }  # fmt: skip
 

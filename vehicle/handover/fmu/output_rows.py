@@ -261,8 +261,8 @@ def watched_outputs(car: Car, model: PoleModel | None = None) -> Watched:
     ]
     notices += [
         (
-            f"{body} rotates by more than {LARGEST_ANGLE:g} rad about {axis}, where the linear geometry of this "
-            "car is not valid"
+            f"{body} rotates by more than {LARGEST_ANGLE:g} rad about {axis}, beyond which the linear geometry of "
+            "this car is not valid"
         )
         for body in bodies
         for axis in "xyz"

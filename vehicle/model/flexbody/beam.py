@@ -29,7 +29,7 @@ class BeamSection:
             value = getattr(self, name)
             if not (np.isfinite(value) and value >= 0.0):
                 raise ConfigurationError(
-                    f"beam section: {name} is {value}, must be a finite number of at least 0. Correct the section."
+                    f"beam section: {name} is {value} but must be finite and at least 0. Correct the section."
                 )
 
 

@@ -64,7 +64,10 @@ END: Schema = {
     "type": "object",
     "description": "end stop of a damper: file of the stop, and travel from the design position to the stop [m]",
     "properties": {
-        "curve": {"type": "string", "description": "property file, or file with penetration [m] and force [N]"},
+        "curve": {
+            "type": "string",
+            "description": "Adams property file (TeimOrbit), or file with the columns penetration [m] and force [N]",
+        },
         "clearance": {
             "type": "number",
             "minimum": 0.0,
@@ -276,7 +279,12 @@ def _table(parameters: type[Any], complete: bool = True) -> Schema:
             }
         return schema
     # Numbers may be in a file.
-    schema = _object({**properties, "curve": {**TEXT, "description": "file with the curve, or property file"}})
+    schema = _object(
+        {
+            **properties,
+            "curve": {**TEXT, "description": "file containing the curve, or an Adams property file (TeimOrbit)"},
+        }
+    )
     if parameters is Damper:
         schema["properties"]["stop"] = {"anyOf": [properties["stop"], _object({"bump": END, "rebound": END})]}
     if not complete:

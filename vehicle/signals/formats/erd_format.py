@@ -48,7 +48,7 @@ def read(path: Path) -> Measurement:
     if distance_unit is None or distance_unit.quantity != "displacement":
         raise DataError(
             f"{path}: XUNITS {keywords.get('XUNITS', '').strip()!r}: must be a unit of length; the profile must be "
-            "over distance, not time; write the unit of the distance"
+            "given against distance, not time; write the unit of the distance"
         )
     rows = [line.replace(",", " ") for line in lines[end + 1 :] if line.strip()]
     try:

@@ -221,7 +221,7 @@ def _signal(path: Path, label: str, record: Mapping[str, Any]) -> list[Channel]:
             note = f"unit {unit!r} and its stated factor to SI, {factor:g}, contradict each other"
             unit = ""
         elif unit_entry.factor != 1.0:
-            note = f"read in SI units; the file displays {unit!r} ({factor:g} {unit} are 1 {unit_entry.si})"
+            note = f"read in SI units; the file displays {unit!r} ({factor:g} {unit} = 1 {unit_entry.si})"
             unit = unit_entry.si
         else:
             note = ""

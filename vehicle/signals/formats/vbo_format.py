@@ -96,8 +96,7 @@ def _clock(path: Path, column: Vector, numbers: list[int], notices: list[str]) -
             seconds[row] = clock_of_day(value)
         except ValueError:
             raise DataError(
-                f"{path}:{numbers[row]}: time {value!r}, must be a time of day such as 162235.40; repair or remove the "
-                "row"
+                f"{path}:{numbers[row]}: {value!r} is not a time of day such as 162235.40; correct or remove the row"
             ) from None
     for at in np.flatnonzero(np.diff(seconds) < -0.5 * DAY):
         seconds[at + 1 :] += DAY

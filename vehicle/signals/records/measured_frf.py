@@ -160,7 +160,8 @@ def _acceleration_per_displacement(channel: Channel, where: str, name: str) -> t
         )
     if upper not in ORDERS or lower not in ORDERS:
         raise DataError(
-            f"{where} is in {channel.unit}, must be a motion per motion of the plate, for example m/s2/m, g/m or m/m; "
+            f"{where} is in {channel.unit} but must be a motion per motion of the plate, for example m/s2/m, g/m or "
+            "m/m; "
             f"if the unit in the file is wrong, set --unit {name}=UNIT"
         )
     values = np.asarray(channel.si_values, dtype=np.complex128)

@@ -240,7 +240,7 @@ def outlook(ranges: int, figures: Mapping[str, Target], duration: float) -> str:
     text += "" if len(inputs) == 1 else "s"
     if not any(len(each.road) == 1 for each in figures.values()):
         return text
-    shorter = "a quarter of --duration takes a quarter of the time and doubles the errors"
+    shorter = "a quarter of the --duration takes a quarter of the time and doubles the errors"
     return f"{text}; roads of {number(duration)} s: {shorter}"
 
 
