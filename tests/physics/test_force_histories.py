@@ -316,7 +316,7 @@ def test_a_wrong_speed_of_the_crankshaft_is_refused(tmp_path):
         ({"crank.file": str(file), "crank.channel": "x"}, "0 channels match 'x'; set crank.channel"),
         (
             {"crank.file": str(file), "crank.channel": "m"},
-            "the speed 'm' is 0 to 100000 1/min, must be 0 to 10000 1/min",
+            "the speed 'm' is 0 to 100000 1/min but must be 0 to 10000 1/min",
         ),
         ({"crank.file": str(file), "crank.rpm": 700}, "crank.rpm: set either rpm or file"),
         ({"crank.rpm": 700, "crank.channel": "n"}, ("crank.file: missing, but channel is set")),

@@ -165,7 +165,7 @@ BROKEN = {
     "all mass on a line": (line, "principal moments of inertia"),
     "NaN": (not_finite, "mass: contains 1 entries that are not finite"),
     "a mass in two directions": (one_direction, "kg along x, y and z"),
-    "fewer rows": (lambda b: replace(b, node=b.node[:-1], direction=b.direction[:-1]), "48 columns, must be 47"),
+    "fewer rows": (lambda b: replace(b, node=b.node[:-1], direction=b.direction[:-1]), "48 columns but must have 47"),
     "twice": (lambda b: replace(b, direction=np.where(np.arange(48) == 1, 0, b.direction)), "occurs twice"),
     "stiff as steel": (without("stiffness", 1e9), "no elastic mode up to 60 Hz; the first is at"),
 }

@@ -169,7 +169,9 @@ FILES = ("body_design.toml", "trimmed_body.toml")
 
 def test_an_imported_body_says_how_far_its_nodes_may_be(tmp_path):
     strict = ["body.superelement=trimmed_body.toml", "hardpoints.strut_top.z=1.234"]
-    with pytest.raises(DataError, match=r"'strut_top_fr' at \[0.877, 0.548, 1.23\] m, 4 mm away, must be at most 1 mm"):
+    with pytest.raises(
+        DataError, match=r"'strut_top_fr' at \[0.877, 0.548, 1.23\] m, 4 mm away but must be at most 1 mm"
+    ):
         _ = Car.load(None, strict).model
     assert Car.load(None, [*strict, "body.flexible=false"]).model.model.nv > 0  # what is rigid reaches everywhere
     (tmp_path / "car.toml").write_text(FOCUS_FILE.read_text(encoding="utf-8"), encoding="utf-8")

@@ -98,7 +98,7 @@ def test_nodes_and_names_may_be_given(tmp_path):
     assert len(matrices.node) == 48
     with pytest.raises(DataError, match="DMIG matrices KGG, MAAX, must be two"):
         read_matrices(tmp_path / "job.pch:KAAX", None, None, tmp_path / "job.bdf")
-    with pytest.raises(DataError, match="nodes of the matrices have no position in the list of nodes, the first"):
+    with pytest.raises(DataError, match="nodes of the matrices have no position in the list of nodes; the first"):
         read_matrices(path, None, None, None)
 
 

@@ -58,7 +58,7 @@ REFUSED: dict[str, tuple[bytes | list[str], str]] = {
     "64 metres under millimetres": (["time [s],displacement [mm]", *rows(amplitude=1e-4)],
         r"must be at least 0\.0001 mm; .* metres, not \[mm\]"),
     "7 too small to be true": ([HEADER, *rows(amplitude=1e-7)],
-        r"^: RMS of plate fr is 3\.5\de-08 m, must be at least 1e-07 m; .* metres\?"),
+        r"^: RMS of plate fr is 3\.5\de-08 m but must be at least 1e-07 m; .* metres\?"),
     "7 no motion": ([HEADER, *(f"{i / 1000},0" for i in range(400))], "^: no plate moves"),
     "9 a level is no velocity": (["time [s],level [m]", *rows()], "^:1: unknown column 'level .m.'"),
     **{f"9 {name}": ([f"time [s],{name}", *rows()],

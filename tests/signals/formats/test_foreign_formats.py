@@ -152,7 +152,7 @@ def test_rpc_in_integers_and_groups(tmp_path, order):
     ("changes", "message"),
     [
         ({"FRAMES": "5000"}, "FRAMES 5000 states 80000 bytes of data, but the file has only 96"),
-        ({"SAMPLES": "21"}, "SAMPLES is 21, must be 1 to 20"),
+        ({"SAMPLES": "21"}, "SAMPLES is 21 but must be 1 to 20"),
         ({"CHANNELS": "nan"}, "CHANNELS is 'nan' but must be a number"),
         ({"CHANNELS": None}, r"rig\.any: CHANNELS is missing"),
         ({"PTS_PER_GROUP": "7"}, "7 samples per group and 4 per frame"),

@@ -106,7 +106,7 @@ def test_accelerations_and_velocities_are_integrated(tmp_path, order):
         ("time [s],z\n" + "0.01,1.5\n" * 3, "no unit; set --unit fr=UNIT"),
         ("time [s],z [furlong]\n" + "0.01,1.5\n" * 3, "'furlong'; set --unit fr=UNIT"),
         ("time,z [mm]\n" + "0.01,1.5\n" * 3, "no times; set --rate HZ"),
-        ("time [s],z [mm]\n" + "0.5,1.5\n" * 3, "time 0.5 s after 0.5 s, must increase"),
+        ("time [s],z [mm]\n" + "0.5,1.5\n" * 3, "time 0.5 s after 0.5 s; times must increase"),
         ("time [s],z [mm]\n0,0,1,5\n0,1,1,5\n0,2,1,5\n0,3,1,6\n", "decimal commas"),
         (f"{FIVE}0.6,x\n", r"1 missing values \('x' in line 7 is not a number\)"),
         (f"{FIVE}0.6\n", "truncated"),

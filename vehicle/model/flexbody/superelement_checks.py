@@ -181,7 +181,7 @@ def _rigid(body: Superelement) -> Iterator[str]:
     if numbers.size != 13 or not np.all(np.isfinite(numbers)) or rigid.mass <= 0.0:
         yield (
             f"mass {rigid.mass:g} kg, cog {np.ravel(rigid.cog).tolist()} m, inertia "
-            f"{np.ravel(rigid.inertia).tolist()} kg m2; must be a positive mass, three and nine finite numbers."
+            f"{np.ravel(rigid.inertia).tolist()} kg m2: give a positive mass, and three and nine finite numbers."
         )
     low, high = body.positions.min(axis=0), body.positions.max(axis=0)
     room = 0.5 * float(np.max(high - low))
@@ -195,7 +195,7 @@ def _rigid(body: Superelement) -> Iterator[str]:
     low_moment, middle, top = np.linalg.eigvalsh(rigid.inertia)
     if low_moment <= 1e-9 * top:
         yield (
-            "node_mass: all mass lies on one axis, so the body has no inertia about this axis. Add mass at points "
+            "node_mass: all mass is on one axis, so the body has no inertia about this axis. Add mass at points "
             "that do not lie on this axis."
         )
     if not np.allclose(rigid.inertia, np.transpose(rigid.inertia), rtol=0.0, atol=_SYMMETRY * top):

@@ -169,10 +169,7 @@ class Hydromount:
         **STIFFEST,
     )  # fmt: skip
     track_mass: float | None = quantity(
-        "kg",
-        "mt, mass of the fluid in the inertia track, referred to the rubber: rho L Ap^2/At",
-        default=None,
-        **TRACKED,
+        "kg", "mt, fluid mass in the inertia track, referred to the rubber: rho L Ap^2/At", default=None, **TRACKED
     )
     track_damping: float | None = quantity(
         "N s/m",

@@ -194,7 +194,7 @@ def _direction(path: str, value: Any) -> Point:
     direction: Point = convert(Point, value, path)
     length = math.hypot(*direction) if len(direction) == 3 else math.nan
     if not (math.isfinite(length) and length > 0.0):
-        raise ConfigurationError(f"{path}: found {list(direction)}; must be three numbers, not all zero")
+        raise ConfigurationError(f"{path}: must be three numbers, not all zero; found {list(direction)}")
     x, y, z = (component / length for component in direction)
     return (x, y, z)
 

@@ -174,7 +174,7 @@ def plate_columns(header: Header, wheel: str | None) -> dict[str, tuple[int, str
             plain `displacement` column without `wheel`.
     """
     if any(_is_number(cell) for cell in header.cells):
-        raise DataError(f"{header.where}:1: no header line, found {header.found}; must name {NEEDED}")
+        raise DataError(f"{header.where}:1: no header line, found {header.found}; add a header with {NEEDED}")
     named = [(index, cell, *name_and_unit(cell)) for index, cell in enumerate(header.cells)]
     of_road = [match is not None and is_wheel(match[1]) for match in (_OF_ROAD.fullmatch(row[2]) for row in named)]
     named = [row for row, beside in zip(named, of_road, strict=True) if not beside]

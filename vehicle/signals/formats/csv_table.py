@@ -43,8 +43,8 @@ def read(path: Path, wanted: Wanted) -> Table:
     numbered = ((n, line) for start, lines in text.pieces() for n, line in enumerate(lines, start))
     head, first = next(((n, line) for n, line in numbered if not _is_comment(line)), (0, ""))
     if not head:
-        raise DataError(f"{path}: contains only comments; must have the columns {wanted.needed} in a header line and "
-            "one row per sample")  # fmt: skip
+        raise DataError(f"{path}: contains only comments; it needs a header line with the columns {wanted.needed} and "
+        "one row per sample")  # fmt: skip
     header, notices = _header(path, head, first), list(text.notices)
     try:
         key = wanted.key(header)
@@ -67,7 +67,7 @@ def read(path: Path, wanted: Wanted) -> Table:
         lines = text.lines
         numbers = [n for n, line in enumerate(lines[head:], head + 1) if not _is_comment(line)]
         if not numbers:
-            raise DataError(f"{path}:{head}: the file ends after the header; must have one row per sample below it")
+            raise DataError(f"{path}:{head}: the file ends after the header; add one row per sample below it")
         rows = [lines[n - 1] for n in numbers]
         rows, remarks = decimal_points(numbers, rows, header)
         notices += remarks

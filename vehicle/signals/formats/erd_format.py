@@ -54,7 +54,7 @@ def read(path: Path) -> Measurement:
     try:
         values = np.array(" ".join(rows).split(), dtype=np.float64)
     except ValueError as error:
-        raise DataError(f"{path}: after line {end + 1}: {error}; must be numbers only") from None
+        raise DataError(f"{path}: after line {end + 1}: {error}; write only numbers there") from None
     if values.size % count or not values.size or (samples > 0 and values.size != samples * count):
         claim = f"{samples} samples of " if samples > 0 else ""
         raise DataError(

@@ -163,8 +163,8 @@ def read_property_file(path: Path) -> PropertyFile:
         raise ConfigurationError(f"{path}: is larger than {LARGEST_FILE / 1e6:g} MB, so it is not a property file")
     text = path.read_bytes().decode("latin-1")
     if text.lstrip().startswith("<"):
-        raise DataError(f"{path}: is an XML property file; save it in TeimOrbit format (text, FILE_TYPE) in the "
-                        "property file editor in Adams")  # fmt: skip
+        raise DataError(f"{path}: is an XML property file; save it in TeimOrbit format (text, FILE_TYPE) with the "
+        "property file editor of Adams")  # fmt: skip
     blocks: dict[str, Block] = {}
     current: Block | None = None
     skipped = False

@@ -75,7 +75,7 @@ def read_text(path: Path) -> Text:
     except OSError as error:
         raise DataError(f"{path}: cannot be read ({error.strerror}); check the file and its permissions") from error
     if not data.strip():
-        raise DataError(f"{path}: the file is empty; must have a header line with units and one row per sample")
+        raise DataError(f"{path}: the file is empty; it needs a header line with units and one row per sample")
     _check_bytes(path, data)
     notices = []
     digest = hashlib.sha256(data).hexdigest()
@@ -128,6 +128,6 @@ def _place(path: Path, data: bytes, offset: int) -> str:
 
 def _line_too_long(path: Path, line: int) -> DataError:
     return DataError(
-        f"{path}:{line}: the line is longer than {LONGEST_LINE} characters; must be one row per sample; "
-        "check the line ends"
+        f"{path}:{line}: the line is longer than {LONGEST_LINE} characters; write one row per sample and check the "
+        "line endings"
     )

@@ -50,7 +50,9 @@ def read(path: Path) -> Measurement:
     columns = " ".join(line for _, line in sections.get("column names", [])).split() or heads
     rows = sections.get("data", [])
     if not columns or len(rows) < 2:
-        raise DataError(f"{path}: {len(columns)} columns and {len(rows)} rows; must have [column names] and [data]")
+        raise DataError(
+            f"{path}: {len(columns)} columns and {len(rows)} rows; the file needs [column names] and [data]"
+        )
     header = Header(path=path, line=rows[0][0] - 1, cells=tuple(columns), delimiter=" ")
     numbers, data_rows = [number for number, _ in rows], [" ".join(line.split()) for _, line in rows]
     data_rows, points = decimal_points(numbers, data_rows, header)

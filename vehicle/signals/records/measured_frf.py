@@ -142,7 +142,7 @@ def _acceleration_per_displacement(channel: Channel, where: str, name: str) -> t
         raise DataError(f"{where} has no frequencies; export it with frequencies")
     if channel.function not in RESPONSES and not np.iscomplexobj(channel.values):
         raise DataError(
-            f"{where} is a {channel.function} without a phase; must be complex, or two columns, real and imag or "
+            f"{where} is a {channel.function} without a phase; give complex values or two columns, real and imag or "
             "magnitude and phase"
         )
     unit = find_ratio(channel.unit)

@@ -184,7 +184,7 @@ def _histories(
     if contained and (begin, settings.drift) != (0.0, 0.0):
         raise ConfigurationError(
             f"{path}: --delay S and --drift align the clock with a signal from another file, but this record contains "
-            "its own plate signal. Remove both, or add --signal FILE; --delay GROUP=TIME is for sensors that lag the "
+            "the plate signal. Remove both, or add --signal FILE; --delay GROUP=TIME is for sensors that lag the "
             "plate"
         )
     signal, road, settled = _driven_input(car, path, measured, asked, settings, plates)

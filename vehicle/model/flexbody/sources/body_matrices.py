@@ -201,7 +201,7 @@ class BodyMatrices(BodyNodes):
         lowest, highest = np.linalg.eigvalsh(inertia)[[0, -1]]
         if lowest <= 1e-9 * highest:
             raise DataError(
-                f"mass: all mass lies on one axis (principal moments of inertia {lowest:.3g} to {highest:.3g} kg "
+                f"mass: all mass is on one axis (principal moments of inertia {lowest:.3g} to {highest:.3g} kg "
                 "m2). Add rotational inertia to the point masses, or add mass at points that do not lie on this axis."
             )
         return MassProperties(mass=mass, cog=cog, inertia=inertia)
