@@ -135,7 +135,7 @@ BAD_TRACES = {
     "Pa as bar": (lambda rows: rows * [1.0, 1e5], None, "bar but must be 2 to 400 bar; correct the unit of the column"),
     "bar as Pa": (lambda rows: rows, "a [deg],p [Pa]", "pressure is 0.0003208 bar but must be 2 to 400 bar"),
     "gauge": (lambda rows: rows - [0.0, 1.0], None, ("bar but must be above 0 bar")),
-    "shifted": (lambda rows: rows + 0.5 * CYCLE_LATER, None, "is at 377.5 deg but must be within 60 deg of 0 or 720 deg"),
+    "shifted": (lambda rows: rows + 0.5 * CYCLE_LATER, None, "377.5 deg but must be within 60 deg of 0"),
     "no unit": (lambda rows: rows, "a,p", ("0 columns have a unit of angle")),
     "gap": (lambda rows: np.delete(rows, slice(100, 120), axis=0), None, "in steps of up to 10.5 deg, must be"),
 }  # fmt: skip

@@ -170,7 +170,7 @@ BAD = {
     "no units": ("front.dpr", dpr().replace("[UNITS]", "[MODEL]"), (r"front\.dpr: the block \[UNITS\] "
                                                                    r"is missing.*add it")),
     "no length": ("front.dpr", dpr(units={"FORCE": "newton", "TIME": "s"}), r"\[UNITS\] has no LENGTH; add a line"),
-    "unit": ("front.dpr", dpr(units={"LENGTH": "furlong", "FORCE": "newton", "TIME": "s"}), "'furlong', which must be one"),
+    "unit": ("front.dpr", dpr(units={"LENGTH": "furlong", "FORCE": "newton", "TIME": "s"}), "LENGTH = 'furlong'"),
     "no curve": ("front.dpr", property_file("dpr", {}), ("the block \\[CURVE\\] is missing")),
     "twice": ("front.dpr", dpr() + "[CURVE]\n0 0\n", r"the block \[CURVE\] appears twice"),
     "unsorted": ("front.dpr", dpr([(-1, -1), (-2, -2), (1, 1)]), "has -2 after -1 but must be ascending"),

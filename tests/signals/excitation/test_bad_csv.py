@@ -19,7 +19,7 @@ REFUSED: dict[str, tuple[bytes | list[str], str]] = {
     "1 blank": (b" \n\n", "^: .*empty"),
     "1 header only": (["# c", HEADER], "^:2: .*header"),
     "1 comments only": (["# c", "# d"], "^: .*only comments.*'time .s.'.*'displacement .m.'"),
-    "1 a few rows": ([HEADER, *rows(31)], "^: 31 rows.* 32 rows"),
+    "1 a few rows": ([HEADER, *rows(31)], "^: has 31 rows.* 32"),
     **{f"2 missing or infinite, {cell}": (with_row(17, f"0.017000,{cell}"),
         f"^:19:2: .*'displacement .m.' is {cell!r}.*--interpolate$")
        for cell in ("nan", "NaN", "inf", "-Inf", "", "#N/A", "1e400")},

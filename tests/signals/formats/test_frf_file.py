@@ -78,7 +78,7 @@ def test_selection_by_channel_band_and_spacing(tmp_path):
         ([HEADER, *ROWS, "20,1,2,1.5"], r"own\.csv:12: column 'a_coherence' .* 1\.5 but must be 0 to 1"),
         ([HEADER, *ROWS, "20,-1,2,0.5"], r"own\.csv:12: column 'a_magnitude' .* -1 but must be 0 "),
         ([HEADER, *ROWS, "3,1,2,0.5"], r"own\.csv:12: column 'frequency \[Hz\]' .* 3 after 10"),
-        ([HEADER, "0,1,2,0.5", *ROWS], r"own\.csv:2: column 'frequency \[Hz\]' .* 0 but must be above 0"),
+        ([HEADER, "0,1,2,0.5", *ROWS], r"own\.csv:2: column 'frequency \[Hz\]' .* 0, must be above 0"),
         (b"\xff\xfe\x00\x80", "UTF-16"),
     ],
 )

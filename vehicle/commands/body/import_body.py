@@ -113,7 +113,7 @@ class ImportSettings(Settings):
         metavar="X,Y,Z",
     )
     origin: str = setting(
-        "where the origin of the source file lies in the car [m]; default: 0,0,0", "0,0,0", metavar="X,Y,Z"
+        "position of the origin of the source file in the car [m]; default: 0,0,0", "0,0,0", metavar="X,Y,Z"
     )
     point_nodes: Path | None = setting(
         "table point,node that chooses the node of a point of the car", type=Path, metavar="FILE"

@@ -187,7 +187,7 @@ def _rigid(body: Superelement) -> Iterator[str]:
     room = 0.5 * float(np.max(high - low))
     if np.any(rigid.cog < low - room) or np.any(rigid.cog > high + room):
         yield (
-            f"cog: {np.asarray(rigid.cog).tolist()} m lies far outside the nodes, {low.tolist()} to "
+            f"cog: {np.asarray(rigid.cog).tolist()} m is far outside the nodes, {low.tolist()} to "
             f"{high.tolist()} m. Give the CoG in the axes and unit of the nodes."
         )
     if not body.frequencies.size:

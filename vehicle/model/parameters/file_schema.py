@@ -154,7 +154,7 @@ def template_schema() -> Schema:
         "parts": _mapping(_table(RolePart)),
         "wheel": _table(Wheel),
         "steering_axis": _table(SteeringAxis),
-        "above": {"type": "array", "items": {**pair, "description": "the first point lies above the second"}},
+        "above": {"type": "array", "items": {**pair, "description": "the first point is above the second"}},
         **lists,
     }
     properties = {key: special.get(key) or _value(hint) for key, hint in TEMPLATE_KEYS.items()}
