@@ -75,7 +75,7 @@ CASES = {
     ),
     "mass not finite": toml(line("mass_kg", "mass_kg = nan"), "give a positive mass"),
     "mass negative": toml(line("mass_kg", "mass_kg = -275.0"), "give a positive mass"),
-    "CoG in mm": toml(line("cog_m", "cog_m = [980.0, 0.0, 600.0]"), "lies far outside the nodes"),
+    "CoG in mm": toml(line("cog_m", "cog_m = [980.0, 0.0, 600.0]"), "m is far outside the nodes"),
     "inertia of a needle": toml(
         line("inertia", "inertia_kg_m2 = [[1.0, 0.0, 0.0], [0.0, 5.0, 0.0], [0.0, 0.0, 900.0]]"),
         "the sum of the two smaller must be at least the largest",

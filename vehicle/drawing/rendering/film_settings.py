@@ -50,7 +50,7 @@ class FilmSettings(Settings):
         return name
 
     def require_inside(self, length: float) -> None:
-        """Check that the film lies within a record.
+        """Check that the film is within a record.
 
         Args:
             length: of the record [s].
@@ -64,7 +64,7 @@ class FilmSettings(Settings):
         latest = length - (self.video_duration / self.slow_motion if chosen else 0.0)  # type: ignore[operator]
         if not 0.0 <= self.video_start <= latest:
             raise ConfigurationError(
-                f"--video-start {self.video_start:g}: must be 0 to {latest:g} s, so that the video lies "
+                f"--video-start {self.video_start:g}: must be 0 to {latest:g} s, so that the video is "
                 "within the record"
             )
 
