@@ -64,8 +64,7 @@ class FilmSettings(Settings):
         latest = length - (self.video_duration / self.slow_motion if chosen else 0.0)  # type: ignore[operator]
         if not 0.0 <= self.video_start <= latest:
             raise ConfigurationError(
-                f"--video-start {self.video_start:g}: must be 0 to {latest:g} s, so that the video is "
-                "within the record"
+                f"--video-start {self.video_start:g}: must be 0 to {latest:g} s, so that the video is within the record"
             )
 
     def values(self) -> dict[str, Any]:
