@@ -35,9 +35,9 @@ UNUSUAL = {
     "kinematic_reference": {
         ("", "unsprung mass [% of the mass]"), ("front", "roll centre above ground [mm]"),
         ("front", "anti-dive / anti-lift angle, braking [deg]"),
-        ("front", "anti-lift / anti-squat angle, under drive torque [deg]"),
+        ("front", "anti-lift / anti-squat angle, driving [deg]"),
         ("front", BRAKING), ("rear", BRAKING),
-        ("front", "anti-lift (front) or anti-squat (rear), under drive torque [%]"),
+        ("front", "anti-lift (front) or anti-squat (rear), driving [%]"),
         ("front", "caster [deg]"), ("front", "caster trail [mm]"), ("front", "scrub radius [mm]"), ("front", STEER),
     },
 }  # fmt: skip

@@ -83,9 +83,9 @@ AXLE_FIGURES: dict[str, tuple[Callable[[AxleData], float | None], int]] = {
     "front-view swing arm [m]": (lambda axle: axle.geometry.front_swing_arm_m, 2),
     "side-view swing arm [m]": (lambda axle: axle.geometry.side_swing_arm_m, 2),
     "anti-dive / anti-lift angle, braking [deg]": (lambda axle: axle.geometry.brake_support_deg, 2),
-    "anti-lift / anti-squat angle, under drive torque [deg]": (lambda axle: axle.geometry.drive_support_deg, 2),
+    "anti-lift / anti-squat angle, driving [deg]": (lambda axle: axle.geometry.drive_support_deg, 2),
     "anti-dive (front) or anti-lift (rear), braking [%]": (lambda axle: None, 1),
-    "anti-lift (front) or anti-squat (rear), under drive torque [%]": (lambda axle: None, 1),
+    "anti-lift (front) or anti-squat (rear), driving [%]": (lambda axle: None, 1),
     "caster [deg]": (lambda axle: axle.geometry.caster_deg, 2),
     "kingpin inclination [deg]": (lambda axle: axle.geometry.kingpin_inclination_deg, 2),
     "caster trail [mm]": (lambda axle: 1e3 * axle.geometry.caster_trail_m, 1),
@@ -142,7 +142,7 @@ _OF_THE_CAR = (
     "share of roll stiffness, suspension [%]",
     "share of roll stiffness, with tyres [%]",
     "anti-dive (front) or anti-lift (rear), braking [%]",
-    "anti-lift (front) or anti-squat (rear), under drive torque [%]",
+    "anti-lift (front) or anti-squat (rear), driving [%]",
 )
 """Figures of an axle that the rest of the car enters."""
 
