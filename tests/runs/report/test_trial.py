@@ -42,6 +42,7 @@ class Page:
 
     Args:
         browser: the report, opened.
+        car: the car.
         signal: displacement of its plates, as the page has it.
         options: see `trial_data`.
     """
