@@ -77,9 +77,10 @@ class SearchPlan:
             cars=settings.cars,
             numbers=len(trials.problem.ranges) + len(trials.problem.criteria),
         )
+        if settings.executor is None and settings.jobs > 1:
+            require_picklable(trials.measure)
         with ExitStack() as held:
             if settings.executor is not None or settings.jobs > 1:
-                require_picklable(trials.measure)
                 make = settings.executor or partial(process_pool, settings.jobs)
                 executor = make if isinstance(make, Executor) else held.enter_context(StandingExecutor(make))
                 trials = replace(trials, evaluate=on_executor(executor, trials.measure))
@@ -213,6 +214,6 @@ def _quantile_and_samples(quantile: float | None, samples: int | None) -> tuple[
     if samples < needed:
         raise ConfigurationError(
             f"--quantile {chosen:g}: needs at least {needed} cars, found --samples {samples}; set --samples {needed}, "
-            f"lower quantile, or --quantile 1 for the worst of {samples} cars"
+            f"a lower quantile, or --quantile 1 for the worst of {samples} cars"
         )
     return chosen, samples
