@@ -83,7 +83,8 @@ def test_a_function_of_a_notebook_is_refused(monkeypatch):
     """Its `__main__` has no file that a new process could import."""
     main = ModuleType("__main__")
     monkeypatch.setitem(sys.modules, "__main__", main)
-    main.cell = cell = FunctionType(rail.__code__, {"__name__": "__main__"}, "cell")
+    cell = FunctionType(rail.__code__, {"__name__": "__main__"}, "cell")
+    vars(main)["cell"] = cell
     cell.__qualname__ = "cell"
     for measure in (cell, {"x": cell}, functools.partial(cell), {"x": functools.partial(cell)}):
         with pytest.raises(ConfigurationError, match=r"measure: .*__main__.*jobs=1"):
