@@ -146,7 +146,7 @@ def test_first_screen_answers_the_question(reported, tmp_path):
     assert "front main spring stiffness 12000 instead of " in told
     assert f"{word} from {before:.3g} to {after:.3g} m/s²" in told
     assert re.search(
-        r"% of the change \(mean square\) is (fore-aft|lateral|vertical) between [\d.]+ and [\d.]+ Hz", told
+        r"% of the change of the mean square is (fore-aft|lateral|vertical) between [\d.]+ and [\d.]+ Hz", told
     )
     moved = re.search(r"mainly by the mode of ([a-z ,]+), which moves from ([\d.]+) to ([\d.]+) Hz", told)
     assert moved is not None and moved[2] != moved[3]
@@ -285,7 +285,7 @@ def test_reactions_are_those_of_the_standard():
 
 
 def test_a_time_and_a_share_have_differences_and_no_ratio():
-    assert difference(3.57, 28.2, "s") == "+24.6 s" and difference(2.0, 5.5, "%") == "+3.5 percentage points"
+    assert difference(3.57, 28.2, "s") == "+24.6 s" and difference(2.0, 5.5, "%") == "+3.5 points"
     assert difference(2.0, 3.0, "m/s²") == "+50 %" and difference(None, 3.0, "s") == "–"
 
 

@@ -10,9 +10,9 @@ from vehicle.model.parameters.composition import PlacedJoint, PlacedPart
 from vehicle.model.parameters.hardpoints import Point, cross, mirrored
 from vehicle.model.parameters.instance import Instance, elements
 from vehicle.model.parameters.rigid_part import Part
-from vehicle.model.parameters.toml_file import did_you_mean
 from vehicle.model.parameters.topology import Joint
 from vehicle.names import SIDE_SIGN
+from vehicle.wording import did_you_mean
 
 
 @dataclass(slots=True)
@@ -81,7 +81,8 @@ def _remedy(i: Instance, name: str) -> str:
     if sided := next((ref for ref in itertools.chain.from_iterable(refs) if ":" in ref), ""):
         half = sided.partition(":")[0]
         return (
-            f"its joint names a side ({sided}), so it exists once. Leave the side out: a one-piece axle consists "
+            f"its joint names a side ({sided}), so the part exists only once. Leave the side out: a one-piece axle "
+            "consists "
             f'of two halves {half}, joined by {{ kind = "fixed", child = "{half}:right", parent = "{half}:left" }}'
         )
     return 'add a joint, or set kind = "free" and add connections'

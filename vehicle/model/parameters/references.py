@@ -9,9 +9,10 @@ from vehicle.model.parameters.composition import Composition
 from vehicle.model.parameters.hardpoints import require_apart, require_triangle
 from vehicle.model.parameters.instance import RIGHT, Instance
 from vehicle.model.parameters.paths import full_path
-from vehicle.model.parameters.toml_file import convert, did_you_mean
+from vehicle.model.parameters.toml_file import convert
 from vehicle.model.parameters.topology import Template
 from vehicle.names import SIDE_SIGN
+from vehicle.wording import did_you_mean
 
 GROUPS = ("hardpoints", "parts", "bushings", "ports")
 """Tables of an instance with one entry for each name."""
@@ -84,7 +85,7 @@ def require_sound(car: Composition) -> None:
             )
         if getattr(connection.law, "one_sided", False) and not connection.ground:
             raise ConfigurationError(
-                f"{connection.path}.one_sided: found true, must be false; only a contact with the ground lifts off"
+                f"{connection.path}.one_sided: must be false here; only a contact with the ground lifts off"
             )
     for spring in car.springs:
         require_apart(dict(zip((f"{spring.path}, lower end", "upper end"), spring.at, strict=True)))

@@ -16,8 +16,9 @@ from typing import Any
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.quantity import NAME_PATTERN
 from vehicle.model.parameters.template_file import LISTS, read_template_file
-from vehicle.model.parameters.toml_file import build, did_you_mean
+from vehicle.model.parameters.toml_file import build
 from vehicle.model.parameters.topology import RolePart, SteeringAxis, Template, Wheel
+from vehicle.wording import did_you_mean
 
 SHIPPED = Path(str(resources.files("vehicle.model"))) / "templates"
 FREE_PORTS = ("body", "world", "plate")
@@ -98,7 +99,7 @@ def _merged(name: str, options: frozenset[str], searched: tuple[Path, ...], abov
         reason = (
             "uses itself"
             if name in above
-            else "the file is neither in the folder of the vehicle file nor in the package"
+            else "the file is neither in the same folder as the vehicle file nor in the package"
         )
         raise ConfigurationError(
             f"template {name!r}: {reason}{did_you_mean(name, set(names) - {name})} Templates are {', '.join(names)}"
@@ -180,7 +181,7 @@ def _check(template: Template, raw: Mapping[str, Any]) -> None:
         for element in getattr(template, key):
             if joints.get(element.joint, kinds[0]) not in kinds:
                 raise ConfigurationError(
-                    f"{key}.{element.name}.joint: {element.joint!r} is a {joints[element.joint]}, must be a "
+                    f"{key}.{element.name}.joint: {element.joint!r} is a {joints[element.joint]} but must be a "
                     f"{' or a '.join(kinds)}"
                 )
 
@@ -209,7 +210,7 @@ def _check(template: Template, raw: Mapping[str, Any]) -> None:
                     near = did_you_mean(head, allowed)
                     raise ConfigurationError(f"{where}.{key}: unknown name {word!r}{near}{besides}")
                 if allowed is not None and side not in ("", "left", "right", "middle"):
-                    raise ConfigurationError(f"{where}.{key}: found side {side!r}, must be left, right or middle")
+                    raise ConfigurationError(f"{where}.{key}: the side must be left, right or middle, not {side!r}")
                 if allowed is template.hardpoints:
                     used.add(head)
 

@@ -118,6 +118,11 @@ class Vehicle:
         return tuple(wheel for wheel in self.wheels if f"damper_{wheel}" in names)
 
     @property
+    def slip_velocities(self) -> dict[str, float]:
+        """Return the velocity above which each damper slips [m/s], by wheel: the name after "damper_"."""
+        return {damper.name.removeprefix("damper_"): damper.law.slip_velocity for damper in self.composition.dampers}
+
+    @property
     def acceleration_channels(self) -> tuple[str, ...]:
         """Names of the recorded accelerations, in the order of the files."""
         return acceleration_channels(output.name for output in self.composition.outputs)
@@ -312,8 +317,8 @@ def varied_file(table: Mapping[str, Any], overrides: Iterable[str], folder: Path
         model_file = Path(name).expanduser()
         if not model_file.is_absolute():  # workers of a sweep may run elsewhere
             raise ConfigurationError(
-                f"--set body.superelement={name}: must be a name of letters, digits, '_', '.', '-', of a "
-                f"file in the folder of the vehicle file or of the package, or an absolute path: {model_file.resolve()}"
+                f"--set body.superelement={name}: must be a name of letters, digits, '_', '.', '-', for a file in the "
+                f"same folder as the vehicle file or in the package, or an absolute path: {model_file.resolve()}"
             )
         if not model_file.is_file():
             raise ConfigurationError(f"--set body.superelement={name}: the file does not exist, or is a folder")

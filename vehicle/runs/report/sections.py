@@ -14,7 +14,7 @@ from vehicle.drawing.rendering.frf_plot import plot_frfs
 from vehicle.drawing.rendering.plots import plot_time
 from vehicle.engines.linear.car_modes import Mode
 from vehicle.model.parameters.shipped import VEHICLES
-from vehicle.names import CORNERS, channel_words, point_words, side_of
+from vehicle.names import CORNERS, channel_words, point_words, side_of, slip_words
 from vehicle.runs.report.comfort_class import REACTIONS, reactions
 from vehicle.runs.report.differences import changed_parameters, parameter_rows, shipped_origin
 from vehicle.runs.report.findings import findings, main_points, nearest_mode
@@ -59,21 +59,19 @@ NO_FIGURE = Markup()
 def tiles(run: FinishedRun) -> Markup:
     """Return the key figures of a run as tiles."""
     summary = run.summary
-    shares = summary.slip_shares
+    shares, limits = summary.slip_shares, summary.slip_limits
     values = []
     for point, value in list(run.comfort.items())[:1]:
         total = value.weighted
         label = f"weighted acceleration at the {point.replace('_', ' ')}, {' to '.join(reactions(total))}"
         values.append((f"{number(total)} m/s²", label))
-    slipping = "in slip" if run.friction else f"faster than {1e3 * summary.slip_share.get('slip_velocity', 0.0):g} mm/s"
-    values += [
-        (f"{number(100 * share, 2)} %", f"of the time {slipping}, {side_of(wheel, shares)} damper")
-        for wheel, share in shares.items()
-    ]
+    for wheel, share in shares.items():
+        slipping = "in slip" if run.friction else f"faster than {1e3 * limits[wheel]:g} mm/s"
+        values.append((f"{number(100 * share, 2)} %", f"of the time {slipping}, {side_of(wheel, shares)} damper"))
     for wheel, plate, resonances in run.peaks[:1]:
         if peaks := resonances.get(f"knuckle_{wheel}_acc_z"):
             top = max(peaks, key=lambda peak: peak.magnitude)
-            to_plate = f", FRF to the {plate}" if plate else ""
+            to_plate = f", FRF from the {plate}" if plate else ""
             label = f"highest resonance of the vertical motion of the knuckle{to_plate}"
             values.append((f"{top.frequency_hz:.1f} Hz", label))
     if summary.input.rms_m:
@@ -177,8 +175,8 @@ def dampers(run: FinishedRun) -> Markup | None:
                 f"{number(force)} N",
             )
         )
-    limits = {"slip": 1e3 * share["slip_velocity"], "limit": 1e3 * summary.saturated_velocity}
-    return fill("dampers", friction=run.friction, rows=rows, **limits)
+    slip, limit = slip_words(summary.slip_limits, list(first)), 1e3 * summary.saturated_velocity
+    return fill("dampers", friction=run.friction, rows=rows, slip=slip, limit=limit)
 
 
 def _when(value: float | None) -> str:
@@ -199,7 +197,7 @@ def _resonances(
     """Return captions and rows of the highest resonances of the main output points with the nearest modes."""
     tables = []
     main = [
-        (f" to motion of the {plate}" if plate else "", point, resonances.get(channel, ()))
+        (f" from motion of the {plate}" if plate else "", point, resonances.get(channel, ()))
         for wheel, plate, resonances in run.peaks
         for channel, point in main_points(run, wheel).items()
     ]

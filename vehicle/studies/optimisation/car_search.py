@@ -201,7 +201,7 @@ def _ranges(vary: Mapping[str, Sequence[float]] | Sequence[Range]) -> Sequence[R
         return vary
     wrong = next((path for path, bounds in vary.items() if len(bounds) != 2), None)
     if wrong is not None:
-        raise ConfigurationError(f"vary {wrong}: found {vary[wrong]}, must be (lower, upper)")
+        raise ConfigurationError(f"vary {wrong}: must be (lower, upper), not {vary[wrong]}")
     return [Range(path=path, low=low, high=high) for path, (low, high) in vary.items()]
 
 
