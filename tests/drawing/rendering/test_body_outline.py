@@ -1,5 +1,6 @@
 """The body of a car without a wireframe: an outline from its own numbers, which moves with it."""
 
+import tracemalloc
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
@@ -11,6 +12,7 @@ from vehicle.drawing.rendering.body_outline import CLASSES, body_class, body_out
 from vehicle.drawing.rendering.stage import shapes_of, stage_model
 from vehicle.drawing.rendering.wireframe import GROUPS, car_wireframe
 from vehicle.runs.car import Car
+from vehicle.signals.analysis.thinned_wireframe import MOST_NODES
 
 
 @pytest.fixture(scope="module")
@@ -30,6 +32,24 @@ def test_the_outline_is_as_large_as_the_car(sedan):
         radius = wheel.center[2] - wheel.patch[2]
         side = body.points[np.sign(body.points[:, 1]) == np.sign(wheel.center[1])]
         assert np.linalg.norm(side[:, [0, 2]] - np.array(wheel.center)[[0, 2]], axis=1).min() > radius
+
+
+def test_a_large_body_without_edges_needs_little_memory(sedan):
+    """One table of distances of its points and nodes would take 20 times as much."""
+    positions = np.random.default_rng(1).uniform(-1.0, 5.0, (40000, 3))
+    element = SimpleNamespace(positions=positions, shapes=positions[None], edges=())
+    body: Any = SimpleNamespace(superelement=element, vehicle=sedan.vehicle)
+    tracemalloc.start()
+    drawn = drawn_body(body)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 8 * len(positions) * len(drawn.points) / 20
+    for point, nearest in zip(drawn.points, drawn.shapes[0], strict=True):
+        np.testing.assert_array_equal(nearest, positions[np.linalg.norm(positions - point, axis=1).argmin()])
+    one_wheel = SimpleNamespace(wheels=sedan.vehicle.composition.wheels[:1], connections=())
+    body.vehicle = SimpleNamespace(composition=one_wheel)  # a rig without two axles has no outline
+    shown = drawn_body(body)
+    assert len(shown.points) == shown.shapes.shape[1] == MOST_NODES and not len(shown.lines)
 
 
 def test_heave_and_pitch_move_the_outline_as_a_rigid_body(sedan):

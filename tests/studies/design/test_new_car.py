@@ -114,7 +114,9 @@ def test_wheel_rate_and_unsprung_mass_follow_from_the_matrices_too(axle):
 
 def test_the_numbers_of_the_sedan_give_its_comfort(tmp_path, capsys):
     car = made(tmp_path / "same", *words(SEDAN))
-    checks = json.loads(capsys.readouterr().out)["checks"]
+    printed = json.loads(capsys.readouterr().out)
+    checks, (parts, *_) = printed["checks"], printed["parts"]
+    assert {"axles", "powertrain", "tyres"} <= {*parts.split(", ")}
     assert {name for name, check in checks.items() if check["stated"]} == {name.replace("-", "_") for name in SEDAN}
     assert max(abs(check["deviation"]) for check in checks.values()) < 1e-4
     road = Road("B", speed=80, duration=10)

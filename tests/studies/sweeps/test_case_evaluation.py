@@ -19,7 +19,7 @@ from vehicle.signals.excitation.signal_file import write_signal
 from vehicle.studies.sweeps import case_evaluation
 from vehicle.studies.sweeps.case import Case, SignalFile, signal_of
 from vehicle.studies.sweeps.case_evaluation import evaluate
-from vehicle.studies.sweeps.measure import ComfortMeasure, FigureMeasure, SingleMeasure, measure_of
+from vehicle.studies.sweeps.measure import ComfortMeasure, FigureMeasure, SingleMeasure, chosen_measure, measure_of
 from vehicle.studies.sweeps.plan import sweep
 
 MEASURE = ComfortMeasure(skip=0.2)
@@ -163,6 +163,15 @@ def test_only_a_figure_of_the_car_itself_takes_the_lock_of_mujoco(monkeypatch, c
     assert not any(result.reason for result in evaluate(cases[:1], batch))
     assert not any(result.reason for result in evaluate(cases[:1], SingleMeasure(each=batch)))
     assert held == [locked, locked]
+
+
+def test_a_function_beside_figures_takes_the_lock_of_mujoco(cases):
+    def held(run):
+        return float(case_evaluation._ONE_AT_A_TIME.locked())
+
+    measure = chosen_measure({"held": held, "travel": "travel"}, Car.load().vehicle, 0.2)
+    (result,) = evaluate(cases[:1], measure)
+    assert result.values["held"] == 1.0
 
 
 def test_a_figure_of_the_car_alone_reads_no_channel():

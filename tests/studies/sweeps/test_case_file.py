@@ -11,12 +11,14 @@ import pytest
 from tests.studies.sweeps.sweep_samples import rows_of
 from vehicle import Car, road
 from vehicle.commands.sweep import main
-from vehicle.errors import ConfigurationError
+from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.parameters.car_choice import CarChoice
 from vehicle.runs.output.destination import Destination
-from vehicle.studies.sweeps.case_file import UNCHANGED, CaseFile, read_cases
+from vehicle.studies.sweeps.case_file import UNCHANGED, CaseFile, case_results, read_cases
+from vehicle.studies.sweeps.case_result import Result
 from vehicle.studies.sweeps.sweep_settings import SweepSettings
 from vehicle.studies.sweeps.sweep_study import SweepStudy
+from vehicle.studies.sweeps.sweep_table import SweepTable
 
 FILE = """
 vehicle = "sedan"
@@ -174,6 +176,28 @@ def test_states_alone_have_no_best(tmp_path, capsys, monkeypatch):
     assert main(["--cases", "cases.toml", "--engine", "reduced", "--output", "out"]) == 0
     said = capsys.readouterr().out
     assert "no variants" in said and "smoothest" not in said and "%)" not in said
+
+
+def test_a_figure_that_is_0_has_no_change_in_percent():
+    """Two states on two inputs; one figure of a base car is 0, or missing."""
+    cases = CaseFile(vehicle="sedan", roads=("A", "B"), speeds=(60.0,), states={"laden": {"body.mass": 1500}},
+                     variants={"soft": SOFT})  # fmt: skip
+    plan = cases.plan(Car.load("sedan"), (), SweepSettings(engine="reduced", measure="travel"))
+    listed = [plan.cases[number] for number in range(8)]
+
+    def results(values, cases=cases, rows=listed):
+        finished = [Result(values={"travel": value}) for value in values]
+        return case_results(SweepTable(cases=rows, results=finished, units={"travel": "m"}, made={}), cases)
+
+    with pytest.raises(DataError, match=r"--cases: travel of 'laden' on road_B_60 is 0"):
+        results([1.0] * 6 + [0.0, 1.0])
+    soft = results([1.0] * 7 + [0.0])
+    assert soft.changes[1, 3] == -100.0
+    missing = results([np.nan, 1.0] * 4)
+    assert "travel" in missing.sentence and missing.rows()[1][1:] == ["no value", "no value", "base"]
+    # A load is no choice, so nothing is compared, and 0 is a result.
+    states = results([0.0] * 4, replace(cases, variants={}), [listed[number] for number in (0, 2, 4, 6)])
+    assert states.rows()[1][1:] == ["0", "0", "base"] and states.lines()
 
 
 def test_equal_cars_and_other_options_are_refused(tmp_path, capsys, monkeypatch):

@@ -148,9 +148,10 @@ def test_parameters_are_ranked_by_one_figure(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     words = ["--input", "bump_7p5mm.csv", "--vary", "damper.viscous", "--each", "10%"]
     assert main([*words, "--measure", "travel", "--measure", "tyre_load"]) == 2
-    assert "--measure 2 times" in capsys.readouterr().err
-    with pytest.raises(ConfigurationError, match="--measure 2 times"):
-        parameter_effects(Car.load(), "bump_7p5mm.csv", measure=["travel", "tyre_load"])
+    assert "found 2; give one --measure" in capsys.readouterr().err
+    for measure in (["travel", "tyre_load"], {"a": "travel", "b": "tyre_load"}):
+        with pytest.raises(ConfigurationError, match="found 2; give one --measure"):
+            parameter_effects(Car.load(), "bump_7p5mm.csv", measure=measure)
 
 
 def effect(path, low, high, half_width=NAN):

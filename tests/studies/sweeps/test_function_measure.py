@@ -1,12 +1,15 @@
 """A function as a measure: its stored rows belong to one call, whatever it reads."""
 
 import functools
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from types import FunctionType, ModuleType
 
 import numpy as np
 import pytest
 
 from vehicle import Car, ConfigurationError, optimise, road, sweep
-from vehicle.studies.sweeps.function_measure import NamedFunctions
+from vehicle.studies.sweeps.function_measure import NamedFunctions, require_picklable
 
 RIDE = road("C", 80, duration=3)
 VARY = {"front.damper.viscous": [1500.0]}
@@ -60,8 +63,34 @@ def test_functions_and_figures_by_name():
         assert table.column(name)[0] == pytest.approx(value, rel=1e-9)
     with pytest.raises(ConfigurationError, match=r"measure 'x'.*'comfrt'"):
         sweep(car, VARY, RIDE, measure={"x": "comfrt"})
+    with pytest.raises(ConfigurationError, match=r"^settling time.* on road_C_80: settling: "):
+        sweep(car, VARY, RIDE, measure={"s": "settling:seat rail z", "my number": rail})
     with pytest.raises(ConfigurationError, match=r"measure 'both'.*dictionary"):
         NamedFunctions({"both": lambda run: {"a": 1.0}})(run)
+
+
+def test_an_executor_of_the_user_pickles_or_shares_the_function_itself():
+    pytest.importorskip("pymoo")
+    car, threads = Car.load("focus"), lambda: ThreadPoolExecutor(1)
+    table = sweep(car, VARY, RIDE, measure=lambda run: 2.5, engine="reduced", jobs=2, executor=threads)
+    assert table.column("<lambda>") == [2.5]
+    found = optimise(car, {"damper.viscous": (800, 4000)}, RIDE, {"x": lambda run: 2.5}, cars=8, population=8,
+                     executor=threads)  # fmt: skip
+    assert found.cars
+
+
+def test_a_function_of_a_notebook_is_refused(monkeypatch):
+    """Its `__main__` has no file that a new process could import."""
+    main = ModuleType("__main__")
+    monkeypatch.setitem(sys.modules, "__main__", main)
+    cell = FunctionType(rail.__code__, {"__name__": "__main__"}, "cell")
+    vars(main)["cell"] = cell
+    cell.__qualname__ = "cell"
+    for measure in (cell, {"x": cell}, functools.partial(cell), {"x": functools.partial(cell)}):
+        with pytest.raises(ConfigurationError, match=r"measure: .*__main__.*jobs=1"):
+            sweep(Car.load("focus"), VARY, RIDE, measure=measure, engine="reduced", jobs=2)
+    main.__file__ = "script.py"
+    require_picklable(cell)
 
 
 @pytest.mark.parametrize("more", [{"jobs": 2}, {"time_limit": 60.0}])
@@ -81,3 +110,6 @@ def test_a_search_by_a_function():
     with pytest.raises(ConfigurationError, match=r"measure: .*jobs=1"):
         optimise(Car.load("focus"), {"damper.viscous": (800, 4000)}, RIDE, {"x": lambda run: 1.0}, cars=8, population=8,
                  jobs=2)  # fmt: skip
+    with pytest.raises(ConfigurationError, match=r"^settling time.* on road_C_80: settling: "):
+        optimise(Car.load("focus"), {"damper.viscous": (800, 4000)}, RIDE, {"x": rail},
+                 limits=["settling:seat rail z<=1"])  # fmt: skip

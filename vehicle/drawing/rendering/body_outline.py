@@ -12,11 +12,12 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 
 from vehicle.arrays import Indices, Vector
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.model.parameters.vehicle import Vehicle
-from vehicle.signals.analysis.thinned_wireframe import thinned
+from vehicle.signals.analysis.thinned_wireframe import MOST_NODES, thinned
 
 
 class BodyClass(NamedTuple):
@@ -77,10 +78,10 @@ def drawn_body(car: CarModel) -> DrawnBody:
         return DrawnBody(points=positions[nodes], lines=index.reshape(-1, 2), shapes=shapes[:, nodes])
     sheets, lines = body_outline(car.vehicle)
     if not len(lines):
-        return DrawnBody(points=positions, lines=lines, shapes=shapes)
+        return DrawnBody(points=positions[:MOST_NODES], lines=lines, shapes=shapes[:, :MOST_NODES])
     # Ends of the roof lie on the waist.
     points, index = np.unique(sheets.reshape(-1, 3)[lines.ravel()], axis=0, return_inverse=True)
-    nearest = np.linalg.norm(positions - points[:, None], axis=2).argmin(axis=1)
+    _, nearest = scipy.spatial.cKDTree(positions).query(points)
     return DrawnBody(points=points, lines=index.reshape(-1, 2), shapes=shapes[:, nearest])
 
 

@@ -273,7 +273,7 @@ def _notes(car: Car, template: TemplateCar, stated: StatedNumbers) -> tuple[str,
 def _parts(template: TemplateCar, stated: StatedNumbers, ratio: float) -> tuple[tuple[str, str], ...]:
     """Return parts without a stated number, and their origin."""
     powered = powertrain(stated.car_class) is None
-    parts = "axles, powertrain, bushings, mounts, friction" if powered else "axles, bushings, friction"
+    parts = "axles, powertrain, bushings, mounts, friction, tyres" if powered else "axles, bushings, friction, tyres"
     scaled = "" if ratio == 1.0 else f", scaled with the kerb mass ({ratio:.3f})"
     return (parts, f"{template.name}{scaled}"), ("points of the body", f"{template.name}, same share of the wheelbase")
 

@@ -25,6 +25,7 @@ from vehicle.runs.figures.run_batch import Runs
 from vehicle.signals.excitation.signal import Signal
 from vehicle.studies.sweeps.case import Case, signal_of
 from vehicle.studies.sweeps.case_result import Result
+from vehicle.studies.sweeps.function_measure import FunctionMeasure
 from vehicle.studies.sweeps.measure import BatchMeasure, ComfortMeasure, Measure, figures_of
 from vehicle.threads import one_blas_thread
 
@@ -142,7 +143,7 @@ def _single(case: Case, measure: Measure, engine: str | None = None) -> Result:
 
 def _lock_of(measure: Measure) -> AbstractContextManager[object]:
     """Return the lock of MuJoCo for a measure that may build a model: functions, and figures of the car itself."""
-    figures = figures_of(measure)
+    figures = () if isinstance(measure, FunctionMeasure) else figures_of(measure)
     free = isinstance(measure, ComfortMeasure) or (figures and not any(each.figure.exact for each in figures))
     return nullcontext() if free else _ONE_AT_A_TIME
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from vehicle.arrays import Vector
 from vehicle.digits import aligned
-from vehicle.errors import ConfigurationError
+from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.parameters.parameter_list import flattened
 from vehicle.model.parameters.paths import assignments
 from vehicle.model.parameters.toml_file import build, read_table
@@ -20,7 +20,14 @@ from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
 from vehicle.signals.analysis.ride_comfort import UNWEIGHTED, WEIGHTED
 from vehicle.signals.formats.csv_table import RowWriter
-from vehicle.studies.sweeps.change_error import MEANING_OF_ERROR, NO_ERROR, UNKNOWN_ERROR, change_errors, half_width
+from vehicle.studies.sweeps.change_error import (
+    MEANING_OF_ERROR,
+    NO_ERROR,
+    NO_PERCENTAGE,
+    UNKNOWN_ERROR,
+    change_errors,
+    half_width,
+)
 from vehicle.studies.sweeps.evaluation import REPEAT, Evaluation, Part, runs_part
 from vehicle.studies.sweeps.plan import SweepPlan, plan_sweep
 from vehicle.studies.sweeps.sweep_inputs import Inputs
@@ -154,7 +161,7 @@ class CaseResults:
     inputs: tuple[str, ...]  # names of the inputs
     name: str  # name, unit: compared figure, for example "weighted", and its unit
     unit: str
-    values: Vector  # the figure, NaN for a failed run; (inputs, cars)
+    values: Vector  # the figure, NaN for a failed run or an undefined value; (inputs, cars)
     # unweighted comfort [m/s2], NaN for a failed run, (inputs, cars); None for another figure
     unweighted: Vector | None
     errors: Vector  # standard errors of the changes from the base of each car, 0 on one event; (inputs, cars)
@@ -166,15 +173,21 @@ class CaseResults:
 
         The last row is that of the mean change.
         """
-        relative = 100.0 * (self.errors / np.abs(self.values[:, list(self.bases)])).T
+        relative = 100.0 * (self.errors / np.abs(self._base_values)).T
         each = [half_width(relative[:, [number]]) for number in range(len(self.inputs))]
         return np.array([*each, half_width(relative)])
 
     @property
     def changes(self) -> Vector:
         """Return the change of the figure from the base of each car on the same input [%], (inputs, cars)."""
-        base = self.values[:, list(self.bases)]
+        base = self._base_values
         return np.asarray(100.0 * np.sign(base) * (self.values / base - 1.0))
+
+    @property
+    def _base_values(self) -> Vector:
+        """Values of the base of each car, NaN for 0, which has no percentage; (inputs, cars)."""
+        base = self.values[:, list(self.bases)]
+        return np.where(base == 0.0, np.nan, base)
 
     def rows(self, sign: str = "+-") -> list[list[str]]:
         """Return the head and a row for each car as texts: figure and change on each input, mean change.
@@ -187,7 +200,7 @@ class CaseResults:
         for number, car in enumerate(self.cars):
             cells = []
             for value, change in zip(self.values[:, number], self.changes[:, number], strict=True):
-                cell = f"{value:.4g}" if math.isfinite(value) else "failed"
+                cell = f"{value:.4g}" if math.isfinite(value) else "no value"
                 varied = self.bases[number] != number
                 cells.append(f"{cell} ({change:+.1f} %)" if varied and math.isfinite(change) else cell)
             mean = float(np.mean(self.changes[:, number]))
@@ -222,7 +235,7 @@ class CaseResults:
         state = f"{name}: " if several else ""
         variants = [number for number, each in enumerate(self.bases) if each == base and math.isfinite(means[number])]
         if not variants:
-            return f"{state or 'Result: '}no car completed the runs on all inputs."
+            return f"{state or 'Result: '}no car has a value of {self.name} on all inputs."
         best = min(variants, key=lambda number: float(means[number]))
         over = "over all inputs" if len(self.inputs) > 1 else f"on {self.inputs[0]}"
         over = over if several else f"{over[0].upper()}{over[1:]}"
@@ -242,12 +255,20 @@ def case_results(table: SweptCases, cases: CaseFile) -> CaseResults:
 
     Args:
         table: the table, the inputs varying slowest.
+
+    Raises:
+        DataError: the figure of a car without a variant is 0.
     """
     cars = list(cases.cars)
     bases = [cars.index(name) for name in cases.base_names]
     name = figure_names(table.units)[0]
     inputs = dict.fromkeys(case.source.name for case in table.cases)
     rows, numbers = list(table.rows()), np.arange(len(table.cases)).reshape(len(inputs), -1).T.tolist()
+    values = table.column(name).reshape(len(inputs), -1)
+    for base, source in itertools.product(dict.fromkeys(bases) if cases.variants else (), range(len(inputs))):
+        if values[source, base] == 0.0:
+            where = f"{name} of {cars[base]!r} on {list(inputs)[source]}"
+            raise DataError(f"--cases: {where} is 0, so {NO_PERCENTAGE}")
     errors, events = np.zeros((len(cars), len(inputs))), np.zeros(len(inputs))
     for base in dict.fromkeys(bases):
         in_state = [number for number, each in enumerate(bases) if each == base]
@@ -259,7 +280,7 @@ def case_results(table: SweptCases, cases: CaseFile) -> CaseResults:
         inputs=tuple(inputs),
         name=name,
         unit=table.units[name],
-        values=table.column(name).reshape(len(inputs), -1),
+        values=values,
         unweighted=table.column(unweighted).reshape(len(inputs), -1) if unweighted else None,
         errors=errors.T,
         event=bool(events.all()),

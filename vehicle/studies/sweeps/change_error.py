@@ -20,6 +20,9 @@ NO_ERROR = "no +- given: a single event has no random error"
 UNKNOWN_ERROR = "no +- given: the uncertainty of a change in this figure is unknown"
 """Words of tables with and without errors."""
 
+NO_PERCENTAGE = "changes cannot be given in percent; choose another figure or another input"
+"""End of the message on a figure that is 0, or undefined, for the unchanged car."""
+
 
 def is_event(row: Row, name: str) -> bool:
     """Return True for a run on one event, whose comfort value has no random error; see `Signal`."""

@@ -3,6 +3,7 @@
 import functools
 import math
 import pickle
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -10,6 +11,7 @@ from uuid import uuid4
 
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Run
+from vehicle.runs.figures.chosen_figure import ChosenFigure
 
 RunFunction = Callable[[Run], float | Mapping[str, float]]
 """Function of a run that returns a number or a dictionary of numbers."""
@@ -41,6 +43,7 @@ class FunctionMeasure:
     channels: None = None  # required channels; all
     # empty: the table takes the names of its first finished run, with unit "?"
     units: Mapping[str, str] = field(default_factory=dict)
+    figures: tuple[ChosenFigure, ...] = ()  # figures of the catalogue among its values
     # unique. The text of a function does not show all values that it reads, so stored rows of another measure are not
     # used again; with a class of your own with a `repr` of all its values, see `Measure`, they are.
     token: str = field(default_factory=lambda: uuid4().hex)
@@ -64,15 +67,20 @@ class FunctionMeasure:
 
 
 def require_picklable(measure: object) -> None:
-    """Check that a measure can be sent to other processes.
+    """Check that the processes of a pool can load a measure.
 
     Raises:
-        ConfigurationError: a lambda or a function inside another function.
+        ConfigurationError: a lambda, a function inside another function, or of a `__main__` without a file (notebook).
     """
     try:
-        pickle.dumps(measure)
+        content, fault = pickle.dumps(measure), ""
     except (pickle.PicklingError, AttributeError, TypeError) as error:
+        content, fault = b"", str(error)
+    main = sys.modules["__main__"]
+    if b"__main__" in content and not (getattr(main, "__file__", None) or getattr(main, "__spec__", None)):
+        fault = "__main__ has no file"
+    if fault:
         raise ConfigurationError(
-            f"measure: other processes cannot load it ({error}); define the function at the top of a module, or set "
-            "jobs=1 without executor and time_limit"
-        ) from None
+            f"measure: other processes cannot load it ({fault}); define the function at the top of a module, or set "
+            "jobs=1 without time_limit"
+        )

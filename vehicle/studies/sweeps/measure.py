@@ -167,6 +167,8 @@ def measure_of(
 def figures_of(measure: Measure) -> tuple[ChosenFigure, ...]:
     """Return the figures of the catalogue in a measure; none for another measure."""
     each = measure.each if isinstance(measure, SingleMeasure) else measure
+    if isinstance(each, FunctionMeasure):
+        return each.figures
     return tuple(chosen for _, chosen in each.figures) if isinstance(each, FigureMeasure) else ()
 
 
@@ -261,11 +263,14 @@ def chosen_measure(measure: MeasureChoice, vehicle: Vehicle, skip: float) -> Mea
     if isinstance(measure, Measure):
         return measure
     if isinstance(measure, Mapping):
-        units = {
-            name: chosen_figure(each, vehicle, f"measure {name!r}").unit_in() if isinstance(each, str) else "?"
+        chosen = {
+            name: chosen_figure(each, vehicle, f"measure {name!r}")
             for name, each in measure.items()
+            if isinstance(each, str)
         }
-        return FunctionMeasure(function=NamedFunctions(dict(measure)), skip=skip, units=units)
+        units = {name: chosen[name].unit_in() if name in chosen else "?" for name in measure}
+        functions = NamedFunctions(dict(measure))
+        return FunctionMeasure(function=functions, skip=skip, units=units, figures=tuple(chosen.values()))
     if callable(measure):
         return FunctionMeasure(function=measure, skip=skip)
     names = [measure] if isinstance(measure, str) else measure

@@ -22,7 +22,7 @@ from vehicle.model.parameters.vehicle import Vehicle, load_vehicle
 from vehicle.names import AXES
 from vehicle.runs.car import Car
 from vehicle.settings import with_settings
-from vehicle.studies.sweeps.change_error import change_errors, half_width
+from vehicle.studies.sweeps.change_error import NO_PERCENTAGE, change_errors, half_width
 from vehicle.studies.sweeps.effects import Effect, Effects, effects_evaluation
 from vehicle.studies.sweeps.plan import SweepPlan, plan_sweep
 from vehicle.studies.sweeps.sweep_inputs import Inputs
@@ -107,8 +107,8 @@ def single_changes(
 def _require_one_figure(settings: SweepSettings) -> None:
     """Check that parameters are ranked by one figure."""
     names = settings.measure
-    if isinstance(names, Sequence) and not isinstance(names, str) and len(names) > 1:
-        raise ConfigurationError(f"--each ranks by one figure; found --measure {len(names)} times, give it once")
+    if isinstance(names, Sequence | Mapping) and not isinstance(names, str) and len(names) > 1:
+        raise ConfigurationError(f"parameters are ranked by one figure; found {len(names)}; give one --measure")
 
 
 def _is_curve(path: str, value: Any) -> bool:
@@ -196,8 +196,7 @@ def effects_of(
         if not np.isfinite(value) or value == 0.0:
             fault = "is 0" if value == 0.0 else f"has no value ({table.results[row].reason or 'it is undefined'})"
             raise DataError(
-                f"--each: {name} of the unchanged car on {table.cases[row].source.name} {fault}, so changes cannot be "
-                "given in percent; choose another figure or another input"
+                f"--each: {name} of the unchanged car on {table.cases[row].source.name} {fault}, so {NO_PERCENTAGE}"
             )
     # Each input counts by its relative change, so that a loud one does not outweigh the others.
     changes = 100.0 * np.mean(np.sign(unchanged) * (values / unchanged - 1.0), axis=0)

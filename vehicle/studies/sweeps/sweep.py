@@ -53,7 +53,7 @@ def sweep_cases(cases: Sequence[Case], measure: Measure, settings: RunSettings) 
     folder, progress = settings.folder, settings.progress
     # A run in this process cannot be stopped.
     apart = settings.jobs > 1 or settings.time_limit is not None
-    if apart or settings.executor:
+    if apart and not settings.executor:
         require_picklable(measure)
     key_of, each = CaseKeys(measure), _one_of_each(cases)
     for case in each:
