@@ -59,13 +59,13 @@ def order_lines(
     first = round((begin - float(time[0])) / interval)
     length, count = round(TURNS / (turns * interval)), time.size - first
     if count < length:
-        found, limit = beside_limit(count * interval * turns, TURNS)
-        raise DataError(f"orders: {found} turns, must be at least {limit}; use a longer run")
+        shown, limit = beside_limit(count * interval * turns, TURNS)
+        raise DataError(f"orders: {shown} turns, must be at least {limit}; use a longer run")
     highest = max(orders) * turns
     if highest >= 0.5 / interval:
-        found, limit = beside_limit(highest, 0.5 / interval, 4)
+        shown, limit = beside_limit(highest, 0.5 / interval, 4)
         raise DataError(
-            f"orders: order {max(orders):g} is {found} Hz, must be below {limit} Hz, half the sampling rate"
+            f"orders: order {max(orders):g} is {shown} Hz, must be below {limit} Hz, half the sampling rate"
         )
     # Whole segments to the end of the record, which is farthest from the start.
     step = max(round(length * (1.0 - OVERLAP)), 1)

@@ -89,9 +89,9 @@ def check_level(
             )
         rms = float(np.std(z))
         if rms < SMALLEST_RMS and not (moving and np.ptp(z) == 0.0):
-            found, limit = beside_limit(per_metre * rms, per_metre * SMALLEST_RMS)
+            shown, limit = beside_limit(per_metre * rms, per_metre * SMALLEST_RMS)
             raise ImplausibleError(
-                f"{path}: RMS of plate {wheel} is {found} {unit}, must be at least {limit} {unit}",
+                f"{path}: RMS of plate {wheel} is {shown} {unit}, must be at least {limit} {unit}",
                 f"does the column contain metres{', not [mm]' if unit == 'mm' else ''}? Otherwise it is another "
                 "quantity, or a dead sensor",
             )

@@ -62,9 +62,9 @@ def fill_missing(table: Table, time: Vector, column: int) -> tuple[Vector, list[
     largest = int(np.argmax(gaps))
     if gaps[largest] > limit * (1.0 + UNIFORM_TOLERANCE):
         begin = int(np.flatnonzero(valid)[largest]) + 1
-        found, allowed = beside_limit(gaps[largest], limit)
+        shown, allowed = beside_limit(gaps[largest], limit)
         raise DataError(
-            f"{table.place(begin)}:{column + 1}: {name} has no value for {found} s from this line on, "
+            f"{table.place(begin)}:{column + 1}: {name} has no value for {shown} s from this line on, "
             f"interpolation fills at most {allowed} s; use the part before or after it"
         )
     filled = values.copy()

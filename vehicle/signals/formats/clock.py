@@ -52,10 +52,10 @@ def check_uniform(table: Table, time: Vector, remedy: str = "resample it to unif
             "which is not filled; use the part before or after it"
         )
     if worst > UNIFORM_TOLERANCE:
-        found, limit = beside_limit(worst, UNIFORM_TOLERANCE)
+        shown, limit = beside_limit(worst, UNIFORM_TOLERANCE)
         raise DataError(
             f"{table.place(row)}: time steps are not uniform: {step:.6g} s deviates from the median "
-            f"{float(np.median(np.diff(time))):.6g} s by the factor {found}, must be at most "
+            f"{float(np.median(np.diff(time))):.6g} s by the factor {shown}, must be at most "
             f"{limit}; write the time with more digits, or {remedy}"
         )
 

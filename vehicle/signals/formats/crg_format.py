@@ -104,17 +104,17 @@ def read_surface(path: Path) -> Surface:
     rows = None if last is None else round((last - start) / step) + 1
     table = _table(path, data[end.end() :], number_format, len(names), rows)
     if (highest := float(np.nanmax(np.abs(table), initial=0.0))) > LARGEST:
-        found, limit = beside_limit(highest, LARGEST)
+        shown, limit = beside_limit(highest, LARGEST)
         raise DataError(
-            f"{path}: has a height of {found} m, must be at most {limit} m; the file is damaged, "
+            f"{path}: has a height of {shown} m, must be at most {limit} m; the file is damaged, "
             "perhaps by a transfer that changes line ends; copy it as a binary file"
         )
     jump = np.nan_to_num(np.abs(np.diff(table[:, longs], axis=0))).max(axis=1)
     high = np.flatnonzero(jump > STEEPEST + 2.0 * step)
     if high.size:
-        found, limit = beside_limit(jump[high[0]], STEEPEST + 2.0 * step)
+        shown, limit = beside_limit(jump[high[0]], STEEPEST + 2.0 * step)
         raise DataError(
-            f"{path}: the height changes by {found} m between rows {high[0] + 1} and {high[0] + 2} of the numbers, "
+            f"{path}: the height changes by {shown} m between rows {high[0] + 1} and {high[0] + 2} of the numbers, "
             f"{step:g} m apart, must be at most {limit} m; the file is damaged; export it "
             "again"
         )

@@ -61,9 +61,9 @@ def resampled(
     limit = longest_gap(median)
     gap = int(np.argmax(steps))
     if steps[gap] > limit * (1.0 + UNIFORM_TOLERANCE):
-        found, allowed = beside_limit(steps[gap], limit)
+        shown, allowed = beside_limit(steps[gap], limit)
         raise DataError(
-            f"{sample_name(gap + 1)}: gap of {found} s, --resample fills at most {allowed} s; use the part "
+            f"{sample_name(gap + 1)}: gap of {shown} s, --resample fills at most {allowed} s; use the part "
             f"before it (--to {time[gap]:.9g}) or after it (--from {time[gap + 1]:.9g})"
         )
     factor = max(1, int(np.ceil((1.0 - UNIFORM_TOLERANCE) / (median * rate))))

@@ -86,9 +86,9 @@ class DrivenCar(Plant):
             ):
                 at = int(np.argmax(np.abs(values)))
                 if abs(values[at]) > limit:
-                    found, allowed = beside_limit(abs(values[at]), limit, 4)
+                    shown, allowed = beside_limit(abs(values[at]), limit, 4)
                     return drive, (
-                        f"plate {wheel} would have to be {motion} {found} {unit} at t = "
+                        f"plate {wheel} would have to be {motion} {shown} {unit} at t = "
                         f"{at * step:.6g} s, must be at most {allowed} {unit}, the limit of a shaker; check the "
                         "unit of the target (--unit), or use a narrower --band than "
                         f"{self.target.band[0]:g}:{self.target.band[1]:g}"
