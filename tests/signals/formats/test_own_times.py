@@ -183,8 +183,8 @@ def test_a_column_of_texts_and_numbers_leaves_the_others(tmp_path, marks, quote)
     assert found["Seat Z"].unit == "m/s2" and np.allclose(times(found["Seat Z"]), SLOW)
     assert np.allclose(found["Seat Z"].values, RAIL, atol=1e-6)
     if any(channel.name == "Marker" for channel in found.channels):
-        assert "is no number" in found["Marker"].remark
-        with pytest.raises(DataError, match=r"missing values .*is no number"):
+        assert "is not a number" in found["Marker"].remark
+        with pytest.raises(DataError, match=r"missing values .*is not a number"):
             choose(found, Choice(channels={"z": "Marker"}))
 
 

@@ -67,7 +67,7 @@ def test_a_fit_that_ends_beside_impossible_models_has_not_converged():
     start = [Range(path=path, low=0.2 * value, high=5.0 * value, start=0.5 * value) for path, value in TRUE.items()]
     result = fit(start, [MeasuredMasses(sigma=0.0)], build)
     assert 0.75 < result.values["upper"] / TRUE["upper"] < 0.8 and not result.converged
-    assert result.message == "the fit ends where trial values make no model (no real spring)"
+    assert result.message.endswith("(no real spring)")
 
 
 def test_covariance_is_that_of_the_linearised_problem():

@@ -93,7 +93,7 @@ APPLICATIONS: MappingProxyType[str, Application] = MappingProxyType(
 def application(name: str) -> Application:
     """Return the weightings and factors of a point of contact; raise `ConfigurationError` for an unknown name."""
     if name not in APPLICATIONS:
-        raise ConfigurationError(f"point of contact: found {name!r}, must be one of {', '.join(APPLICATIONS)}")
+        raise ConfigurationError(f"point of contact: must be one of {', '.join(APPLICATIONS)}, not {name!r}")
     return APPLICATIONS[name]
 
 
@@ -128,7 +128,7 @@ def _axis(
     if not settled.size:
         length, settling = beside_limit(response.size * step, weighting(name).settling_s, 4)
         raise DataError(
-            f"acceleration: the record has {length} s, must be longer than the {settling} s in which {name} "
+            f"acceleration: the record lasts {length} s but must be longer than the {settling} s in which {name} "
             "settles; use a longer record, or set --offset keep if it starts at rest"
         )
     duration = weighted.size * step

@@ -58,7 +58,7 @@ def order_cut(
     if highest >= 0.5 * rate:
         shown, limit = beside_limit(highest, 0.5 * rate, 4)
         raise DataError(
-            f"orders: order {max(orders):g} reaches {shown} Hz, must be below {limit} Hz, half the sampling rate"
+            f"orders: order {max(orders):g} reaches {shown} Hz but must be below {limit} Hz, half the sampling rate"
         )
     middles = np.arange(first + 0.5 * TURNS, turned[-1] - 0.5 * TURNS + 1e-9, 0.5 * TURNS)
     amplitudes = np.zeros((len(middles), len(channels), len(orders)), dtype=complex)

@@ -65,7 +65,7 @@ def order_lines(
     if highest >= 0.5 / interval:
         shown, limit = beside_limit(highest, 0.5 / interval, 4)
         raise DataError(
-            f"orders: order {max(orders):g} is {shown} Hz, must be below {limit} Hz, half the sampling rate"
+            f"orders: order {max(orders):g} is {shown} Hz but must be below {limit} Hz, half the sampling rate"
         )
     # Whole segments to the end of the record, which is farthest from the start.
     step = max(round(length * (1.0 - OVERLAP)), 1)

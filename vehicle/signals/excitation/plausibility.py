@@ -91,9 +91,9 @@ def check_level(
         if rms < SMALLEST_RMS and not (moving and np.ptp(z) == 0.0):
             shown, limit = beside_limit(per_metre * rms, per_metre * SMALLEST_RMS)
             raise ImplausibleError(
-                f"{path}: RMS of plate {wheel} is {shown} {unit}, must be at least {limit} {unit}",
-                f"does the column contain metres{', not [mm]' if unit == 'mm' else ''}? Otherwise it is another "
-                "quantity, or a dead sensor",
+                f"{path}: RMS of plate {wheel} is {shown} {unit} but must be at least {limit} {unit}",
+                f"does the column contain values in metres{', not [mm]' if unit == 'mm' else ''}? Otherwise the "
+                "column is another quantity, or the sensor is dead",
             )
         acceleration, index, peak = _peak_acceleration(wheel, z, timestep)
         # A pothole has high accelerations: 60 mm within 12 ms give 800 m/s2. Its depth is checked above.

@@ -64,7 +64,7 @@ def fill_missing(table: Table, time: Vector, column: int) -> tuple[Vector, list[
         begin = int(np.flatnonzero(valid)[largest]) + 1
         shown, allowed = beside_limit(gaps[largest], limit)
         raise DataError(
-            f"{table.place(begin)}:{column + 1}: {name} has no value for {shown} s from this line on, "
+            f"{table.place(begin)}:{column + 1}: {name} has no value for {shown} s from this line on, but "
             f"interpolation fills at most {allowed} s; use the part before or after it"
         )
     filled = values.copy()

@@ -96,7 +96,7 @@ def read_surface(path: Path) -> Surface:
             f"{path}: the numbers have the format {number_format!r}; must be one of {', '.join([*WIDTHS, *BINARY])}"
         )
     if len(longs) < 2 or any(units[index] not in ("m", "") for index in longs):
-        raise DataError(f"{path}: has {len(longs)} long sections (columns of heights), must be at least 2")
+        raise DataError(f"{path}: has {len(longs)} long sections (columns of heights), but at least 2 are needed")
     step = numbers.get("reference_line_increment", 0.0)
     if not 0.0 < step < 100.0:
         raise DataError(f"{path}: reference_line_increment {step:g} m; must be above 0")
@@ -106,7 +106,7 @@ def read_surface(path: Path) -> Surface:
     if (highest := float(np.nanmax(np.abs(table), initial=0.0))) > LARGEST:
         shown, limit = beside_limit(highest, LARGEST)
         raise DataError(
-            f"{path}: has a height of {shown} m, must be at most {limit} m; the file is damaged, "
+            f"{path}: has a height of {shown} m, but at most {limit} m is possible; the file is damaged, "
             "perhaps by a transfer that changes line ends; copy it as a binary file"
         )
     jump = np.nan_to_num(np.abs(np.diff(table[:, longs], axis=0))).max(axis=1)
@@ -115,7 +115,7 @@ def read_surface(path: Path) -> Surface:
         shown, limit = beside_limit(jump[high[0]], STEEPEST + 2.0 * step)
         raise DataError(
             f"{path}: the height changes by {shown} m between rows {high[0] + 1} and {high[0] + 2} of the numbers, "
-            f"{step:g} m apart, must be at most {limit} m; the file is damaged; export it "
+            f"{step:g} m apart, but must change by at most {limit} m; the file is damaged; export it "
             "again"
         )
     u, v = uniform_axis(table.shape[0], step, start), _places(path, [names[index] for index in longs], numbers)
@@ -202,7 +202,7 @@ def _parameters(path: Path, lines: Sequence[str], section: str = "ROAD_CRG") -> 
             try:
                 parameters[name.strip().lower()] = float(value)
             except ValueError:
-                raise DataError(f"{path}: {line!r} in ${section}: must be a number") from None
+                raise DataError(f"{path}: {line!r} in ${section}: the value must be a number") from None
     return parameters
 
 
