@@ -186,7 +186,7 @@ COLUMNS = (*HEADS, *GEOMETRY_HEADS, "roll_centre_lateral_m", "side_swing_height_
 def _report(
     settings: KinematicsSettings, poses: list[WheelPose], geometry: list[WheelGeometry], rates: dict[str, float | None]
 ) -> str:
-    """Return both tables as text."""
+    """Return the two tables as text."""
     joints = "ideal joints" if settings.ideal else "compliant bushings"
     lines = [
         f"{settings.axle} axle, right wheel: changes from the design position; {joints}"

@@ -202,12 +202,13 @@ def test_invalid_parameters_and_targets_are_rejected():
     colour: dict[str, Any] = {"path": "colour", "low": 1.0, "high": 9.0}
     one = [MeasuredMasses()]
     for parameters, targets, message in (
-        ([], one, "parameters"), (PARAMETERS, [], "targets: "), ((*PARAMETERS, PARAMETERS[0]), one, "lower: .*2"),
-        ((*PARAMETERS, Range(**colour)), one, "colour: "),
+        ([], one, "parameters to fit are missing"), (PARAMETERS, [], "targets: .*missing"),
+        ((*PARAMETERS, PARAMETERS[0]), one, "lower: .*2 times"),
+        ((*PARAMETERS, Range(**colour)), one, "colour: has no start"),
     ):  # fmt: skip
         with pytest.raises(ConfigurationError, match=message):
             fit(parameters, targets, dict)
-    with pytest.raises(ConfigurationError, match=" colour"):
+    with pytest.raises(ConfigurationError, match=r"determine no parameter: .* colour"):
         fit([Range(**colour, start=2.0)], one, lambda _: TRUE)
 
 

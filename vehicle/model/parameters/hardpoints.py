@@ -35,7 +35,7 @@ def cross(a: Point, b: Point) -> Point:
 
 
 def unit(vector: Point) -> Point:
-    """Return a vector of length one with this direction."""
+    """Return the unit vector of this direction."""
     length = math.hypot(*vector)
     return (vector[0] / length, vector[1] / length, vector[2] / length)
 

@@ -32,7 +32,7 @@ LEAST_LINES = 8
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class FrfData:
-    """Measured FRFs of one level.
+    """Measured FRFs at a level.
 
     Attributes:
         frequency: increasing frequencies [Hz], shape (m,).

@@ -57,7 +57,7 @@ class SweptCases(Protocol):
         """Return the values of a column, NaN for a failed run; (cases,)."""
 
     def paths(self) -> list[str]:
-        """Return all modified parameter paths."""
+        """Return the modified parameter paths."""
 
     def rows(self) -> Iterator[Row]:
         """Return the rows with numbers as texts of all digits."""
