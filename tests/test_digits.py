@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from vehicle.digits import number
+from vehicle.digits import beside_limit, number
 
 PACKAGE = Path(__file__).resolve().parents[1] / "vehicle"
 
@@ -26,6 +26,21 @@ FEW = re.compile(r"(float\(f\")?\{[^{}]*:[^{}]*\.[12]g\}")
 )
 def test_digits_without_an_exponent(value, digits, text):
     assert number(value, digits) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "limit", "shown"),
+    [
+        (0.1503, 0.15, ("0.1503", "0.15")),
+        (-0.1503, 0.15, ("-0.1503", "0.15")),
+        (0.3, 0.15, ("0.3", "0.15")),
+        (2.8649, 2.86479, ("2.8649", "2.8648")),
+        (123456.0, 1000.0, ("123000", "1000")),
+        (0.15, 0.15, ("0.15", "0.15")),
+    ],
+)
+def test_a_value_beside_its_limit_differs_from_it(value, limit, shown):
+    assert beside_limit(value, limit) == shown
 
 
 def test_no_text_of_the_package_has_one_or_two_digits_with_an_exponent():

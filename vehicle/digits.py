@@ -18,6 +18,12 @@ def number(value: float | None, digits: int = 3) -> str:
     return "–" if value is None else f"{rounded(value, digits):.10g}"
 
 
+def beside_limit(value: float, limit: float, digits: int = 3) -> tuple[str, str]:
+    """Return a value and its limit with as many digits, at least `digits`, as their sizes need to differ."""
+    shown = next((more for more in range(digits, 10) if number(abs(value), more) != number(abs(limit), more)), digits)
+    return number(value, shown), number(limit, shown)
+
+
 def duration(seconds: float) -> str:
     """Return a computing time for people: in s below 2 min, in min below 2 h, else in h.
 

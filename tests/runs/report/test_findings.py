@@ -1,5 +1,6 @@
 """Findings of a report against the tables of its run."""
 
+import json
 import re
 from dataclasses import replace
 from html import unescape
@@ -113,3 +114,14 @@ def test_the_wheelbase_filter_of_runs_is_named_where_it_differs():
     assert "(a 4.03, b 3.02 Hz)" in text
     assert wheelbase_words([run("a", 80.0), run("b", 80.0)]) == []
     assert wheelbase_words([run("a", 80.0, None), run("b", 60.0)]) == []
+
+
+def test_a_summary_of_an_earlier_version_lacks_all_comfort_values_but_the_weighted_rms(reported, tmp_path):
+    content = json.loads((reported.folder / "summary.json").read_text())
+    for place in content["comfort"].values():
+        axes = {axis: {"weighted_rms": place["iso2631"][axis]["weighted_rms"]} for axis in "xyz"}
+        place["iso2631"] = axes | {"vector_sum": {"weighted_rms": place["iso2631"]["vector_sum"]["weighted_rms"]}}
+    (tmp_path / "summary.json").write_text(json.dumps(content))
+    earlier, now = read_summary(tmp_path).comfort, read_summary(reported.folder).comfort
+    assert {name: place.weighted for name, place in earlier.items()} == {n: place.weighted for n, place in now.items()}
+    assert all(place.iso2631.axes["z"].mtvv is None for place in earlier.values())

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vehicle.digits import beside_limit
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 from vehicle.model.parameters.force_elements import LIFTS, PULLS
@@ -78,9 +79,10 @@ class Validity:
         messages = []
         largest = max(self.angles, key=lambda body: self.angles[body])
         if not self.within_limits:
+            angle, limit = beside_limit(np.degrees(self.angles[largest]), np.degrees(self.limit))
             messages.append(
-                f"{largest} rotates by {np.degrees(self.angles[largest]):.3g} deg, but the linear geometry of the "
-                f"reduced engine is valid up to {np.degrees(self.limit):.3g} deg{REMEDY}"
+                f"{largest} rotates by {angle} deg, but the linear geometry of the reduced engine is valid up to "
+                f"{limit} deg{REMEDY}"
             )
         for wheel, load in self.loads.items():
             if load < 0.0 and wheel not in self.one_sided:

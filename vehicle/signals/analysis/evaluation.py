@@ -7,6 +7,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import ArrayLike
 
+from vehicle.digits import beside_limit
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis import rail_comfort
 from vehicle.signals.analysis.contact_vibration import AxisVibration, ContactVibration, VibrationSums
@@ -125,10 +126,10 @@ def _axis(
     response = weighted_record(step, record, name)
     weighted, settled = span.whole(response), span.settled(response, name)
     if not settled.size:
+        length, settling = beside_limit(response.size * step, weighting(name).settling_s, 4)
         raise DataError(
-            f"acceleration: the record lasts {response.size * step:.4g} s but must be longer than the "
-            f"{weighting(name).settling_s:g} s in which {name} settles; use a longer record, or set --offset keep if "
-            "it starts at rest"
+            f"acceleration: the record lasts {length} s but must be longer than the {settling} s in which {name} "
+            "settles; use a longer record, or set --offset keep if it starts at rest"
         )
     duration = weighted.size * step
     rms = weighted_rms(weighted)
@@ -149,7 +150,8 @@ def _axis(
         remarks.append(
             f"MTVV and crest factor leave out the first {weighting(name).settling_s:g} s, in which {name} settles: "
             f"with them MTVV is {mtvv(step, weighted, average=average):.3g} instead of {transient:.3g} m/s2, the peak "
-            f"{with_it:.3g} instead of {peak:.3g} m/s2; if the record starts at rest, set --offset keep"
+            f"{with_it:.3g} instead of {peak:.3g} m/s2; weighted RMS {rms:.3g} m/s2 with them, {settled_rms:.3g} m/s2 "
+            "without; if the record starts at rest, set --offset keep"
         )
     values = AxisVibration(
         weighting=name,
@@ -248,9 +250,8 @@ def evaluate(
         still = "all three axes are" if len(axes) == 3 else f"{' and '.join(axes)} is"
         raise DataError(f"acceleration: {still} zero throughout; select channels that contain vibration")
     if not 0.0 <= skip < (rows[0].size - 1) * step:
-        raise ConfigurationError(
-            f"skip: found {skip:g} s, must be at least 0 and shorter than the record, {rows[0].size * step:.4g} s"
-        )
+        shown, last = beside_limit(skip, (rows[0].size - 1) * step, 4)
+        raise ConfigurationError(f"skip: found {shown} s, must be at least 0 and below {last} s")
     span = _Span(time_step=step, skip=skip, from_rest=from_rest)
     values: dict[str, AxisVibration] = {}
     remarks = []

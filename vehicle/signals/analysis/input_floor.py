@@ -66,6 +66,9 @@ TRANSIENT = (CAUSES[2], CAUSES[4])
 MOST = 0.9
 """Minimum share of lines without FRF above a frequency, for messages that name this frequency alone."""
 
+MOST_RANGES = 4
+"""Maximum number of frequency ranges in a message; more are given by their span."""
+
 FEW = 0.05
 """Maximum share of lines without FRF below which the input is good, for messages: a random input may miss single lines.
 """
@@ -211,7 +214,7 @@ def silent_lines(
 
 
 def cause_messages(frequency: Vector, silent: NDArray[np.int_], causes: Sequence[str] = CAUSES) -> list[str]:
-    """Return a message for each remedy: span and number of lines without FRF, and their most frequent cause."""
+    """Return a message for each remedy: ranges and number of lines without FRF, and their most frequent cause."""
     groups: dict[str, list[int]] = {}
     for number, cause in enumerate(causes, 1):
         remedy = "drive the car with a random signal" if cause in TRANSIENT else "give the input more power there"
@@ -220,11 +223,20 @@ def cause_messages(frequency: Vector, silent: NDArray[np.int_], causes: Sequence
     for remedy, numbers in groups.items():
         affected = np.flatnonzero(np.isin(silent, numbers))
         if affected.size:
-            low, high = (f"{frequency[line]:.3g}" for line in affected[[0, -1]])
             upper = affected[-1] == frequency.size - 1 and affected.size >= MOST * (frequency.size - affected[0])
-            span = f"above {low}" if upper else f"at {low}" if low == high else f"at {low} to {high}"
-            cause = causes[max(numbers, key=lambda number: np.count_nonzero(silent == number)) - 1]
+            # Consecutive lines form a range.
+            ranges = np.split(affected, np.flatnonzero(np.diff(affected) > 1) + 1)
+            ends = [[f"{frequency[line]:.3g}" for line in part[[0, -1]]] for part in ranges]
+            if upper:
+                span = f"above {ends[0][0]}"
+            elif len(ranges) > MOST_RANGES:
+                span = f"between {ends[0][0]} and {ends[-1][1]}"
+            else:
+                span = "at " + ", ".join(low if low == high else f"{low} to {high}" for low, high in ends)
+            counts = {number: np.count_nonzero(silent == number) for number in numbers}
+            cause = causes[max(numbers, key=lambda number: counts[number]) - 1]
+            mostly = "mostly, " if max(counts.values()) < affected.size else ""
             advice = "the other lines are good" if affected.size <= FEW * frequency.size else remedy
             more = "" if advice == cause else f"; {advice}"
-            messages.append(f"no FRF {span} Hz ({affected.size} of {frequency.size} lines): {cause}{more}")
+            messages.append(f"no FRF {span} Hz ({affected.size} of {frequency.size} lines): {mostly}{cause}{more}")
     return messages

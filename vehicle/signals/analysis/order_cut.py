@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vehicle.arrays import Complex
+from vehicle.digits import beside_limit
 from vehicle.errors import DataError
 from vehicle.signals.analysis.samples import Vector
 
@@ -51,12 +52,13 @@ def order_cut(
     turned = angle / (2.0 * np.pi)
     first = float(turned[min(int(np.searchsorted(time, begin - 1e-9)), time.size - 1)])
     if turned[-1] - first < TURNS:
-        raise DataError(f"orders: {turned[-1] - first:.3g} turns, must be at least {TURNS}; use a longer run")
+        shown, limit = beside_limit(turned[-1] - first, TURNS)
+        raise DataError(f"orders: {shown} turns, must be at least {limit}; use a longer run")
     highest, rate = max(orders) * float(np.max(speed)) / (2.0 * np.pi), 1.0 / float(time[1] - time[0])
     if highest >= 0.5 * rate:
+        shown, limit = beside_limit(highest, 0.5 * rate, 4)
         raise DataError(
-            f"orders: order {max(orders):g} reaches {highest:.4g} Hz but must be below half the sampling rate of "
-            f"{rate:g} Hz"
+            f"orders: order {max(orders):g} reaches {shown} Hz but must be below {limit} Hz, half the sampling rate"
         )
     middles = np.arange(first + 0.5 * TURNS, turned[-1] - 0.5 * TURNS + 1e-9, 0.5 * TURNS)
     amplitudes = np.zeros((len(middles), len(channels), len(orders)), dtype=complex)

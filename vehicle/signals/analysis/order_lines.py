@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vehicle.arrays import Complex
+from vehicle.digits import beside_limit
 from vehicle.errors import DataError
 from vehicle.signals.analysis.samples import Vector
 
@@ -58,12 +59,13 @@ def order_lines(
     first = round((begin - float(time[0])) / interval)
     length, count = round(TURNS / (turns * interval)), time.size - first
     if count < length:
-        raise DataError(f"orders: {count * interval * turns:.3g} turns, must be at least {TURNS}; use a longer run")
+        shown, limit = beside_limit(count * interval * turns, TURNS)
+        raise DataError(f"orders: {shown} turns, must be at least {limit}; use a longer run")
     highest = max(orders) * turns
     if highest >= 0.5 / interval:
+        shown, limit = beside_limit(highest, 0.5 / interval, 4)
         raise DataError(
-            f"orders: order {max(orders):g} is {highest:.4g} Hz but must be below half the sampling rate of "
-            f"{1.0 / interval:g} Hz"
+            f"orders: order {max(orders):g} is {shown} Hz but must be below {limit} Hz, half the sampling rate"
         )
     # Whole segments to the end of the record, which is farthest from the start.
     step = max(round(length * (1.0 - OVERLAP)), 1)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from vehicle.digits import number
+from vehicle.digits import beside_limit, number
 from vehicle.errors import DataError
 from vehicle.signals.analysis.fast_length import fast_length
 from vehicle.signals.analysis.samples import Vector
@@ -78,22 +78,20 @@ def check_level(
         if not unit:
             unit, question, remedy = "m", "is the unit of the channel wrong?", f"set --unit {wheel}=UNIT"
         index = int(np.argmax(np.abs(z)))
+        height, limit = beside_limit(per_metre * z[index], per_metre * LARGEST_DISPLACEMENT)
+        displaced = f"plate {wheel} is displaced by {height} {unit} at {index * timestep:.6g} s"
         if abs(z[index]) > LARGEST_DISPLACEMENT and rare_events(z, LARGEST_DISPLACEMENT):
-            events.append(
-                f"plate {wheel} is displaced by {per_metre * z[index]:.3g} {unit} at {index * timestep:.4g} s, usually "
-                f"at most {per_metre * LARGEST_DISPLACEMENT:g} {unit}: a pothole or a kerb?"
-            )
+            events.append(f"{displaced}, usually at most {limit} {unit}: a pothole or a kerb?")
         elif abs(z[index]) > LARGEST_DISPLACEMENT:
             raise ImplausibleError(
-                f"{path}: plate {wheel} is displaced by {per_metre * z[index]:.3g} {unit} at {index * timestep:.4g} s, "
-                f"must be at most {per_metre * LARGEST_DISPLACEMENT:g} {unit}",
-                f"{question} If so, {remedy}; --remove-mean removes a constant offset",
+                f"{path}: {displaced}, must be at most {limit} {unit}",
+                f"{question} If so, {remedy}; if it is an offset, subtract the mean (shaker --remove-mean)",
             )
         rms = float(np.std(z))
         if rms < SMALLEST_RMS and not (moving and np.ptp(z) == 0.0):
+            shown, limit = beside_limit(per_metre * rms, per_metre * SMALLEST_RMS)
             raise ImplausibleError(
-                f"{path}: RMS of plate {wheel} is {per_metre * rms:.3g} {unit} but must be at least "
-                f"{per_metre * SMALLEST_RMS:g} {unit}",
+                f"{path}: RMS of plate {wheel} is {shown} {unit} but must be at least {limit} {unit}",
                 f"does the column contain values in metres{', not [mm]' if unit == 'mm' else ''}? Otherwise the "
                 "column is another quantity, or the sensor is dead",
             )
@@ -130,8 +128,8 @@ def _peak_acceleration(wheel: str, z: Vector, timestep: float) -> tuple[Vector, 
     return (
         acceleration,
         index,
-        f"plate {wheel} accelerates by {acceleration[index]:.3g} m/s2 at {index * timestep:.4g} s (below "
-        f"{ACCELERATION_BAND:g} Hz)",
+        f"plate {wheel} accelerates by {beside_limit(acceleration[index], LARGEST_ACCELERATION)[0]} m/s2 at "
+        f"{index * timestep:.6g} s (below {ACCELERATION_BAND:g} Hz)",
     )
 
 

@@ -70,7 +70,11 @@ def _causes(wheel: str, z: Vector, timestep: float) -> list[str]:
     rms = float(np.std(z))
     first = float(z[0])
     if abs(first) > OFFSET_SHARE * rms:
-        zero = ": the zero of the sensor? --remove-mean subtracts the mean" if abs(first) > POSITION_SHARE * rms else ""
+        zero = (
+            ": the zero of the sensor? Subtract the mean (shaker --remove-mean)"
+            if abs(first) > POSITION_SHARE * rms
+            else ""
+        )
         return [f"plate {wheel} begins at {1e3 * first:.3g} mm, not at 0, and moves by {1e3 * rms:.3g} mm (RMS){zero}"]
     steps = np.diff(z)
     if abs(steps[0]) > VELOCITY_SHARE * float(np.sqrt(np.mean(steps**2))):

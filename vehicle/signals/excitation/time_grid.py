@@ -6,6 +6,7 @@ import numpy as np
 import scipy
 
 from vehicle.arrays import Vector
+from vehicle.digits import beside_limit
 from vehicle.errors import DataError
 from vehicle.signals.excitation.signal import MINIMUM_SAMPLES
 from vehicle.signals.formats.clock import UNIFORM_TOLERANCE, longest_gap
@@ -26,8 +27,9 @@ def check_rate(path: Path, rate: float) -> tuple[str, ...]:
     """Reject a sampling rate [Hz] below `LOWEST_RATE`; return a notice on the usable band below `FULL_RATE`."""
     if rate < LOWEST_RATE * (1.0 - 1e-9):  # tolerance for a rate from rounded times
         hint = "; are the times in ms?" if FULL_RATE <= rate * 1000.0 <= 5e3 else ""
+        shown, limit = beside_limit(rate, LOWEST_RATE, 4)
         raise DataError(
-            f"{path}: sampling rate {rate:.4g} Hz, must be at least {LOWEST_RATE:g} Hz (usable up to "
+            f"{path}: sampling rate {shown} Hz, must be at least {limit} Hz (usable up to "
             f"{USABLE * LOWEST_RATE:g} Hz){hint}; measure or export with a higher rate"
         )
     if rate >= FULL_RATE * (1.0 - UNIFORM_TOLERANCE):
@@ -60,9 +62,10 @@ def fill_missing(table: Table, time: Vector, column: int) -> tuple[Vector, list[
     largest = int(np.argmax(gaps))
     if gaps[largest] > limit * (1.0 + UNIFORM_TOLERANCE):
         begin = int(np.flatnonzero(valid)[largest]) + 1
+        shown, allowed = beside_limit(gaps[largest], limit)
         raise DataError(
-            f"{table.place(begin)}:{column + 1}: {name} has no value for {gaps[largest]:.3g} s from this line on, but "
-            f"interpolation fills at most {limit:.3g} s; use the part before or after it"
+            f"{table.place(begin)}:{column + 1}: {name} has no value for {shown} s from this line on, but "
+            f"interpolation fills at most {allowed} s; use the part before or after it"
         )
     filled = values.copy()
     filled[~valid] = scipy.interpolate.CubicSpline(time[valid], values[valid])(time[~valid])

@@ -3,6 +3,7 @@
 import numpy as np
 
 from vehicle.arrays import Vector
+from vehicle.digits import beside_limit
 from vehicle.errors import DataError
 from vehicle.signals.formats.stamps import StampClock, smallest_spread, stamp_clock
 from vehicle.signals.formats.table import Table
@@ -51,10 +52,11 @@ def check_uniform(table: Table, time: Vector, remedy: str = "resample it to unif
             "which is not filled; use the part before or after it"
         )
     if worst > UNIFORM_TOLERANCE:
+        shown, limit = beside_limit(worst, UNIFORM_TOLERANCE)
         raise DataError(
             f"{table.place(row)}: time steps are not uniform: {step:.6g} s deviates from the median "
-            f"{float(np.median(np.diff(time))):.6g} s by the factor {worst:.3g}, which must be at most "
-            f"{UNIFORM_TOLERANCE:g}; write the time with more digits, or {remedy}"
+            f"{float(np.median(np.diff(time))):.6g} s by the factor {shown}, which must be at most "
+            f"{limit}; write the time with more digits, or {remedy}"
         )
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.arrays import Vector
+from vehicle.digits import beside_limit
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import ROAD_PROFILE, Channel, Measurement, check_length, uniform_axis
 
@@ -102,19 +103,19 @@ def read_surface(path: Path) -> Surface:
     start, last = numbers.get("reference_line_start_u", 0.0), numbers.get("reference_line_end_u")
     rows = None if last is None else round((last - start) / step) + 1
     table = _table(path, data[end.end() :], number_format, len(names), rows)
-    if float(np.nanmax(np.abs(table), initial=0.0)) > LARGEST:
+    if (highest := float(np.nanmax(np.abs(table), initial=0.0))) > LARGEST:
+        shown, limit = beside_limit(highest, LARGEST)
         raise DataError(
-            f"{path}: has a height of {np.nanmax(np.abs(table)):.3g} m, but at most {LARGEST:g} m is possible; the "
-            "file "
-            "is damaged, perhaps by a transfer that changes line ends; copy it as a binary file"
+            f"{path}: has a height of {shown} m, but at most {limit} m is possible; the file is damaged, "
+            "perhaps by a transfer that changes line ends; copy it as a binary file"
         )
     jump = np.nan_to_num(np.abs(np.diff(table[:, longs], axis=0))).max(axis=1)
     high = np.flatnonzero(jump > STEEPEST + 2.0 * step)
     if high.size:
+        shown, limit = beside_limit(jump[high[0]], STEEPEST + 2.0 * step)
         raise DataError(
-            f"{path}: the height changes by {jump[high[0]]:.3g} m between rows {high[0] + 1} and {high[0] + 2} of the "
-            f"numbers, {step:g} m apart, but must change by at most {STEEPEST + 2.0 * step:.3g} m; the file is "
-            "damaged; export it "
+            f"{path}: the height changes by {shown} m between rows {high[0] + 1} and {high[0] + 2} of the numbers, "
+            f"{step:g} m apart, but must change by at most {limit} m; the file is damaged; export it "
             "again"
         )
     u, v = uniform_axis(table.shape[0], step, start), _places(path, [names[index] for index in longs], numbers)

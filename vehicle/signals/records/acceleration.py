@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.arrays import Vector
+from vehicle.digits import beside_limit
 from vehicle.errors import DataError
 from vehicle.names import AXES
 from vehicle.signals.formats.reader import is_table, read_columns, read_record
@@ -129,15 +130,16 @@ def read_acceleration(path: str | Path, point: str | None = None, choice: Choice
         values = record.channels[name] * UNITS[unit]
         deviation = np.abs(values - values.mean())
         largest = float(deviation.max())
+        shown, limit = beside_limit(largest, LARGEST_ACCELERATION)
         if largest > LARGEST_ACCELERATION and rare_events(deviation, LARGEST_ACCELERATION):
             events.append(
-                f"{axis}: deviates by {largest:.3g} m/s2 from its mean at {record.time[int(np.argmax(deviation))]:.4g} "
-                f"s, usually at most {LARGEST_ACCELERATION:g} m/s2: a pothole, or a spike of the logger?"
+                f"{axis}: deviates by {shown} m/s2 from its mean at {record.time[int(np.argmax(deviation))]:.6g} s, "
+                f"usually at most {limit} m/s2: a pothole, or a spike of the logger?"
             )
         elif largest > LARGEST_ACCELERATION:
             raise DataError(
-                f"{file}: column {name!r} deviates by {largest:.3g} m/s2 from its mean but must deviate by at most "
-                f"{LARGEST_ACCELERATION:g}; is it in mm/s2, or is there a spike? Correct the header or the record"
+                f"{file}: column {name!r} deviates by {shown} m/s2 from its mean but must deviate by at most "
+                f"{limit}; is it in mm/s2, or is there a spike? Correct the header or the record"
             )
         xyz[axis] = values
     # `choose` checks its channels before they are filtered.

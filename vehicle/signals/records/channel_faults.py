@@ -107,8 +107,9 @@ def faults(
             options = ("--to", f"{begin:.9g}") if first else ("--from", f"{end:.9g}")
             findings.append(
                 Finding(
-                    f"{name}: constant from {begin:.4g} to {end:.4g} s: a stuck sensor or a pause? It counts in all "
-                    f"mean values; {' '.join(options)} selects the part {'before' if first else 'after'} it",
+                    f"{name}: constant for {end - begin:.3g} s, from {begin:.7g} to {end:.7g} s: a stuck sensor "
+                    f"or a pause? It counts in all mean values; {' '.join(options)} selects the part "
+                    f"{'before' if first else 'after'} it",
                     "constant",
                     options,
                 )

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from vehicle.digits import number
+from vehicle.digits import beside_limit, number
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import AXES
 from vehicle.signals.analysis.contact_vibration import ContactVibration
@@ -284,10 +284,12 @@ def _read(
         record.channels, effects, xyz.mean(axis=1), line[:, -1] - line[:, 0], strict=True
     ):
         if axis in checked and (effect > OFFSET_EFFECT or abs(mean) > LARGEST_MEAN):
+            shown, limit = beside_limit(mean, LARGEST_MEAN)
+            percent, allowed = beside_limit(100.0 * effect, 100.0 * OFFSET_EFFECT)
             raise DataError(
-                f"{file}: the mean of column {axis!r} is {mean:.3g} m/s2, must be at most {LARGEST_MEAN:g} m/s2; with "
-                f"the drift of {number(drift, 2)} m/s2 it changes weighted RMS or VDV by {100 * effect:.3g} %, must be "
-                f"at most {100 * OFFSET_EFFECT:g} %; set --offset remove for a sensor offset or gravity, --offset keep "
+                f"{file}: the mean of column {axis!r} is {shown} m/s2, must be at most {limit} m/s2; with the drift of "
+                f"{number(drift, 2)} m/s2 it changes weighted RMS or VDV by {percent} %, must be at most {allowed} %; "
+                "set --offset remove for a sensor offset or gravity, --offset keep "
                 "if the record begins at rest"
             )
     return record

@@ -6,7 +6,7 @@ import numpy as np
 import scipy
 
 from vehicle.arrays import Vector
-from vehicle.digits import number
+from vehicle.digits import beside_limit, number
 from vehicle.errors import DataError
 from vehicle.signals.formats.clock import UNIFORM_TOLERANCE, longest_gap
 
@@ -62,8 +62,9 @@ def resampled(
     limit = longest_gap(median)
     gap = int(np.argmax(steps))
     if steps[gap] > limit * (1.0 + UNIFORM_TOLERANCE):
+        shown, allowed = beside_limit(steps[gap], limit)
         raise DataError(
-            f"{sample_name(gap + 1)}: gap of {steps[gap]:.3g} s, --resample fills at most {limit:.3g} s; use the part "
+            f"{sample_name(gap + 1)}: gap of {shown} s, --resample fills at most {allowed} s; use the part "
             f"before it (--to {time[gap]:.9g}) or after it (--from {time[gap + 1]:.9g})"
         )
     factor = max(1, int(np.ceil((1.0 - UNIFORM_TOLERANCE) / (median * rate))))

@@ -3,6 +3,7 @@
 import numpy as np
 
 from vehicle.arrays import Complex, Vector
+from vehicle.digits import beside_limit
 from vehicle.engines.reduced.equivalent_damping import equivalent_damping, linearised_response
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Car, Run
@@ -85,9 +86,10 @@ class DrivenCar(Plant):
             ):
                 at = int(np.argmax(np.abs(values)))
                 if abs(values[at]) > limit:
+                    shown, allowed = beside_limit(abs(values[at]), limit, 4)
                     return drive, (
-                        f"plate {wheel} would have to be {motion} {abs(values[at]):.4g} {unit} at t = "
-                        f"{at * step:.4g} s, must be at most {limit:g} {unit}, the limit of a shaker; check the "
+                        f"plate {wheel} would have to be {motion} {shown} {unit} at t = "
+                        f"{at * step:.6g} s, must be at most {allowed} {unit}, the limit of a shaker; check the "
                         "unit of the target (--unit), or use a narrower --band than "
                         f"{self.target.band[0]:g}:{self.target.band[1]:g}"
                     )
