@@ -211,7 +211,10 @@ class Car:
         if not isinstance(other, Car):
             return NotImplemented
         body, others = (own_body_file(car.vehicle, car.folder) for car in (self, other))
-        same = body == others or bool(body and others and cmp(body, others, shallow=False))
+        try:
+            same = body == others or bool(body and others and cmp(body, others, shallow=False))
+        except OSError:  # a body file was moved or deleted
+            return False
         return same and self.vehicle == other.vehicle
 
     def __hash__(self) -> int:

@@ -108,7 +108,7 @@ def _require_one_figure(settings: SweepSettings) -> None:
     """Check that parameters are ranked by one figure."""
     names = settings.measure
     if isinstance(names, Sequence) and not isinstance(names, str) and len(names) > 1:
-        raise ConfigurationError(f"--each ranks by one figure; found --measure {len(names)} times, give it once")
+        raise ConfigurationError(f"--each ranks by one figure; found {len(names)} values of --measure, give one")
 
 
 def _is_curve(path: str, value: Any) -> bool:
