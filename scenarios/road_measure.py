@@ -104,13 +104,13 @@ class RoadMeasure:
         comfort = comfort_values(runs.timestep, rail[:, :, record])
         right, left = (runs[name][:, record] for name in self._dampers)
         load = runs[f"tyre_{self.wheel}_force_z"][:, record]
-        limit = runs.slip_velocity
+        limit, limit_left = runs.slip_velocities((self.wheel, across(self.wheel))).T
         return {
             UNWEIGHTED: comfort.overall,
             WEIGHTED: np.array([weighted_rms_of(runs.timestep, xyz, skip=self.lead)[3] for xyz in rail]),
             "gaussian_error": comfort.error * comfort.overall,
             "slip": slip_shares(right, limit),
-            "slip_left": slip_shares(left, limit),
+            "slip_left": slip_shares(left, limit_left),
             "slip_less": slip_shares(right, (1.0 - SLIP_STEP) * limit),
             "slip_more": slip_shares(right, (1.0 + SLIP_STEP) * limit),
             "saturated": slip_shares(right, np.full_like(limit, SATURATED_VELOCITY)),

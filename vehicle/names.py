@@ -1,7 +1,7 @@
 """Names of the whole package: corners, sides, axes, engines, channels with their units."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 from vehicle.errors import ConfigurationError
 
@@ -52,6 +52,30 @@ def wheel_words(wheel: str, wheels: Iterable[str]) -> str:
     """Return the name of a wheel: "right front wheel" for a car with one axle, else "rear right wheel"."""
     side = side_of(wheel, wheels)
     return f"{side} front wheel" if side in SIDE_SIGN and wheel.startswith("f") else f"{side} wheel"
+
+
+def slip_words(velocities: Mapping[str, float], wheels: Collection[str]) -> str:
+    """Return slip velocities in mm/s: "6", or with the dampers if they differ: "6 (front) and 20 (rear)".
+
+    Args:
+        velocities: wheel of each damper to its slip velocity [m/s].
+        wheels: names of all wheels of the car.
+    """
+    by_limit: dict[str, list[str]] = {}
+    for wheel, velocity in velocities.items():
+        by_limit.setdefault(f"{1e3 * velocity:g}", []).append(wheel)
+    if len(by_limit) == 1:
+        return next(iter(by_limit))
+    sides = {wheel: side_of(wheel, wheels) for wheel in velocities}
+    parts = []
+    for limit, dampers in by_limit.items():
+        names = []
+        for wheel in dampers:
+            axle = sides[wheel].rpartition(" ")[0]
+            alike = all(other in dampers for other, side in sides.items() if side.startswith(f"{axle} "))
+            names.append(axle if axle and alike else sides[wheel])
+        parts.append(f"{limit} ({', '.join(dict.fromkeys(names))})")
+    return " and ".join(parts)
 
 
 def point_words(point: str) -> str:

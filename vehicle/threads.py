@@ -20,7 +20,8 @@ _lock = Lock()
 _entered: Counter[int] = Counter()
 """Number of `one_blas_thread` blocks that each thread of this process is in."""
 _loaded_single = False
-"""True if NumPy and SciPy load their libraries with one thread, so that there is nothing to limit."""
+"""True if NumPy and SciPy load their libraries with one thread, so that there is nothing to limit; OpenBLAS, MKL and
+libraries on OpenMP read the environment."""
 _postponed: dict[Any, int] = {}
 """Library to the number of threads to restore when no thread is in a block any more."""
 

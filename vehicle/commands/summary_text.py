@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING
 
 from vehicle.digits import number
-from vehicle.names import side_of
+from vehicle.names import side_of, slip_words
 
 if TYPE_CHECKING:
     from vehicle.signals.records.run_summary import Peaks, RunSummary, SolverSummary
@@ -61,7 +61,7 @@ def _dampers(summary: RunSummary) -> list[str]:
     if not first:
         return []
     full = {wheel: summary.friction_saturated_share[wheel] for wheel in first}
-    limit, fast = 1e3 * share["slip_velocity"], 1e3 * summary.saturated_velocity
+    limit, fast = slip_words(summary.slip_limits, list(first)), 1e3 * summary.saturated_velocity
     started = {wheel: time for wheel, time in first.items() if time is not None}
     slow = max(full.values()) >= NAMED_SHARE
     every, ending = {1: ("the damper", "s"), 2: ("both dampers", "")}.get(len(first), ("all dampers", ""))
@@ -69,13 +69,13 @@ def _dampers(summary: RunSummary) -> list[str]:
         shares = _each(first, lambda w, side: f"{number(100 * share[w])} % ({side})", " and ")
         earliest = min(started, key=lambda wheel: started[wheel])
         lines = [
-            f"damper      slip (|v| > {limit:g} mm/s) for {shares} of the time, first at {started[earliest]:.3g} s "
+            f"damper      slip (|v| > {limit} mm/s) for {shares} of the time, first at {started[earliest]:.3g} s "
             f"({side_of(earliest, first)})"
         ]
     elif slow:
-        lines = [f"damper      {every} slide{ending} slowly at times, never faster than {limit:g} mm/s"]
+        lines = [f"damper      {every} slide{ending} slowly at times, never faster than {limit} mm/s"]
     else:
-        lines = [f"damper      {every} stick{ending} all the time (|v| < {limit:g} mm/s)"]
+        lines = [f"damper      {every} stick{ending} all the time (|v| < {limit} mm/s)"]
     if slow:
         shares = _each(first, lambda w, side: f"{number(100 * full[w])} % ({side})", " and ")
         lines.append(f"            above {fast:g} mm/s, where friction has its full value, for {shares}")

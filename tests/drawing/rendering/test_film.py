@@ -1,18 +1,23 @@
 """A film of a fabricated recording, and the frame around it."""
 
 import subprocess
+from typing import Any
 
 import mujoco
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
+from tests.drawing.rendering.conftest import FakeCar, FakeRun, fabricated
 from vehicle.drawing.rendering.backend import choose_backend, find_ffmpeg
 from vehicle.drawing.rendering.crew import drawn_by
 from vehicle.drawing.rendering.film import film
 from vehicle.drawing.rendering.layout import Layout
 from vehicle.drawing.rendering.overlay import SLIP_COLOUR, STICK_COLOUR
-from vehicle.drawing.rendering.shot import Shot, Take
+from vehicle.drawing.rendering.plots import plot_time
+from vehicle.drawing.rendering.shot import Shot, Take, traces
 from vehicle.errors import ConfigurationError, OutputError
+from vehicle.runs.car import Car
 
 
 def shot(run, **options):
@@ -121,6 +126,36 @@ def test_lamps_show_the_slip_of_each_damper(run):
         assert frame.shape == (180, 320, 3)
         plate = {tuple(pixel) for pixel in frame[:22, 255:].reshape(-1, 3).tolist()}
         assert {STICK_COLOUR, SLIP_COLOUR} & plate == colours
+
+
+def test_lamps_traces_plots_and_heading_take_the_limit_of_each_damper(tmp_path, monkeypatch):
+    saved: list[Any] = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: saved.append(figure))
+    lamps, bands = [], []
+    for rear in (0.006, 0.03):
+        model = Car.load("sedan", {"rear.damper.slip_velocity": rear}).model
+        recording = fabricated(model, 0.3)
+        for wheel in ("fl", "rr", "rl"):
+            recording[f"damper_{wheel}_velocity"][:] = recording["damper_fr_velocity"]
+        run = FakeRun(car=FakeCar(model=model), recording=recording)
+        prepared = shot(run, start=0.0, duration=0.3)
+        lamps.append(prepared.scene.lamps(0.20))
+        bands.append([trace.band for trace in traces([prepared.scene], prepared.cut, 0.1, ("fr", "rr"))][-2:])
+        limits = "6" if rear == 0.006 else "6 (front) and 30 (rear)"
+        assert f"SLIP: above {limits} mm/s" in " ".join(prepared.overlay.heading)
+        plot_time(tmp_path / "time.png", run)
+        assert f"±{limits} mm/s" in " ".join(saved[-1].get_supxlabel().split())
+        dashed = {
+            axis.get_title(): {line.get_xdata()[0] for line in axis.get_lines() if line.get_linestyle() == "--"}
+            for part in (saved[-1], *saved[-1].subfigs)
+            for axis in part.axes
+            if axis.get_title().endswith("damper") and "liveliest" not in axis.get_title()
+        }
+        assert dashed["front right damper"] == {-6.0, 6.0}
+        assert dashed["rear right damper"] == {-1e3 * rear, 1e3 * rear}
+    slips = {f"damper {corner}": True for corner in ("front right", "front left", "rear right", "rear left")}
+    assert lamps == [slips, {name: "front" in name for name in slips}]
+    assert bands == [[6.0, 6.0], [6.0, 30.0]]
 
 
 def test_a_short_slip_between_two_frames_lights_the_lamp(run):

@@ -285,7 +285,7 @@ def test_reactions_are_those_of_the_standard():
 
 
 def test_a_time_and_a_share_have_differences_and_no_ratio():
-    assert difference(3.57, 28.2, "s") == "+24.6 s" and difference(2.0, 5.5, "%") == "+3.5 percentage points"
+    assert difference(3.57, 28.2, "s") == "+24.6 s" and difference(2.0, 5.5, "%") == "+3.5 points"
     assert difference(2.0, 3.0, "m/s²") == "+50 %" and difference(None, 3.0, "s") == "–"
 
 

@@ -389,7 +389,7 @@ def test_settings_outside_the_valid_range_are_named(browser):
     for level in (1.0, 4.0):
         notices = page.ask("record", level=level)["notices"]
         assert (level == 1.0) == (not notices), notices
-    assert len(notices) == 1 and notices[0].startswith("stabilizer_half_fl rotates by more than 0.05 rad about y")
+    assert len(notices) == 1 and notices[0].startswith("stabilizer_half_fl rotates by more than 2.9 deg about y")
 
 
 @pytest.mark.parametrize("friction", [100.0, 5000.0])

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from vehicle.errors import ConfigurationError, DataError
+from vehicle.names import slip_words
 from vehicle.signals.analysis.slip import first_slip, slip_intervals, slip_share
 
 TIME = np.arange(10) * 0.5
@@ -31,6 +32,20 @@ def test_intervals_start_above_and_end_back_below():
     assert slip_intervals(TIME, VELOCITY, 0.15) == pytest.approx(np.array([[1.0, 2.0], [3.0, 3.5], [4.5, 4.5]]))
     assert slip_intervals(TIME, VELOCITY, 1.0).shape == (0, 2)
     assert slip_intervals(TIME, np.ones(10), 0.5) == pytest.approx(np.array([[0.0, 4.5]]))
+
+
+@pytest.mark.parametrize(
+    ("limits", "words"),
+    [
+        ({"fr": 0.006, "fl": 0.006, "rr": 0.006}, "6"),
+        ({"fr": 0.006, "fl": 0.006, "rr": 0.02, "rl": 0.02}, "6 (front) and 20 (rear)"),
+        ({"fr": 0.006, "fl": 0.006, "rr": 0.02, "rl": 0.006}, "6 (front, rear left) and 20 (rear right)"),
+        ({"fr": 0.006, "fl": 0.02}, "6 (right) and 20 (left)"),
+        ({}, ""),
+    ],
+)
+def test_limits_in_words_name_dampers_only_where_they_differ(limits, words):
+    assert slip_words(limits, list(limits)) == words
 
 
 @pytest.mark.parametrize("limit", [-1e-3, np.nan, np.inf])

@@ -13,7 +13,6 @@ from vehicle.drawing.rendering.figure import (
     INK,
     PAGE_WIDTH,
     frequency_ticks,
-    name_bars,
     saved_figure,
     wrapped,
 )
@@ -58,14 +57,15 @@ def plot_changes(path: Path, changes: Mapping[str, Sequence[Change]], title: str
             rows = np.arange(len(of_run))
             axis.barh(rows, percent, color=colours, height=0.7)
             axis.axvline(0.0, color=INK, linewidth=0.8)
-            axis.set_yticks(rows, [change.label for change in of_run])
+            texts = [f"{value:+.1f} %" if abs(value) < 10.0 else f"{value:+.0f} %" for value in percent]
+            # A phone shows the labels without scrolling, the bars not.
+            labels = [f"{change.label}: {text}" for change, text in zip(of_run, texts, strict=True)]
+            axis.set_yticks(rows, labels)
             axis.invert_yaxis()
-            room = 0.3 * max(float(np.max(np.abs(percent), initial=0.0)), FULL_PANEL)
+            room = 0.05 * max(float(np.max(np.abs(percent), initial=0.0)), FULL_PANEL)
             axis.set_xlim(
                 min(float(percent.min()), -0.2 * FULL_PANEL) - room, max(float(percent.max()), 0.2 * FULL_PANEL) + room
             )
-            texts = [f"{value:+.1f} %" if abs(value) < 10.0 else f"{value:+.0f} %" for value in percent]
-            name_bars(axis, percent, texts, 4)
             axis.set_xlabel("change [%]")
             if len(changes) > 1:
                 axis.set_title(name)

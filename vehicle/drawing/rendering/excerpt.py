@@ -47,7 +47,7 @@ def choose_excerpt(
     recording: Recording,
     wheel: str,
     hub: str,
-    slip_velocity: float,
+    slip_velocity: float | None,
     *,
     start: float | None = None,
     duration: float | None = None,
@@ -63,7 +63,7 @@ def choose_excerpt(
         recording: recording of the run.
         wheel: the excited wheel.
         hub: acceleration channel of the part that carries the wheel.
-        slip_velocity: damper velocity above which the damper slips [m/s].
+        slip_velocity: velocity above which the damper of the wheel slips [m/s]; None without a damper.
         start: first time [s].
         duration: length of the film [s].
         slow: slow-motion factor.
@@ -88,7 +88,7 @@ def choose_excerpt(
 
 
 def liveliest_window(
-    recording: Recording, wheel: str, hub: str, slip_velocity: float, length: float
+    recording: Recording, wheel: str, hub: str, slip_velocity: float | None, length: float
 ) -> tuple[float, str]:
     """Choose the time window with the largest damper motion of a wheel; without slip, with the largest knuckle motion.
 
@@ -100,7 +100,7 @@ def liveliest_window(
         First time [s], and the reason for the choice.
     """
     velocity = recording.channels.get(f"damper_{wheel}_velocity")
-    if velocity is not None and np.any(np.abs(velocity) > slip_velocity):
+    if velocity is not None and slip_velocity is not None and np.any(np.abs(velocity) > slip_velocity):
         return liveliest(recording.time, velocity, length), "most damper motion"
     return liveliest(recording.time, recording[hub], length), "liveliest knuckle; no slip"
 

@@ -61,7 +61,7 @@ class PairShot:
         for scene in self.scenes:
             scene.arrows.top = top
         visible = VISIBLE_TIME / np.sqrt(excerpt.slow)
-        slips = dict.fromkeys(f"{1e3 * scene.slip:g}" for scene in self.scenes if scene.dampers)
+        slips = dict.fromkeys(scene.slip_text for scene in self.scenes if scene.slip_text)
         exaggerated = "motion" if self.scenes[0].road is None else "motion and road"
         scale = f"{exaggerated} {scale_words(cut, rests=largest < AT_REST)}, {speed_words(cut, excerpt.slow)}"
         self.overlay = PairOverlay(

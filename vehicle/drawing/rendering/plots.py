@@ -23,7 +23,7 @@ from vehicle.drawing.rendering.figure import (
 )
 from vehicle.drawing.rendering.placed_axes import Margins, placed_axes
 from vehicle.drawing.rendering.recorded_run import RecordedRun, dampers_of, level_words, liveliest, wheels_of
-from vehicle.names import side_of, wheel_words
+from vehicle.names import side_of, slip_words, wheel_words
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.analysis.samples import Vector
 
@@ -140,12 +140,10 @@ def plot_time(path: Path, run: RecordedRun, *, page: bool = False, others: Seque
     recording, wheel, wheels = run.recording, run.wheel, wheels_of(run.recording)
     dampers = dampers_of(recording)
     time, side = recording.time, side_of(wheel, wheels)
-    slip = run.car.model.vehicle.damper.slip_velocity if dampers else 0.0
-    # Without slip the motion of the plate determines the excerpt.
-    lively = (
-        f"damper_{wheel if wheel in dampers else dampers[0]}_velocity" if dampers else f"plate_{wheel}_displacement"
-    )
-    velocity = recording[lively]
+    limits = {name: run.car.model.vehicle.slip_velocities[name] for name in dampers}
+    # Without a damper the motion of the plate determines the excerpt.
+    shown = wheel if wheel in dampers or not dampers else dampers[0]
+    velocity = recording[f"damper_{shown}_velocity" if dampers else f"plate_{wheel}_displacement"]
     corner = {f"knuckle_{wheel}_acc_z": f"knuckle {side}", f"damper_top_{wheel}_acc_z": f"damper top {side}"}
     # label, scale from the unit of the channels to that of the label, legend text of each channel
     panels: tuple[tuple[str, float, dict[str, str]], ...] = (
@@ -173,11 +171,12 @@ def plot_time(path: Path, run: RecordedRun, *, page: bool = False, others: Seque
         f"tyres {run.car.model.vehicle.driving.words}"
     )
     if dampers:
-        rubs, shown = run.car.model.vehicle.damper.static_friction > 0.0, f"±{1e3 * slip:g} mm/s"
+        laws = {damper.name: damper.law for damper in run.car.model.vehicle.composition.dampers}
+        dashed, red = f"±{slip_words(limits, wheels)} mm/s", side_of(shown, wheels)
         caption += (
-            f"; dashed: slip velocity {shown}, red: {side} damper in slip"
-            if rubs
-            else (f"; dashed: {shown}, red: {side} damper faster")
+            f"; dashed: slip velocity {dashed}, red: {red} damper in slip"
+            if laws[f"damper_{shown}"].static_friction > 0.0
+            else f"; dashed: {dashed}, red: {red} damper faster"
         )
     size = (PAGE_WIDTH, PAGE_HEIGHT) if page else (15.0, 9.2)
     title = "" if page else "Main time histories"
@@ -219,24 +218,26 @@ def plot_time(path: Path, run: RecordedRun, *, page: bool = False, others: Seque
             detail.set_xlim(start, end)
             if "velocity" in unit:
                 for axis in (whole, detail):
-                    for limit in (-1e3 * slip, 1e3 * slip):
+                    for limit in (sign * slip for slip in dict.fromkeys(limits.values()) for sign in (-1e3, 1e3)):
                         axis.axhline(limit, color=SLIP_LIMIT, linewidth=0.8, linestyle="--", zorder=4)
-                shade(detail, time[inside], np.abs(velocity[inside]) > slip, SLIPPING)
+                shade(detail, time[inside], np.abs(velocity[inside]) > limits[shown], SLIPPING)
         for axis in axes[:-1].flat:
             axis.tick_params(labelbottom=False)
         for axis in axes[-1]:
             axis.set_xlabel("time [s]")
         axes[0, 0].set_title("whole record: minimum to maximum")
-        axes[0, 1].set_title(f"liveliest {end - start:.3g} s of the {side} {'damper' if dampers else 'plate'}")
+        lively = f"{side_of(shown, wheels)} {'damper' if dampers else 'plate'}"
+        axes[0, 1].set_title(f"liveliest {end - start:.3g} s of the {lively}")
         fast, strong = (
             _range([run, *others], [f"damper_{name}_{quantity}" for name in dampers], scale)
             for quantity, scale in (("velocity", 1e3), ("force", 1.0))
         )
+        slip = max(limits.values(), default=0.0)
         fast = (min(fast[0], -1.1e3 * slip), max(fast[1], 1.1e3 * slip))
         for axis, name in zip(characteristics, dampers, strict=True):
             dots = distinct(1e3 * recording[f"damper_{name}_velocity"], recording[f"damper_{name}_force"])
             axis.plot(*dots, ".", markersize=1.5, color=COLOURS[0], zorder=3, rasterized=True)
-            for limit in (-1e3 * slip, 1e3 * slip):
+            for limit in (-1e3 * limits[name], 1e3 * limits[name]):
                 axis.axvline(limit, color=SLIP_LIMIT, linewidth=0.8, linestyle="--")
             axis.set(xlabel="damper velocity [mm/s]", title=f"{side_of(name, wheels)} damper", xlim=fast, ylim=strong)
             if axis is characteristics[0] or not page:

@@ -18,7 +18,7 @@ from vehicle.drawing.rendering.recorded_run import RecordedRun, dampers_of, hub_
 from vehicle.drawing.rendering.road_strip import RoadStrip
 from vehicle.drawing.rendering.rolling import RollingWheel
 from vehicle.drawing.rendering.rounding import round_factor
-from vehicle.names import side_of
+from vehicle.names import side_of, slip_words
 from vehicle.signals.analysis.samples import Vector
 
 View = tuple[mujoco.MjvCamera, tuple[int, int, int, int], Vector]
@@ -51,6 +51,7 @@ class Scene:
 
     Attributes:
         states: motion in each frame.
+        slip: wheel of each damper to its slip velocity [m/s].
         largest: largest displacement of a wheel, a plate or a node of the body [m].
         node: 97 % quantile of the displacements of the nodes [m].
     """
@@ -70,7 +71,8 @@ class Scene:
         self.recording, self.vehicle, self.wheel, self.size = run.recording, run.car.model.vehicle, run.wheel, size
         self.composition = self.vehicle.composition
         self.wheels, dampers = wheels_of(self.recording), dampers_of(self.recording)
-        self.slip = self.vehicle.damper.slip_velocity if dampers else 0.0
+        limits = self.vehicle.slip_velocities
+        self.slip = {wheel: limits[wheel] for wheel in dampers}
         # A damper without friction neither sticks nor slips.
         rubbing = {damper.name for damper in self.composition.dampers if damper.law.static_friction > 0.0}
         self.dampers = [wheel for wheel in dampers if f"damper_{wheel}" in rubbing]
@@ -109,9 +111,14 @@ class Scene:
         part = slice(int(first), max(int(last), int(first) + 1))
         speeds = {wheel: recording[f"damper_{wheel}_velocity"][part] for wheel in self.dampers}
         return {
-            f"damper {side_of(wheel, self.wheels)}": bool(np.any(np.abs(speed) > self.slip))
+            f"damper {side_of(wheel, self.wheels)}": bool(np.any(np.abs(speed) > self.slip[wheel]))
             for wheel, speed in speeds.items()
         }
+
+    @property
+    def slip_text(self) -> str:
+        """Return the slip velocities of the dampers with a lamp [mm/s], see `slip_words`; empty without a lamp."""
+        return slip_words({wheel: self.slip[wheel] for wheel in self.dampers}, self.wheels)
 
     @contextmanager
     def opened(self, backend: str, factor: float, scale_top: float) -> Iterator[OpenScene]:

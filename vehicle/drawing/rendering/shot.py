@@ -11,7 +11,7 @@ from vehicle.drawing.rendering.excerpt import Excerpt, choose_excerpt
 from vehicle.drawing.rendering.layout import Layout, Picture
 from vehicle.drawing.rendering.mode_inset import BesideMode, ModeInset
 from vehicle.drawing.rendering.overlay import Overlay
-from vehicle.drawing.rendering.recorded_run import RecordedRun, dampers_of, hub_channel, level_words
+from vehicle.drawing.rendering.recorded_run import RecordedRun, hub_channel, level_words
 from vehicle.drawing.rendering.rounding import round_up
 from vehicle.drawing.rendering.scene import AT_REST, Scene, View, exaggeration_of, frames_of
 from vehicle.drawing.rendering.trace_strip import Trace, TraceStrip
@@ -163,7 +163,7 @@ class Shot:
             f"{exaggerated} {scale_words(cut, rests=scene.largest < AT_REST)}, {speed_words(cut, slow)}",
             *road,
             f"excerpt from {cut.start:.2f} s ({cut.reason}); "
-            f"{f'SLIP: above {1e3 * scene.slip:g} mm/s; ' if scene.dampers else ''}"
+            f"{f'SLIP: above {scene.slip_text} mm/s; ' if scene.slip_text else ''}"
             f"tyres {scene.vehicle.driving.words}",
             *filter(None, [scene.arrows.words]),
         ]
@@ -184,9 +184,8 @@ def excerpt_of(run: RecordedRun, take: Take, wheel: str | None = None) -> Excerp
     record = float(recording.time[-1])
     if take.start is not None and not 0.0 <= take.start < record:
         raise ConfigurationError(f"film, start: found {take.start:g} s, must be 0 to {record:g} s, within the record")
-    slip = vehicle.damper.slip_velocity if dampers_of(recording) else 0.0
     wheel = wheel or run.wheel
-    hub = hub_channel(vehicle.composition, wheel)
+    hub, slip = hub_channel(vehicle.composition, wheel), vehicle.slip_velocities.get(wheel)
     return choose_excerpt(recording, wheel, hub, slip, start=take.start, duration=take.duration, slow=take.slow)
 
 
@@ -235,7 +234,7 @@ def traces(scenes: Sequence[Scene], cut: Cut, visible: float, dampers: Sequence[
         (input_label, f"plate_{wheel}_displacement", 1e3, None, 1e3 * AT_REST),
         ("seat rail, vertical [m/s²]", "seat_rail_acc_z", 1.0, None, LEAST_ACCELERATION),
         *(
-            (f"damper {side_of(name, first.wheels)} [mm/s]", f"damper_{name}_velocity", 1e3, 1e3 * first.slip, 0.0)
+            (f"damper {side_of(name, first.wheels)} [mm/s]", f"damper_{name}_velocity", 1e3, _band(scenes, name), 0.0)
             for name in dampers or (wheel,)
         ),
     ):
@@ -247,3 +246,10 @@ def traces(scenes: Sequence[Scene], cut: Cut, visible: float, dampers: Sequence[
         top = round_up(max(peak, 1.2 * (band or 0.0), minimum))
         curves.append(Trace(label=label, values=values, top=top, band=band))
     return curves
+
+
+def _band(scenes: Sequence[Scene], wheel: str) -> float | None:
+    """Return the slip velocity of a damper [mm/s]; None without it, or if it differs between the scenes."""
+    limits = {scene.slip.get(wheel) for scene in scenes}
+    limit = limits.pop()
+    return None if limits or limit is None else 1e3 * limit

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vehicle.arrays import Complex, Vector
+from vehicle.arrays import Complex, Indices, Vector
 from vehicle.engines.linear.displacement_laws import law_rows
 from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.signals.analysis.fast_length import fast_length
@@ -163,6 +163,11 @@ def periodic_spectra(inputs: Vector, interval: float, every: int) -> tuple[Compl
     return np.fft.rfft(padded, axis=1)[:, : period // 2 + 1] / every, period
 
 
+def _slow(model: PoleModel) -> Indices:
+    """Return the slow poles up to `BAND`: what is above it has no motion of its own here."""
+    return np.flatnonzero((model.poles.real > -SLOW) & (np.abs(model.poles.imag) <= 2.0 * np.pi * BAND))
+
+
 def continued(
     model: PoleModel, state: Complex, interval: float, samples: int, count: int, start: Complex | None
 ) -> tuple[Vector, Complex]:
@@ -182,7 +187,7 @@ def continued(
         The difference of the state; (2 p, samples). State of the slow poles after the record.
     """
     poles = len(model.poles)
-    slow = np.flatnonzero(model.poles.real > -SLOW)
+    slow = _slow(model)
     spectra = np.vstack([state[slow], state[poles + slow]])
 
     def present(sample: int) -> Complex:
@@ -215,7 +220,7 @@ def slow_end(model: PoleModel, inputs: Vector, interval: float, start: Complex |
         start: state at the first sample; None at rest.
     """
     wheels, count = len(model.matrices.system.inputs), inputs.shape[1]
-    slow = np.flatnonzero(model.poles.real > -SLOW)
+    slow = _slow(model)
     poles, effects = model.poles[slow, None], input_effects(model)[slow]
     height, velocity, others = np.split(effects, [wheels, 2 * wheels], axis=1)
     # The last sample holds until the end.

@@ -148,6 +148,8 @@ class PoleModel:
 def _eigenvectors(state: bytes, size: int) -> tuple[Complex, Complex]:
     """Return eigenvalues and eigenvectors of a real matrix from the bytes of its rows."""
     values, vectors = np.linalg.eig(np.frombuffer(state).reshape(size, size))
+    # All these cars share the arrays.
+    values.flags.writeable = vectors.flags.writeable = False
     return values, vectors
 
 

@@ -27,6 +27,9 @@ at 50, 80 and 120 km/h, 20 s, MuJoCo at its own step: unweighted comfort of `kin
 and 0.38 % at 120 km/h, of the other cars at most 0.06 %, weighted comfort at most 0.06 %; lateral acceleration of a
 knuckle 3 to 5 % at 50 km/h and 13 to 15 % at 120 km/h, where linear tyres pull for a moment in place of lifting off."""
 
+LARGEST_ANGLE_ON_ROADS = 0.17
+"""Maximum rotation of a part [rad] on roads for the errors in `ERROR_ON_CLASS_C`, measured at 0.07 to 0.17 rad."""
+
 ERROR_IN_RANGE = "comfort within 0.1 %"
 """Difference of the reduced engine from MuJoCo inside its valid range, see `LARGEST_ANGLE`, for messages."""
 

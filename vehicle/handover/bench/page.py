@@ -230,7 +230,7 @@ class Page:
         """Return the name of a row; a damper without friction is fast, and does not slip, so its velocity is named."""
         _, slip, wheel = row.rpartition("slip ")
         vehicle = self.state.car.vehicle
-        return f"above {1e3 * vehicle.damper.slip_velocity:g} mm/s, {side_of(wheel, vehicle.wheels)}" if slip else row
+        return f"above {1e3 * vehicle.slip_velocities[wheel]:g} mm/s, {side_of(wheel, vehicle.wheels)}" if slip else row
 
     def _changed(self, car: Car) -> str:
         """Return what differs from the car of the start, in words."""

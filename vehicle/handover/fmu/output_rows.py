@@ -239,13 +239,12 @@ def motion_rows(car: Car, rows: Vector) -> OutputRows:
     return _linear(model, Outputs(poles=rows @ model.modal, height=no_plates, velocity=no_plates))
 
 
-def watched_outputs(car: Car, model: PoleModel | None = None) -> Watched:
+def watched_outputs(car: Car, model: PoleModel | None = None, largest_angle: float = LARGEST_ANGLE) -> Watched:
     """Return the watched motions of a car, their limits, and a notice for each: linear tyres, then rotations.
-
-    The limits are from `vehicle.engines.reduced.validity`, for each axis of a rotation.
 
     Args:
         model: see `car_outputs`.
+        largest_angle: maximum rotation about each axis [rad].
     """
     model = model or car.poles.without_forces()
     matrices = model.matrices
@@ -254,15 +253,15 @@ def watched_outputs(car: Car, model: PoleModel | None = None) -> Watched:
     load = np.array([car.static.tyre_load[wheel] for wheel in wheels])
     tyres = replace(_linear(model, tyre_outputs(model), load), law=_excess_of_tyres(model, range(len(wheels))))
     parts = [tyres.part(linear), _linear(model, rotation_outputs(model, bodies))]
-    limits = [(0.0, np.inf)] * len(linear) + [(-LARGEST_ANGLE, LARGEST_ANGLE)] * (3 * len(bodies))
+    limits = [(0.0, np.inf)] * len(linear) + [(-largest_angle, largest_angle)] * (3 * len(bodies))
     notices = [
         f"tyre {wheels[index]} would lift off; it is linear in this car (one_sided = false), so the result is not valid"
         for index in linear
     ]
     notices += [
         (
-            f"{body} rotates by more than {LARGEST_ANGLE:g} rad about {axis}, where the linear geometry of this "
-            "car is not valid"
+            f"{body} rotates by more than {np.degrees(largest_angle):.2g} deg about {axis}; the linear geometry is "
+            "checked up to that angle"
         )
         for body in bodies
         for axis in "xyz"

@@ -239,13 +239,14 @@
     }
     trialPicture.show(before.motion, now.motion);
     const { notices } = now.record, more = notices.length > 1 ? `; ${notices.length - 1} more` : "";
-    byId("notices").textContent = notices.length ? `Outside the valid range of this car: ${notices[0]}${more}.` : "";
+    byId("notices").textContent = notices.length ? `Outside the valid range: ${notices[0]}${more}.` : "";
     const { seconds, milliseconds: { stepping, all } } = now.record;
     byId("time-used").textContent = `${short(seconds)} s of the car in ${Math.round(all)} ms, ${Math.round(stepping)} ms of them time steps.`;
   }
 
   controls();
   table();
+  byId("checked").textContent = data.checked;
   window.addEventListener("resize", () => now && show());
   byId("frf").hidden = !data.frf;
   request("record");

@@ -17,7 +17,13 @@ import numpy as np
 
 from vehicle.engines.reduced.group_run import time_steps
 from vehicle.engines.reduced.reduced_run import LONGEST_STEP
-from vehicle.engines.reduced.validity import rotating_bodies
+from vehicle.engines.reduced.validity import (
+    ERROR_IN_RANGE,
+    ERROR_ON_CLASS_C,
+    LARGEST_ANGLE,
+    LARGEST_ANGLE_ON_ROADS,
+    rotating_bodies,
+)
 from vehicle.engines.simulation.recorded_acceleration import AHEAD, WEIGHTS
 from vehicle.errors import ConfigurationError
 from vehicle.handover.fmu.car_numbers import FRICTION, PARAMETERS, CarNumbers, friction_numbers, numbers_with
@@ -82,10 +88,12 @@ def trial_data(
     drive = page_input(car, signal, road)
     stepped, cars = stepped_sliders(car, drive)
     names = [damper.name for damper in car.vehicle.composition.dampers]
+    on_class = road is not None and road.road_class is not None
+    angle, error = (LARGEST_ANGLE_ON_ROADS, ERROR_ON_CLASS_C) if on_class else (LARGEST_ANGLE, ERROR_IN_RANGE)
     rotations = turning_parts(car, drive.signal)
     figures = page_figures(car, measure)
     channels = tuple(dict.fromkeys(channel for figure in figures for channel in figure["channels"]))
-    numbers = [_page_numbers(each, drive, rotations, channels) for each in cars]
+    numbers = [_page_numbers(each, drive, _watched(each, rotations, angle), channels) for each in cars]
     base, shown = numbers[0], len(picture_rows(car))
     outputs = {output.name: index for index, output in enumerate(base.outputs)}
     contact = application("seat")
@@ -102,7 +110,7 @@ def trial_data(
         "frf": drive.road is not None or len(drive.wheels) == 1,
         "parameters": np.asarray(base.parameters).tolist(),
         "names": list(PARAMETERS),
-        "notices": list(_watched(car, rotations).notices),
+        "notices": list(_watched(car, rotations, angle).notices),
         "positions": [outputs[f"{POINT}_displacement_{axis}"] for axis in AXES],
         "motions": [outputs[f"motion_{index}"] for index in range(shown)],
         "picture": moving_picture(car),
@@ -125,11 +133,12 @@ def trial_data(
         "sliders": [*_sliders(car, base, road), *stepped],
         "roadClass": road and road.road_class,
         "road": drive.road is not None,
+        "checked": f"Checked against MuJoCo while parts rotate by up to {np.degrees(angle):.2g} deg: {error}.",
     }
     return json.dumps(data, separators=(",", ":")).replace("<", "\\u003c")
 
 
-def _page_numbers(car: Car, drive: PageInput, rotations: Sequence[int], further: Sequence[str]) -> CarNumbers:
+def _page_numbers(car: Car, drive: PageInput, watched: Watched, further: Sequence[str]) -> CarNumbers:
     """Return the numbers of a car with the outputs of the page, those of further channels among them."""
     names = [damper.name for damper in car.vehicle.composition.dampers]
     channels = [f"{POINT}_acc_{axis}" for axis in AXES]
@@ -146,13 +155,13 @@ def _page_numbers(car: Car, drive: PageInput, rotations: Sequence[int], further:
         drive.interval / every,
         (read, joined_rows([rows.part(kept), motions])),
         # The page has the notices once, not in each car.
-        dataclasses.replace(_watched(car, rotations), notices=[]),
+        dataclasses.replace(watched, notices=[]),
     )
 
 
-def _watched(car: Car, rotations: Sequence[int]) -> Watched:
+def _watched(car: Car, rotations: Sequence[int], largest_angle: float) -> Watched:
     """Return what the page watches: linear tyres, and rotations by their indices among `rotation_outputs`."""
-    watched = watched_outputs(car)
+    watched = watched_outputs(car, largest_angle=largest_angle)
     others = len(watched.notices) - 3 * len(rotating_bodies(car.matrices))
     return watched.part([*range(others), *(others + index for index in rotations)])
 

@@ -12,7 +12,8 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.beam import BeamSection
 from vehicle.model.parameters.hardpoints import Point, mirrored
 from vehicle.model.parameters.quantity import quantity, validate
-from vehicle.model.parameters.toml_file import build, did_you_mean, read_table
+from vehicle.model.parameters.toml_file import build, read_table
+from vehicle.wording import did_you_mean
 
 FORMAT = "body design 1"
 _SIDES = (("_fr", "_fl"), ("_rr", "_rl"), ("_right", "_left"))

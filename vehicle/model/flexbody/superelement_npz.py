@@ -9,8 +9,8 @@ import numpy as np
 from vehicle.errors import DataError
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.flexbody.superelement_toml import FORMAT, RIGID, given_rigid, head_of, numbers
-from vehicle.model.parameters.toml_file import did_you_mean
 from vehicle.signals.formats.unpacked_size import require_archive
+from vehicle.wording import did_you_mean
 
 _ARRAYS = {
     "positions": "position_m",

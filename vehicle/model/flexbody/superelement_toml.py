@@ -10,7 +10,7 @@ from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.model.flexbody.mass_properties import MassProperties
 from vehicle.model.flexbody.superelement import Superelement
-from vehicle.model.parameters.toml_file import did_you_mean
+from vehicle.wording import did_you_mean
 
 FORMAT = "modal superelement 2"
 _OLDER = "modal superelement 1"

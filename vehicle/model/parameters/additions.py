@@ -10,7 +10,8 @@ from vehicle.model.parameters.force_elements import DECOUPLER, MAXWELL, TRACK, B
 from vehicle.model.parameters.hardpoints import Axes, Point, axes_along, require_apart, require_point
 from vehicle.model.parameters.quantity import NAME_PATTERN
 from vehicle.model.parameters.rigid_part import Load
-from vehicle.model.parameters.toml_file import build, convert, did_you_mean
+from vehicle.model.parameters.toml_file import build, convert
+from vehicle.wording import did_you_mean
 
 CONNECTION_KEYS = {"moving", "carrier", "at", "ground", "axes"}
 """Keys of a connection of the vehicle file other than the numbers of its law."""

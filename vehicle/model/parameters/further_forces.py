@@ -17,7 +17,8 @@ from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.instance import Instance
 from vehicle.model.parameters.placed_force import NONE, PlacedForce
 from vehicle.model.parameters.quantity import NAME_PATTERN
-from vehicle.model.parameters.toml_file import build, convert, did_you_mean
+from vehicle.model.parameters.toml_file import build, convert
+from vehicle.wording import did_you_mean
 
 PLACE_KEYS = ("on", "at", "force", "moment", "axes", "against", "joint")
 """Keys of a force that place it; the others describe its history."""

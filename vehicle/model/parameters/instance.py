@@ -18,10 +18,11 @@ from vehicle.model.parameters.hardpoints import Point, mirrored, require_point
 from vehicle.model.parameters.quantity import NAME_PATTERN
 from vehicle.model.parameters.template import read_template
 from vehicle.model.parameters.tested_range import merged_law
-from vehicle.model.parameters.toml_file import build, convert, did_you_mean
+from vehicle.model.parameters.toml_file import build, convert
 from vehicle.model.parameters.topology import Template
 from vehicle.model.parameters.wheel_forces import WHEEL_FORCES
 from vehicle.names import SIDE_SIGN
+from vehicle.wording import did_you_mean
 
 T = TypeVar("T")
 RIGHT, LEFT = SIDE_SIGN

@@ -8,7 +8,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.applied_force import AppliedForce
 from vehicle.model.parameters.driving import RunUp
 from vehicle.model.parameters.hardpoints import Point
-from vehicle.model.parameters.toml_file import did_you_mean
+from vehicle.wording import did_you_mean
 
 NONE = (0.0, 0.0, 0.0)
 """Direction of a force or moment that is absent."""

@@ -10,9 +10,9 @@ from vehicle.model.parameters.composition import PlacedJoint, PlacedPart
 from vehicle.model.parameters.hardpoints import Point, cross, mirrored
 from vehicle.model.parameters.instance import Instance, elements
 from vehicle.model.parameters.rigid_part import Part
-from vehicle.model.parameters.toml_file import did_you_mean
 from vehicle.model.parameters.topology import Joint
 from vehicle.names import SIDE_SIGN
+from vehicle.wording import did_you_mean
 
 
 @dataclass(slots=True)

@@ -9,9 +9,10 @@ from vehicle.model.parameters.composition import Composition
 from vehicle.model.parameters.hardpoints import require_apart, require_triangle
 from vehicle.model.parameters.instance import RIGHT, Instance
 from vehicle.model.parameters.paths import full_path
-from vehicle.model.parameters.toml_file import convert, did_you_mean
+from vehicle.model.parameters.toml_file import convert
 from vehicle.model.parameters.topology import Template
 from vehicle.names import SIDE_SIGN
+from vehicle.wording import did_you_mean
 
 GROUPS = ("hardpoints", "parts", "bushings", "ports")
 """Tables of an instance with one entry for each name."""

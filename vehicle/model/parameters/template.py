@@ -16,8 +16,9 @@ from typing import Any
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.quantity import NAME_PATTERN
 from vehicle.model.parameters.template_file import LISTS, read_template_file
-from vehicle.model.parameters.toml_file import build, did_you_mean
+from vehicle.model.parameters.toml_file import build
 from vehicle.model.parameters.topology import RolePart, SteeringAxis, Template, Wheel
+from vehicle.wording import did_you_mean
 
 SHIPPED = Path(str(resources.files("vehicle.model"))) / "templates"
 FREE_PORTS = ("body", "world", "plate")

@@ -5,8 +5,9 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.toml_file import convert, did_you_mean, read_table
+from vehicle.model.parameters.toml_file import convert, read_table
 from vehicle.model.parameters.topology import Connection, Damper, Joint, Output, Spring
+from vehicle.wording import did_you_mean
 
 LISTS = {"joint": Joint, "connection": Connection, "spring": Spring, "damper": Damper, "output": Output}
 """Lists of elements, and their classes."""

@@ -1,18 +1,18 @@
 """Conversion of TOML files to parameter objects and back, with strict names and types."""
 
 import dataclasses
-import difflib
 import functools
 import json
 import tomllib
 import types
 import typing
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.quantity import NAME_PATTERN, field_quantity, type_hints
+from vehicle.wording import did_you_mean
 
 T = TypeVar("T")
 
@@ -211,11 +211,6 @@ def _number(value: Any, path: str) -> float:
         return float(value)
     except OverflowError:
         raise ConfigurationError(f"{path}: found a whole number beyond 1.8e308, must be a finite number") from None
-
-
-def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """Return "; did you mean KNOWN?" with the known name of the most similar spelling; empty if no name is known."""
-    return "".join(f"; did you mean {near}?" for near in difflib.get_close_matches(name, list(known), n=1, cutoff=0.0))
 
 
 def copy_table(table: Mapping[str, Any]) -> dict[str, Any]:

@@ -118,6 +118,11 @@ class Vehicle:
         return tuple(wheel for wheel in self.wheels if f"damper_{wheel}" in names)
 
     @property
+    def slip_velocities(self) -> dict[str, float]:
+        """Return the velocity above which each damper slips [m/s], by wheel: the name after "damper_"."""
+        return {damper.name.removeprefix("damper_"): damper.law.slip_velocity for damper in self.composition.dampers}
+
+    @property
     def acceleration_channels(self) -> tuple[str, ...]:
         """Names of the recorded accelerations, in the order of the files."""
         return acceleration_channels(output.name for output in self.composition.outputs)

@@ -394,7 +394,7 @@ class Run:
         return recorded or tuple(self.recording.channels)[:1]
 
     def _damper(self, wheel: str, velocity: float | None) -> tuple[Vector, float]:
-        """Return the velocity of a damper, and the limit of slip [m/s]."""
+        """Return the velocity of a damper, and the limit of slip [m/s]; default: its slip velocity."""
         self.car.vehicle.require_wheels((wheel,))
-        limit = self.car.vehicle.damper.slip_velocity if velocity is None else velocity
-        return self.recording[f"damper_{wheel}_velocity"], limit
+        history = self.recording[f"damper_{wheel}_velocity"]
+        return history, self.car.vehicle.slip_velocities[wheel] if velocity is None else velocity

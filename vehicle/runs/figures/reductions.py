@@ -13,7 +13,7 @@ import numpy as np
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import SATURATED_VELOCITY
 from vehicle.runs.figures.figure import Details, Reduction, Values
-from vehicle.runs.figures.rows import recorded, velocities
+from vehicle.runs.figures.rows import recorded, velocities, wheels_of
 from vehicle.runs.figures.run_batch import Runs
 from vehicle.signals.analysis.comfort_error import overall_error, overall_waves
 from vehicle.signals.analysis.exposure import crest_factor, mtvv, vibration_dose_value
@@ -122,33 +122,38 @@ def _settling(rows: Vector, _: Details, runs: Runs) -> Values:
 
 
 def _shares(rows: Vector, limits: Vector) -> Vector:
-    """Return the share of the time with |velocity| above the limit of each run; (r, dampers)."""
-    return np.stack([slip_shares(rows[:, damper], limits) for damper in range(rows.shape[1])], axis=1)
+    """Return the share of the time with |velocity| above a limit; limits and shares (r, dampers)."""
+    return np.stack([slip_shares(rows[:, damper], limits[:, damper]) for damper in range(rows.shape[1])], axis=1)
 
 
-def _slip(rows: Vector, _: Details, runs: Runs) -> Values:
-    limits = runs.slip_velocity
+def _limits(details: Details, runs: Runs) -> Vector:
+    """Return the slip velocity of each damper of a figure [m/s]; (r, dampers)."""
+    return runs.slip_velocities(wheels_of(details, runs.dampers, "damper"))
+
+
+def _slip(rows: Vector, details: Details, runs: Runs) -> Values:
+    limits = _limits(details, runs)
     error = _of_blocks(lambda part: np.mean(_shares(rows[:, :, part], limits), axis=1), rows.shape[2], runs)
     return Values(np.mean(_shares(rows, limits), axis=1), error)
 
 
-def _stick(rows: Vector, _: Details, runs: Runs) -> Values:
-    limits = runs.slip_velocity
+def _stick(rows: Vector, details: Details, runs: Runs) -> Values:
+    limits = _limits(details, runs)
     sticks = 1.0 - _shares(rows, limits)
-    longest = np.argmax(sticks, axis=1)
-    chosen = rows[np.arange(len(rows)), longest]
-    error = _of_blocks(lambda part: slip_shares(chosen[:, part], limits), rows.shape[2], runs)
+    longest = np.arange(len(rows)), np.argmax(sticks, axis=1)
+    chosen, limit = rows[longest], limits[longest]
+    error = _of_blocks(lambda part: slip_shares(chosen[:, part], limit), rows.shape[2], runs)
     return Values(np.max(sticks, axis=1), error)
 
 
 def _saturated(rows: Vector, *_: object) -> Values:
-    return Values(np.mean(_shares(rows, np.full(len(rows), SATURATED_VELOCITY)), axis=1))
+    return Values(np.mean(_shares(rows, np.full(rows.shape[:2], SATURATED_VELOCITY)), axis=1))
 
 
 def _first_slip(_: Vector, details: Details, runs: Runs) -> Values:
     # Of the whole run, as in `summary.json`.
-    whole = velocities(details, runs)
-    each = [first_slips(runs.time, whole[:, damper], runs.slip_velocity) for damper in range(whole.shape[1])]
+    whole, limits = velocities(details, runs), _limits(details, runs)
+    each = [first_slips(runs.time, whole[:, damper], limits[:, damper]) for damper in range(whole.shape[1])]
     return Values(np.fmin.reduce(each))
 
 

@@ -1,6 +1,6 @@
 """Batch of runs of several cars on one signal, of which a figure is computed."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -59,10 +59,9 @@ class Runs:
         """Return the evaluated samples."""
         return slice(round(self.skip / self.timestep), None)
 
-    @property
-    def slip_velocity(self) -> Vector:
-        """Return the minimum velocity of slip of each car [m/s]; (r,)."""
-        return np.array([vehicle.damper.slip_velocity for vehicle in self.vehicles])
+    def slip_velocities(self, wheels: Sequence[str]) -> Vector:
+        """Return the velocity above which the damper of each wheel slips [m/s]; (r, dampers)."""
+        return np.array([[vehicle.slip_velocities[wheel] for wheel in wheels] for vehicle in self.vehicles])
 
     @property
     def dampers(self) -> tuple[str, ...]:

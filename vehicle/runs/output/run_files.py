@@ -227,6 +227,7 @@ def summarise(
     statistics, static, vehicle = run.recording.statistics, run.car.static, run.car.vehicle
     energies, wheels = statistics.energies, vehicle.wheels
     channels, dampers = vehicle.acceleration_channels, vehicle.damped_wheels
+    limits = {wheel: vehicle.slip_velocities[wheel] for wheel in dampers}
     motion_notice = what_moves([motion.motion for motion in responses]) if responses else ""
     body = rigid_body(vehicle.body)
     loads = {
@@ -257,7 +258,8 @@ def summarise(
         ),
         evaluated_s=[run.skip, run.signal.duration],
         slip_share={wheel: run.slip_share(wheel) for wheel in dampers}
-        | ({"slip_velocity": vehicle.damper.slip_velocity} if dampers else {}),
+        | ({"slip_velocity": limits[dampers[0]]} if dampers else {}),
+        slip_velocities=limits if len(set(limits.values())) > 1 else None,
         first_slip_s={wheel: run.first_slip(wheel) for wheel in dampers},
         friction_saturated_share={wheel: run.slip_share(wheel, SATURATED_VELOCITY) for wheel in dampers},
         first_friction_saturated_s={wheel: run.first_slip(wheel, SATURATED_VELOCITY) for wheel in dampers},

@@ -11,7 +11,7 @@ from vehicle.digits import number
 from vehicle.drawing.rendering.answer_plot import Change, plot_bands, plot_changes
 from vehicle.engines.linear.car_modes import Mode
 from vehicle.engines.linear.motion_names import leading_motions
-from vehicle.names import AXES, point_words, side_of
+from vehicle.names import AXES, point_words, side_of, slip_words
 from vehicle.runs.report.band_causes import main_path, paths, strongest
 from vehicle.runs.report.base_run import OF_THE_RUN
 from vehicle.runs.report.comfort_class import reactions
@@ -144,17 +144,13 @@ def _damper_words(run: FinishedRun) -> str:
     low, high = (100.0 * limit(shares.values()) for limit in (min, max))
     ends = " to ".join(dict.fromkeys(number(share, 2) for share in (low, high)))
     if not run.friction:
-        return f"; the dampers are faster than {_slip(run)} for {ends} % of the time"
+        limit = slip_words(run.summary.slip_limits, shares)
+        return f"; the dampers are faster than {limit} mm/s for {ends} % of the time"
     if high < 1.0 <= 100.0 * max(run.summary.friction_saturated_share.values()):
         return "; the dampers slide slowly at times"
     if high < 1.0:
         return "; the dampers stick, so they dissipate almost no energy"
     return f"; the dampers slip for {ends} % of the time"
-
-
-def _slip(run: FinishedRun) -> str:
-    """Return the velocity above which a damper counts as slipping, in words."""
-    return f"{1e3 * run.summary.slip_share['slip_velocity']:g} mm/s"
 
 
 def _path_words(run: FinishedRun, band: MainBand, mode: Mode) -> list[str]:
@@ -281,11 +277,14 @@ def _reason(first: FinishedRun, run: FinishedRun, modes: Modes, run_modes: Modes
         )
         parts += [f"{BY_MODE} {moved}", *_path_words(first, band, mode)]
     slips = [each.summary.slip_shares for each in (first, run)]
-    if list(slips[0]) == list(slips[1]) and slips[0]:
-        wheel = max(slips[0], key=lambda name: abs(slips[1][name] - slips[0][name]))
+    limits = [first.summary.slip_limits, run.summary.slip_limits]
+    alike = [wheel for wheel, limit in limits[0].items() if limits[1].get(wheel) == limit]
+    if list(slips[0]) == list(slips[1]) and alike:
+        wheel = max(alike, key=lambda name: abs(slips[1][name] - slips[0][name]))
         before, after = (100.0 * slip[wheel] for slip in slips)
         if abs(after - before) >= SLIP and number(after, 2) != number(before, 2):
-            slipping = "slips" if first.friction and run.friction else f"is faster than {_slip(run)}"
+            faster = f"is faster than {1e3 * limits[0][wheel]:g} mm/s"
+            slipping = "slips" if first.friction and run.friction else faster
             return (
                 f"{', '.join(parts)}; the {side_of(wheel, slips[0])} damper {slipping} for {number(after, 2)} % of the "
                 f"time instead of {number(before, 2)} %."

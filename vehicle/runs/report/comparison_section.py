@@ -80,7 +80,7 @@ Table = tuple[list[str], list[tuple[str, ...]]]
 def _figures_beside(runs: Sequence[FinishedRun]) -> Table:
     """Return the key figures of runs: a row for each, with its change against the first run on the same input."""
     figures, compared = [key_figures(run) for run in runs], references(runs)
-    heads = ["", "unit"]
+    heads = [""]
     for run, base in zip(runs, compared, strict=True):
         heads += [run.name] if base is None else [run.name, f"change from {runs[base].name}" if base else "change"]
     rows = []
@@ -89,7 +89,7 @@ def _figures_beside(runs: Sequence[FinishedRun]) -> Table:
         cells = []
         for value, base in zip(values, compared, strict=True):
             cells += [number(value)] if base is None else [number(value), difference(values[base], value, unit)]
-        rows.append((name, unit, *cells))
+        rows.append((f"{name} [{unit}]" if unit else name, *cells))
     return heads, rows
 
 

@@ -80,9 +80,9 @@ def key_figures(run: FinishedRun) -> dict[tuple[str, str], float | None]:
         figures |= {
             (f"{label}: unweighted RMS, 2 to 50 Hz, {axis}", "m/s²"): rms for axis, rms in value.rms_2_50_hz.items()
         }
-    shares = summary.slip_shares
+    shares, limits = summary.slip_shares, summary.slip_limits
     for wheel, share in shares.items():
-        damper, limit = side_of(wheel, shares), 1e3 * summary.slip_share["slip_velocity"]
+        damper, limit = side_of(wheel, shares), 1e3 * limits[wheel]
         figures[f"{damper} damper: time above {limit:g} mm/s", "%"] = 100.0 * share
         figures[f"{damper} damper: first above {limit:g} mm/s", "s"] = summary.first_slip_s[wheel]
     for wheel, plate, resonances in run.peaks:
@@ -113,7 +113,7 @@ def parameter_rows(changed: Sequence[tuple[str, str, Sequence[str]]]) -> list[tu
     return [(named(path, parameter_words(path)), unit, *values) for path, unit, values in changed]
 
 
-DIFFERENCES = {"s": "s", "%": "percentage points"}
+DIFFERENCES = {"s": "s", "%": "points"}
 """Units compared by a difference instead of a ratio, with the unit of the difference: a time counts from the start of
 the record, and a share may be near zero."""
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from vehicle.digits import number
 from vehicle.engines.linear.car_modes import Mode
-from vehicle.names import point_words, side_of
+from vehicle.names import point_words, side_of, slip_words
 from vehicle.runs.car.main_mode import WORKS
 from vehicle.runs.report.body_modes import body_modes
 from vehicle.runs.report.comfort_class import CREST_FACTOR_LIMIT
@@ -57,13 +57,13 @@ def damper_sentences(summary: RunSummary, *, friction: bool = True) -> list[str]
         summary: content of the `summary.json` of the run.
         friction: False for dampers that cannot stick.
     """
-    shares, limit = summary.slip_shares, 1e3 * summary.slip_share.get("slip_velocity", 0.0)
+    shares, limits = summary.slip_shares, summary.slip_limits
     by_state: dict[str, list[str]] = {}
     for wheel, share in shares.items():
         if not friction:
             state = "without friction"
         elif share <= STICKS < summary.friction_saturated_share[wheel]:
-            state = f"at times sliding slowly, seldom or never faster than {limit:g} mm/s"
+            state = f"at times sliding slowly, seldom or never faster than {1e3 * limits[wheel]:g} mm/s"
         elif summary.first_slip_s[wheel] is None:
             state = "stuck all the time: almost no energy is dissipated, and the strut acts as a rigid link"
         elif share <= STICKS:
@@ -79,7 +79,8 @@ def damper_sentences(summary: RunSummary, *, friction: bool = True) -> list[str]
         if any(summary.first_slip_s[wheel] is not None for wheel in wheels):
             each = [f"{number(100 * shares[wheel], 2)} % ({side_of(wheel, shares)})" for wheel in wheels]
             slip = "Slip, faster than" if friction else "Faster than"
-            text += f" {slip} {limit:g} mm/s: {' and '.join(each)} of the time."
+            limit = slip_words({wheel: limits[wheel] for wheel in wheels}, shares)
+            text += f" {slip} {limit} mm/s: {' and '.join(each)} of the time."
         sentences.append(text)
     return sentences
 

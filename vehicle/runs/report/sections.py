@@ -14,7 +14,7 @@ from vehicle.drawing.rendering.frf_plot import plot_frfs
 from vehicle.drawing.rendering.plots import plot_time
 from vehicle.engines.linear.car_modes import Mode
 from vehicle.model.parameters.shipped import VEHICLES
-from vehicle.names import CORNERS, channel_words, point_words, side_of
+from vehicle.names import CORNERS, channel_words, point_words, side_of, slip_words
 from vehicle.runs.report.comfort_class import REACTIONS, reactions
 from vehicle.runs.report.differences import changed_parameters, parameter_rows, shipped_origin
 from vehicle.runs.report.findings import findings, main_points, nearest_mode
@@ -59,17 +59,15 @@ NO_FIGURE = Markup()
 def tiles(run: FinishedRun) -> Markup:
     """Return the key figures of a run as tiles."""
     summary = run.summary
-    shares = summary.slip_shares
+    shares, limits = summary.slip_shares, summary.slip_limits
     values = []
     for point, value in list(run.comfort.items())[:1]:
         total = value.weighted
         label = f"weighted acceleration at the {point.replace('_', ' ')}, {' to '.join(reactions(total))}"
         values.append((f"{number(total)} m/s²", label))
-    slipping = "in slip" if run.friction else f"faster than {1e3 * summary.slip_share.get('slip_velocity', 0.0):g} mm/s"
-    values += [
-        (f"{number(100 * share, 2)} %", f"of the time {slipping}, {side_of(wheel, shares)} damper")
-        for wheel, share in shares.items()
-    ]
+    for wheel, share in shares.items():
+        slipping = "in slip" if run.friction else f"faster than {1e3 * limits[wheel]:g} mm/s"
+        values.append((f"{number(100 * share, 2)} %", f"of the time {slipping}, {side_of(wheel, shares)} damper"))
     for wheel, plate, resonances in run.peaks[:1]:
         if peaks := resonances.get(f"knuckle_{wheel}_acc_z"):
             top = max(peaks, key=lambda peak: peak.magnitude)
@@ -177,8 +175,8 @@ def dampers(run: FinishedRun) -> Markup | None:
                 f"{number(force)} N",
             )
         )
-    limits = {"slip": 1e3 * share["slip_velocity"], "limit": 1e3 * summary.saturated_velocity}
-    return fill("dampers", friction=run.friction, rows=rows, **limits)
+    slip, limit = slip_words(summary.slip_limits, list(first)), 1e3 * summary.saturated_velocity
+    return fill("dampers", friction=run.friction, rows=rows, slip=slip, limit=limit)
 
 
 def _when(value: float | None) -> str:

@@ -1,6 +1,6 @@
 """Slip of dampers: share of the time, first slip, intervals, and acceleration peaks after break-away.
 
-A damper slips while |v| > v_slip, with v_slip = `damper.slip_velocity` of the parameters. Slip shares, first slips,
+A damper slips while |v| > v_slip, with v_slip = `damper.slip_velocity` of its parameters. Slip shares, first slips,
 sweeps, tables, figures and the lamps of the films all use this velocity. Names with "saturated" refer to the
 friction force, which reaches its limit at 1 mm/s.
 """

@@ -245,13 +245,18 @@ class MeasuredSummary(Stored):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RunSummary(Stored):
-    """Content of `summary.json`; a value that does not exist is null. Earlier versions lack the keys not required."""
+    """Content of `summary.json`; a value that does not exist is null. Earlier versions lack the keys not required.
+
+    `slip_share` has the share of each wheel and, as "slip_velocity", the limit [m/s] of the first wheel. If the dampers
+    differ, `slip_velocities` has the limit of each wheel; otherwise the key is absent.
+    """
 
     frame: str
     vehicle: VehicleSummary
     input: InputSummary
     evaluated_s: list[float] = field(default_factory=list)
     slip_share: ByWheel
+    slip_velocities: ByWheel | None = omitted()
     first_slip_s: TimeByWheel
     friction_saturated_share: ByWheel
     first_friction_saturated_s: TimeByWheel
@@ -277,6 +282,11 @@ class RunSummary(Stored):
     def slip_shares(self) -> ByWheel:
         """Share of the time in slip [-] by wheel, without the velocity that counts as slip."""
         return {wheel: share for wheel, share in self.slip_share.items() if wheel != "slip_velocity"}
+
+    @property
+    def slip_limits(self) -> ByWheel:
+        """Return the velocity above which each damper slips [m/s], by wheel."""
+        return self.slip_velocities or dict.fromkeys(self.slip_shares, self.slip_share.get("slip_velocity", 0.0))
 
     @property
     def comfort_band(self) -> tuple[float, float]:
