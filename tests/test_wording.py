@@ -4,6 +4,7 @@ import inspect
 import subprocess
 import sys
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -139,14 +140,20 @@ def test_workers_of_a_command_keep_them_too():
 
 def test_an_impossible_iterate_is_explained_by_its_target_in_python_too(python):
     targets = [Target(name=f"damping_ratio_{word}", value=0.3, paths=()) for word in ("front", "rear")]
-    problem = SimpleNamespace(targets=targets, unreachable_error=targets.__getitem__)
-    error = ConfigurationError("--damping-ratio-rear --skip 2")
-    assert RideProblem.explained_error(problem, error) is targets[1]
+    problem: Any = SimpleNamespace(targets=targets, unreachable_error=targets.__getitem__)
+    error: Any = ConfigurationError("--damping-ratio-rear --skip 2")
+    assert RideProblem.explained_error(problem, error) == targets[1]
 
 
 def test_each_argument_is_one_of_a_public_function():
     public = (getattr(vehicle, name) for name in vehicle.__all__)
-    functions = [each for each in public if inspect.isfunction(each)] + [Choice, road, Car.run, Car.modes, Car.with_]
+    functions: list[Any] = [each for each in public if inspect.isfunction(each)] + [
+        Choice,
+        road,
+        Car.run,
+        Car.modes,
+        Car.with_,
+    ]
     switches = {name.replace("-", "_") for name in SWITCHES}
     known = {name for each in functions for name in inspect.signature(each).parameters}
     assert {*ARGUMENTS.values(), *switches, "mapping", "point", "share", "shift", "overrides"} <= known

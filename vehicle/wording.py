@@ -191,7 +191,7 @@ def _argument(part: re.Match[str]) -> str:
 
 
 def _value(name: str, value: str) -> str:
-    """Return the value of an option in the notation and unit of Python, or an empty text if it has none."""
+    """Return the value of an option in the notation and unit of Python; empty: unknown."""
     number = re.fullmatch(f"({NUMBER})(ms|us|s)?", value)
     if value == "...":
         return value

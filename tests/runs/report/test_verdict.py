@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -40,6 +41,7 @@ def test_targets_come_first(reported, tmp_path, monkeypatch, capsys):
 
 def test_cars_with_equal_words_stay_apart():
     cars = ["focus, front.bushings.mount.x=1", "focus, front.hardpoints.mount.x=1"]
-    section = verdict_section({}, [SimpleNamespace(label=car) for car in cars])
+    runs: list[Any] = [SimpleNamespace(label=car) for car in cars]
+    section = verdict_section({}, runs)
     assert all(f'<th class="number">{car}</th>' in section for car in cars)
-    assert "front mount x 1" in verdict_section({}, [SimpleNamespace(label=cars[0])])
+    assert "front mount x 1" in verdict_section({}, runs[:1])
