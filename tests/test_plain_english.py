@@ -8,6 +8,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 
+# The first rates are higher since a docstring counts once: 3.87 and 1.71, not 3.45 and 1.59, on the same sources.
 LIMITS = {
     "vehicle": (3.85, 0.8, 4.1, 1.05),
     "scenarios": (1.75, 1.1, 0.1, 0.9),

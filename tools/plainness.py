@@ -170,7 +170,9 @@ def shown_texts(path: Path) -> list[tuple[int, str]]:
     return [(line, text) for line, text in texts if prose(text)]
 
 
-PATTERN = re.compile(r"\\[bdws]|\n {4}|:root|\.\*(?!\.)|\(\?|\)\?|->|</|-src 'none'|^complete -|^autoload ")
+PATTERN = re.compile(
+    r"\\[bdws]|\w\|\w+\|\w+\||\n {4}|:root|\.\*(?!\.)|\(\?|\)\?|->|</|-src 'none'|^complete -|^autoload "
+)
 """Texts that a program reads: search patterns, styles, sums of products over indices, markup, and shell scripts."""
 
 

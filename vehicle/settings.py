@@ -233,7 +233,7 @@ def engine_setting(default: str) -> Any:
     """Declare the engine of the runs of a function or a command; the default is "auto" for many runs."""
     return setting(
         "mujoco: complete nonlinear model; reduced: 3 times faster for a run, tens of times for sweeps, with all force "
-        "laws but linear geometry, no film; auto: reduced in its valid range, otherwise mujoco; default: %(default)s",
+        "laws but linear geometry, no video; auto: reduced in its valid range, otherwise mujoco; default: %(default)s",
         default,
         choices=ENGINES,
     )

@@ -172,11 +172,11 @@ def test_posterior_of_the_record_and_a_rival_law(record, tmp_path, capsys):
         (["--samples", "64"], "belongs to --posterior", 2),
         (["--record", "FILE", *MAP, *("--parameters", BOUNDS[0]), "--posterior"], "--posterior needs measured FRFs", 3),
         (["--record", "FILE", *MAP], "the parameters to fit are missing", 2),
-        (["--record", "FILE", *MAP, "--parameters", "damper.viscous=1,2"], "contains values, must be two bounds", 2),
+        (["--record", "FILE", *MAP, "--parameters", "damper.viscous=1,2"], "damper.viscous=1,2: contains values", 2),
         (["--record", "FILE", *MAP, "--parameters", "damper.viscous=3e3:4e3"], "0 < lower < start < upper", 2),
         (["--record", "FILE", *MAP[2:], *("--parameters", BOUNDS[0])], "contains no moving plate", 3),
         (["--record", "FILE", *("--parameters", BOUNDS[0])], "set --map CHANNEL=NAME", 3),
-        (["--record", "FILE", *MAP, "--to", "100.01", *("--parameters", BOUNDS[0])], "rows, must be at least 32", 3),
+        (["--record", "FILE", *MAP, "--to", "100.01", *("--parameters", BOUNDS[0])], "at least 32 are needed", 3),
         (
             ["--record", "FILE", *MAP, "--unit", "seat_rail_acc_z=V", *("--parameters", BOUNDS[0])],
             "seat_rail_acc_z is a voltage",

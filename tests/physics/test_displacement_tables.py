@@ -187,5 +187,5 @@ def test_invalid_tables_are_rejected_by_name():
 
     with pytest.raises(ConfigurationError, match=r"^front\.main_spring\.table\.force: found -1\.0 N after 1\.0 N"):
         changed_car(falling)
-    with pytest.raises(ConfigurationError, match=r"bushing/tyre_fr: reaches -100 N, must carry -3"):
+    with pytest.raises(ConfigurationError, match=r"bushing/tyre_fr: reaches -100 N but must carry -3"):
         _ = changed_car(weak).model

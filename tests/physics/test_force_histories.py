@@ -216,7 +216,7 @@ def test_a_run_up_tells_what_its_speed_does_to_a_peak():
 
 
 REFUSED: dict[str, tuple[dict[str, object], str]] = {
-    "no such channel": ({"channel": "X"}, "force.a.channel 'X' matches no channel; set a number"),
+    "no such channel": ({"channel": "X"}, "force.a.channel 'X' matches no channel"),
     "unit of a moment": ({"channel": "torque"}, "channel 1 'torque' is a moment in [Nm]; force.a needs N, kN or lbf"),
     "no unit": ({"channel": "plain"}, "has no unit; set force.a.unit to N, kN or lbf"),
     "unknown unit": ({"channel": "plain", "unit": "kp"}, "has the unknown unit 'kp'; set force.a.unit to N, kN or lbf"),
@@ -316,7 +316,7 @@ def test_a_wrong_speed_of_the_crankshaft_is_refused(tmp_path):
         ({"crank.file": str(file), "crank.channel": "x"}, "0 channels match 'x'; set crank.channel"),
         (
             {"crank.file": str(file), "crank.channel": "m"},
-            "the speed 'm' is 0 to 100000 1/min, must be 0 to 10000 1/min",
+            "the speed 'm' is 0 to 100000 1/min but must be 0 to 10000 1/min",
         ),
         ({"crank.file": str(file), "crank.rpm": 700}, "crank.rpm: set either rpm or file"),
         ({"crank.rpm": 700, "crank.channel": "n"}, ("crank.file: missing, but channel is set")),

@@ -101,9 +101,9 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     ),
     "another length": (
         {"a": np.zeros(500)},
-        ("has values of the shape (500,), must be a value for each of the 501 times"),
+        ("has values of the shape (500,); give a value for each of the 501 times"),
     ),
-    "a number": ({"a": lambda time: 3.0}, "has values of the shape (), must be a value for each"),
+    "a number": ({"a": lambda time: 3.0}, "has values of the shape (); give a value for each"),
     "not finite": ({"a": np.full(501, np.nan)}, "forces: force.a has a value that is not finite"),
     "too fast": (
         {"a": lambda time: np.sin(600.0 * np.pi * time) * np.sin(2.0 * np.pi * time) ** 2},

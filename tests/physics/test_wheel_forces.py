@@ -168,6 +168,7 @@ def test_the_range_over_the_phases_contains_every_car_and_reaches_its_ends():
 
 IMBALANCE = "front.right.imbalance"
 SHAKEN: dict[str, tuple[str, float, dict[str, object]]] = {
+    "sedan, imbalance of 160 g, 100 km/h": ("sedan", 100, {f"{IMBALANCE}.mass": 0.16, f"{IMBALANCE}.radius": 0.2}),
     "focus_road with skyhook dampers, imbalance of 40 g, 140 km/h": (
         "focus_road", 140,
         {f"{IMBALANCE}.mass": 0.04, f"{IMBALANCE}.radius": 0.2, "front.damper.control.law": "skyhook"},

@@ -122,7 +122,7 @@ def test_a_road_is_evaluated_from_two_seconds_on(shaker, tmp_path):
     ):
         outcome = shaker(*given, "--output", "other", "--skip", skip)
         assert outcome.code == 2 and f"--skip {skip}{refusal}" in outcome.err
-    assert "the 1.5 s of road_B_80; set a longer --duration" in shaker(*given, "--duration", "1.5").err
+    assert "the 1.5 s of road_B_80; choose a longer --duration" in shaker(*given, "--duration", "1.5").err
 
 
 @pytest.mark.parametrize(

@@ -70,7 +70,7 @@ def command_for(
     }
     if by["force"] and (by["velocity"] or by["displacement"]) and not by["acceleration"] and len(histories) <= 4:
         return "", (
-            "force over velocity or travel, so probably the curve of a damper or spring; name this file in the "
+            "force against velocity or travel, so probably the curve of a damper or spring; name this file in the "
             "vehicle file (docs/vehicle-file.md shows where)"
         )
     empty = [channel for _, channel in (*by["displacement"], *by["acceleration"]) if not _has_values(channel)]
@@ -104,7 +104,7 @@ def command_for(
             "--unit ROLE=UNIT"
         )
     if any(channel.function in NOT_OVER_TIME for channel in measurement.channels):
-        return "", "the channels are over distance or angle, not over time; export them over time"
+        return "", "the channels are recorded against distance or angle; export them against time"
     return "", "the file has no time channel; set --rate HZ, or --channel time=NAME"
 
 

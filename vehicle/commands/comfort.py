@@ -123,7 +123,7 @@ def evaluated(file: str, settings: ComfortSettings) -> RecordComfort:
         axis, equals, name = settings.rail.partition("=")
         if equals and axis != "z":
             raise ConfigurationError(
-                f"--rail {settings.rail}: the SEAT value needs a z acceleration; set z=NAME, or a point of a run"
+                f"--rail {settings.rail}: the SEAT value needs a z acceleration; give z=NAME, or a point of a run"
             )
         rail = _picked(settings.record, [f"z={name}"] if equals else [settings.rail])
     result = evaluate_comfort(

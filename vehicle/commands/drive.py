@@ -44,7 +44,7 @@ def parser() -> Parser:
     channels = parser.add_argument_group("channels of the target measurement")
     record_options(
         channels,
-        'an acceleration of the car, for example knuckle_fr_acc_z="Dof 12 +Z". The '
+        'an acceleration of the car and its channel in the file, for example knuckle_fr_acc_z="Dof 12 +Z". The '
         "name alone is sufficient if the file uses it or has only one channel. Give at least as many channels "
         "as plates",
     )

@@ -21,7 +21,9 @@ def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser("fit-damper", "Fit the force law of a damper to records of a test machine.")
     setting_options(parser, DamperFitSettings, "files")  # fmt: skip
-    record_options(parser, "channel of time, displacement, force or velocity, for example force=Load", highpass=False)
+    record_options(
+        parser, "channel with the time, displacement, force or velocity, for example force=Load", highpass=False
+    )
     setting_options(parser, DamperFitSettings, "positive")  # fmt: skip
     setting_options(parser, DamperFitSettings, "condition")  # fmt: skip
     setting_options(parser, DamperFitSettings, "pattern")  # fmt: skip
@@ -51,7 +53,7 @@ class DamperFitSettings(Settings):
     record: RecordSettings = part(RecordSettings)
     positive: str | None = setting(
         "positive direction of displacement, velocity and force in the files; default: extension; if it is wrong, gas "
-        "force, bump and rebound come out reversed",
+        "force, bump and rebound are reversed",
         choices=("extension", "compression"),
     )
     condition: tuple[str, ...] = setting(

@@ -42,7 +42,7 @@ class FmuSettings(Settings):
         "add outputs to the default channels: loads, all, or names separated by commas", metavar="NAME,..."
     )
     speed: float | None = setting(
-        "speed at which the tyres roll over the plates, which then are the road [km/h]; default: speed of "
+        "speed at which the tyres roll over the plates, which then represent the road [km/h]; default: speed of "
         "the vehicle file",
         within="[0, 300]",
         type=float,

@@ -100,7 +100,7 @@ def road_options(
         action="append" if several else "store",
         type=speed_value,
         metavar="KM/H|channel:NAME",
-        help="speed of the car [km/h]; for a road recorded over time also channel:NAME, the channel with the speed"
+        help="speed of the car [km/h]; for a road recorded over time, channel:NAME names the channel with the speed"
         + ("; one for all roads, or one for each" if several else ""),
     )
     setting_options(group, RoadSettings, "duration")
@@ -167,8 +167,8 @@ def record_options(
             action="append",
             default=[],
             metavar="ROLE=NAME",
-            help=f"channel of the file (number, exact name, or pattern with *) for {roles}; time=NAME for the "
-            "times. May be repeated. `python -m vehicle inspect FILE` lists the channels",
+            help=f"channel of the file (number, exact name, or pattern with *) for {roles}; time=NAME for the time "
+            "channel. May be repeated. `python -m vehicle inspect FILE` lists the channels",
         )
     if unit:
         unit_option(parser)

@@ -61,7 +61,7 @@ def parser() -> Parser:
     parser.former("--replace", "--replace: no such option; use --force to replace files")
     parser.former(
         "--force(=| [^-])",
-        "--force replaces files and takes no value; set a force on the wheels with --contact-force AXIS=VALUE",
+        "--force replaces files and takes no value; apply a force to the wheels with --contact-force AXIS=VALUE",
     )
     parser.add_argument("--json", action="store_true", help="print JSON")
     message_options(parser)
@@ -134,7 +134,7 @@ def _travels(text: str) -> list[float]:
     count = math.floor((last - first) / step + 1e-9) + 1
     if count > MOST_POSITIONS:
         raise ConfigurationError(
-            f"--travel {text!r}: gives {count} positions, must be at most {MOST_POSITIONS}; use a larger step"
+            f"--travel {text!r}: gives {count} positions, but at most {MOST_POSITIONS} are allowed; use a larger step"
         )
     return [round(first + index * step, 9) * 1e-3 for index in range(count)]
 
@@ -186,7 +186,7 @@ COLUMNS = (*HEADS, *GEOMETRY_HEADS, "roll_centre_lateral_m", "side_swing_height_
 def _report(
     settings: KinematicsSettings, poses: list[WheelPose], geometry: list[WheelGeometry], rates: dict[str, float | None]
 ) -> str:
-    """Return both tables as text."""
+    """Return the two tables as text."""
     joints = "ideal joints" if settings.ideal else "compliant bushings"
     lines = [
         f"{settings.axle} axle, right wheel: changes from the design position; {joints}"

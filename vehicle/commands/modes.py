@@ -89,7 +89,7 @@ def parser() -> Parser:
         nargs="?",
         const="",
         metavar="FILE.mp4",
-        help="write the mode of --animate as a film of three cycles (4 s) that can run in a loop; default: "
+        help="write the mode chosen with --animate as a video of three cycles (4 s) that can run in a loop; default: "
         "runs/mode_<frequency>_hz.mp4",
     )
     setting_options(parser, ModesSettings, "decoupling")
@@ -114,7 +114,7 @@ def _job(settings: ModesSettings, console: Console) -> None:
         written_here = settings.uff.is_file() and b"vehicle-on-shaker" in settings.uff.read_bytes()[:500]
         if not (settings.destination.force and written_here):
             mend = (
-                "was not written by this program, so --force does not replace it; set another name"
+                "was not written by this program, so --force does not replace it; choose another name"
                 if settings.destination.force
                 else "exists; give --force"
             )
@@ -167,7 +167,7 @@ def _check_film(settings: ModesSettings) -> None:
         return
     if video is None:
         raise ConfigurationError(
-            f"--animate {settings.animate:g}: makes a film only with --video; add --video [FILE.mp4]"
+            f"--animate {settings.animate:g}: makes a video only with --video; add --video [FILE.mp4]"
         )
     from vehicle.drawing.rendering.backend import require_film
 
@@ -186,7 +186,7 @@ def _film(settings: ModesSettings, frequency: float, car: Any, console: Console)
     path = settings.film.path(f"runs/mode_{mode.frequency:.2f}_hz.mp4")
     if not settings.film.video:
         path = settings.destination.file(path)
-    write_whole(path, lambda file: mode_film(car.model, mode, file, progress=console.progress("film      ")))
+    write_whole(path, lambda file: mode_film(car.model, mode, file, progress=console.progress("video     ")))
     return {"file": str(path), "asked_hz": frequency, "frequency_hz": mode.frequency}
 
 

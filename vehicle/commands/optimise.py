@@ -77,7 +77,11 @@ def parser() -> Parser:
     setting_options(tolerances, SearchSettings, "samples", "quantile")
     setting_options(parser, SearchSettings, "engine", "skip", "jobs", "executor", "check")
     parser.add_argument(
-        "--beside", type=Path, metavar="DIR", help="also draw another search with the same objectives and its distance"
+        "--beside",
+        type=Path,
+        metavar="DIR",
+        help="also draw the front of another search with the same objectives, "
+        "and print the distance between both fronts",
     )
     output_options(parser, Path("runs/optimise"))
     parser.add_argument("--resume", action="store_true", help="continue the search in this folder; --cars may grow")

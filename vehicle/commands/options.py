@@ -175,7 +175,7 @@ def report_option(parser: Parser, content: str, folder: str) -> None:
         nargs="?",
         const="",
         metavar="FILE.html",
-        help=f"also write a report: {content}; default: report.html in the folder of {folder}",
+        help=f"also write a report: {content}; default: report.html in the same folder as {folder}",
     )
     head_options(parser.scoped_group("a report", needs="--report", active=lambda options: options.report is not None))
 

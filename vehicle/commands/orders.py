@@ -21,7 +21,8 @@ from vehicle.runs.report.order_study import OrderSettings, order_study
 def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser(
-        "orders", "Compute amplitudes at orders of crankshaft or wheels at steady speeds, with limits and Campbell map."
+        "orders",
+        "Compute amplitudes at orders of the crankshaft or the wheels at steady speeds, with limits and Campbell map.",
     )
     vehicle_options(parser)
     setting_options(parser, OrderSettings, "rpm", "speed", "orders", "channel", "angle", "road", "duration", "engine")

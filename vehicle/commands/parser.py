@@ -167,7 +167,7 @@ class Parser(argparse.ArgumentParser):
             return f"{typed}: name the car with --vehicle {word}"
         if "--input" in options and (re.fullmatch(r"\.\w{2,3}", Path(word).suffix) or Path(word).is_file()):
             return f"{typed}: name the measurement with --input {word}"
-        return f"{typed}: belongs to no option; put names without an option first"
+        return f"{typed}: does not belong to any option; put names that need no option before the options"
 
     def error(self, message: str) -> None:  # type: ignore[override]
         """Raise a ConfigurationError with the message and the advice; argparse would end the process."""

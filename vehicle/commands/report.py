@@ -28,7 +28,7 @@ def parser() -> Parser:
     measure_option(parser, "report")
     film_options(
         parser,
-        "render a film of two runs of one input side by side and put it into the report; both are simulated again. "
+        "render a video of two runs of one input side by side and put it into the report; both are simulated again. "
         "Default: film.mp4 in this folder",
     )
     head_options(parser)
@@ -83,7 +83,7 @@ def _job(settings: ReportSettings, console: Console) -> None:
     if settings.film.video is not None:
         if len(settings.runs) != 2:
             raise ConfigurationError(
-                f"--video: needs two runs, found {len(settings.runs)}; for a film of one run use --video of shaker"
+                f"--video: needs two runs, found {len(settings.runs)}; for a video of one run use --video of shaker"
             )
         require_figures(settings.runs, settings.measure)
         film = _film(settings, console)
@@ -117,11 +117,11 @@ def _film(settings: ReportSettings, console: Console) -> Path:
     said: list[str] = []
 
     def make(file: Path) -> None:
-        progress, take = console.progress("film      "), settings.film.values()
+        progress, take = console.progress("video     "), settings.film.values()
         said.append(film_of_two(settings.runs, file, take, jobs=drawing_jobs(), progress=progress))
 
     write_whole(path, make)
-    console.say(f"film        {path}: {said[0]}")
+    console.say(f"video       {path}: {said[0]}")
     return path
 
 

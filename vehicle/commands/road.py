@@ -45,7 +45,8 @@ FILE = Path("road.csv")
 def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser(
-        "road", "Write the plate signals of a car on a road: a class, a measured profile or an obstacle."
+        "road",
+        "Write the plate signals that reproduce driving on a road: a road class, a measured profile or an obstacle.",
     )
     vehicle_options(parser)
     parser.add_argument("--class", dest="road_class", metavar="C", help="class of ISO 8608, A to H")
@@ -126,13 +127,13 @@ def _job(settings: RoadCommand, console: Console) -> None:
         slopes = drive.slopes(signal)
         beside = {f"road_{wheel} [m]": signal.profile[wheel] for wheel in signal.wheels}
         beside |= {f"slope_{wheel} [-]": slopes[wheel] for wheel in signal.wheels}
-        comments.append("displacement and slope: the road after its averaging by the contact patch of the tyre")
+        comments.append("displacement and slope: the road after averaging by the contact patch of the tyre")
     indices = path.with_name(f"{path.stem}_iri.csv")
     roughness = {}
     if settings.iri:
         if not isinstance(drive, RoadDrive):
             raise ConfigurationError(
-                "--iri: the IRI needs heights over distance, but this road was recorded over time; remove --iri"
+                "--iri: the IRI needs heights against distance, but this road was recorded over time; remove --iri"
             )
         destination.further_file(indices, "--output", ending=".csv", protect=inputs)
         roughness = drive.roughness()

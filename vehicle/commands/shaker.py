@@ -68,7 +68,7 @@ def parser() -> Parser:
     setting_options(car, ShakerSettings, "controller", "trust")
     setting_options(parser, ShakerSettings, "engine", "skip", "timestep", "time_format", "channels", "formats")
     figures_option(parser)
-    film = film_options(parser, "render a film of the run")
+    film = film_options(parser, "render a video of the run")
     setting_options(film, ShakerSettings, "video_mode")
     measured_options(parser)
     report_option(parser, "an HTML file with findings, figures, moving modes and tables", "the run")

@@ -30,7 +30,7 @@ def parser() -> Parser:
     setting_options(parser, SpectraSettings, "runs", "channels", "range")
     record_options(
         parser.add_argument_group("measurement files"),
-        "the name of this channel in runs, for example seat_rail_acc_z, which decides its weighting",
+        "the name that this channel has in runs, for example seat_rail_acc_z; it determines the weighting",
         highpass=False,
     )
     output_options(parser, None, default="the folder of a single run, runs/spectra for several runs")

@@ -78,7 +78,7 @@ def _dampers(summary: RunSummary) -> list[str]:
         lines = [f"damper      {every} stick{ending} all the time (|v| < {limit} mm/s)"]
     if slow:
         shares = _each(first, lambda w, side: f"{number(100 * full[w])} % ({side})", " and ")
-        lines.append(f"            above {fast:g} mm/s, where friction has its full value, for {shares}")
+        lines.append(f"            above {fast:g} mm/s, where friction reaches its full value, for {shares}")
     return lines
 
 

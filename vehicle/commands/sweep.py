@@ -132,7 +132,7 @@ def _design(options: argparse.Namespace) -> Design:
     if options.each is not None and (options.table or options.sobol is not None):
         raise ConfigurationError("--each takes its parameters from --vary PATH: remove --table and --sobol")
     if options.cases is None and options.each is None and bool(options.vary) == bool(options.table):
-        raise ConfigurationError("set either --vary PATH=A,B,C (may be repeated) or --table FILE.csv")
+        raise ConfigurationError("give either --vary PATH=A,B,C (may be repeated) or --table FILE.csv")
     if options.sobol is not None and (options.table or options.report is not None):
         raise ConfigurationError("--sobol needs --vary PATH=LOW:HIGH and writes no report: remove --table and --report")
     vary = tuple(options.vary)
@@ -157,7 +157,7 @@ def _job(study: SweepStudy, console: Console) -> None:
     if result.failed and not study.allow_failed:
         raise SimulationError(
             f"{result.failed} of {result.runs} runs failed; their rows of the table state the reason; to accept them, "
-            "set --allow-failed"
+            "add --allow-failed"
         )
 
 

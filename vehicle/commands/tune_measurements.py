@@ -91,10 +91,10 @@ def measurement_options(parser: Parser) -> None:
         type=speed_value,
         action=_OfMeasurement,
         metavar="KM/H|channel:NAME",
-        help="speed on the preceding --road [km/h]; for a road recorded over time also channel:NAME, the channel with "
-        "the speed",
+        help="speed on the preceding --road [km/h]; for a road recorded over time, channel:NAME names the channel "
+        "with the speed",
     )
-    help_text = "tyre contact on the preceding --road; default: patch, on an obstacle cams"
+    help_text = "tyre contact model on the preceding --road; default: patch (on an obstacle: cams)"
     setting_options(files, RoadSettings, "contact", action=_OfMeasurement, help=help_text)
     setting_options(files, LevelSettings, "levels", "reference", action=_OfMeasurement)
     files.add_argument(

@@ -60,7 +60,7 @@ def test_a_frame_depends_on_the_recording_alone(run):
 @pytest.mark.usefixtures("film_machine")
 def test_an_unwritable_film_is_an_output_error(run, tmp_path):
     path = tmp_path / "missing" / "film.mp4"
-    with pytest.raises(OutputError, match=r"film\.mp4: the film cannot be written"):
+    with pytest.raises(OutputError, match=r"film\.mp4: "):
         film(run, path, Take(duration=0.1, slow=1.0), size=(320, 180))
     assert not path.exists()
 

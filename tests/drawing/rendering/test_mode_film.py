@@ -93,7 +93,7 @@ def test_the_nearest_mode_is_taken(modes):
     ("options", "message"),
     [
         (["--video"], "--video: the mode is missing; give its frequency, for example --animate 28"),
-        (["--animate", "28"], "--animate 28: makes a film only with --video; add --video [FILE.mp4]"),
+        (["--animate", "28"], "--animate 28: makes a video only with --video; add --video [FILE.mp4]"),
         (["--animate", "0", "--video"], "--animate 0: must be above 0"),
         (["--animate=-3", "--video"], "--animate -3: must be above 0"),
         (["--animate", "nan", "--video"], "--animate nan: must be above 0"),

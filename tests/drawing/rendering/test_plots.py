@@ -166,7 +166,7 @@ def test_frfs_to_several_plates_are_lines_that_name_them(long_run, response, tmp
     ]
     plot_frfs(tmp_path / "frf.png", long_run, responses, "caption")
     axes = every_axis(figures[0])
-    assert figures[0].get_suptitle() == "FRFs to each of 2 plates, which act at once"
+    assert figures[0].get_suptitle() == "FRFs from each of 2 plates, which act at once"
     assert [axis.get_title() for axis in axes[:3]] == [
         "Seat rail, vertical",
         "Engine, vertical",
@@ -190,7 +190,7 @@ def test_a_common_motion_is_said_in_the_title(long_run, response, tmp_path, figu
             [MotionResponse(motion={"fr": 1.0, "fl": left}, response=response)],
             "",
         )
-        assert figures[-1].get_suptitle() == f"FRFs to the common motion of plates {words}"
+        assert figures[-1].get_suptitle() == f"FRFs from the common motion of plates {words}"
 
 
 def test_a_cloud_keeps_its_rare_dots_once():
@@ -211,7 +211,7 @@ def test_liveliest_stretch():
 
 def test_without_slip_the_knuckle_decides(run):
     start, reason = liveliest_window(run.recording, "fl", "knuckle_fl_acc_z", 1.0, 0.1)
-    assert reason == "liveliest knuckle; no slip"
+    assert reason == "largest knuckle motion; no slip"
     assert 0.0 <= start <= 0.2
 
 

@@ -136,7 +136,7 @@ def test_sliding_dampers_make_another_car(car):
     for modes, lowest_ratio, highest_ratio in ((stuck, 0.2, 1.0), (sliding, 0.0, 0.1)):
         light = [m for m in modes if 20.0 < m.frequency < 40.0 and m.damping_ratio < 0.06]
         assert lowest_ratio < max(m.energy["wheel_fr"] for m in light) < highest_ratio
-    with pytest.raises(ConfigurationError, match="damper: found 'loose', must be stuck or sliding"):
+    with pytest.raises(ConfigurationError, match=r"damper: .*'loose'"):
         car.modes("loose")
 
 

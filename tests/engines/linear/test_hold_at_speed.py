@@ -37,7 +37,9 @@ def test_the_hold_alone_makes_a_fast_car_unstable() -> None:
     """The refusal blamed the tyres of the front axle; the car understeers."""
     faster = 0.1 * SPEED / (200.0 / 3.6)  # above 200 km/h a hold is slower: 0.1 Hz at this speed
     car = Car.load("sedan", {"driving.speed": SPEED, "driving.hold_frequency": faster})
-    with pytest.raises(ConfigurationError, match=r"grows by a factor e .* Lower driving\.speed or driving\.hold_freq"):
+    with pytest.raises(
+        ConfigurationError, match=r"grows by a factor of e .* Lower driving\.speed or driving\.hold_freq"
+    ):
         car.check("reduced")
     held, half, free = (single_track(SPEED, hold) for hold in (0.1, 0.05, 0.0))
     assert free.real < half.real < held.real < 0.0

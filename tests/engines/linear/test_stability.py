@@ -34,7 +34,7 @@ def test_an_unstable_car_is_rejected_with_the_moving_part(engine):
         Car.load(None, FALLING).run(ROAD, engine=engine)
     message = str(caught.value)
     assert re.match(
-        "the car is statically unstable: front wheel fore-aft, sides in phase grows by a factor e in ", message
+        "the car is statically unstable: front wheel fore-aft, sides in phase grows by a factor of e in ", message
     )
     assert "the most loaded is front.bushings.suspension_mount.stiffness.x (10000)" in message
     assert "body.mass (813 kg), body.cog and gravity (20 m/s2)" in message

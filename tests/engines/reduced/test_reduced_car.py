@@ -94,7 +94,7 @@ def test_it_may_record_few_channels(car, high_piece):
         np.testing.assert_allclose(few[name], everything[name], atol=1e-9 * np.max(np.abs(everything[name])))
     with pytest.raises(ConfigurationError, match="no channel 'seat_acc'"):
         car.run(high_piece, engine="reduced", channels=["seat_acc"])
-    with pytest.raises(ConfigurationError, match="found the text 'loads', must be a list of names"):
+    with pytest.raises(ConfigurationError, match=r"channels: .*'loads'"):
         car.run(high_piece, engine="reduced", channels="loads")
 
 
@@ -103,7 +103,7 @@ def test_it_says_what_it_is(car, high_piece):
     assert (statistics.engine, statistics.energies, statistics.warnings) == ("reduced", None, ())
     assert statistics.steps * statistics.timestep == pytest.approx(4.0)
     assert statistics.within_validity
-    with pytest.raises(ConfigurationError, match="engine: found 'adams', must be one of mujoco, reduced, auto"):
+    with pytest.raises(ConfigurationError, match=r"engine: .* mujoco, reduced, auto, not 'adams'"):
         car.run(high_piece, engine="adams")
 
 

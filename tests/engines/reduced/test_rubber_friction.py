@@ -176,5 +176,5 @@ def test_the_iteration_over_forces_is_bounded():
 def test_a_car_without_its_tangent_is_rejected():
     elements = friction_elements(1e3 * FORCE, 1e-2 * STROKE)
     car = dataclasses.replace(matrices(TYRE_DAMPING), laws=(law(0, elements), law(1, elements)))
-    with pytest.raises(SimulationError, match="mount 0 along z: its stiffness at rest is not above 0"):
+    with pytest.raises(SimulationError, match=r"mount 0 along z: .*--engine mujoco"):
         reduced(car, step=1e-3)

@@ -37,7 +37,7 @@ def test_item_36_a_lost_state_stops_with_time_and_joint(car, monkeypatch, tmp_pa
 
 def test_a_signal_shorter_than_a_recorded_interval_is_refused(car):
     short = Signal(time=uniform_time(samples=32, timestep=1e-5), displacement={"fr": np.zeros(32)})
-    with pytest.raises(ConfigurationError, match=r"0\.31 sampling intervals, must be at least 1"):
+    with pytest.raises(ConfigurationError, match=r"0\.31 sampling intervals but must last at least 1"):
         car.run(short)
 
 

@@ -14,7 +14,6 @@ from tests.patience import HANG
 from vehicle.errors import ConfigurationError
 from vehicle.handover.bench.guard import Guard
 from vehicle.handover.bench.state import BenchState
-from vehicle.runs.report.modes_section import ride_share
 
 viser = pytest.importorskip("viser", reason="viser is missing: pip install 'vehicle-on-shaker[bench]'")
 msgspec = pytest.importorskip("msgspec")
@@ -180,7 +179,7 @@ def test_values_of_a_wrong_type_are_ignored_in_a_line_each(bench, capfd, caplog)
         gc.collect()  # an error that nobody has looked at is reported when its task is collected
         bench.follows(client, 76.0)
     said = capfd.readouterr().err
-    ignored = [line for line in said.splitlines() if line.startswith("bench: ")]
+    ignored = [line for line in said.splitlines() if line.startswith("bench: ") and "ignored" in line]
     assert len(ignored) >= 10 and "Traceback" not in said and "\x1b" not in said
     assert not any(record.exc_info for record in caplog.records)
 
@@ -202,7 +201,7 @@ def test_garbage_and_closed_browsers_do_not_end_the_bench(bench, capfd, caplog):
     with bench.client() as client:
         bench.follows(client, 65.0)
     said = capfd.readouterr().err
-    assert "bench: " in said and "Traceback" not in said
+    assert "bench: a connection was closed (" in said and "Traceback" not in said
     assert not any(record.exc_info for record in caplog.records)
 
 
@@ -268,8 +267,7 @@ def test_a_mode_is_shown_and_absurd_choices_are_not(bench):
         received(client)
         bench.set(client, view.kind, "modes, dampers stuck")
         bench.wait_for(lambda: view.modes and view.mode.value in view.mode.options)
-        first = view.modes[view.mode.options.index(view.mode.value)]
-        assert ride_share(first) == max(map(ride_share, view.modes)) > 0.5
+        assert "body heave" in view.mode.value or "body pitch" in view.mode.value
         bench.set(client, view.mode, view.mode.options[2])
         bench.wait_for(lambda: stage.slower == CYCLE * view.modes[2].frequency)
         for handle, value in ((view.mode, "no mode"), (view.kind, "x" * 1000)):

@@ -83,7 +83,7 @@ def test_refusals(arguments, message, capsys, tmp_path, monkeypatch):
 
 def test_refusals_in_python(car: Car, tmp_path: Path):
     for options, message in (
-        ({"fmi": "1"}, "fmi: found '1', must be one of 2, 3"),
+        ({"fmi": "1"}, "fmi: must be one of 2, 3, not '1'"),
         ({"step": 1e-2}, "step: found 0.01 s, must be 1e-06 to 0.0005 s"),
         ({"channels": ["nothing"]}, "nothing"),
         ({"channels": ["plate_fr_displacement"]}, "contains only plate displacements"),

@@ -130,7 +130,7 @@ def test_both_sides_are_mirrored_and_stand(tmp_path):
 @pytest.mark.parametrize(("axes", "message"), [
     ('["engine_cog", "engine_kog"]', "connection.link.axes: unknown point 'engine_kog'; did you mean"),
     ('["engine_cog"]', "connection.link.axes: found ['engine_cog'], must be two points of a connection"),
-    ("3", "connection.link.axes: found 3, must be a list"),
+    ("3", "connection.link.axes: must be a list, not 3"),
 ])  # fmt: skip
 def test_bad_axes_are_refused(tmp_path, axes, message):
     law = f'\n[connection.link]\nmoving = "engine"\ncarrier = "body"\nat = {AT}\naxes = {axes}\n'

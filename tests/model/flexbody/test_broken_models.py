@@ -70,10 +70,12 @@ CASES = {
     "no CoG": toml(line("cog_m", None), "key 'cog_m' is missing; set all of mass_kg, cog_m, inertia_kg_m2"),
     "no inertia": toml(line("inertia_kg_m2", None), "key 'inertia_kg_m2' is missing"),
     "no mass": toml(line("mass_kg", None), "key 'mass_kg' is missing; set all of mass_kg, cog_m"),
-    "inertia of three": toml(line("inertia", "inertia_kg_m2 = [1.0, 2.0, 3.0]"), "shape (3,), must be (3, 3)"),
-    "mass not finite": toml(line("mass_kg", "mass_kg = nan"), "must be a positive mass"),
-    "mass negative": toml(line("mass_kg", "mass_kg = -275.0"), "must be a positive mass"),
-    "CoG in mm": toml(line("cog_m", "cog_m = [980.0, 0.0, 600.0]"), "lies far outside the nodes"),
+    "inertia of three": toml(
+        line("inertia", "inertia_kg_m2 = [1.0, 2.0, 3.0]"), "must have the shape (3, 3), not (3,)"
+    ),
+    "mass not finite": toml(line("mass_kg", "mass_kg = nan"), "give a positive mass"),
+    "mass negative": toml(line("mass_kg", "mass_kg = -275.0"), "give a positive mass"),
+    "CoG in mm": toml(line("cog_m", "cog_m = [980.0, 0.0, 600.0]"), "m is far outside the nodes"),
     "inertia of a needle": toml(
         line("inertia", "inertia_kg_m2 = [[1.0, 0.0, 0.0], [0.0, 5.0, 0.0], [0.0, 0.0, 900.0]]"),
         "the sum of the two smaller must be at least the largest",
@@ -115,7 +117,8 @@ CASES = {
     "npz unknown array": npz(array(shape=np.zeros(3)), "unknown array 'shape'; did you mean"),
     "npz of objects": npz(array(nodes=lambda names: names.astype(object)), "Object arrays cannot be loaded"),
     "npz shape": npz(
-        array(shape_per_sqrt_kg=lambda table: table[:, :-1]), "has the shape (4, 7, 3), must be (4, 8, 3) for 8 nodes"
+        array(shape_per_sqrt_kg=lambda table: table[:, :-1]),
+        "has the shape (4, 7, 3) but must have (4, 8, 3) for 8 nodes",
     ),
     "npz edges": npz(array(edges=np.arange(3)), "array 'edges': shape (3,)"),
     "npz names": npz(array(nodes=lambda names: names.reshape(2, 4)), "array 'nodes': shape (2, 4)"),
@@ -141,7 +144,7 @@ CASES = {
     ".sti NaN": Case("job.sti", line("1 1 ", "1 1 nan"), JOB, "row 1 contains a number that is not finite"),
     ".sti cut off": Case("job.sti", cut(0.501), JOB, "job.sti: stiffness: degree of freedom 1 of node 51 has no"),
     ".mas one number": Case("job.mas", holds(b"1\n2\n"), JOB, "found 1 numbers in each of 2 rows"),
-    ".sti half rows": Case("job.sti", line("1 1 ", "1.5 1 3.0"), JOB, "found 1.5, must be a whole number"),
+    ".sti half rows": Case("job.sti", line("1 1 ", "1.5 1 3.0"), JOB, "(node, direction, row), not 1.5"),
     ".dof direction 7": Case("job.dof", line("1.6", "1.7"), JOB, "directions 1 to 7, must be 1 to 6"),
     ".dof of another job": Case("job.dof", holds(b"1.1\n1.2\n1.3\n"), JOB, "the number of degrees of freedom."),
     ".dof twice": Case("job.dof", line("1.6", "1.5"), JOB, "degree of freedom 5 of node 1 occurs twice"),
@@ -181,7 +184,7 @@ CASES = {
     "map of an unknown point": Case(
         "map.csv", text("strut", "nose"), (*UFF, "--point-nodes", "map.csv"), "the car has no point 'nose_top_fr'"
     ),
-    "map to no node": Case("map.csv", text("fr,1", "fr,999"), (*UFF, "--point-nodes", "map.csv"), "no node '999'"),
+    "map to no node": Case("map.csv", text("fr,1", "fr,999"), (*UFF, "--point-nodes", "map.csv"), "node '999'"),
     "map twice": Case(
         "map.csv",
         text("strut_top_fr,1", "seat,1\nseat,2"),
@@ -225,7 +228,7 @@ CASES = {
     "output exists": option("--output", "box.toml", says="exists; give --force to replace it, or another name"),
     "output in a file": option("--output", "map.csv/body.toml", says="map.csv is a file, not a folder"),
 }
-REFUSED = {"run.op2": "Nastran OP2", "run.RST": "ANSYS results", "file.full": "HBMAT,k", "a.odb": "*MATRIX OUTPUT",
+REFUSED = {"run.op2": "Nastran OP2", "run.RST": "ANSYS", "file.full": "HBMAT,k", "a.odb": "*MATRIX OUTPUT",
            "b.mnf": "Adams modal neutral file"}  # fmt: skip
 CASES |= {name: Case("modes.uff", nothing, ("import", name), says) for name, says in REFUSED.items()}
 

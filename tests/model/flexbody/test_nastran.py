@@ -98,13 +98,13 @@ def test_nodes_and_names_may_be_given(tmp_path):
     assert len(matrices.node) == 48
     with pytest.raises(DataError, match="DMIG matrices KGG, MAAX, must be two"):
         read_matrices(tmp_path / "job.pch:KAAX", None, None, tmp_path / "job.bdf")
-    with pytest.raises(DataError, match="nodes of the matrices have no position in the list of nodes, the first"):
+    with pytest.raises(DataError, match="nodes of the matrices have no position in the list of nodes; the first"):
         read_matrices(path, None, None, None)
 
 
 @pytest.mark.parametrize(("old", "new", "message"), [
-    ("DMIG,KAAX,0,6,2", "DMIG,KAAX,0,9,2", "KAAX is another matrix: the matrix form is 9, must be 6"),
-    ("DMIG,KAAX,0,6,2", "DMIG,KAAX,0,6,4", "the number type is 4, must be 1 or 2 (real)"),
+    ("DMIG,KAAX,0,6,2", "DMIG,KAAX,0,9,2", "KAAX is another matrix: the matrix form is 9 but must be 6"),
+    ("DMIG,KAAX,0,6,2", "DMIG,KAAX,0,6,4", "the number type is 4 but must be 1 or 2 (real)"),
     ("DMIG,KAAX,0,6,2,0\n", "", "matrix column comes before the header line of its"),
     ("DMIG,KAAX,1,1,,1,1,", "DMIG,KAAX,1,1,,1,0,", "component 0 of 1, must be 1 to 6. Component 0 is a scalar"),
     ("DMIG,KAAX,1,1,,1,1,", "DMIG,KAAX,1,1,,1,1,x", "could not convert string to float"),

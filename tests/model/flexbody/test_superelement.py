@@ -77,11 +77,11 @@ def rigid_turn(fields):
 BAD = {
     "8 frequencies for 9 shapes": (
         put("frequencies", lambda f: f[:-1]),
-        "damping_ratio: has the shape (4,), must be (3,) for",
+        "damping_ratio: has the shape (4,) but must have (3,) for",
     ),
     "one shape too few": (
         put("shapes", lambda s: s[:-1]),
-        "shapes: has the shape (3, 8, 3), must be (4, 8, 3) for 8 nodes and 4",
+        "shapes: has the shape (3, 8, 3) but must have (4, 8, 3) for 8 nodes and 4",
     ),
     "one name too many": (put("mode_names", lambda n: (*n, "x")), "mode_names: found 5 names for 4 frequencies."),
     "ragged positions": (
@@ -96,7 +96,10 @@ BAD = {
         "node 'corner_1': found the shape (3,), must be",
     ),
     "flexibility one-sided": (put("residual", {"corner_1": np.eye(3, k=1) * 1e-7}), "m/N is not symmetric"),
-    "flexibility negative": (put("residual", {"corner_1": -1e-7 * np.eye(3)}), "value is -1e-07 m/N, must be at least"),
+    "flexibility negative": (
+        put("residual", {"corner_1": -1e-7 * np.eye(3)}),
+        "value is -1e-07 m/N but must be at least",
+    ),
     "flexibility in mm/N": (put("residual", {"corner_1": 1e-3 * np.eye(3)}), "probably in mm/N, or the node"),
     "flexibility NaN": (put("residual", {"corner_1": np.full((3, 3), np.nan)}), "every number must be finite"),
     "NaN in a shape": (at("shapes", (1, 2, 0), np.nan), "shapes[1, 2, 0]: found nan, every number must be finite."),
@@ -105,7 +108,7 @@ BAD = {
     "negative frequency": (at("frequencies", 0, -19.0), "frequencies[0]: -19 Hz; elastic modes have positive"),
     "unsorted": (swap_modes, "Sort the modes by frequency"),
     "damping in percent": (at("damping_ratio", 2, 2.0), "damping_ratio[2]: found 2, must be 0 to 0.3"),
-    "positions in mm": (scaled("positions", 1e3), "the body is 2000 m long, must be at most 30 m; probably mm"),
+    "positions in mm": (scaled("positions", 1e3), "the body is 2000 m long but must be at most 30 m; probably mm"),
     "positions in km": (scaled("positions", 1e-3), "the body is 0.002 m long"),
     "shapes in mm": (scaled("shapes", 1e3), "modal masses are 1e+06 instead of 1; probably mm"),
     "shapes 1000 too small": (scaled("shapes", 1e-3), "modal masses are 1e-06 instead of 1; probably km"),

@@ -34,8 +34,8 @@ BAD = {
     "key missing": ("damping_ratio = 0.02\n", "", "mode 1: key 'damping_ratio' is missing"),
     "mode count": ("mode_count = 4", "mode_count = 9", "sections [[mode]], but mode_count = 9. The"),
     "node count": ("node_count = 8", "node_count = 43", "sections [[node]], but node_count = 43. The"),
-    "not a number": ("mass_kg = 30.0", 'mass_kg = "heavy"', "node 1, mass_kg: found 'heavy', must be numbers"),
-    "true is no number": ("mass_kg = 30.0", "mass_kg = true", "node 1, mass_kg: found 'True', must be numbers"),
+    "not a number": ("mass_kg = 30.0", 'mass_kg = "heavy"', "node 1, mass_kg: must be numbers, not 'heavy'"),
+    "true is no number": ("mass_kg = 30.0", "mass_kg = true", "node 1, mass_kg: must be numbers, not 'True'"),
     "NaN": ("mass_kg = 30.0", "mass_kg = nan", "node_mass[0]: found nan, every number must be finite."),
     "two numbers": (
         "position_m = [0.0, -0.5, 0.4]",

@@ -152,8 +152,8 @@ BAD = [
         {"friction_limit": np.array([1.0, np.nan]), "smoothing": 1e5},
         "friction_limit: found nan N, must be a finite number",
     ),
-    (Coulomb, {"friction_limit": "much", "smoothing": 1e5}, "friction_limit: found 'much', must be a number [N]"),
-    (Coulomb, {"friction_limit": True, "smoothing": 1e5}, "friction_limit: found True, must be a number [N]"),
+    (Coulomb, {"friction_limit": "much", "smoothing": 1e5}, "friction_limit: must be a number [N], not 'much'"),
+    (Coulomb, {"friction_limit": True, "smoothing": 1e5}, "friction_limit: must be a number [N], not True"),
     (
         Degressive,
         {"low_damping": 1.0, "high_damping": 1.0, "knee_velocity": -0.1},

@@ -48,7 +48,7 @@ VEHICLES = {
     "no template below": (*put("[seat.driver]\nparts = {}"), "seat.driver.template: missing"),
     "a table of no kind": (*put("[reer]\nname = 1"), "reer: unknown parameter; did you mean rear"),
     "no such template": ('template = "blocks"', 'template = "bloks"', ("template 'bloks': the file is neither in")),
-    "a number as template": ('template = "blocks"', "template = 3", "rear.template: found 3, must be a text in quotes"),
+    "a number as template": ('template = "blocks"', "template = 3", "rear.template: must be a text in quotes, not 3"),
     "a name with a blank": (*put('["re ar"]\ntemplate = "blocks"'), "re ar: found 're ar', must consist of letters"),
     # Points.
     "missing": ("tie_outer = [", "tie_outr = [", "front.hardpoints.tie_outr: unknown parameter; did you mean"),
@@ -57,8 +57,12 @@ VEHICLES = {
     "of nothing": ("tie_inner = [0.985, 0.335, 0.66]", 'tie_inner = "subframe.tie"', "front.hardpoints.tie_inner"),
     "of itself": ("tie_inner = [0.985, 0.335, 0.66]", 'tie_inner = "front.tie_inner"', "tie_inner', which refers"),
     "in the plane": ("strut_top = [0.877, 0.548, 1.23]", "strut_top = [0.877, 0.548]", "must be a list of 3"),
-    "not finite": ("0.548, 1.23]", "0.548, nan]", "front.hardpoints.strut_top: found [0.877, 0.548, nan] m, must"),
-    "a text": ("0.548, 1.23]", '0.548, "high"]', "front.hardpoints.strut_top: found 'high', must be a number"),
+    "not finite": (
+        "0.548, 1.23]",
+        "0.548, nan]",
+        "front.hardpoints.strut_top: must be finite numbers [m], not [0.877, 0.548, nan]",
+    ),
+    "a text": ("0.548, 1.23]", '0.548, "high"]', "front.hardpoints.strut_top: must be a number, not 'high'"),
     "on the other side": (
         *put("[front.left.hardpoints]\ntie_inner = [0.985, 0.335, 0.66]"),
         "front.left.hardpoints.tie_inner: found y = 0.335 m",
@@ -83,11 +87,30 @@ VEHICLES = {
         f"{ARM}\nproducts = [0.03, 0, 0]",
         "front.parts.a_arm.products: found [0.03, 0.0, 0.0] kg m2, too",
     ),
-    "a word for numbers": ("stiffness = [2.5e5, 8.0e5, 8.0e5]", 'stiffness = "soft"', "stiffness: found 'soft'"),
-    "a number for a table": (*put("[front.left]\nbushings = 3"), "front.left.bushings: found 3, must be a section"),
-    "a number for a side": ("[front.hardpoints]", "left = 3\n[front.hardpoints]", "front.left: found 3, must be a"),
-    "a date": ("mass = 4.05", "mass = 2026-11-22", "front.parts.a_arm.mass: found datetime.date(2026, 11, 22)"),
-    "a list of tables": ("[solver]", "[[solver]]", "solver: found [{'timestep': 0.001, 'record_rate': 1000.0}]"),
+    "a word for numbers": (
+        "stiffness = [2.5e5, 8.0e5, 8.0e5]",
+        'stiffness = "soft"',
+        "stiffness: must be a list, not 'soft'",
+    ),
+    "a number for a table": (
+        *put("[front.left]\nbushings = 3"),
+        "front.left.bushings: must be a section, not 3",
+    ),
+    "a number for a side": (
+        "[front.hardpoints]",
+        "left = 3\n[front.hardpoints]",
+        "front.left: must be a section, not 3",
+    ),
+    "a date": (
+        "mass = 4.05",
+        "mass = 2026-11-22",
+        "front.parts.a_arm.mass: must be a number, not datetime.date(2026, 11, 22)",
+    ),
+    "a list of tables": (
+        "[solver]",
+        "[[solver]]",
+        "solver: must be a section, not [{'timestep': 0.001, 'record_rate': 1000.0}]",
+    ),
     "not TOML": ("gravity = 9.81", "gravity = 9,81", "not a TOML file: "),
     # What is named and is not there, what is there and is not taken.
     "a port": ("[front.hardpoints]", 'ports = { bdy = "engine" }\n[front.hardpoints]', "front.ports.bdy: unknown"),
@@ -147,14 +170,14 @@ def test_a_point_that_nothing_uses(tmp_path, capsys):
 
 HEAD = "velocity [m/s],force [N]\n"
 CURVES = {
-    "missing": (None, "does not exist; give a file in the folder of the vehicle file"),
+    "missing": (None, "does not exist"),
     "empty": ("", "test.csv: the file is empty"),
     "binary": ("\0\0\0", "test.csv:1:1: contains a NUL character"),
     "head": ("speed [m/s],force [N]\n-1,-1\n1,1\n", "test.csv:1: column 'velocity [m/s]' is missing"),
     "unit": ("velocity [mm/s],force [N]\n-1,-1\n1,1\n", "test.csv:1: column 'velocity [m/s]' is missing"),
     "of a spring": ("displacement [m],force [N]\n-1,-1\n1,1\n", "1: column 'velocity [m/s]' is missing"),
-    "NaN": (HEAD + "-1,-1\n0,nan\n1,1\n", "test.csv:3:2: column 'force [N]' is 'nan', must be a finite number"),
-    "a word": (HEAD + "-1,-1\nfast,0\n1,1\n", "test.csv:3:1: column 'velocity [m/s]' is 'fast', must be a"),
+    "NaN": (HEAD + "-1,-1\n0,nan\n1,1\n", "test.csv:3:2: column 'force [N]' is 'nan' but must be a finite number"),
+    "a word": (HEAD + "-1,-1\nfast,0\n1,1\n", "test.csv:3:1: column 'velocity [m/s]' is 'fast' but must be a"),
     "unsorted": (HEAD + "1,1\n-1,-1\n", "front.damper.velocity: found -1.0 after 1.0, must be ascending"),
     "falling": (HEAD + "-1,1\n1,-1\n", "front.damper.force: found -1.0 N after 1.0 N, must not decrease"),
     "a point": (HEAD + "1,1\n", "front.damper.velocity: found 1 points, must be 2 to 40"),

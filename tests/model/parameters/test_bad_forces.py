@@ -16,7 +16,10 @@ FORCES: dict[str, tuple[dict[str, object], str]] = {
     "joint and part": ({"joint": "damper_fr", "on": "engine"}, "force.a.on: found with joint"),
     "force and moment": ({**ON, "force": [0, 0, 1]}, "found both of force and moment"),
     "neither": ({"on": "engine"}, "found neither of force and moment"),
-    "no direction": ({**ON, "moment": [0, 0, 0]}, "force.a.moment: found [0.0, 0.0, 0.0]; must be three numbers"),
+    "no direction": (
+        {**ON, "moment": [0, 0, 0]},
+        "force.a.moment: must be three numbers, not all zero; found [0.0, 0.0, 0.0]",
+    ),
     "its own reaction": ({**ON, "against": "engine"}, "force.a.against: found 'engine'"),
     "order zero": ({**ON, "harmonics": [[0, 40, 0]]}, "of order 0; for the constant part set mean"),
     "negative order": ({**ON, "harmonics": [[-1, 40, 0]]}, "the order must be above 0"),
@@ -92,9 +95,9 @@ def car_with(**force: object) -> Car:
 def test_a_force_that_cannot_act_in_a_run_is_refused():
     shake = {"on": "engine", "moment": [0, 1, 0], "harmonics": [[2, 40, 0]]}
     smooth = road("level", 100, duration=3)
-    with pytest.raises(ConfigurationError, match=r"crank does not turn; .*--set crank\.rpm"):
+    with pytest.raises(ConfigurationError, match=r"crank does not rotate; .*--set crank\.rpm"):
         car_with(**shake, angle="crank").run(smooth)
-    with pytest.raises(ConfigurationError, match="wheel_fr does not turn; the wheels stand; drive on a road"):
+    with pytest.raises(ConfigurationError, match="wheel_fr does not rotate; the wheels stand; drive on a road"):
         car_with(**shake, angle="wheel_fr").run("low.csv")
     with pytest.raises(ConfigurationError, match=r"solver\.record_rate: found 1000 Hz, must be at least 2000 Hz"):
         car_with(**shake, frequency=150.0).run(smooth)

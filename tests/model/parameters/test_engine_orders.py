@@ -130,12 +130,12 @@ BAD_TRACES = {
     "two cycles": (
         lambda rows: np.vstack([rows, rows + CYCLE_LATER]), None, "must be a cycle of 720 deg in steps of at most 3",
     ),
-    "unsorted": (lambda rows: rows[::-1], None, ("crank angle 359 deg follows 359.5 deg, must increase "
+    "unsorted": (lambda rows: rows[::-1], None, ("crank angle 359 deg follows 359.5 deg; the angle must increase "
         "through a single cycle")),
-    "Pa as bar": (lambda rows: rows * [1.0, 1e5], None, "bar, must be 2 to 400 bar; correct the unit of the column"),
-    "bar as Pa": (lambda rows: rows, "a [deg],p [Pa]", "pressure is 0.0003208 bar, must be 2 to 400 bar"),
-    "gauge": (lambda rows: rows - [0.0, 1.0], None, ("bar, must be above 0 bar")),
-    "shifted": (lambda rows: rows + 0.5 * CYCLE_LATER, None, "is at 377.5 deg, must be within 60 deg of 0 or 720 deg"),
+    "Pa as bar": (lambda rows: rows * [1.0, 1e5], None, "bar but must be 2 to 400 bar; correct the unit of the column"),
+    "bar as Pa": (lambda rows: rows, "a [deg],p [Pa]", "pressure is 0.0003208 bar but must be 2 to 400 bar"),
+    "gauge": (lambda rows: rows - [0.0, 1.0], None, ("bar but must be above 0 bar")),
+    "shifted": (lambda rows: rows + 0.5 * CYCLE_LATER, None, "377.5 deg but must be within 60 deg of 0"),
     "no unit": (lambda rows: rows, "a,p", ("0 columns have a unit of angle")),
     "gap": (lambda rows: np.delete(rows, slice(100, 120), axis=0), None, "in steps of up to 10.5 deg, must be"),
 }  # fmt: skip

@@ -33,9 +33,9 @@ def test_other_texts(text, message):
 
 
 def test_values_where_bounds_are_needed_and_the_reverse():
-    with pytest.raises(ConfigurationError, match="--vary a=1,2: contains values, must be two bounds"):
+    with pytest.raises(ConfigurationError, match=r"--vary a=1,2: .* two bounds"):
         parsed_variation("--vary", "a=1,2").range()
-    with pytest.raises(ConfigurationError, match=r"--vary a=1:2: contains bounds, .* a=1:2:5"):
+    with pytest.raises(ConfigurationError, match=r"--vary a=1:2: contains bounds .* a=1:2:5"):
         parsed_variation("--vary", "a=1:2").listed()
 
 

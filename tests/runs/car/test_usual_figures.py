@@ -36,7 +36,8 @@ UNUSUAL = {
         ("", "unsprung mass [% of the mass]"), ("front", "roll centre above ground [mm]"),
         ("front", "anti-dive / anti-lift angle, braking [deg]"),
         ("front", "anti-lift / anti-squat angle, driving [deg]"),
-        ("front", BRAKING), ("rear", BRAKING), ("front", "anti-lift (front) or anti-squat (rear), driving [%]"),
+        ("front", BRAKING), ("rear", BRAKING),
+        ("front", "anti-lift (front) or anti-squat (rear), driving [%]"),
         ("front", "caster [deg]"), ("front", "caster trail [mm]"), ("front", "scrub radius [mm]"), ("front", STEER),
     },
 }  # fmt: skip

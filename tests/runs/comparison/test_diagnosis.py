@@ -50,7 +50,7 @@ def test_a_german_logger_has_one_diagnosis_of_five_sentences(logger, diagnosis):
     by = {each.kind: each for each in sentences}
     assert "position of the sensor" in by["offset"] and "--detrend" in by["gravity"] and "9.8" in by["gravity"]
     assert "--turn knuckle_rl_acc_z" in by["sign"] and "lag the plates by 12" in by["delay"]
-    assert by["exchanged"].startswith("exchanged channels: ")
+    assert by["exchanged"].startswith("swapped channels: ")
     assert diagnosis.choice.channels["knuckle_fl_acc_z"] == "Radträger VR z"
     assert diagnosis.choice.channels["knuckle_fr_acc_z"] == "Radträger VL z"
     assert diagnosis.inverted == ("knuckle_rl_acc_z",) and diagnosis.choice.detrend
@@ -72,7 +72,7 @@ def test_accepted_advice_makes_a_comparison_right(logger, truth, tmp_path, capsy
     assert not any("exchanged" in text or "inverted relative" in text for text in result["notices"])
     assert compare_command([*words, *maps(), "--output", str(tmp_path / "kept")]) == 0
     kept = json.loads((tmp_path / "kept" / "compare.json").read_text())
-    assert sum("exchanged channels" in text or "gravity is in" in text for text in kept["notices"]) == 2
+    assert sum("swapped channels" in text or "gravity is included in" in text for text in kept["notices"]) == 2
 
 
 def test_accepted_advice_makes_a_fit_right(logger, tmp_path, capsys):
@@ -93,7 +93,7 @@ def test_a_fit_refuses_gravity_with_all_findings(logger, tmp_path, capsys):
     words = ["focus_road", "--record", str(logger), *maps(), "--parameters", *FITTED, "--engine", "reduced"]
     assert tune([*words, "--output", str(tmp_path / "tune")]) == 3
     said = capsys.readouterr()
-    assert "gravity is in" in said.err and "--detrend" in said.err and "exchanged channels" in said.err
+    assert "gravity is included in" in said.err and "--detrend" in said.err and "swapped channels" in said.err
     assert "inverted relative" in said.err and "--set" not in said.out and not (tmp_path / "tune").exists()
 
 

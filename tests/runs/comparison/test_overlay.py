@@ -233,7 +233,7 @@ def test_a_fit_finds_the_mounts_from_the_same_file(measured, tmp_path):
         (["--map", "damper_fr_velocity=1"], 3, "--map damper_fr_velocity=.* frequency response"),
         ([], 3, "set --map CHANNEL=NAME"),
         ([*MAP[:2], "--unit", "knuckle_fr_acc_z=m/s2/N"], 3, "m/s2/N, a response to a force"),
-        ([*MAP[:2], "--unit", "knuckle_fr_acc_z=Pa"], 3, "in Pa, must be a motion"),
+        ([*MAP[:2], "--unit", "knuckle_fr_acc_z=Pa"], 3, "in Pa but must be a motion"),
         ([*MAP[:2], "--bands", "9,3"], 2, r"must be increasing frequencies \[Hz\]"),
         (["--map", "3"], 2, "must be CHANNEL=NAME"),
     ],

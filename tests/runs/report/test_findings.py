@@ -69,7 +69,7 @@ def test_one_two_and_four_dampers_stick(reported, wheels, words):
             0.04,
             [
                 "both dampers slide slowly at times, never faster than 6 mm/s",
-                "above 1 mm/s, where friction has its full value, for 4 % (right) and 4 % (left)",
+                "above 1 mm/s, where friction reaches its full value, for 4 % (right) and 4 % (left)",
             ],
             "Both dampers are at times sliding slowly, seldom or never faster than 6 mm/s.",
         ),

@@ -146,7 +146,7 @@ def test_first_screen_answers_the_question(reported, tmp_path):
     assert "front main spring stiffness 12000 instead of " in told
     assert f"{word} from {before:.3g} to {after:.3g} m/s²" in told
     assert re.search(
-        r"% of the change \(mean square\) is (fore-aft|lateral|vertical) between [\d.]+ and [\d.]+ Hz", told
+        r"% of the change of the mean square is (fore-aft|lateral|vertical) between [\d.]+ and [\d.]+ Hz", told
     )
     moved = re.search(r"mainly by the mode of ([a-z ,]+), which moves from ([\d.]+) to ([\d.]+) Hz", told)
     assert moved is not None and moved[2] != moved[3]

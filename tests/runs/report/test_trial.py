@@ -374,10 +374,8 @@ def test_the_page_has_the_plates_from_the_height_at_which_the_car_stands():
         {wheel: np.rint(z * 2**30) / 2**30 + level for wheel, z in signal.displacement.items()}
         for level in (0.0, 2.0**-10)
     ]
-    level, lifted = (
-        json.loads(trial_data(car, dataclasses.replace(signal, displacement=each), wheel="fl"))["tracks"]
-        for each in plates
-    )
+    signals = (dataclasses.replace(signal, displacement=each) for each in plates)
+    level, lifted = (json.loads(trial_data(car, each, wheel="fl"))["tracks"] for each in signals)
     assert lifted == level and level
 
 

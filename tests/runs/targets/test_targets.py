@@ -195,7 +195,7 @@ def test_sentence():
 
 
 FAULTS = {
-    "quantity = 'noise'\nunit = 'm/s2'\nat_most = 1": "a.quantity: found 'noise', must be one of unweighted",
+    "quantity = 'noise'\nunit = 'm/s2'\nat_most = 1": "a.quantity: must be one of unweighted",
     "quantity = 'rms'\nunit = 'm/s2'\nat_most = 1": "a.channels: missing; rms needs it",
     "quantity = 'peak'\nunit = 'm/s2'\nat_most = 1\nchannels = ['b']\nband = [1, 2]": "a.band: not used by peak",
     "quantity = 'tyre_load'\nunit = '-'": "a.at_most: set exactly one of at_most and at_least",

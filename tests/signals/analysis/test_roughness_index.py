@@ -123,9 +123,9 @@ def test_a_constant_grade_has_no_index(step):
 
 
 def test_refused_profiles():
-    with pytest.raises(DataError, match=r"the heights are 0.5 m apart, must be at most 0.3 m"):
+    with pytest.raises(DataError, match=r"the heights are 0.5 m apart but must be at most 0.3 m"):
         roughness_index(0.5, np.zeros(100))
-    with pytest.raises(DataError, match=r"the road is 9.9 m long, must be at least 11 m"):
+    with pytest.raises(DataError, match=r"the road is 9.9 m long but must be at least 11 m"):
         roughness_index(0.1, np.zeros(100))
     with pytest.raises(DataError):
         roughness_index(0.1, np.array([0.0, np.nan] * 100))

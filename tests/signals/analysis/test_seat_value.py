@@ -59,7 +59,7 @@ def test_the_axes_of_the_seat_are_weighted_as_the_standard_has_them():
 
 
 def test_a_point_of_contact_other_than_a_seat_is_rejected():
-    with pytest.raises(ConfigurationError, match="'feet', must be seat or seat_bs6841"):
+    with pytest.raises(ConfigurationError, match="seat or seat_bs6841, not 'feet'"):
         seat_value(STEP, SEAT, RAIL, contact="feet")
     with pytest.raises(DataError, match="acceleration of the seat rail is zero"):
         seat_value(STEP, SEAT, 0.0 * RAIL)

@@ -232,7 +232,7 @@ def test_a_weighted_bump_solves_the_differential_equation_and_is_causal(name, ra
 def test_an_unknown_weighting_is_rejected_with_the_known_names():
     with pytest.raises(ConfigurationError) as refusal:
         weighting("Wx")
-    assert str(refusal.value) == "weighting: found 'Wx', must be one of Wk, Wd, Wf, Wc, We, Wj, Wb, Wb_en12299, Wh, Ws"
+    assert str(refusal.value) == "weighting: must be one of Wk, Wd, Wf, Wc, We, Wj, Wb, Wb_en12299, Wh, Ws, not 'Wx'"
 
 
 def test_a_frequency_that_is_not_finite_is_rejected():

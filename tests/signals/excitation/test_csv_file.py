@@ -69,7 +69,7 @@ def test_bom_crlf_and_quotes_are_accepted_with_notice(tmp_path):
     assert np.array_equal(signal.displacement["fr"], CLEAN)
     assert signal.notices == (
         "the byte order mark at the beginning of the file is skipped",
-        "line ends of Windows (CR LF) or old Mac (CR) are accepted",
+        "line endings of Windows (CR LF) or old Macs (CR) are accepted",
     )
 
 
@@ -77,7 +77,10 @@ def test_semicolons_and_decimal_commas_are_read_as_meant(tmp_path):
     lines = [row.replace(",", ";").replace(".", ",") for row in rows()]
     signal = read_plain(write(tmp_path, [HEADER.replace(",", ";"), *lines]))
     assert np.array_equal(signal.displacement["fr"], CLEAN)
-    assert signal.notices == ("delimiter ';' accepted; ',' is the usual one", "decimal comma read as decimal point")
+    assert signal.notices == (
+        "the columns are separated by ';' instead of the usual ','",
+        "decimal comma read as decimal point",
+    )
 
 
 def test_time_is_shifted_to_zero_with_a_notice(tmp_path):

@@ -44,7 +44,7 @@ def test_arrays_are_copies_that_nobody_can_change():
         (TIME, {"xx": np.zeros(1001)}, "unknown wheel 'xx'; must be one of fr, fl, rr, rl"),
         (TIME, {"fr": np.zeros(1000)}, "displacement of fr has shape (1000,), time has (1001,)"),
         (TIME, {"fr": np.where(TIME == 0.5, np.nan, 0.0)}, "displacement of fr is nan at sample 500"),
-        (TIME[:31], {"fr": np.zeros(31)}, "size (31,), must be one vector of at least 32 samples"),
+        (TIME[:31], {"fr": np.zeros(31)}, "size (31,) but must be one vector of at least 32 samples"),
         (TIME + 1.0, {"fr": np.zeros(1001)}, "the time begins at 1.0 s"),
         (TIME**2, {"fr": np.zeros(1001)}, "resample the signal to a uniform grid first"),
     ],

@@ -206,11 +206,11 @@ def test_blf_is_read_whole_or_refused(tmp_path, monkeypatch):
     data = path.read_bytes()
     for broken in (data[:-50], data[: len(data) // 2], data[:200], data[:5000] + bytes(60) + data[5060:]):
         path.write_bytes(broken)
-        with pytest.raises(DataError, match=r"truncated|cannot be read as BLF|no whole object"):
+        with pytest.raises(DataError, match=r"truncated|cannot be read as BLF|not a whole object"):
             read_record(path, [database])
     # a log that was not closed: its size is unknown, and its last container ends early
     path.write_bytes(data[:16] + bytes(16) + data[32 : len(data) // 2])
-    with pytest.raises(DataError, match=r"cannot be read as BLF|no whole object"):
+    with pytest.raises(DataError, match=r"cannot be read as BLF|not a whole object"):
         read_record(path, [database])
     monkeypatch.setitem(sys.modules, "can", None)
     with pytest.raises(MissingPartError, match=r"needs can, .* pip install 'vehicle-on-shaker\[can\]'"):

@@ -106,9 +106,9 @@ def test_accelerations_and_velocities_are_integrated(tmp_path, order):
         ("time [s],z\n" + "0.01,1.5\n" * 3, "no unit; set --unit fr=UNIT"),
         ("time [s],z [furlong]\n" + "0.01,1.5\n" * 3, "'furlong'; set --unit fr=UNIT"),
         ("time,z [mm]\n" + "0.01,1.5\n" * 3, "no times; set --rate HZ"),
-        ("time [s],z [mm]\n" + "0.5,1.5\n" * 3, "time 0.5 s after 0.5 s, must increase"),
+        ("time [s],z [mm]\n" + "0.5,1.5\n" * 3, "time 0.5 s after 0.5 s; times must increase"),
         ("time [s],z [mm]\n0,0,1,5\n0,1,1,5\n0,2,1,5\n0,3,1,6\n", "decimal commas"),
-        (f"{FIVE}0.6,x\n", r"1 missing values \('x' in line 7 is no number\)"),
+        (f"{FIVE}0.6,x\n", r"1 missing values \('x' in line 7 is not a number\)"),
         (f"{FIVE}0.6\n", "truncated"),
         ("time [s];z [mm]\n0,1;1.000,5\n0,2;1,5\n0,3;1,5\n", "no table of numbers|separate thousands"),
         ("time [s],z [mm]\n0.1,x\n" + "0.2,1.5\n" * 6, r"1 missing values \('x' in line 2 .*\), the first at 0\.1 s"),
@@ -186,7 +186,7 @@ def test_comfort_takes_any_channels(tmp_path, capsys):
     assert any("z: channel 9 'Acc 8' [g]" in text for text in found["notices"])
     for wrong, said in (
         (["--channel", "time=1"], "which channels are the axes"),
-        ([*picks[:4], "--channel", "z=1"], "is a displacement, must be an acceleration"),
+        ([*picks[:4], "--channel", "z=1"], "is a displacement but must be an acceleration"),
     ):
         assert comfort(["--input", str(path), *wrong]) == 3
         assert said in capsys.readouterr().err

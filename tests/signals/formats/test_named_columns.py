@@ -51,9 +51,9 @@ def test_the_curve_of_a_damper_test_in_its_own_units(tmp_path):
 @pytest.mark.parametrize(
     ("head", "message"),
     [
-        ("a [m];b [m]", r"0 columns 'left', must be one \[m\]; found 'a' \[m\], 'b"),
+        ("a [m];b [m]", r"0 columns 'left' instead of one \[m\]; found 'a' \[m\], 'b"),
         ("left [m];Left [m]", "2 columns 'left'"),
-        ("left [s];b [m]", "column 'left' has the unit 's', must be one of m, cm, mm"),
+        ("left [s];b [m]", "column 'left' has the unit 's' but must have one of m, cm, mm"),
         ("left;b", "column 'left' has the unit ''"),
     ],
 )

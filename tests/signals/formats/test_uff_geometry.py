@@ -276,7 +276,7 @@ def test_what_is_written_comes_back_and_is_read_by_the_foreign_library(tmp_path)
         ),
         (
             dataset(18, f"{1:10d}{2:10d}{0:10d}{0:10d}{1:10d}", "x", "0 0 0 1 0 0", "0 0 1"),
-            "axis system 1 has type 2, must",
+            "axis system 1 has type 2 but must",
         ),
         (dataset(2412, f"{1:10d}{91:10d}{1:10d}{1:10d}{7:10d}{3:10d}", f"{3:10d}"), "a line is missing or too short"),
         (dataset(55, *["NONE"] * 5, "1 2 2 8 2 3", "2 4 1 1", "5 1 0 0", "1", "1.0 2.0"), "a line is missing"),

@@ -178,7 +178,7 @@ def test_a_master_of_distance_is_a_road(tmp_path):
     assert command.endswith(f"--road {path} --speed 80")
     road = read_road(path, 1.5)
     assert road.length == pytest.approx(59.98, rel=1e-3) and np.std(road.left) == pytest.approx(np.std(PLATE), rel=1e-3)
-    with pytest.raises(DataError, match="'height_left' is a road profile, must be a time history"):
+    with pytest.raises(DataError, match="'height_left' is a road profile but must be a time history"):
         choose(found, Choice(channels={"fl": "height_left"}, rate=200.0))
 
 

@@ -50,7 +50,7 @@ def test_channels_that_move_alike_are_not_exchanged():
 def test_options_name_two_channels_or_all():
     mapped = {"a": "1", "b": "2", "c": "3"}
     (finding,) = exchange_finding({"a": "b", "b": "a"}, mapped, complete=False)
-    assert finding.options == ("--map", "b=1", "--map", "a=2") and finding.startswith("exchanged channels: ")
+    assert finding.options == ("--map", "b=1", "--map", "a=2") and finding.startswith("swapped channels: ")
     (finding,) = exchange_finding({"a": "b", "b": "a"}, mapped, complete=True)
     assert finding.options == ("--map", "a=2", "--map", "b=1", "--map", "c=3")
 

@@ -48,7 +48,7 @@ def test_all_motions_over_motions_become_accelerations_over_displacements(tmp_pa
     [
         ("(m/s2)/N", r"\(m/s2\)/N, a response to a force"),
         ("g/N", "g/N, a response to a force"),
-        ("V/m", "V/m, must be a motion .*--unit knuckle_fr_acc_z=UNIT"),
+        ("V/m", "V/m but must be a motion .*--unit knuckle_fr_acc_z=UNIT"),
         ("", "no unit; set --unit knuckle_fr_acc_z=UNIT"),
         ("qq", "unit 'qq'"),
     ],

@@ -88,6 +88,7 @@ def test_conditions(tmp_path):
     other = read_test(path, conditions={"temperature": "5", "current": "0.5"})
     assert [dict(key)["temperature"] for key in by_conditions([typed, other, typed])] == [5.0, 20.0]
     assert [len(group) for group in by_conditions([typed, other, typed]).values()] == [1, 2]
-    for wrong, said in (({"conditions": {"current": "high"}}, "channel:NAME"), ({"pattern": "*Hz{current}A"}, " a; ")):
+    for wrong, said in (({"conditions": {"current": "high"}}, "channel:NAME"),
+                        ({"pattern": "*Hz{current}A"}, "does not match a; ")):  # fmt: skip
         with pytest.raises(ConfigurationError, match=said):
             read_test(path, **wrong)

@@ -143,13 +143,16 @@ def test_a_numbers_file_a_damper_test_and_a_load(tmp_path, capsys):
         'kerb_mass = 1500.0\ndamper_curve_front = "test.csv"\nwheel_hop_front = 12.5\n'
         '[load.driver]\nmass = 75.0\nat = "seat"\n'
     )
-    car = made(tmp_path / "loaded", "--numbers", str(tmp_path / "numbers.toml"), "--pitch-frequency", "1.8")
+    numbers = ("--numbers", str(tmp_path / "numbers.toml"))
+    car = made(tmp_path / "loaded", *numbers, "--pitch-frequency", "1.8", "--tyre-size", "205/45R16")
     assert car.vehicle.table["front"]["damper"]["force"] == [-900.0, -180.0, 0.0, 320.0, 1600.0]
     assert sum(car.static.tyre_load.values()) / 9.81 == pytest.approx(1575.0, rel=1e-6)
     figures = ride_figures(car.model, axle_rides(car.model))
     assert figures["pitch"].frequency_hz == pytest.approx(1.8, rel=1e-2)
     assert figures["front wheel hop"].frequency_hz == pytest.approx(12.5, rel=1e-2)
-    assert json.loads(capsys.readouterr().out)["checks"]["kerb_mass"]["value"] == pytest.approx(1500.0)
+    said = json.loads(capsys.readouterr().out)
+    assert said["checks"]["kerb_mass"]["value"] == pytest.approx(1500.0)
+    assert any("205/45R16 sets the radius alone" in note for note in said["notes"])
 
 
 def test_a_number_is_typed_or_of_the_file_and_an_axle_load_in_percent_is_a_share(tmp_path):
@@ -177,10 +180,10 @@ def test_a_number_is_typed_or_of_the_file_and_an_axle_load_in_percent_is_a_share
         ("--track-front 0.8", "--track-front 0.8 m: .* 0.826 m, .*front.hardpoints.tie_inner .*13 mm"),
         ("--roll-inertia 200", "I.*--yaw-inertia"),
         ("--wheel-hop-front 80", "--wheel-hop-front: found 80.0 Hz, .* 30.0"),
-        ("--pitch-frequency 2 --pitch-inertia 3000", "--pitch-"),
+        ("--pitch-frequency 2 --pitch-inertia 3000", "--pitch-inertia: each follows from the other"),
         ("--tyre-size 205-55-16", "'205-55-16': .*205/55R16"),
         ("--tyre-size 205/55R99", "99 inch, .* 10 to 24"),
-        ("--tyre-size 205/55R16 --tyre-radius 0.3", "--tyre-"),
+        ("--tyre-size 205/55R16 --tyre-radius 0.3", "--tyre-radius: the size gives the radius"),
         ("--damper-curve-front none.csv", "front.damper.curve: .*none.csv"),
     ],
 )
@@ -249,7 +252,7 @@ def test_survey_inertia_is_that_of_the_whole_car(surveyed):
 
 
 def test_contradictions_are_found_before_any_computation():
-    with pytest.raises(ConfigurationError, match="curve"):
+    with pytest.raises(ConfigurationError, match="the curve sets the damping"):
         stated(damping_ratio_front=0.3, damper_curve_front="a.csv")
-    with pytest.raises(ConfigurationError, match="kerb_mass"):
+    with pytest.raises(ConfigurationError, match="did you mean kerb_mass"):
         stated(kerb_mas=3.0)

@@ -147,13 +147,16 @@ def test_a_previous_solution_does_not_change_the_result(points):
 
 
 def test_a_fit_finds_the_decoupler_in_noise(points):
-    data = noisy(points, 0)
-    best, second, *_ = fit_mount(data)
-    assert best.law.name == "decoupler" and best.criterion < second.criterion - 100.0
-    stiffness, angle = errors(best.stiffness(data.frequency, data.amplitude), points[2])
-    assert best.determined[[*range(7), 9]].all(), "all but damping and membrane of the decoupler"
-    worst = float(np.max((np.abs(best.values - VALUES) / best.errors)[best.determined]))
-    source = "closed form: parameters of the points, which are integrated in time"
+    found = []
+    for seed in range(2):
+        data = noisy(points, seed)
+        best, second, *_ = fit_mount(data)
+        assert best.law.name == "decoupler" and best.criterion < second.criterion - 100.0
+        assert best.determined[[*range(7), 9]].all(), "all but damping and membrane of the decoupler"
+        deviation = np.max((np.abs(best.values - VALUES) / best.errors)[best.determined])
+        found.append([*errors(best.stiffness(data.frequency, data.amplitude), points[2]), deviation])
+    stiffness, angle, worst = np.max(found, axis=0)
+    source = "closed form: parameters of the points, which are integrated in time; two seeds"
     noise = "decoupler fitted to 48 points at three amplitudes with 3 % noise"
     validated(SUBJECT, f"{noise}: largest error of the stiffness", stiffness, 0.0, abs=0.05, source=source)
     validated(SUBJECT, f"{noise}: largest error of the loss angle", angle, 0.0, abs=3.0, unit="deg", source=source)

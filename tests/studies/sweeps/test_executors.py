@@ -142,7 +142,7 @@ def test_no_worker_is_said_and_waited_for():
     executor = Cluster([0, 0, 0, 2])
     assert not sweep(many(2), Peak(), executor=lambda: executor, notice=notices.append).failed
     (notice,) = notices
-    assert "0 s" in notice and "300 s" in notice
+    assert "no worker for 0 s" in notice and "300 s" in notice
 
 
 @pytest.mark.usefixtures("impatient")

@@ -96,7 +96,7 @@ def test_a_figure_without_change_or_value_leaves_the_others_their_indices(inputs
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["--vary", "damper.viscous=1500,2000"], "must be two bounds"),
+        (["--vary", "damper.viscous=1500,2000"], "damper.viscous=1500,2000: contains values"),
         (["--vary", "damper.viscous=1500:2000", "--report"], "--report"),
         (["--vary", "damper.viscous=1500:2000", "--vary", "damper.viscous=1:2"], "damper.viscous: given twice"),
         (["--vary", "damper.viscous=1500:2000", "--sobol", "12"], "found 12, must be a power of two"),

@@ -183,6 +183,7 @@ def test_a_killed_worker_and_a_run_that_hangs_take_nothing_with_them(tmp_path):
         assert limit < HANG, reasons
         limit, settings = 2.0 * limit, {"jobs": 2, "folder": folder, "retry_failed": True}
         reasons = [result.reason for result in sweep(cases, Peak(), time_limit=limit, **settings).results]
+        assert DIED not in [*reasons[:2], *reasons[3:]]
     assert len({line.split('"')[3] for line in (folder / "rows.jsonl").read_text(encoding="utf-8").splitlines()}) == 5
 
 

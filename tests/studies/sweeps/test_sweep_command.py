@@ -139,7 +139,7 @@ def test_a_table_of_variations(tmp_path):
         (["--vary", "damper.viscous"], "must be PATH=A,B,C, PATH=A:B:N", 2),
         (["--vary", "damper.viscous=1,,2"], "must be PATH=A,B,C, PATH=A:B:N", 2),
         (["--vary", "a=1", "--vary", "a=2"], "given twice", 2),
-        (["--vary", "damper.viscous=1:2"], "contains bounds, must be values", 2),
+        (["--vary", "damper.viscous=1:2"], "damper.viscous=1:2: contains bounds", 2),
         (["--vary", "damper.viscous=1000", "--skip", "3"], "--skip 3 s: must be at least 0 and below the 3 s ", 2),
         (["--vary", "damper.viscous=1000", "--skip", "-5"], "--skip -5: must be at least 0", 2),
         (["--vary", "damper.viscous=1000", "--skip", "nan"], "--skip nan: must be at least 0", 2),
@@ -220,7 +220,10 @@ def test_the_engine_and_its_reason_are_told_before_the_runs():
     assert "--set AXLE.bushings.tyre.one_sided=true" in note and "class C" not in note
     assert plan_sweep(car, change, roads[:1], SweepSettings(engine="reduced")).engine_notes() == ()
     # With MuJoCo the time of the other engine is stated, and whether it is valid.
-    for inputs, means in ((roads[:1], "within its valid range (comfort within 0.1 %)"), (roads, "outside its valid")):
+    for inputs, means in (
+        (roads[:1], "within the valid range of the reduced engine (comfort within 0.1 %)"),
+        (roads, "outside the valid"),
+    ):
         (note,) = plan_sweep(car, change, inputs, SweepSettings(engine="mujoco")).engine_notes()
         assert note.startswith("engine mujoco, ") and "--engine reduced " in note and means in note
     # The stated difference, and the engine that the note names.

@@ -67,7 +67,7 @@ def test_a_fit_that_ends_beside_impossible_models_has_not_converged():
     start = [Range(path=path, low=0.2 * value, high=5.0 * value, start=0.5 * value) for path, value in TRUE.items()]
     result = fit(start, [MeasuredMasses(sigma=0.0)], build)
     assert 0.75 < result.values["upper"] / TRUE["upper"] < 0.8 and not result.converged
-    assert result.message == "the fit ends where trial values make no model (no real spring)"
+    assert result.message.endswith("(no real spring)")
 
 
 def test_covariance_is_that_of_the_linearised_problem():
@@ -202,12 +202,13 @@ def test_invalid_parameters_and_targets_are_rejected():
     colour: dict[str, Any] = {"path": "colour", "low": 1.0, "high": 9.0}
     one = [MeasuredMasses()]
     for parameters, targets, message in (
-        ([], one, "parameters"), (PARAMETERS, [], "targets: "), ((*PARAMETERS, PARAMETERS[0]), one, "lower: .*2"),
-        ((*PARAMETERS, Range(**colour)), one, "colour: "),
+        ([], one, "parameters to fit are missing"), (PARAMETERS, [], "targets: .*missing"),
+        ((*PARAMETERS, PARAMETERS[0]), one, "lower: .*2 times"),
+        ((*PARAMETERS, Range(**colour)), one, "colour: has no start"),
     ):  # fmt: skip
         with pytest.raises(ConfigurationError, match=message):
             fit(parameters, targets, dict)
-    with pytest.raises(ConfigurationError, match=" colour"):
+    with pytest.raises(ConfigurationError, match=r"determine no parameter: .* colour"):
         fit([Range(**colour, start=2.0)], one, lambda _: TRUE)
 
 

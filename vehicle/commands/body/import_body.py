@@ -26,19 +26,20 @@ if TYPE_CHECKING:
     from vehicle.model.parameters.vehicle import Vehicle
 
 _ANSYS = (
-    "type in ANSYS: /AUX2, FILE,JOB,full, HBMAT,k,matrix,,ASCII,STIFF,NO,YES and "
-    "HBMAT,m,matrix,,ASCII,MASS,NO,NO. Then import k.matrix with --mass m.matrix, --dofs k.mapping and --nodes "
+    "type these lines in ANSYS: '/AUX2', 'FILE,JOB,full', 'HBMAT,k,matrix,,ASCII,STIFF,NO,YES', "
+    "'HBMAT,m,matrix,,ASCII,MASS,NO,NO'. Then import k.matrix with --mass m.matrix, --dofs k.mapping and --nodes "
     "FILE"
 )
 REFUSED = {
-    ".op2": "Nastran OP2 cannot be read; export modes as a universal file (datasets 15, 55) through the "
+    ".op2": "Nastran OP2 files are not supported; export the modes as a universal file (datasets 15, 55) through the "
     "pre-processor, or punch K and M with PARAM,EXTOUT,DMIGPCH and give JOB.pch with --nodes JOB.bdf",
-    ".op4": "Nastran OP4 does not state the directions of its rows; punch K and M with PARAM,EXTOUT,DMIGPCH and "
+    ".op4": "Nastran OP4 files do not state the directions of its rows; punch K and M with PARAM,EXTOUT,DMIGPCH and "
     "give JOB.pch with --nodes JOB.bdf",
-    ".rst": f"ANSYS results cannot be read; use JOB.full of the same modal analysis instead: {_ANSYS}",
-    ".full": f"ANSYS full file: convert it to text first: {_ANSYS}",
-    ".odb": "Abaqus database cannot be read; write K and M with *MATRIX GENERATE, STIFFNESS, MASS and *MATRIX OUTPUT",
-    ".mnf": "Adams modal neutral file cannot be read; export the modes as a universal file from the FE program",
+    ".rst": f"ANSYS result files are not supported; use JOB.full of the same modal analysis instead: {_ANSYS}",
+    ".full": f"ANSYS full files must first be converted to text: {_ANSYS}",
+    ".odb": "Abaqus databases are not supported; write K and M with *MATRIX GENERATE, STIFFNESS, MASS and *MATRIX "
+    "OUTPUT",
+    ".mnf": "Adams modal neutral files are not supported; export the modes as a universal file from the FE program",
 }
 
 
@@ -65,9 +66,9 @@ class ImportSettings(Settings):
     """
 
     file: Path = setting(
-        "matrices: JOB.sti of CalculiX (.mas, .dof and .inp in the same folder), JOB.pch of Nastran (DMIG), "
-        "or K as Matrix Market, Harwell-Boeing, FILE.mat:K or text, with --mass, --dofs and --nodes. Modes: "
-        ".frd of CalculiX, or a universal file (datasets 55, 2414)",
+        "matrices: JOB.sti from CalculiX (.mas, .dof and .inp in the same folder), JOB.pch from Nastran (DMIG), "
+        "or K as Matrix Market, Harwell-Boeing, FILE.mat:K or text, with --mass, --dofs and --nodes. Modes: .frd from "
+        "CalculiX, or a universal file (datasets 55, 2414)",
         flag="file",
         type=Path,
         metavar="FILE",
@@ -79,7 +80,7 @@ class ImportSettings(Settings):
         "file of the mass matrix that belongs to the stiffness matrix", type=Path, metavar="FILE"
     )
     dofs: Path | None = setting(
-        "file with the node and direction (1 to 6) of each matrix row (node,direction), or the mapping file of ANSYS",
+        "file with the node and direction (1 to 6) of each matrix row (node,direction), or the mapping file from ANSYS",
         type=Path,
         metavar="FILE",
     )
@@ -112,7 +113,7 @@ class ImportSettings(Settings):
         metavar="X,Y,Z",
     )
     origin: str = setting(
-        "where the origin of the source file lies in the car [m]; default: 0,0,0", "0,0,0", metavar="X,Y,Z"
+        "position of the origin of the source file in the car [m]; default: 0,0,0", "0,0,0", metavar="X,Y,Z"
     )
     point_nodes: Path | None = setting(
         "table point,node that chooses the node of a point of the car", type=Path, metavar="FILE"

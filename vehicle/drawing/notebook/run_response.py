@@ -34,7 +34,7 @@ class RunResponse(FrequencyResponse):
         """Return a summary in one line."""
         shown = ", ".join(self.names[:3]) + (f" and {len(self.names) - 3} more" if len(self.names) > 3 else "")
         return (
-            f"FRFs of {shown} to {self.plate}: {self.frequency.size} lines, {self.frequency[0]:g} to "
+            f"FRFs of {shown} from {self.plate}: {self.frequency.size} lines, {self.frequency[0]:g} to "
             f"{self.frequency[-1]:.3g} Hz, {self.estimator}"
         )
 
@@ -47,7 +47,7 @@ class RunResponse(FrequencyResponse):
                 rows[name] = f"largest {size[top]:.3g} m/s² per m at {self.frequency[top]:.2f} Hz"
         with np.errstate(divide="ignore"):
             level = np.log10(np.abs(self.response[0]))
-        label = f"{self.names[0]}, log magnitude over log frequency"
+        label = f"{self.names[0]}, log magnitude against log frequency"
         return card("Frequency responses", rows, line_drawing(np.log10(self.frequency), level, label))
 
     def plot(self, ax: Any = None) -> Any:
@@ -64,7 +64,7 @@ class RunResponse(FrequencyResponse):
 
         rows = 3 if ax is None else len(np.ravel(np.array(ax, dtype=object)))
         look: dict[str, Any] = {"sharex": True, "height_ratios": (2.2, 1.0, 0.9)}
-        title = f"Frequency responses to {self.plate}"
+        title = f"Frequency responses from {self.plate}"
         axes = open_axes(ax, (8.0, 7.2), 3 if rows > 1 else 1, title=title, **look)
         draw_response(axes, self, [f"{self.car}: {name}" for name in self.names])
         return plain(axes)

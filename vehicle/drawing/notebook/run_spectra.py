@@ -30,7 +30,7 @@ class RunSpectra(RecordSpectra):
     def _repr_html_(self) -> str:
         rows = {each.label: f"RMS {each.rms:.3g} {each.unit.replace('s2', 's²')}" for each in self.channels[:8]}
         shown = self.channels[0]
-        label = f"{shown.label}: cumulative RMS over frequency"
+        label = f"{shown.label}: cumulative RMS against frequency"
         return card("Spectra", rows, line_drawing(shown.frequency, shown.cumulative_rms, label))
 
     def plot(self, ax: Any = None) -> Any:

@@ -16,7 +16,7 @@ from functools import cache
 from vehicle.errors import MissingPartError
 
 BACKENDS, REMEDY = (
-    (("osmesa", "egl", "glfw"), "Install OSMesa, on Debian: apt-get install libosmesa6")
+    (("osmesa", "egl", "glfw"), "Install OSMesa (on Debian: apt-get install libosmesa6)")
     if sys.platform.startswith("linux")
     else (("glfw",), "Install the graphics driver")
 )
@@ -109,8 +109,8 @@ def find_ffmpeg() -> str:
             return path
     fault = f"{', '.join(programs)} has no encoder {ENCODER}" if programs else "the program ffmpeg was not found"
     raise MissingPartError(
-        f"video: {fault}. Install ffmpeg, on Debian: apt-get install ffmpeg, or the Python package imageio-ffmpeg; "
-        "or run without --video"
+        f"video: {fault}. Install ffmpeg (on Debian: apt-get install ffmpeg) or the Python package imageio-ffmpeg, or "
+        "run without --video"
     )
 
 

@@ -76,7 +76,7 @@ def drawn_by(jobs: int, shot: Drawable, backend: str) -> Iterator[Picture]:
             yield np.frombuffer(ends[number % count].recv_bytes(), dtype=np.uint8).reshape(shape)
     except EOFError:
         raise OutputError(
-            "film: a drawing process ended; see its error message above, or use less memory if there is no message"
+            "video: a drawing process ended; see its error message above, or use less memory if there is no message"
         ) from None
     finally:
         for process in processes:

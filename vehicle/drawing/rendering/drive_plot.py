@@ -45,7 +45,7 @@ def plot_replication(
     start = liveliest(time, np.sum([pair[0] for pair in responses.values()], axis=0), DETAIL)
     shown = (time >= start) & (time <= start + DETAIL)
     with saved_figure(
-        path, (12.5, 2.4 * (len(responses) + 1) + 1.2), "Response to the drive that was found", caption
+        path, (12.5, 2.4 * (len(responses) + 1) + 1.2), "Response to the final drive signal", caption
     ) as figure:
         axes = figure.subplots(len(responses) + 1, 2, sharex="col", width_ratios=(1.7, 1.0), squeeze=False)
         for (name, (target, response)), (left, right) in zip(responses.items(), axes[:-1], strict=True):
@@ -96,7 +96,7 @@ def plot_convergence(path: Path, errors: Mapping[str, Vector], kept: Mask, capti
         kept: True for runs better than all previous runs, (runs,).
     """
     runs = np.arange(1, kept.size + 1)
-    with saved_figure(path, (8.0, 4.8), "Error over the iteration", caption) as figure:
+    with saved_figure(path, (8.0, 4.8), "Error against iteration", caption) as figure:
         axis = figure.subplots()
         for (name, values), look in zip(errors.items(), looks(), strict=False):
             axis.plot(runs, 100.0 * values, label=name, **look)
@@ -104,6 +104,8 @@ def plot_convergence(path: Path, errors: Mapping[str, Vector], kept: Mask, capti
             axis.plot(runs[~kept], 100.0 * values[~kept], "o", color=look["color"], markerfacecolor="white")
         if not kept.all():
             axis.plot([], [], "o", color=ERROR, markerfacecolor="white", label="taken back")
-        axis.set(yscale="log", xlabel="run", ylabel="RMS error over RMS of target,\nin the band [%]; lower is better")
+        axis.set(
+            yscale="log", xlabel="run", ylabel="RMS error divided by RMS of target,\nin the band [%]; lower is better"
+        )
         axis.set_xticks(runs[:: max(1, kept.size // 15)])
         axis.legend()

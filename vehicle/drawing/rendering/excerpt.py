@@ -102,7 +102,7 @@ def liveliest_window(
     velocity = recording.channels.get(f"damper_{wheel}_velocity")
     if velocity is not None and slip_velocity is not None and np.any(np.abs(velocity) > slip_velocity):
         return liveliest(recording.time, velocity, length), "most damper motion"
-    return liveliest(recording.time, recording[hub], length), "liveliest knuckle; no slip"
+    return liveliest(recording.time, recording[hub], length), "largest knuckle motion; no slip"
 
 
 def _slow_motion(recording: Recording, hub: str) -> float:

@@ -124,5 +124,5 @@ def write_film(path: Path, frames: Iterable[Picture], shape: tuple[int, int]) ->
         path.unlink(missing_ok=True)
         # imageio raises errors of ffmpeg as a RuntimeError with this text.
         if isinstance(error, OSError) or str(error).startswith("Error writing"):
-            raise OutputError(f"{path}: the film cannot be written: {' '.join(str(error).split())}") from None
+            raise OutputError(f"{path}: the video cannot be written: {' '.join(str(error).split())}") from None
         raise

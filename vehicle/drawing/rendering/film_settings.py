@@ -20,11 +20,11 @@ class FilmSettings(Settings):
 
     video: str | None = None
     video_start: float | None = setting(
-        "start of the film in the record [s]; default: chosen by the program",
+        "start of the video in the record [s]; default: chosen by the program",
         within="[0, inf)", type=float, metavar="S"
     )  # fmt: skip
     video_duration: float | None = setting(
-        "length of the film [s]; default: 10, less for a bump or an obstacle. A film in slow motion shows a "
+        "length of the video [s]; default: 10, less for a bump or an obstacle. A video in slow motion shows a "
         "shorter part of the record",
         within="[0.1, inf)", type=float, metavar="S"
     )  # fmt: skip
@@ -50,7 +50,7 @@ class FilmSettings(Settings):
         return name
 
     def require_inside(self, length: float) -> None:
-        """Check that the film lies within a record.
+        """Check that the film is within a record.
 
         Args:
             length: of the record [s].
@@ -64,8 +64,7 @@ class FilmSettings(Settings):
         latest = length - (self.video_duration / self.slow_motion if chosen else 0.0)  # type: ignore[operator]
         if not 0.0 <= self.video_start <= latest:
             raise ConfigurationError(
-                f"--video-start {self.video_start:g}: must be 0 to {latest:g} s, so that the film lies "
-                "within the record"
+                f"--video-start {self.video_start:g}: must be 0 to {latest:g} s, so that the video is within the record"
             )
 
     def values(self) -> dict[str, Any]:

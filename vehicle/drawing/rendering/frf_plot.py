@@ -48,7 +48,7 @@ def plot_frfs(
         return
     motion, title = responses[0].motion, ""
     if len(motion) > 1:
-        title = f"FRFs to the common motion of {_plates(motion, run.car.model.vehicle.wheels)}"
+        title = f"FRFs from the common motion of {_plates(motion, run.car.model.vehicle.wheels)}"
     plot_frf(path, run, responses[0].response, caption, title, size)
 
 
@@ -76,7 +76,7 @@ def _plot_separated(
     levels = np.abs([response.response.response[rows[name]] for response in responses for name in shown])
     inside = np.asarray(np.isfinite(levels).all(axis=0))
     single = all(len(response.motion) == 1 for response in responses)
-    title = f"FRFs to each of {len(responses)} {'plates' if single else 'motions of the plates'}, which act at once"
+    title = f"FRFs from each of {len(responses)} {'plates' if single else 'motions of the plates'}, which act at once"
     size = (min(max(7.2, 5.0 * len(shown)), max_size[0]), max_size[1])
     with saved_figure(path, size, title, wrapped(f"{caption}; {FADED}", size[0])) as figure:
         axes = figure.subplots(3, len(shown), sharex=True, sharey="row", height_ratios=(2.2, 1.0, 0.9), squeeze=False)

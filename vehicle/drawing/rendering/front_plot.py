@@ -117,7 +117,7 @@ def _along(axis: Any, picture: FrontPicture) -> None:
             picture.base[0], picture.base_shares[number], linestyle="", markersize=8, markerfacecolor="white", **look
         )
     axis.set(xlabel=squared(picture.objectives[0]), ylabel="place between the bounds [-]", ylim=(-0.03, 1.03))
-    axis.set_title("parameters along the front (hollow: base car)", color=INK)
+    axis.set_title("parameters along the Pareto front (hollow marker: base car)", color=INK)
     axis.legend(**BELOW, ncols=2)
 
 

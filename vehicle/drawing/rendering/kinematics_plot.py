@@ -10,10 +10,13 @@ from vehicle.engines.kinematics.axle_statics import WheelPose
 from vehicle.engines.kinematics.wheel_geometry import WheelGeometry
 
 PANELS: dict[str, dict[str, str]] = {
-    "camber [deg], top outwards +": {"camber_deg": ""},
-    "toe [deg], front inwards +": {"toe_deg": ""},
-    "lateral [mm], outwards +": {"lateral_m": "wheel centre", "patch_lateral_m": "contact point"},
-    "longitudinal [mm], to the rear +": {"longitudinal_m": "wheel centre", "patch_longitudinal_m": "contact point"},
+    "camber [deg], top outwards positive": {"camber_deg": ""},
+    "toe [deg], toe-in positive": {"toe_deg": ""},
+    "lateral [mm], outwards positive": {"lateral_m": "wheel centre", "patch_lateral_m": "contact point"},
+    "longitudinal [mm], rearwards positive": {
+        "longitudinal_m": "wheel centre",
+        "patch_longitudinal_m": "contact point",
+    },
     "vertical load [N]": {"load_n": ""},
     "change of spring length [mm]": {"strut_length_m": ""},
     "roll centre above the ground [mm]": {"roll_centre_height_m": ""},
@@ -50,6 +53,6 @@ def plot_kinematics(
             if len(lines) > 1:
                 axis.legend()
         for axis in grid[:, 0]:
-            axis.set(ylabel="wheel travel [mm], upwards +")
+            axis.set(ylabel="wheel travel [mm], upwards positive")
         for axis in grid.ravel()[len(panels) :]:
             axis.set_visible(False)

@@ -37,12 +37,12 @@ class Layout:
     def __post_init__(self) -> None:
         if self.width % 2 or self.height % 2:
             raise ConfigurationError(
-                f"film size: found {self.width} x {self.height}, both numbers must be even; give "
+                f"video size: found {self.width} x {self.height}, both numbers must be even; give "
                 f"{self.width + self.width % 2} x {self.height + self.height % 2}"
             )
         if self.width < SMALLEST[0] or self.height < SMALLEST[1]:
             raise ConfigurationError(
-                f"film size: found {self.width} x {self.height}, must be at least {SMALLEST[0]} x "
+                f"video size: found {self.width} x {self.height}, must be at least {SMALLEST[0]} x "
                 f"{SMALLEST[1]} to be readable"
             )
 

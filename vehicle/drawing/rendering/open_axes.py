@@ -55,7 +55,9 @@ def label_once(axis: Any, label: str) -> None:
     """
     present, new = (re.search(r"\[(.*)\]", text, re.DOTALL) for text in (axis.get_ylabel(), label))
     if axis.lines and present and new and present[1] != new[1]:
-        raise ConfigurationError(f"ax: shows curves in {present[1]}, and these are in {new[1]}; set other axes")
+        raise ConfigurationError(
+            f"ax: shows curves in {present[1]}, but the new curves are in {new[1]}; give other axes"
+        )
     axis.set_ylabel(label)
 
 

@@ -112,7 +112,7 @@ def require_one_input(runs: Mapping[str, RecordedRun]) -> None:
     ends = [float(run.recording.time[-1]) for run in (reference, compared)]
     if abs(ends[0] - ends[1]) > max(reference.recording.timestep, compared.recording.timestep):
         raise ConfigurationError(
-            f"film: {first} lasts {ends[0]:g} s, {second} lasts {ends[1]:g} s; two cars side by side need one input"
+            f"video: {first} lasts {ends[0]:g} s, {second} lasts {ends[1]:g} s; two cars side by side need one input"
         )
     for wheel in dict.fromkeys((reference.wheel, compared.wheel)):
         channel = f"plate_{wheel}_displacement"
@@ -122,7 +122,7 @@ def require_one_input(runs: Mapping[str, RecordedRun]) -> None:
             if np.sqrt(np.mean((plate - beside) ** 2)) <= SAME_PLATES * np.sqrt(np.mean(plate**2)):
                 continue
         raise ConfigurationError(
-            f"film: the plates under the wheel {wheel} of {first} and of {second} move differently; two cars side by "
+            f"video: the plates under the wheel {wheel} of {first} and of {second} move differently; two cars side by "
             "side need one input"
         )
 

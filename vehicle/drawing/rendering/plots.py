@@ -100,7 +100,7 @@ def plot_frf(
     frequency = response.frequency
     inside = np.asarray(np.isfinite(response.response).any(axis=0))
     shown = np.abs(response.response[[rows[name] for labels in groups.values() for name in labels]])
-    title = title or f"FRFs to the plate under the {run.car.model.vehicle.wheel_text(wheel)}"
+    title = title or f"FRFs from the plate under the {run.car.model.vehicle.wheel_text(wheel)}"
     caption = wrapped(f"{caption}; {FADED}", size[0])
     with saved_figure(path, size, title, caption, placed=True) as figure:
         axes = placed_axes(
@@ -176,7 +176,7 @@ def plot_time(path: Path, run: RecordedRun, *, page: bool = False, others: Seque
         caption += (
             f"; dashed: slip velocity {dashed}, red: {red} damper in slip"
             if laws[f"damper_{shown}"].static_friction > 0.0
-            else f"; dashed: {dashed}, red: {red} damper faster"
+            else f"; dashed: {dashed}, red: {red} damper faster than this"
         )
     size = (PAGE_WIDTH, PAGE_HEIGHT) if page else (15.0, 9.2)
     title = "" if page else "Main time histories"
@@ -227,7 +227,7 @@ def plot_time(path: Path, run: RecordedRun, *, page: bool = False, others: Seque
             axis.set_xlabel("time [s]")
         axes[0, 0].set_title("whole record: minimum to maximum")
         lively = f"{side_of(shown, wheels)} {'damper' if dampers else 'plate'}"
-        axes[0, 1].set_title(f"liveliest {end - start:.3g} s of the {lively}")
+        axes[0, 1].set_title(f"{end - start:.3g} s with the largest motion of the {lively}")
         fast, strong = (
             _range([run, *others], [f"damper_{name}_{quantity}" for name in dampers], scale)
             for quantity, scale in (("velocity", 1e3), ("force", 1.0))

@@ -57,11 +57,11 @@ class Take:
 
     def __post_init__(self) -> None:
         if self.duration is not None and not 0.0 < self.duration < np.inf:
-            raise ConfigurationError(f"film, duration: found {self.duration:g} s, must be above 0 and finite")
+            raise ConfigurationError(f"video, duration: found {self.duration:g} s, must be above 0 and finite")
         if self.slow is not None and not 1.0 <= self.slow < np.inf:
-            raise ConfigurationError(f"film, slow motion: found {self.slow:g}, must be at least 1")
+            raise ConfigurationError(f"video, slow motion: found {self.slow:g}, must be at least 1")
         if self.exaggeration is not None and not 0.0 < self.exaggeration < np.inf:
-            raise ConfigurationError(f"film, exaggeration: found {self.exaggeration:g}, must be above 0 and finite")
+            raise ConfigurationError(f"video, exaggeration: found {self.exaggeration:g}, must be above 0 and finite")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -183,7 +183,7 @@ def excerpt_of(run: RecordedRun, take: Take, wheel: str | None = None) -> Excerp
     recording, vehicle = run.recording, run.car.model.vehicle
     record = float(recording.time[-1])
     if take.start is not None and not 0.0 <= take.start < record:
-        raise ConfigurationError(f"film, start: found {take.start:g} s, must be 0 to {record:g} s, within the record")
+        raise ConfigurationError(f"video, start: found {take.start:g} s, must be 0 to {record:g} s, within the record")
     wheel = wheel or run.wheel
     hub, slip = hub_channel(vehicle.composition, wheel), vehicle.slip_velocities.get(wheel)
     return choose_excerpt(recording, wheel, hub, slip, start=take.start, duration=take.duration, slow=take.slow)

@@ -127,14 +127,14 @@ def require_stable(car: CarModel, matrices: CarMatrices, poles: Complex) -> None
     if vehicle.driving.rolling:
         raise ConfigurationError(
             f"the car is unstable at {vehicle.driving.speed:g} m/s: "
-            f"{fastest.description.removeprefix('grows: ')} grows by a factor e in {1.0 / fastest.growth:.3g} s. "
+            f"{fastest.description.removeprefix('grows: ')} grows by a factor of e in {1.0 / fastest.growth:.3g} s. "
             "Lower driving.speed or driving.hold_frequency, because the springs that keep the course can make a "
             "fast car unstable, or check cornering_stiffness, which may be too large at the front axle. If the "
             "car is unstable with driving.speed=0 too, its springs are too soft: see python -m vehicle modes"
         )
     strained = strained_elements(car, fastest.growth + 0j, fastest.shape)
     raise ConfigurationError(
-        f"the car is statically unstable: {fastest.description.removeprefix('grows: ')} grows by a factor e in "
+        f"the car is statically unstable: {fastest.description.removeprefix('grows: ')} grows by a factor of e in "
         f"{1.0 / fastest.growth:.3g} s. Its springs cannot support its weight and preloads; the most loaded is "
         f"{parameter_text(car, strained[0].path)}. Check this parameter against body.mass ({vehicle.body.mass:g} "
         f"kg), body.cog and gravity ({vehicle.gravity:g} m/s2), or see python -m vehicle modes"

@@ -104,9 +104,7 @@ def decoupling(
     """
     rows, inertia = _rigid(matrices, part)
     if not np.linalg.norm(crankshaft) > 0.0:
-        raise ConfigurationError(
-            f"crankshaft: found {list(crankshaft)}, must be a direction of three numbers, not all zero"
-        )
+        raise ConfigurationError(f"crankshaft: must be a direction of three numbers, not {list(crankshaft)}")
     system, hung = matrices.system, _hung(matrices, rows, part)
     stiffness = _mount_stiffness(system, rows, hung)
     shaft = np.array(crankshaft) / np.linalg.norm(crankshaft)

@@ -259,7 +259,7 @@ class _StepCheck:
         pole = complex(exact[row[worst]])
         message = (
             f"at which the peak of a {'vibration' if pole.imag else 'creeping motion'} of the car is "
-            f"{100.0 * error[worst]:.0f} % wrong, must be at most {100.0 * POLE_LIMIT:g} %"
+            f"{100.0 * error[worst]:.0f} % wrong but must be at most {100.0 * POLE_LIMIT:g} %"
         )
         severity = float(error[worst]) / POLE_LIMIT
         form = self.forms[stuck]
@@ -298,7 +298,7 @@ class _StepCheck:
         index = int(np.argmax(share))
         message = (
             f"at which the ringing of {self.names[worst]} after the damper breaks away is "
-            f"{100.0 * error[worst]:+.0f} % wrong, must be at most {100.0 * LOCAL_LIMIT:g} %"
+            f"{100.0 * error[worst]:+.0f} % wrong but must be at most {100.0 * LOCAL_LIMIT:g} %"
         )
         severity = float(abs(error[worst])) / LOCAL_LIMIT
         return StepError(

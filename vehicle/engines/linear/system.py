@@ -125,6 +125,6 @@ def form_row(form: Row, names: tuple[str, ...], shape: tuple[int, ...] = ()) -> 
     row = np.zeros((*shape, len(names)))
     for name, coefficient in form.items():
         if name not in names:
-            raise ConfigurationError(f"linear form: found {name!r}, must be one of {', '.join(names)}")
+            raise ConfigurationError(f"linear form: must be one of {', '.join(names)}, not {name!r}")
         row[..., names.index(name)] = coefficient
     return row

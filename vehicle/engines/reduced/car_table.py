@@ -315,6 +315,6 @@ def _require_rising(law: DisplacementLaw, slopes: Vector) -> None:
     """Check that all slopes of x + G g(x)/2 of a law are positive."""
     if np.any(slopes <= 0.0):
         raise SimulationError(
-            f"{law.name}: its stiffness at rest is not above 0 in this car, so the reduced engine cannot compute "
-            "its softer segments; use --engine mujoco"
+            f"{law.name}: the stiffness at rest is zero or negative in this car, so the reduced engine cannot compute "
+            "the segments of the curve that are softer still; use --engine mujoco"
         )

@@ -164,7 +164,7 @@ def require_step_of_forces(forces: Sequence[PlacedForce], step: float) -> None:
     if needed < step:
         raise ConfigurationError(
             f"solver.timestep: found {step:g} s, must be at most {needed:g} s for a force of "
-            f"{highest_frequency(forces):.4g} Hz; leave it out, or set a shorter step"
+            f"{highest_frequency(forces):.4g} Hz; leave it out, or choose a shorter step"
         )
 
 
@@ -202,7 +202,7 @@ def require_resolved(forces: Sequence[PlacedForce], record_rate: float) -> None:
                     "driving.speed [m/s]"
                 )
             )
-            raise ConfigurationError(f"{force.path}.angle: {law.angle} does not turn; {remedy}")
+            raise ConfigurationError(f"{force.path}.angle: {law.angle} does not rotate; {remedy}")
     highest = highest_frequency(forces)
     if highest > RESOLVED * record_rate:
         rate = 1000.0 * np.ceil(highest / (1000.0 * RESOLVED))

@@ -34,14 +34,14 @@ def require_samples(samples: float, channels: int) -> None:
     """
     if samples < 1.0 - 1e-6:
         raise ConfigurationError(
-            f"solver.record_rate: the signal lasts {number(samples, 2)} sampling intervals, must be at least 1; "
+            f"solver.record_rate: the signal lasts {number(samples, 2)} sampling intervals but must last at least 1; "
             "give a longer signal"
         )
     needed, there = 8.0 * samples * channels, physical_memory()
     if needed > 0.5 * there:
         raise ConfigurationError(
-            f"solver.record_rate: {channels} channels of {samples:.3g} samples need {needed / 1e9:.3g} GB, must "
-            f"be at most {0.5 * there / 1e9:.3g} GB, half the memory of this machine; lower the rate, record "
+            f"solver.record_rate: {channels} channels of {samples:.3g} samples need {needed / 1e9:.3g} GB but may "
+            f"need at most {0.5 * there / 1e9:.3g} GB, half the memory of this machine; lower the rate, record "
             "fewer channels, or cut the record into parts"
         )
 
@@ -89,7 +89,7 @@ def judge_energy(energies: Energies, rate: float, step: float) -> tuple[str, ...
     if residual > RESIDUAL_FAILED:
         raise SimulationError(
             f"{said}, must be at most {RESIDUAL_FAILED:g}: the time steps are too long for the force laws of "
-            f"this car. Set a smaller step, for example {smaller}, or check the parameters that you changed"
+            f"this car. Choose a smaller step, for example {smaller}, or check the parameters that you changed"
         )
     return (
         f"{said}, usually below {RESIDUAL_WARNED:g}; repeat the run with {smaller}: if the residual falls, the step "

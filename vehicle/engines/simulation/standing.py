@@ -42,7 +42,7 @@ def require_body_modes(vehicle: Vehicle, body: Superelement) -> None:
     scale, first = vehicle.body.frequency_scale, float(np.min(body.frequencies, initial=np.inf))
     if not vehicle.body.flexible or first * scale >= LOWEST_FIRST_MODE:
         return
-    allowed = f"must be at least {LOWEST_FIRST_MODE:g} Hz (a convertible has 12 Hz)"
+    allowed = f"but it must be at least {LOWEST_FIRST_MODE:g} Hz (a convertible has 12 Hz)"
     model = f"body.superelement = {vehicle.body.superelement}"
     if scale == 1.0:
         raise ConfigurationError(
@@ -93,6 +93,6 @@ def require_standing(vehicle: Vehicle, rows: Rows, static: StaticTrim) -> None:
     worst = max(sags, key=lambda name: sags[name])
     raise ConfigurationError(
         f"{worst}: too soft for the weight it carries (body.mass {vehicle.body.mass:g} kg, gravity "
-        f"{vehicle.gravity:g} m/s2): it would sag by {sags[worst]:.3g} m, must be at most {LARGEST_SAG:g} m "
+        f"{vehicle.gravity:g} m/s2): it would sag by {sags[worst]:.3g} m, but at most {LARGEST_SAG:g} m is allowed "
         "(a soft car spring sags by 0.2 m)"
     )

@@ -155,7 +155,7 @@ def settle(rows: Rows, design: AtRest, joint_stiffness: Vector) -> Settled:
             if abs(carried - needed) > 1e-6 * max(abs(needed), 1.0):
                 name = rows.names[element] if law_type == 0 else rows.laws.springs[element]
                 raise ConfigurationError(
-                    f"the table of {name}: reaches {carried:.4g} N, must carry {needed:.4g} N in the design "
+                    f"the table of {name}: reaches {carried:.4g} N but must carry {needed:.4g} N in the design "
                     "position; extend it to that force"
                 )
     return settled

@@ -135,7 +135,7 @@ def step_address() -> int:
     folder = Path(mujoco.__file__).parent
     paths = [path for path in folder.iterdir() if path.name.startswith("libmujoco") or path.name == "mujoco.dll"]
     if len(paths) != 1:
-        raise LookupError(f"mj_step ({len(paths)} libraries in {folder}, must be one)")
+        raise LookupError(f"mj_step ({len(paths)} libraries in {folder} instead of one)")
     library, installed = ctypes.CDLL(str(paths[0])), mujoco.get_mjcb_control() is not None
     if not installed:
         mujoco.set_mjcb_control(lambda model, data: None)

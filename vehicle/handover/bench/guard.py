@@ -74,7 +74,9 @@ class Guard:
             )
             if self.refusal(request.path, headers, connection.local_address[1]):
                 self.rejected += 1
-                return connection.respond(403, "The address of the bench is printed where it was started.\n")
+                return connection.respond(
+                    403, "The address of the bench is printed in the terminal where the bench was started.\n"
+                )
             request.path = self.inner_path(request.path)
             response = process(connection, request)
             if response is not None:

@@ -224,7 +224,10 @@ class Page:
             self._note.content = ""
             if present.warnings:
                 warnings = "; ".join(text.removesuffix(REMEDY) for text in present.warnings)
-                self._say(f"outside the valid range: {warnings}; save the vehicle file and run it with --engine mujoco")
+                self._say(
+                    f"outside the valid range of the reduced engine: {warnings}; save the vehicle file and run "
+                    "it with --engine mujoco"
+                )
 
     def _words(self, row: str) -> str:
         """Return the name of a row; a damper without friction is fast, and does not slip, so its velocity is named."""
@@ -263,19 +266,19 @@ class Page:
         plots: list[tuple[Any, Callable[..., Any]]] = []
         shown = (
             (
-                "FRF seat rail z [m/s² per m] over f [Hz], 95 % band",
+                "FRF seat rail z [m/s² per m] against frequency [Hz], 95 % band",
                 frf_curves,
                 (axis, line("B", RED, 2), line("low", PALE, 1), line("high", PALE, 1), line("A", GREY, 1)),
                 logarithmic(frf_curves(*both)[1]),
             ),
             (
-                "PSD seat rail z [(cm/s²)²/Hz] over f [Hz]",
+                "PSD seat rail z [(cm/s²)²/Hz] against frequency [Hz]",
                 density_curves,
                 (axis, line("B", RED, 2), line("A", GREY, 1)),
                 logarithmic(density_curves(*both)[1]),
             ),
             (
-                f"{side_of(wheel, self.state.car.vehicle.wheels)} damper: force [N] over velocity [m/s]",
+                f"{side_of(wheel, self.state.car.vehicle.wheels)} damper: force [N] against velocity [m/s]",
                 lambda a, b: damper_curves(a, b, wheel),
                 (
                     uplot.Series(label="v [m/s]"),

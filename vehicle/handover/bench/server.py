@@ -88,9 +88,9 @@ class OneLine(logging.Handler):
 def _report(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
     """Report a message of the page that could not be handled, for example a word as the value of a slider."""
     if (error := context.get("exception")) is not None:
-        _say("a message of the page was ignored", error)
+        _say("a message from the page was ignored", error)
     else:
-        _say("the server of the page reports an event", context["message"])
+        _say("the page server reported an event", context["message"])
 
 
 def _say(event: str, cause: BaseException | str) -> None:

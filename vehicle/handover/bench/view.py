@@ -105,7 +105,7 @@ class View:
     def _choose(self) -> None:
         """Show the mode of the list."""
         if self.mode.value not in self.mode.options:
-            raise ConfigurationError(f"mode {self.mode.value[:80]!r}: must be a mode of the list")
+            raise ConfigurationError(f"mode {self.mode.value[:80]!r}: must be one of the modes in the list")
         if self.modes:
             self._animate(self.mode.options.index(self.mode.value))
 

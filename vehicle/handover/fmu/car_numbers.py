@@ -51,7 +51,7 @@ class FrictionNumber(NamedTuple):
 FRICTION = {
     "coulomb_friction": FrictionNumber("N", "friction_limit", "Coulomb friction Fd", "Coulomb friction", 300.0),
     "static_friction": FrictionNumber(
-        "N", "static_limit", "static friction Fs of the Stribeck law, must be at least Fd",
+        "N", "static_limit", "static friction Fs of the Stribeck law (at least Fd)",
         "static friction (Stribeck)", 400.0,
     ),
     "stribeck_velocity": FrictionNumber(

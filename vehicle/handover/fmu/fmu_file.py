@@ -81,7 +81,7 @@ def write_fmu(
         MissingPartError: the libraries are not in the package.
     """
     if str(fmi) not in FMI_VERSIONS:
-        raise ConfigurationError(f"fmi: found {fmi!r}, must be one of {', '.join(FMI_VERSIONS)}")
+        raise ConfigurationError(f"fmi: must be one of {', '.join(FMI_VERSIONS)}, not {fmi!r}")
     if not SHORTEST_STEP <= step <= LONGEST_STEP:
         raise ConfigurationError(f"step: found {step:g} s, must be {SHORTEST_STEP:g} to {LONGEST_STEP:g} s")
     target = Path(path)
@@ -95,8 +95,8 @@ def write_fmu(
     speed = car.vehicle.driving.speed if car.vehicle.driving.rolling else 0.0
     description = (
         f"{car.vehicle.name}, {f'rolling at {3.6 * speed:.4g} km/h' if speed else 'on plates'}; valid for small "
-        "rotations (a warning appears beyond). Inputs are values at the END of a communication step: if the "
-        "master sets values of its beginning, the car moves a step late. Communication steps must be multiples "
+        "rotations (a warning appears beyond). Inputs are values at the END of a communication step: if the master "
+        "sets the values at its start, the car responds one step late. Communication steps must be multiples "
         f"of {step:g} s."
     )
     text = model_description(car.vehicle.name, numbers.token, entries, fmi=str(fmi), step=step, description=description)

@@ -34,8 +34,8 @@ _MEANING = {
     "displacement": "displacement of the plate or road at the END of the communication step, upwards",
     "velocity": "velocity of the plate or road at the END of the communication step, upwards; must be set, or the tyre "
     "forces are wrong",
-    "slope_excess": "V tan(beta) - z' of a road whose slope under the tyre is not the derivative of its height (a tyre "
-    "that envelops an obstacle), mean over the communication step; 0 otherwise",
+    "slope_excess": "mean of V tan(beta) - z' over the communication step, for a road whose slope under the tyre is "
+    "not the derivative of the height (tyre enveloping an obstacle); otherwise 0",
     "applied": "force or moment [force.NAME] that is added to its mean in the vehicle file: value at the END of the "
     "communication step; it changes linearly during the step",
     "force": "force that is added to the damper force, constant over the communication step; positive pulls body and "

@@ -207,7 +207,7 @@ def _film(
     )
     if settings.video_mode is not None:
         take = replace(take, mode=beside(run, None if settings.video_mode is True else settings.video_mode))
-    film(run, path, take, jobs=drawing_jobs(), progress=listener.progress("film      "))
+    film(run, path, take, jobs=drawing_jobs(), progress=listener.progress("video     "))
 
 
 def _report(path: Path, settings: ShakerSettings, run: Run, folder: Path, output: Path, listener: Listener) -> None:

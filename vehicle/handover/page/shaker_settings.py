@@ -115,7 +115,7 @@ class ShakerSettings(Settings):
         if needs is None or self.engine == "mujoco":
             return self.engine, ""
         why = f"{needs}: the reduced engine " + (
-            "does not store the positions that a film needs" if needs == "--video" else "chooses its time step itself"
+            "does not store the positions that a video needs" if needs == "--video" else "chooses its time step itself"
         )
         if self.engine == "reduced":
             raise ConfigurationError(f"{why}; leave --engine reduced out, or {needs}")

@@ -186,8 +186,8 @@ def _require(car: Car, signal: Signal, skip: float) -> None:
     shortest = skip + SHORTEST * WINDOW * signal.timestep
     if min(signal.duration, LONGEST) < shortest:
         raise ConfigurationError(
-            f"the input of {signal.duration:g} s, of which the page runs at most {LONGEST:g} s, must have at least "
-            f"{shortest:.3g} s"
+            f"the input lasts {signal.duration:g} s, of which the page runs at most {LONGEST:g} s, but it needs at "
+            f"least {shortest:.3g} s"
         )
 
 

@@ -29,7 +29,7 @@ class BeamSection:
             value = getattr(self, name)
             if not (np.isfinite(value) and value >= 0.0):
                 raise ConfigurationError(
-                    f"beam section: {name} is {value}, must be a finite number of at least 0. Correct the section."
+                    f"beam section: {name} is {value} but must be finite and at least 0. Correct the section."
                 )
 
 
@@ -81,7 +81,7 @@ def local_axes(start: ArrayLike, end: ArrayLike) -> Vector:
             f"beam: both ends are at {np.asarray(start).tolist()} m; they must be different points."
         )
     x = along / length
-    # y, the global z cross x, is horizontal, so z, x cross y, lies in the vertical plane through the beam.
+    # y, the global z cross x, is horizontal, so z, x cross y, is in the vertical plane through the beam.
     y = _cross(np.array([0.0, 0.0, 1.0]), x)
     if np.linalg.norm(y) < _PARALLEL:
         y = _cross(np.array([1.0, 0.0, 0.0]), x)

@@ -33,7 +33,7 @@ class DesignNode:
     def __post_init__(self) -> None:
         validate(self)
         if self.place is not None and self.mirror is not None:
-            raise ConfigurationError("DesignNode.mirror: found together with place; remove one of them")
+            raise ConfigurationError("DesignNode.mirror: cannot be used together with place; remove one of them")
         if self.place is not None and self.place[1] < 0.0:
             raise ConfigurationError(
                 f"DesignNode.place: found y = {self.place[1]} m, must be at least 0; the left side is mirrored"
@@ -56,11 +56,11 @@ class MemberGroup:
         dimensions = [name for name in ("width", "wall", "area") if getattr(self, name) is not None]
         if dimensions not in (["width", "wall"], ["area"]):
             raise ConfigurationError(
-                f"MemberGroup.between: the section has {', '.join(dimensions) or 'no dimension'}; must have "
-                "width and wall (a tube) or area (a strut)"
+                f"MemberGroup.between: the section has {', '.join(dimensions) or 'no dimension'}; it needs width and "
+                "wall (a tube) or area (a strut)"
             )
         if not self.between:
-            raise ConfigurationError("MemberGroup.between: found an empty list, must contain at least one member")
+            raise ConfigurationError("MemberGroup.between: the list is empty; it must contain at least one member")
 
     def sections(self, youngs: float, shear: float) -> tuple[BeamSection, BeamSection]:
         """Return the section scaled by the factor, and the section independent of the factor.
@@ -106,7 +106,7 @@ class BodyDesign:
     def __post_init__(self) -> None:
         validate(self)
         if self.mode_count != int(self.mode_count):
-            raise ConfigurationError(f"BodyDesign.mode_count: found {self.mode_count!r}, must be a whole number")
+            raise ConfigurationError(f"BodyDesign.mode_count: must be a whole number, not {self.mode_count!r}")
 
     @property
     def factors(self) -> dict[str, float]:
@@ -143,7 +143,7 @@ class BodyDesign:
                 similar = did_you_mean(hardpoint, [*points, *(key.removesuffix("_fr") for key in points)])
                 raise ConfigurationError(
                     f"nodes.{name}: the vehicle has no hardpoint {hardpoint}{similar} "
-                    "Set the place of the node, or name it after a hardpoint"
+                    "Give the place of the node, or name it after a hardpoint"
                 )
         names = [name for nodes in positions.values() for name in nodes]
         duplicates = sorted({name for name in names if names.count(name) > 1})

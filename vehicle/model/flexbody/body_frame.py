@@ -151,7 +151,7 @@ def body_frame(design: BodyDesign, points: Mapping[str, Point], properties: Node
             if (distance := float(np.linalg.norm(positions[a] - positions[b]))) < COINCIDENT_M:
                 raise ConfigurationError(
                     f"members.{group}: {base.nodes[a]} at {positions[a].tolist()} m and {base.nodes[b]} are "
-                    f"{distance:.3g} m apart, must be at least {COINCIDENT_M:g} m. Move the hardpoint, or change "
+                    f"{distance:.3g} m apart but must be at least {COINCIDENT_M:g} m. Move the hardpoint, or change "
                     "the place of the node in the body design"
                 )
         scaled_section, fixed_section = members.sections(design.youngs_modulus, design.shear_modulus)

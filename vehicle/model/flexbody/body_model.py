@@ -46,7 +46,7 @@ def body_model(vehicle: Vehicle, folder: Path | None = None) -> Superelement:
         if body.superelement is not None and (body.flexible or body.attachment_flexibility):
             package_files = ", ".join(sorted(path.name for path in PACKAGE_FOLDER.glob("*.toml")))
             raise ConfigurationError(
-                f"body.superelement: the file {body.superelement!r} is neither in the folder of the vehicle file "
+                f"body.superelement: the file {body.superelement!r} is neither in the same folder as the vehicle file "
                 f"nor in the package (which has {package_files}). Name an existing file, or set body.flexible = "
                 "false and body.attachment_flexibility = false for a rigid body"
             )
@@ -89,7 +89,7 @@ def _up_to(model: Superelement, vehicle: Vehicle) -> Superelement:
     kept = model.up_to(limit, set(attached_nodes(model, vehicle.composition.attachments()).values()))
     if not kept.frequencies.size:
         raise ConfigurationError(
-            f"body.modes_up_to: found {limit:g} Hz, below the first mode at {model.frequencies[0]:.4g} Hz. Set a "
+            f"body.modes_up_to: found {limit:g} Hz, below the first mode at {model.frequencies[0]:.4g} Hz. Choose a "
             "higher frequency, or body.flexible = false for a body without modes"
         )
     return kept

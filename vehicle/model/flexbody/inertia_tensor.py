@@ -111,7 +111,7 @@ def nearest_physical(inertia: ArrayLike) -> PhysicalInertia:
     tensor = np.asarray(inertia, dtype=float)
     if tensor.shape != (3, 3) or not np.all(np.isfinite(tensor)) or not np.allclose(tensor, tensor.T, rtol=1e-9):
         raise ConfigurationError(
-            f"inertia tensor: found {tensor.tolist()}, must be a finite symmetric 3 x 3 matrix [kg m2]"
+            f"inertia tensor: must be a finite symmetric 3 x 3 matrix [kg m2], not {tensor.tolist()}"
         )
     values, axes = np.linalg.eigh(second_moments(tensor))
     if values[-1] <= 0.0:

@@ -77,7 +77,8 @@ def _rigid_body(mass: float, cog: Point, inertia: BodyInertia) -> RigidBody:
             f"({mass:g} kg) at body.cog {list(cog)} the principal moments about the centre of gravity are "
             f"{low:.4g}, {middle:.4g} and {high:.4g} kg m2. For a real body, all must be positive, and the sum of the "
             f"two smaller at least the largest ({low + middle:.4g} >= {high:.4g}?). The nearest physical tensor "
-            f"differs by {change:.3g} kg m2, must be at most {LARGEST_REPAIR * high:.3g} ({LARGEST_REPAIR:.0%} of the "
+            f"differs by {change:.3g} kg m2 but must differ by at most {LARGEST_REPAIR * high:.3g} "
+            f"({LARGEST_REPAIR:.0%} of the "
             "largest). Check signs and digits, and body.inertia.about (cog or origin): moments about the origin "
             "include m r2 of the centre of gravity"
         )

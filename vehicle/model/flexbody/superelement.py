@@ -253,7 +253,7 @@ def attached_nodes(body: Superelement, points: Mapping[str, Point]) -> dict[Poin
             raise DataError(
                 f"superelement {body.name!r}: no node at the attachment {name} of the car, {list(point)} m; the "
                 f"nearest is {body.nodes[best]!r} at {body.positions[best].tolist()} m, {distance * 1e3:.4g} mm "
-                f"away, must be at most {tolerance * 1e3:g} mm. Set the car of this body (--vehicle), move the "
+                f"away but must be at most {tolerance * 1e3:g} mm. Choose the car of this body (--vehicle), move the "
                 "hardpoint, use a body model with a node there, or compute the body from the hardpoints "
                 "(body.superelement = body_design.toml)."
             )

@@ -61,7 +61,7 @@ def _counts(body: Superelement) -> Iterator[str]:
         actual = getattr(body, name).shape
         if actual != shape:
             yield (
-                f"{name}: has the shape {actual}, must be {shape} for {nodes} nodes and {modes} frequencies. "
+                f"{name}: has the shape {actual} but must have {shape} for {nodes} nodes and {modes} frequencies. "
                 "Export every array for the same nodes and modes."
             )
     if len(body.mode_names) != modes:
@@ -105,7 +105,7 @@ def _residual(node: str, flexibility: Vector) -> Iterator[str]:
     lowest = float(np.linalg.eigvalsh(flexibility)[0])
     if lowest < -_SYMMETRY * largest:
         yield (
-            f"residual flexibility of node {node!r}: its smallest principal value is {lowest:.4g} m/N, must be "
+            f"residual flexibility of node {node!r}: its smallest principal value is {lowest:.4g} m/N but must be "
             "at least 0 (below 0 is a negative spring). Use modes and residual flexibility of the same model."
         )
     if largest > _SOFTEST_RESIDUAL:
@@ -159,14 +159,14 @@ def _values(body: Superelement) -> Iterator[str]:
 def _units(body: Superelement) -> Iterator[str]:
     extent = float(np.ptp(body.positions, axis=0).max())
     if extent > _LARGEST_BODY:
-        limit = f"must be at most {_LARGEST_BODY:g} m"
-        yield f"positions: the body is {extent:g} m long, {limit}; probably mm. Convert to m."
+        limit = f"but must be at most {_LARGEST_BODY:g} m"
+        yield f"positions: the body is {extent:g} m long {limit}; probably mm. Convert to m."
     if extent < _SMALLEST_BODY:
-        yield f"positions: the body is {extent:g} m long, must be at least {_SMALLEST_BODY:g} m. Convert to m."
+        yield f"positions: the body is {extent:g} m long but must be at least {_SMALLEST_BODY:g} m. Convert to m."
     first = float(body.frequencies[0]) if body.frequencies.size else 0.0
     if first > HIGHEST_FIRST_MODE:
         yield (
-            f"frequencies: the first mode is at {first:g} Hz, must be at most {HIGHEST_FIRST_MODE:g} Hz; probably "
+            f"frequencies: the first mode is at {first:g} Hz but must be at most {HIGHEST_FIRST_MODE:g} Hz; probably "
             f"rad/s ({first / (2.0 * np.pi):.4g} Hz). Convert to Hz."
         )
 
@@ -181,20 +181,23 @@ def _rigid(body: Superelement) -> Iterator[str]:
     if numbers.size != 13 or not np.all(np.isfinite(numbers)) or rigid.mass <= 0.0:
         yield (
             f"mass {rigid.mass:g} kg, cog {np.ravel(rigid.cog).tolist()} m, inertia "
-            f"{np.ravel(rigid.inertia).tolist()} kg m2; must be a positive mass, three and nine finite numbers."
+            f"{np.ravel(rigid.inertia).tolist()} kg m2: give a positive mass, and three and nine finite numbers."
         )
     low, high = body.positions.min(axis=0), body.positions.max(axis=0)
     room = 0.5 * float(np.max(high - low))
     if np.any(rigid.cog < low - room) or np.any(rigid.cog > high + room):
         yield (
-            f"cog: {np.asarray(rigid.cog).tolist()} m lies far outside the nodes, {low.tolist()} to "
+            f"cog: {np.asarray(rigid.cog).tolist()} m is far outside the nodes, {low.tolist()} to "
             f"{high.tolist()} m. Give the CoG in the axes and unit of the nodes."
         )
     if not body.frequencies.size:
         return
     low_moment, middle, top = np.linalg.eigvalsh(rigid.inertia)
     if low_moment <= 1e-9 * top:
-        yield "node_mass: all mass is on one line, so the body has no inertia about this line. Add mass off this line."
+        yield (
+            "node_mass: all mass is on one axis, so the body has no inertia about this axis. Add mass at points "
+            "that do not lie on this axis."
+        )
     if not np.allclose(rigid.inertia, np.transpose(rigid.inertia), rtol=0.0, atol=_SYMMETRY * top):
         yield f"inertia: {np.asarray(rigid.inertia).tolist()} kg m2 is not symmetric."
     # I1 + I2 - I3 = 2 times the integral of z^2 dm, z along the axis of I3: at least 0 for real masses.
@@ -217,7 +220,7 @@ def _modes(body: Superelement) -> Iterator[str]:
     level = float(np.sqrt(np.mean(body.shapes**2)) * np.sqrt(3.0 * body.mass))
     if not 1e-2 < level < 1e2:
         yield (
-            f"shapes: their RMS is {level:.3g} times that of a rigid motion with modal mass 1, must be about 1. "
+            f"shapes: their RMS is {level:.3g} times that of a rigid motion with modal mass 1 but must be about 1. "
             "Use shapes with modal masses of 1 kg in kg^-1/2 (from mm and tonnes: divide by sqrt(1000))."
         )
     # Share |Q^T phi|^2 / |phi|^2, Q: orthonormal basis of the six rigid motions, (3 nodes, 6).

@@ -38,7 +38,9 @@ def read_superelement(path: Path) -> Superelement:
     except UnicodeDecodeError as error:
         raise DataError(f"{path}: cannot be read as UTF-8 text ({error}). Use a body model in TOML or npz.") from error
     except (tomllib.TOMLDecodeError, RecursionError) as error:
-        raise DataError(f"{path}: is not valid TOML, perhaps cut off: {error}. Write the file again.") from error
+        raise DataError(
+            f"{path}: is not valid TOML, perhaps cut off: {error}. Save or export the file again."
+        ) from error
     except DataError as error:
         raise DataError(f"{path}: {error}") from error
 

@@ -41,15 +41,15 @@ def of_arrays(raw: bytes) -> Superelement:
         raise
     except Exception as error:  # NumPy raises errors of any type for damaged files, for example TokenError
         reason = " ".join(f"{type(error).__name__}: {error}".split())
-        raise DataError(f"is not a valid npz, perhaps truncated ({reason}). Write the file again.") from None
+        raise DataError(f"is not a valid npz, perhaps truncated ({reason}). Save or export the file again.") from None
     if not isinstance(head, dict) or head.get("format") != FORMAT:
         file_format = head.get("format") if isinstance(head, dict) else None
-        raise DataError(f"format is {file_format!r}, must be {FORMAT!r} for npz.")
+        raise DataError(f"format is {file_format!r} but must be {FORMAT!r} for npz.")
     for name in sorted(content.keys() ^ _NPZ):
         if name not in _NPZ:
             raise DataError(f"unknown array {name!r}{did_you_mean(name, sorted(_NPZ))}")
         if name not in _NPZ_OPTIONAL:
-            raise DataError(f"array {name!r} is missing. The file is incomplete; write it again.")
+            raise DataError(f"array {name!r} is missing. The file is incomplete; export it again.")
     for name in _NPZ - {"head"} & content.keys():
         kinds = "U" if name in _NAMES else "if"
         if content[name].dtype.kind not in kinds and content[name].size:
@@ -63,10 +63,10 @@ def of_arrays(raw: bytes) -> Superelement:
             )
     missing = [key for key in ("name", "provenance", "hardpoint_tolerance_m") if key not in head]
     if missing:
-        raise DataError(f"head: key {missing[0]!r} is missing. The file is incomplete; write it again.")
+        raise DataError(f"head: key {missing[0]!r} is missing. The file is incomplete; export it again.")
     tolerance = numbers(head["hardpoint_tolerance_m"], "hardpoint_tolerance_m")
     if tolerance.shape != ():
-        raise DataError(f"hardpoint_tolerance_m: found {tolerance.tolist()}, must be a single number.")
+        raise DataError(f"hardpoint_tolerance_m: must be a single number, not {tolerance.tolist()}.")
     node_arrays = {}
     for quantity, key in _OWNED.items():
         owners, values = content[f"{quantity}_nodes"], content[key]

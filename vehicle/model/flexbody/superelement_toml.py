@@ -38,14 +38,14 @@ def of_tables(content: dict[str, Any]) -> Superelement:
     """
     file_format = content.get("format")
     if file_format not in (FORMAT, _OLDER):
-        raise DataError(f"format is {file_format!r}, must be {FORMAT!r} or {_OLDER!r}.")
+        raise DataError(f"format is {file_format!r} but must be {FORMAT!r} or {_OLDER!r}.")
     older = file_format == _OLDER
     _check_keys(content, "", "top level", older)
     nodes, modes = (_tables(content, table_type, older) for table_type in ("node", "mode"))
     names = tuple(str(node["name"]) for node in nodes)
     tolerance = numbers(content.get("hardpoint_tolerance_m", 1e-3), "hardpoint_tolerance_m")
     if tolerance.shape != ():
-        raise DataError(f"hardpoint_tolerance_m: found {tolerance.tolist()}, must be a single number.")
+        raise DataError(f"hardpoint_tolerance_m: must be a single number, not {tolerance.tolist()}.")
     index = {name: i for i, name in enumerate(names)}
     edges = []
     edge_list = content.get("edges", [])
@@ -70,7 +70,7 @@ def of_tables(content: dict[str, Any]) -> Superelement:
                 break
     if any(with_mass) and not all(with_mass):
         raise DataError(
-            f"node {with_mass.index(False) + 1}: key 'mass_kg' is missing; set it for every node or for no node."
+            f"node {with_mass.index(False) + 1}: key 'mass_kg' is missing; give it for every node or for no node."
         )
     return Superelement(
         name=str(content["name"]),
@@ -114,7 +114,7 @@ def given_rigid(table: dict[str, Any]) -> MassProperties | None:
     mass, cog, inertia = (numbers(table[key], key) for key in RIGID)
     for key, array, shape in zip(RIGID, (mass, cog, inertia), ((), (3,), (3, 3)), strict=True):
         if array.shape != shape:
-            raise DataError(f"{key}: shape {array.shape}, must be {shape}.")
+            raise DataError(f"{key}: must have the shape {shape}, not {array.shape}.")
     return MassProperties(mass=float(mass), cog=cog, inertia=inertia)
 
 
@@ -125,7 +125,7 @@ def _check_keys(table: dict[str, Any], table_type: str, where: str, older: bool)
             raise DataError(f"{where}: unknown key {key!r}{did_you_mean(key, valid_keys)}")
     for key in valid_keys:
         if key not in table and key not in _OPTIONAL and key != _OF_VERSION_1:
-            raise DataError(f"{where}: key {key!r} is missing. The file is incomplete or truncated; write it again.")
+            raise DataError(f"{where}: key {key!r} is missing. The file is incomplete or truncated; export it again.")
 
 
 def _tables(content: dict[str, Any], table_type: str, older: bool) -> list[dict[str, Any]]:
@@ -135,10 +135,10 @@ def _tables(content: dict[str, Any], table_type: str, older: bool) -> list[dict[
     if len(tables) != count:
         raise DataError(
             f"found {len(tables)} sections [[{table_type}]], but {table_type}_count = {count!r}. The file is "
-            "truncated, or the count is outdated; write it again, or correct the count."
+            "truncated, or the count is outdated; export it again, or correct the count."
         )
     if not tables:
-        raise DataError(f"{table_type}_count is 0, must be at least 1. For a rigid body, set body.flexible = false.")
+        raise DataError(f"{table_type}_count is 0 but must be at least 1. For a rigid body, set body.flexible = false.")
     for i, table in enumerate(tables):
         # Node masses are optional if the file has mass properties of the whole body.
         free = {"mass_kg": 0.0} if table_type == "node" and "mass_kg" in content and not older else {}
@@ -157,7 +157,7 @@ def numbers(value: Any, where: str) -> Vector:
     except ValueError as error:
         raise DataError(f"{where}: the rows have different lengths. Give three numbers in each row.") from error
     if array.dtype.kind not in "if":
-        raise DataError(f"{where}: found {str(value)[:40]!r}, must be numbers.")
+        raise DataError(f"{where}: must be numbers, not {str(value)[:40]!r}.")
     return array.astype(float)
 
 

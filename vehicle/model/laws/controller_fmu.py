@@ -121,10 +121,11 @@ def read_controller(path: Path, digest: str | None) -> ControllerFile:
     """
     fmpy = _fmpy()
     if not path.is_file():
-        raise ConfigurationError(f"controller {path}: the file does not exist; set the path of an FMU")
+        raise ConfigurationError(f"controller {path}: the file does not exist; give the path of an FMU")
     if path.stat().st_size > LARGEST:
         raise DataError(
-            f"controller {path}: the file has {path.stat().st_size / 1e6:.4g} MB, must be at most {LARGEST / 1e6:g} MB"
+            f"controller {path}: the file has {path.stat().st_size / 1e6:.4g} MB, but at most {LARGEST / 1e6:g} MB "
+            "are allowed"
         )
     content = path.read_bytes()
     actual_digest = hashlib.sha256(content).hexdigest()

@@ -41,7 +41,7 @@ def with_controller(car: CarChoice, controller: Path | None, *, trusted: bool) -
             "focus_road, or add a section [front.damper.control] to the vehicle file (docs/vehicle-file.md)"
         )
     if trusted and not controller.is_file():
-        raise ConfigurationError(f"--controller {controller}: the file does not exist; set the path of an FMU")
+        raise ConfigurationError(f"--controller {controller}: the file does not exist; give the path of an FMU")
     file = controller.resolve().as_posix()
     if not PATH_PATTERN.fullmatch(file):
         raise ConfigurationError(

@@ -46,7 +46,7 @@ def named_point(path: str, table: Mapping[str, Any], points: Mapping[str, Point]
     if not NAME_PATTERN.fullmatch(name):
         raise ConfigurationError(f"{path}: found {name!r}, must consist of letters, digits, '_', '.', '-'")
     if value is None:
-        raise ConfigurationError(f"{path}.at: missing; set the name of a point, or its coordinates [m]")
+        raise ConfigurationError(f"{path}.at: missing; give the name of a point, or its coordinates [m]")
     if isinstance(value, str):
         if value not in points:
             raise ConfigurationError(f"{path}.at: unknown point {value!r}{did_you_mean(value, points)}")
@@ -57,7 +57,7 @@ def named_point(path: str, table: Mapping[str, Any], points: Mapping[str, Point]
 def named_part(path: str, table: Mapping[str, Any], key: str, names: set[str]) -> str:
     """Return the name of a part that a table gives under a key."""
     if key not in table:
-        raise ConfigurationError(f"{path}.{key}: missing; set the name of a part, for example body")
+        raise ConfigurationError(f"{path}.{key}: missing; give the name of a part, for example body")
     name: str = convert(str, table[key], f"{path}.{key}")
     if name not in names:
         raise ConfigurationError(f"{path}.{key}: unknown part {name!r}{did_you_mean(name, names)}")
@@ -119,7 +119,7 @@ def further_output(name: str, value: Any, names: set[str], points: Mapping[str, 
     table = convert(dict, value, path)
     for key in table:
         if key not in ("on", "at"):
-            raise ConfigurationError(f"{path}.{key}: unknown parameter {key}; must be on or at")
+            raise ConfigurationError(f"{path}.{key}: unknown parameter; use on or at")
     at, point = named_point(path, table, points)
     return PlacedOutput(name=name, on=named_part(path, table, "on", names), at=at, point=point)
 

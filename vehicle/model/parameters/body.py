@@ -82,7 +82,7 @@ class TrimmedBody:
     inertia: BodyInertia
     superelement: str | None = quantity(
         "-",
-        "file of the body design or body model, in the folder of the vehicle file or in the package; with "
+        "file of the body design or body model, in the same folder as the vehicle file or in the package; with "
         "--set any path",
         is_file=True,
         default=None,

@@ -352,7 +352,7 @@ class Composition:
         chosen = name or first or next(iter(speeds), None)
         if chosen not in speeds:
             message = f"choose from {', '.join(speeds)}" if speeds else "set --speed or crank.rpm"
-            raise ConfigurationError(f"angle: found {chosen!r}, which does not turn; {message}")
+            raise ConfigurationError(f"angle: found {chosen!r}, which does not rotate; {message}")
         return chosen, speeds[chosen]
 
     def attachments(self) -> dict[str, Point]:

@@ -37,11 +37,11 @@ def _speed(file: str, channel: str, changed: int) -> tuple[tuple[float, ...], tu
         raise DataError(f"{where} has no times; add a time column")
     time, rpm = np.asarray(measured.axis, dtype=float), np.asarray(measured.values, dtype=float)
     if time.size < 2 or not np.isfinite([time, rpm]).all() or np.any(np.diff(time) <= 0.0):
-        raise DataError(f"{where} has a gap or decreasing times; repair the record")
+        raise DataError(f"{where} has a gap or decreasing times; correct the record")
     low, high = float(np.min(rpm)), float(np.max(rpm))
     if low < 0.0 or not 0.0 < high <= HIGHEST_RPM:
         raise DataError(
-            f"{where} is {low:g} to {high:g} 1/min, must be 0 to {HIGHEST_RPM:g} 1/min; set another crank.channel"
+            f"{where} is {low:g} to {high:g} 1/min but must be 0 to {HIGHEST_RPM:g} 1/min; choose another crank.channel"
         )
     return tuple((time - time[0]).tolist()), tuple((rpm * np.pi / 30.0).tolist())
 

@@ -38,19 +38,19 @@ def require_curve(where: str, key: str, positions: Sequence[float], forces: Sequ
         ConfigurationError: a wrong number of points, or the first wrong point.
     """
     if len(positions) != len(forces):
-        raise ConfigurationError(f"{where}.force: found {len(forces)} forces for {len(positions)} values of "
-                                 f"{key}; set one force for each")  # fmt: skip
+        raise ConfigurationError(f"{where}.force: found {len(forces)} forces for {len(positions)} values of {key}; "
+        "give one force for each")  # fmt: skip
     if not 2 <= len(positions) <= MAX_POINTS:
         raise ConfigurationError(f"{where}.{key}: found {len(positions)} points, must be 2 to {MAX_POINTS}; leave "
                                  "out points on a straight line")  # fmt: skip
     for x, following in itertools.pairwise(positions):
         if not x < following:
             raise ConfigurationError(f"{where}.{key}: found {following!r} after {x!r}, must be ascending; sort the "
-                                     "points, and give each once")  # fmt: skip
+            "points and remove duplicates")  # fmt: skip
     for f, following in itertools.pairwise(forces):
         if following < f:
-            raise ConfigurationError(f"{where}.force: found {following!r} N after {f!r} N, must not decrease; {key} "
-                "and force are positive in extension (rebound)")  # fmt: skip
+            raise ConfigurationError(f"{where}.force: found {following!r} N after {f!r} N, must not decrease; give "
+            f"{key} and force as positive in extension (rebound)")  # fmt: skip
     if key == "velocity" and not positions[0] < 0.0 < positions[-1]:
         raise ConfigurationError(f"{where}.{key}: found {positions[0]!r} to {positions[-1]!r}, must lie on both sides "
                                  "of 0: compression (bump) is negative, extension (rebound) positive")  # fmt: skip
@@ -124,7 +124,7 @@ def _file(folder: Path, name: str, path: str) -> Path:
     file = _beside(folder, name)
     if not file.exists():
         raise ConfigurationError(
-            f"{path}: the file {file} does not exist; give a file in the folder of the vehicle file or in "
+            f"{path}: the file {file} does not exist; give a file in the same folder as the vehicle file or in "
             "the current folder"
         )
     return file
@@ -228,15 +228,15 @@ def _points(file: Path, path: str, key: str) -> dict[str, Any]:
 
     def column(header: Header) -> int:
         if missing := set(heads.values()) - set(header.cells):
-            raise ConfigurationError(f"{header.where}: column {min(missing)!r} is missing; found {header.found}, "
-                f"must have {needed}")  # fmt: skip
+            raise ConfigurationError(f"{header.where}: column {min(missing)!r} is missing; expected {needed}, found "
+            f"{header.found}")  # fmt: skip
         return header.cells.index(HEADS[key])
 
     def columns(header: Header) -> list[int]:
         return [header.cells.index(head) for head in heads.values()]
 
     try:
-        wanted = Wanted(needed=needed, key=column, remedy="repair or remove the row", columns=columns)
+        wanted = Wanted(needed=needed, key=column, remedy="correct or remove the row", columns=columns)
         table = read_table(file, wanted)
     except VehicleError as error:
         # A file of a test bench may have another format and other units.

@@ -91,7 +91,7 @@ class Crank(Validated):
 
     rpm: float | None = quantity(
         "1/min",
-        "speed of the crankshaft; in a run-up, at its beginning",
+        "speed of the crankshaft; for a run-up, the speed at its start",
         at_least=300.0,
         at_most=HIGHEST_RPM,
         why="engines idle at 600 to 1000",
@@ -105,7 +105,7 @@ class Crank(Validated):
         default=None,
     )
     run_up_time: float | None = quantity(
-        "s", "time from the beginning of the run to the end of the run-up", at_least=1.0, at_most=3600.0, default=None
+        "s", "time from the start of the run to the end of the run-up", at_least=1.0, at_most=3600.0, default=None
     )
     file: str | None = quantity("-", "file with a measured speed over time, instead of rpm", is_file=True, default=None)
     channel: str | None = quantity(

@@ -41,8 +41,8 @@ class EngineOrders:
     )
     pressure: str | None = quantity(
         "-",
-        "file with the absolute cylinder pressure over the crank angle (0 at the top dead centre of "
-        "combustion); replaces torque and compression",
+        "file with the absolute cylinder pressure against crank angle (0 at firing top dead centre); replaces torque "
+        "and compression",
         is_file=True,
         default=None,
     )
@@ -64,7 +64,7 @@ class EngineOrders:
         at_most=1.0,
         default=0.0,
     )
-    highest_order: float = quantity("-", "highest order that is applied", at_least=1.0, at_most=16.0, default=6.0)
+    highest_order: float = quantity("-", "highest engine order included", at_least=1.0, at_most=16.0, default=6.0)
     at: Point | None = quantity(
         "m",
         "middle of the cylinders on the crankshaft; default: centre of gravity of the engine",

@@ -64,7 +64,10 @@ END: Schema = {
     "type": "object",
     "description": "end stop of a damper: file of the stop, and travel from the design position to the stop [m]",
     "properties": {
-        "curve": {"type": "string", "description": "property file, or file with penetration [m] and force [N]"},
+        "curve": {
+            "type": "string",
+            "description": "Adams property file (TeimOrbit), or file with the columns penetration [m] and force [N]",
+        },
         "clearance": {
             "type": "number",
             "minimum": 0.0,
@@ -151,7 +154,7 @@ def template_schema() -> Schema:
         "parts": _mapping(_table(RolePart)),
         "wheel": _table(Wheel),
         "steering_axis": _table(SteeringAxis),
-        "above": {"type": "array", "items": {**pair, "description": "the first point lies above the second"}},
+        "above": {"type": "array", "items": {**pair, "description": "the first point is above the second"}},
         **lists,
     }
     properties = {key: special.get(key) or _value(hint) for key, hint in TEMPLATE_KEYS.items()}
@@ -276,7 +279,12 @@ def _table(parameters: type[Any], complete: bool = True) -> Schema:
             }
         return schema
     # Numbers may be in a file.
-    schema = _object({**properties, "curve": {**TEXT, "description": "file with the curve, or property file"}})
+    schema = _object(
+        {
+            **properties,
+            "curve": {**TEXT, "description": "file containing the curve, or an Adams property file (TeimOrbit)"},
+        }
+    )
     if parameters is Damper:
         schema["properties"]["stop"] = {"anyOf": [properties["stop"], _object({"bump": END, "rebound": END})]}
     if not complete:

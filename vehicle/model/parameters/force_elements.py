@@ -169,11 +169,11 @@ class Hydromount:
         **STIFFEST,
     )  # fmt: skip
     track_mass: float | None = quantity(
-        "kg", "mt, mass of the fluid in the track, referred to the rubber: rho L Ap^2/At", default=None, **TRACKED
+        "kg", "mt, fluid mass in the inertia track, referred to the rubber: rho L Ap^2/At", default=None, **TRACKED
     )
     track_damping: float | None = quantity(
         "N s/m",
-        "ct, linear flow resistance of the track, referred to the rubber",
+        "ct, linear flow resistance of the inertia track, referred to the rubber",
         at_least=0.0,
         default=None,
         **STRONGEST,
@@ -328,7 +328,7 @@ class Damper:
     stribeck_exponent: float | None = quantity("-", "delta, exponent of the Stribeck law", above=0.0, at_most=20.0,
         why="1 and 2 are usual", laws=("stribeck",), default=None)  # fmt: skip
     side_force_coefficient: float = quantity(
-        "-", "growth of the friction limit with the side force Q on the rod: limit + coefficient |Q|", at_least=0.0,
+        "-", "increase of the friction limit with the side force Q on the rod: limit + coefficient |Q|", at_least=0.0,
         at_most=2.0, why="0.1 to 0.4 for a sliding bush and its lever; 0 for a damper between two joints", default=0.0,
     )  # fmt: skip
     presliding_stiffness: float | None = quantity("N/m", "K, stiffness of the stuck damper after a reversal",

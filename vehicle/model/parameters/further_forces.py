@@ -123,12 +123,12 @@ def further_force(name: str, value: Any, targets: ForceTargets) -> PlacedForce:
         _require_torque(path, law)
     axes = convert(str, table.get("axes", AXES_OF[0]), f"{path}.axes")
     if axes not in AXES_OF:
-        raise ConfigurationError(f"{path}.axes: found {axes!r}, must be one of {', '.join(AXES_OF)}")
+        raise ConfigurationError(f"{path}.axes: must be one of {', '.join(AXES_OF)}, not {axes!r}")
     on = named_part(path, table, "on", {*targets.parts})
     if axes == "part" and on in targets.spinning:
         raise ConfigurationError(
             f"{path}.axes: found 'part' on {on}, which turns with the wheel; instead set two forces along "
-            "axes of the vehicle, with harmonics over the angle of the wheel, like an imbalance"
+            "axes of the vehicle, with harmonics of the wheel angle, like an imbalance"
         )
     against = named_part(path, table, "against", {*targets.parts}) if "against" in table else ""
     if against == on:
@@ -164,7 +164,7 @@ def _require_torque(path: str, law: AppliedForce) -> None:
         key = "mean" if largest == abs(law.mean) else "harmonics"
         raise ConfigurationError(
             f"{path}.{key}: found {largest:g} N m, must be at most {LARGEST_TORQUE:g} N m (a block gets up to 1000 N m "
-            "from its pistons); set N m, not N mm"
+            "from its pistons); give N m, not N mm"
         )
 
 
@@ -195,7 +195,7 @@ def _direction(path: str, value: Any) -> Point:
     direction: Point = convert(Point, value, path)
     length = math.hypot(*direction) if len(direction) == 3 else math.nan
     if not (math.isfinite(length) and length > 0.0):
-        raise ConfigurationError(f"{path}: found {list(direction)}; must be three numbers, not all zero")
+        raise ConfigurationError(f"{path}: must be three numbers, not all zero; found {list(direction)}")
     x, y, z = (component / length for component in direction)
     return (x, y, z)
 

@@ -35,7 +35,7 @@ def cross(a: Point, b: Point) -> Point:
 
 
 def unit(vector: Point) -> Point:
-    """Return a vector of length one with this direction."""
+    """Return the unit vector of this direction."""
     length = math.hypot(*vector)
     return (vector[0] / length, vector[1] / length, vector[2] / length)
 
@@ -68,12 +68,12 @@ def require_point(path: str, point: Point, *, right: bool) -> None:
         ConfigurationError: not three finite numbers, in millimetres, or on the wrong side.
     """
     if len(point) != 3:
-        raise ConfigurationError(f"{path}: found {point!r}, must be a list of 3 numbers [m]")
+        raise ConfigurationError(f"{path}: must be a list of 3 numbers [m], not {point!r}")
     if not all(map(math.isfinite, point)):
-        raise ConfigurationError(f"{path}: found {list(point)} m, must be finite numbers")
+        raise ConfigurationError(f"{path}: must be finite numbers [m], not {list(point)}")
     if max(map(abs, point)) > LARGEST_M:
         raise ConfigurationError(
-            f"{path}: found {list(point)} m, must be within {LARGEST_M} m; probably mm: set metres"
+            f"{path}: found {list(point)} m, must be within {LARGEST_M} m; probably mm: give metres"
         )
     if right and point[1] <= 0.0:
         raise ConfigurationError(

@@ -223,7 +223,7 @@ class Instance:
                 )
             if path in asked:
                 raise ConfigurationError(
-                    f"{path}: found {value!r}, which refers back to this point; set the coordinates of one "
+                    f"{path}: found {value!r}, which refers back to this point; give the coordinates of one "
                     "of the points"
                 )
             other_side = (side or None) if self.others[other].template.mirrored else None

@@ -151,7 +151,7 @@ def assignments(overrides: Iterable[str] | Mapping[str, Any]) -> list[str]:
     """
     if isinstance(overrides, str | bytes):
         raise ConfigurationError(
-            f"overrides: found the text {overrides!r}, must be a list, [{str(overrides)!r}], or {{path: value}}"
+            f"overrides: must not be the text {overrides!r} but a list, [{str(overrides)!r}], or {{path: value}}"
         )
     if isinstance(overrides, Mapping):
         return [f"{path}={_toml(path, value)}" for path, value in overrides.items()]

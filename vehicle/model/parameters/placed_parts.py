@@ -81,7 +81,8 @@ def _remedy(i: Instance, name: str) -> str:
     if sided := next((ref for ref in itertools.chain.from_iterable(refs) if ":" in ref), ""):
         half = sided.partition(":")[0]
         return (
-            f"its joint names a side ({sided}), so it exists once. Leave the side out: a one-piece axle consists "
+            f"its joint names a side ({sided}), so the part exists only once. Leave the side out: a one-piece axle "
+            "consists "
             f'of two halves {half}, joined by {{ kind = "fixed", child = "{half}:right", parent = "{half}:left" }}'
         )
     return 'add a joint, or set kind = "free" and add connections'

@@ -57,12 +57,12 @@ def _trace(file: str, changed: int) -> CubicSpline:
     angle = np.degrees(_column(measurement, "angle", "crank angle [deg]"))
     pressure = _column(measurement, "pressure", "pressure [bar]")
     if angle.size != pressure.size:
-        raise DataError(f"{file}: found {angle.size} crank angles and {pressure.size} pressures, must be equally many")
+        raise DataError(f"{file}: has {angle.size} crank angles but {pressure.size} pressures")
     steps = np.diff(angle)
     if not (steps > 0.0).all():
         row = int(np.flatnonzero(steps <= 0.0)[0]) + 1
         raise DataError(
-            f"{file}: crank angle {angle[row]:g} deg follows {angle[row - 1]:g} deg, must increase through a "
+            f"{file}: crank angle {angle[row]:g} deg follows {angle[row - 1]:g} deg; the angle must increase through a "
             "single cycle; sort the rows, and average the cycles of a longer record"
         )
     # The first sample of the next cycle may be there or not.
@@ -87,13 +87,13 @@ def _column(measurement: Measurement, quantity: str, example: str) -> Vector:
     if len(channels) != 1:
         shown = ", ".join(f"{channel.name!r} [{channel.unit}]" for channel in measurement.channels[:12]) or "none"
         raise DataError(
-            f"{measurement.path}: {len(channels)} columns have a unit of {quantity} ({allowed_units(quantity)}), "
-            f"must be a single column, for example {example!r}; found {shown}"
+            f"{measurement.path}: {len(channels)} columns have a unit of {quantity} ({allowed_units(quantity)}), but "
+            f"only one column may have it, for example {example!r}; found {shown}"
         )
     values = np.asarray(channels[0].si_values, dtype=np.float64)
     if not np.isfinite(values).all():
         row = int(np.flatnonzero(~np.isfinite(values))[0]) + 1
-        raise DataError(f"{measurement.path}: {channels[0].name!r}: row {row} is not a number; repair the row")
+        raise DataError(f"{measurement.path}: {channels[0].name!r}: row {row} is not a number; correct the row")
     return values
 
 
@@ -105,17 +105,18 @@ def _plausible(file: str, angle: Vector, pressure: Vector) -> None:
     top, lowest = int(np.argmax(bar)), float(bar.min())
     if not LOWEST_PEAK <= bar[top] <= HIGHEST_PEAK:
         raise DataError(
-            f"{file}: the largest pressure is {bar[top]:.4g} bar, must be {LOWEST_PEAK:g} to {HIGHEST_PEAK:g} bar; "
+            f"{file}: the largest pressure is {bar[top]:.4g} bar but must be {LOWEST_PEAK:g} to {HIGHEST_PEAK:g} bar; "
             "correct the unit of the column"
         )
     if lowest <= 0.0:
         raise DataError(
-            f"{file}: the smallest pressure is {lowest:.4g} bar, must be above 0 bar, because pressures are "
+            f"{file}: the smallest pressure is {lowest:.4g} bar but must be above 0 bar, because pressures are "
             "absolute; add the ambient pressure, or the offset of the sensor"
         )
     behind = math.remainder(float(angle[top]), CYCLE)
     if abs(behind) > NEAR_TOP:
         raise DataError(
-            f"{file}: the largest pressure is at {angle[top]:g} deg, must be within {NEAR_TOP:g} deg of 0 or 720 deg, "
+            f"{file}: the largest pressure is at {angle[top]:g} deg but must be within {NEAR_TOP:g} deg of 0 or 720 "
+            "deg, "
             "the top dead centre of combustion; shift the angles"
         )

@@ -42,7 +42,7 @@ def require_type(file: PropertyFile, *allowed: str) -> None:
         actual = f"type {file.file_type!r}"
         if file.file_type in NAMES:
             actual = f"a {NAMES[file.file_type]} ({file.file_type!r})"
-        raise DataError(f"{file.path}: is a property file of {actual}, must be of {needed}; name another file")
+        raise DataError(f"{file.path}: is a property file for {actual}, not for {needed}; name another file")
 
 
 def damper_numbers(file: PropertyFile) -> dict[str, Any]:
@@ -175,7 +175,7 @@ def spring_of_points(points: Sequence[Point], table: str, where: str) -> dict[st
         DataError: the curve does not contain zero.
     """
     if not points[0][0] <= 0.0 <= points[-1][0]:
-        raise DataError(f"{where}: the curve extends from {points[0][0]:g} to {points[-1][0]:g} m, must contain 0")
+        raise DataError(f"{where}: the curve extends from {points[0][0]:g} to {points[-1][0]:g} m but must contain 0")
     # Without the round-off of the units.
     stiffness, scale = float(f"{_slope(points):.12g}"), max(abs(f) for _, f in points)
     if all(abs(f - stiffness * x) <= 1e-9 * scale for x, f in points):

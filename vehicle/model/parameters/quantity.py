@@ -106,7 +106,7 @@ def check(path: str, value: Any, metadata: Any) -> None:
     """
     if metadata["choices"] is not None:
         if value not in metadata["choices"]:
-            raise ConfigurationError(f"{path}: found {value!r}, must be one of {', '.join(metadata['choices'])}")
+            raise ConfigurationError(f"{path}: must be one of {', '.join(metadata['choices'])}, not {value!r}")
         return
     if type(value) is float and metadata["length"] is None:
         return _check_number(path, value, metadata)
@@ -117,13 +117,13 @@ def check(path: str, value: Any, metadata: Any) -> None:
             return
         for name in names:
             if not NAME_PATTERN.fullmatch(name):
-                raise ConfigurationError(f"{path}: found {name!r}, must be a name of letters, digits, '_', '.', '-'")
+                raise ConfigurationError(f"{path}: must be a name of letters, digits, '_', '.', '-', not {name!r}")
         return
     if value is None:
         return
     length = metadata["length"]
     if length is not None and (not isinstance(value, tuple) or len(value) != length):
-        raise ConfigurationError(f"{path}: found {value!r}, must be a list of {length} numbers [{metadata['unit']}]")
+        raise ConfigurationError(f"{path}: must be a list of {length} numbers [{metadata['unit']}], not {value!r}")
     # numpy is not imported here; only its arrays have `ravel`.
     numbers = value.ravel().tolist() if hasattr(value, "ravel") else value if isinstance(value, tuple) else (value,)
     for number in numbers:
@@ -134,7 +134,7 @@ def _check_number(path: str, number: Any, metadata: Any) -> None:
     """Check a number against the range of a field."""
     unit = metadata["unit"]
     if isinstance(number, bool) or not isinstance(number, int | float):
-        raise ConfigurationError(f"{path}: found {number!r}, must be a number [{unit}]")
+        raise ConfigurationError(f"{path}: must be a number [{unit}], not {number!r}")
     found = f"{path}: found {number!r} {unit}".removesuffix(" -")
     if not math.isfinite(number):
         raise ConfigurationError(f"{found}, must be a finite number ({metadata['meaning']})")

@@ -69,7 +69,7 @@ class Range:
             raise ConfigurationError(
                 f"parameter {self.path}: found bounds {self.low:g} and {self.high:g} and start {self.start:g}, "
                 "must be 0 < lower < start < upper (the fit uses a logarithmic scale); for a parameter that may "
-                "be zero set a small positive bound"
+                "be zero use a small positive bound"
             )
         if not -math.inf < self.low < self.high < math.inf:
             raise ConfigurationError(f"range of {self.path}: found {self.low!r} to {self.high!r}, must be ascending")
@@ -127,7 +127,8 @@ class Variation:
         """
         if self.bounds is not None:
             raise ConfigurationError(
-                f"{self.option}: contains bounds, must be values: PATH=A,B,C, or PATH=A:B:N for N equally spaced "
+                f"{self.option}: contains bounds instead of values; give PATH=A,B,C, or PATH=A:B:N for N equally "
+                "spaced "
                 f"values, for example {self.path}={self.bounds[0]:g}:{self.bounds[1]:g}:5"
             )
         return self.values
@@ -140,7 +141,8 @@ class Variation:
         """
         if self.bounds is None:
             raise ConfigurationError(
-                f"{self.option}: contains values, must be two bounds PATH=LOW:HIGH, for example damper.viscous=800:4000"
+                f"{self.option}: contains values instead of two bounds; give PATH=LOW:HIGH, for example "
+                "damper.viscous=800:4000"
             )
         return Range(path=self.path, low=self.bounds[0], high=self.bounds[1])
 

@@ -85,7 +85,7 @@ def require_sound(car: Composition) -> None:
             )
         if getattr(connection.law, "one_sided", False) and not connection.ground:
             raise ConfigurationError(
-                f"{connection.path}.one_sided: found true, must be false; only a contact with the ground lifts off"
+                f"{connection.path}.one_sided: must be false here; only a contact with the ground lifts off"
             )
     for spring in car.springs:
         require_apart(dict(zip((f"{spring.path}, lower end", "upper end"), spring.at, strict=True)))

@@ -77,7 +77,7 @@ class Part:
     def __post_init__(self) -> None:
         validate(self)
         if self.between is not None and not self.between:
-            raise ConfigurationError("Part.between: found no hardpoint; set one or more, or remove the key")
+            raise ConfigurationError("Part.between: found no hardpoint; give one or more, or remove the key")
         if self.inertia is None:
             return
         a, b, c = sorted(self.inertia)

@@ -30,7 +30,8 @@ def vehicle_file(path: Path | str) -> Path:
     if path.suffix == ".json":
         raise ConfigurationError(
             f"{path}: is not a vehicle file; give a TOML file of a car, its folder, or a shipped car "
-            f"({', '.join(CARS)}). A property file of Adams Car belongs in a vehicle file, for example curve = FILE.dpr"
+            f"({', '.join(CARS)}). A property file from Adams Car belongs in a vehicle file, for example curve = "
+            "FILE.dpr"
         )
     if path.is_dir() and (path / "vehicle.toml").is_file():
         return path / "vehicle.toml"

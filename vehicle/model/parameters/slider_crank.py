@@ -122,8 +122,8 @@ def gas_torque(engine: EngineOrders) -> Vector:
     if inlet > LARGEST_INLET * AMBIENT:
         most = engine.cylinders * (mean + (doubled - mean) * (LARGEST_INLET * AMBIENT / 1.0e5 - 1.0))
         raise ConfigurationError(
-            f"EngineOrders.torque: found {engine.torque:g} N m, must be at most {most:.0f} N m, which this "
-            f"engine gives with {LARGEST_INLET:g} times the ambient pressure at its inlet"
+            f"EngineOrders.torque: found {engine.torque:g} N m, must be at most {most:.0f} N m, the torque of this "
+            f"engine with {LARGEST_INLET:g} times the ambient pressure at its inlet"
         )
     return np.asarray((gas_pressure(engine, inlet) - AMBIENT) * lever)
 

@@ -99,7 +99,7 @@ def _merged(name: str, options: frozenset[str], searched: tuple[Path, ...], abov
         reason = (
             "uses itself"
             if name in above
-            else "the file is neither in the folder of the vehicle file nor in the package"
+            else "the file is neither in the same folder as the vehicle file nor in the package"
         )
         raise ConfigurationError(
             f"template {name!r}: {reason}{did_you_mean(name, set(names) - {name})} Templates are {', '.join(names)}"
@@ -181,7 +181,7 @@ def _check(template: Template, raw: Mapping[str, Any]) -> None:
         for element in getattr(template, key):
             if joints.get(element.joint, kinds[0]) not in kinds:
                 raise ConfigurationError(
-                    f"{key}.{element.name}.joint: {element.joint!r} is a {joints[element.joint]}, must be a "
+                    f"{key}.{element.name}.joint: {element.joint!r} is a {joints[element.joint]} but must be a "
                     f"{' or a '.join(kinds)}"
                 )
 
@@ -210,7 +210,7 @@ def _check(template: Template, raw: Mapping[str, Any]) -> None:
                     near = did_you_mean(head, allowed)
                     raise ConfigurationError(f"{where}.{key}: unknown name {word!r}{near}{besides}")
                 if allowed is not None and side not in ("", "left", "right", "middle"):
-                    raise ConfigurationError(f"{where}.{key}: found side {side!r}, must be left, right or middle")
+                    raise ConfigurationError(f"{where}.{key}: the side must be left, right or middle, not {side!r}")
                 if allowed is template.hardpoints:
                     used.add(head)
 

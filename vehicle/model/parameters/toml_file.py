@@ -181,32 +181,32 @@ def convert(hint: Any, value: Any, path: str) -> Any:
         table = isinstance(value, Mapping) and any(typing.get_origin(option) is Mapping for option in others)
         return convert(others[-1] if table else first, value, path)
     if hint is dict and not isinstance(value, Mapping):
-        raise ConfigurationError(f"{path}: found {value!r}, must be a section")
+        raise ConfigurationError(f"{path}: must be a section, not {value!r}")
     if dataclasses.is_dataclass(hint):
         if not isinstance(value, Mapping):
-            raise ConfigurationError(f"{path}: found {value!r}, must be a section [{path}] with lines name = value")
+            raise ConfigurationError(f"{path}: must be a section [{path}] with lines name = value, not {value!r}")
         return build(typing.cast(type[Any], hint), value, path)
     if origin is not None and isinstance(origin, type) and issubclass(origin, Mapping):
         if not isinstance(value, Mapping):
-            raise ConfigurationError(f"{path}: found {value!r}, must be a section")
+            raise ConfigurationError(f"{path}: must be a section, not {value!r}")
         inner_hint = arguments[1]
         return types.MappingProxyType(
             {key: convert(inner_hint, member, _join(path, key)) for key, member in value.items()}
         )
     if origin is tuple:
         if not isinstance(value, list | tuple):
-            raise ConfigurationError(f"{path}: found {value!r}, must be a list")
+            raise ConfigurationError(f"{path}: must be a list, not {value!r}")
         return tuple(convert(arguments[0], item, path) for item in value)
     if hint is str and not isinstance(value, str):
-        raise ConfigurationError(f"{path}: found {value!r}, must be a text in quotes")
+        raise ConfigurationError(f"{path}: must be a text in quotes, not {value!r}")
     if hint is bool and not isinstance(value, bool):
-        raise ConfigurationError(f"{path}: found {value!r}, must be true or false")
+        raise ConfigurationError(f"{path}: must be true or false, not {value!r}")
     return value
 
 
 def _number(value: Any, path: str) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ConfigurationError(f"{path}: found {value!r}, must be a number")
+        raise ConfigurationError(f"{path}: must be a number, not {value!r}")
     try:
         return float(value)
     except OverflowError:

@@ -12,7 +12,7 @@ from vehicle.model.parameters.quantity import quantity, validate
 class RolePart:
     """Part of a template: role of its visible shape, and its points, whose mean is the centre of gravity."""
 
-    shape: str = quantity("-", "role of the part in drawings; none: not drawn", default="rod")
+    shape: str = quantity("-", "role of the part in drawings, or 'none' to leave it out", default="rod")
     points: tuple[str, ...] = quantity("-", "points of the part")
 
     def __post_init__(self) -> None:
@@ -47,9 +47,9 @@ class Joint:
                 f"Joint.along: a joint of kind {self.kind} needs either two points in along, or axis"
             )
         if self.along is not None and (len(self.along) != 2 or self.along[0] == self.along[1]):
-            raise ConfigurationError(f"Joint.along: found {list(self.along)}, must be two different points")
+            raise ConfigurationError(f"Joint.along: must be two different points, not {list(self.along)}")
         if self.axis is not None and not any(self.axis):
-            raise ConfigurationError(f"Joint.axis: found {list(self.axis)}, must not be zero")
+            raise ConfigurationError("Joint.axis: must not be a zero vector")
         if self.kind == "free" and self.parent != "world":
             raise ConfigurationError(f"Joint.parent: found {self.parent!r}, but a free part has no parent; remove it")
         if not self.child:
@@ -76,7 +76,7 @@ class Connection:
 
     def __post_init__(self) -> None:
         if self.axes is not None and (len(self.axes) != 2 or self.axes[0] == self.axes[1]):
-            raise ConfigurationError(f"Connection.axes: found {list(self.axes)}, must be two different points")
+            raise ConfigurationError(f"Connection.axes: must be two different points, not {list(self.axes)}")
         if self.axes is not None and (self.ground or self.carrier == "plate"):
             raise ConfigurationError(
                 "Connection.axes: given for a contact with the ground, which uses the axes of the car; remove them"

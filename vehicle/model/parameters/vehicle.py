@@ -317,8 +317,8 @@ def varied_file(table: Mapping[str, Any], overrides: Iterable[str], folder: Path
         model_file = Path(name).expanduser()
         if not model_file.is_absolute():  # workers of a sweep may run elsewhere
             raise ConfigurationError(
-                f"--set body.superelement={name}: must be a name of letters, digits, '_', '.', '-', of a "
-                f"file in the folder of the vehicle file or of the package, or an absolute path: {model_file.resolve()}"
+                f"--set body.superelement={name}: must be a name of letters, digits, '_', '.', '-', for a file in the "
+                f"same folder as the vehicle file or in the package, or an absolute path: {model_file.resolve()}"
             )
         if not model_file.is_file():
             raise ConfigurationError(f"--set body.superelement={name}: the file does not exist, or is a folder")

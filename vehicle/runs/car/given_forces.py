@@ -62,7 +62,7 @@ def _recorded(path: str, unit: str, history: GivenForce, time: Vector, record_ra
     values = np.asarray(history, dtype=float)
     if values.shape != time.shape:
         raise DataError(
-            f"forces: {path} has values of the shape {values.shape}, must be a value for each of the {time.size} "
+            f"forces: {path} has values of the shape {values.shape}; give a value for each of the {time.size} "
             "times of the signal, or a function of time"
         )
     if not np.isfinite(values).all():

@@ -17,7 +17,7 @@ from vehicle.model.parameters.placed_force import force_named
 def is_stuck(damper: str) -> bool:
     """Return True for "stuck", False for "sliding" dampers."""
     if damper not in ("stuck", "sliding"):
-        raise ConfigurationError(f"damper: found {damper!r}, must be stuck or sliding")
+        raise ConfigurationError(f"damper: must be stuck or sliding, not {damper!r}")
     return damper == "stuck"
 
 

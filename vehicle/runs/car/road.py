@@ -132,7 +132,7 @@ class Road(RoadSettings):
                 )
             return None
         if self.tyre not in (None, "rolling", "standing"):
-            raise ConfigurationError(f"tyre: found {self.tyre!r}, must be rolling or standing")
+            raise ConfigurationError(f"tyre: must be rolling or standing, not {self.tyre!r}")
         on_blocks = any(
             connection.ground for connection in vehicle.composition.connections if not isinstance(connection.law, Tyre)
         )

@@ -38,11 +38,11 @@ def simulated_run(
         VehicleError: see `Car.run`.
     """
     if engine not in ENGINES:
-        raise ConfigurationError(f"engine: found {engine!r}, must be one of {', '.join(ENGINES)}")
+        raise ConfigurationError(f"engine: must be one of {', '.join(ENGINES)}, not {engine!r}")
     defaults = car.vehicle.channels
     if isinstance(channels, str):
         raise ConfigurationError(
-            f"channels: found the text {channels!r}, must be a list of names; for loads use "
+            f"channels: must be a list of names, not the text {channels!r}; for loads use "
             "[*car.vehicle.channels, *car.vehicle.load_channels]"
         )
     car.vehicle.require_channels(channels or (), (*defaults, *car.vehicle.requested_channels))

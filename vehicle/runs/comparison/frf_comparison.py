@@ -90,12 +90,12 @@ def other_plates(measured: FrfData, simulated: FrfData) -> list[str]:
     notices = []
     if left_out := list(dict.fromkeys(unpaired)):
         notices.append(
-            f"measured FRFs to {', '.join(left_out)} are left out: the run moves "
+            f"measured FRFs from {', '.join(left_out)} are left out: the run moves "
             f"{', '.join(simulated.inputs) or 'no plate'}; drive the same plates"
         )
     if driven := [plate for plate in dict.fromkeys(driven) if plate not in measured.inputs]:
         notices.append(
-            f"the run also drives {', '.join(driven)}, to which there is no measured FRF; if it moved in the "
+            f"the run also drives {', '.join(driven)}, from which there is no measured FRF; if it moved in the "
             "measurement, map its displacement too: otherwise it counts as noise"
         )
     return notices

@@ -176,7 +176,8 @@ def compare_modes(
         )
     if len(nodes) < 3:
         raise DataError(
-            f"{measurement.path}: {len(nodes)} nodes lie at output points of the car, must be at least three; set "
+            f"{measurement.path}: {len(nodes)} nodes lie at output points of the car, but at least three are needed; "
+            "set "
             f"--map POINT=NODE for the others (points: {', '.join(geometry.points)})"
         )
     measured = [shape for shape in measurement.shapes if set(nodes.values()) <= set(shape.points)]

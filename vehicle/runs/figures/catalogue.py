@@ -51,7 +51,7 @@ FIGURES: dict[str, Figure] = COMFORT_FIGURES | {
         reads=CHANNELS, reduces=MTVV, needs=("channels",), takes=("weighting",),
     ),
     "crest_factor": Figure(
-        words="crest factor", meaning="maximum of |channel| over its RMS, largest of all channels [-]",
+        words="crest factor", meaning="maximum of |channel| divided by its RMS, largest of all channels [-]",
         unit="-", reads=CHANNELS, reduces=LARGEST_CREST, needs=("channels",), takes=("weighting",),
     ),
     "settling": Figure(
@@ -60,7 +60,7 @@ FIGURES: dict[str, Figure] = COMFORT_FIGURES | {
         unit="s", reads=CHANNELS, reduces=SETTLING, needs=("channels",), on_input=require_obstacle,
     ),
     "ratio": Figure(
-        words="RMS ratio", meaning="RMS of the channels over the RMS of the channels in `over` [-]",
+        words="RMS ratio", meaning="RMS of the channels divided by the RMS of the channels in `over` [-]",
         unit="-", reads=CHANNELS, reduces=RATIO, better="", needs=("channels", "over"), takes=("band", "weighting"),
     ),
     "tyre_load": Figure(
@@ -75,11 +75,11 @@ FIGURES: dict[str, Figure] = COMFORT_FIGURES | {
     ),
     "tyre_load_crest": Figure(
         words="tyre load crest factor",
-        meaning="maximum of the dynamic tyre load over its RMS, largest of all wheels [-]",
+        meaning="maximum of the dynamic tyre load divided by its RMS, largest of all wheels [-]",
         unit="-", reads=LOAD_VARIATIONS, reduces=LARGEST_CREST, takes=("wheels",),
     ),
     "lowest_load": Figure(
-        words="lowest tyre load", meaning="minimum tyre load over the static load, of all wheels [-]",
+        words="lowest tyre load", meaning="minimum tyre load divided by the static load, of all wheels [-]",
         unit="-", reads=LOADS, reduces=LOWEST, better="more", takes=("wheels",),
     ),
     "travel": Figure(

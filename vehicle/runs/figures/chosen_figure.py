@@ -55,7 +55,7 @@ class ChosenFigure(Details):
     def __post_init__(self) -> None:
         name = type(self).__name__
         if self.quantity not in FIGURES:
-            raise ConfigurationError(f"{name}.quantity: found {self.quantity!r}, must be one of {', '.join(FIGURES)}")
+            raise ConfigurationError(f"{name}.quantity: must be one of {', '.join(FIGURES)}, not {self.quantity!r}")
         for key in KEYS:
             is_set = getattr(self, key) not in ((), "", None)
             if key in self.figure.needs and not is_set:
@@ -66,10 +66,10 @@ class ChosenFigure(Details):
             raise ConfigurationError(f"{name}.band: found {list(self.band)}, must be [LOWEST, HIGHEST] in Hz, above 0")
         if self.weighting and self.weighting not in (SEAT, *WEIGHTINGS):
             raise ConfigurationError(
-                f"{name}.weighting: found {self.weighting!r}, must be one of {', '.join((SEAT, *WEIGHTINGS))}"
+                f"{name}.weighting: must be one of {', '.join((SEAT, *WEIGHTINGS))}, not {self.weighting!r}"
             )
         if self.axis and self.axis not in AXES:
-            raise ConfigurationError(f"{name}.axis: found {self.axis!r}, must be x, y or z")
+            raise ConfigurationError(f"{name}.axis: must be x, y or z, not {self.axis!r}")
         if self.order is not None and not 0.0 < self.order <= HIGHEST_ORDER:
             raise ConfigurationError(f"{name}.order: found {self.order:g}, must be above 0 to {HIGHEST_ORDER:g}")
 

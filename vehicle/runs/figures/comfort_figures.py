@@ -83,7 +83,7 @@ COMFORT_FIGURES = {
     ),
     SEAT_VALUE: Figure(
         words="SEAT value",
-        meaning="weighted RMS of the cushion over that of the seat rail, vertical (ISO 10326-1) [-]",
+        meaning="weighted RMS of the cushion divided by that of the seat rail, vertical (ISO 10326-1) [-]",
         unit=comfort_units(seated=True)[SEAT_VALUE],
         reads=unread(lambda *_: _channels("seat_rail", "seat")),
         reduces=Reduction(of=_seat_value),

@@ -82,7 +82,7 @@ def folder_lock(folder: Path) -> Iterator[None]:
                 path.unlink(missing_ok=True)
             except OSError as error:
                 if os.name != "nt":  # there, the process that has opened it meanwhile removes it
-                    say(f"{path}: the lock is left ({error.strerror}); the next command there removes it")
+                    say(f"{path}: the lock file remains ({error.strerror}); the next command there removes it")
     finally:
         if descriptor >= 0:
             with suppress(OSError):

@@ -70,7 +70,7 @@ def run_size(
         f"{channels} channels of {duration:g} s",
         samples * max(8.0 * channels + OF_SAMPLE, 0.0 if reduced else OF_SAMPLE_IN_MUJOCO) + BESIDE,
         samples * channels * sum(BYTES[form] for form in formats),
-        "for less, name the channels (--channels), or set a lower solver.record_rate",
+        "for less, name the channels (--channels), or choose a lower solver.record_rate",
     )
 
 
@@ -96,7 +96,8 @@ def stated_size(folder: Path, subject: str, memory: float, disk: float, remedy: 
     ):
         if needed > limit:
             raise ConfigurationError(
-                f"{name}{subject} need {needed / 1e9:.3g} GB {where}, must be at most {bound} {limit / 1e9:.3g} GB; "
+                f"{name}{subject} need {needed / 1e9:.3g} GB {where} but may need at most {bound} {limit / 1e9:.3g} "
+                "GB; "
                 f"{remedy}"
             )
     free = free_memory()

@@ -262,7 +262,7 @@ def _cleared(hidden: Path, goal: Path, *, keep: bool = False) -> str:
 def _set_aside(hidden: Path, goal: Path) -> str:
     """Give what is left of a hidden folder, or a link of its name, a visible name; return a sentence."""
     hidden.rename(visible := _visible(goal))
-    return f"{hidden.name} is not, or not only, of unchanged files of the program; what is left is now {visible.name}"
+    return f"{hidden.name} does not consist only of unchanged files of the program; what is left is now {visible.name}"
 
 
 def _visible(goal: Path) -> Path:

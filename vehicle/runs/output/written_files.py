@@ -67,7 +67,7 @@ def note(path: Path, digest: str = "", *, with_folder: Path | None = None) -> No
 def _append(marker: Path, text: str) -> None:
     """Append lines to a list in one call; a failed call appends nothing, and half a line of a killed one ends."""
     if (os.path.lexists(marker) and not marker.is_file()) or marker.is_symlink():
-        raise OutputError(f"{marker}: must be a file, not a link, as the list of files in this folder; remove it")
+        raise OutputError(f"{marker}: must be a file, not a link, because it lists the files in this folder; remove it")
     with marker.open("ab", buffering=0) as file:
         size = file.seek(0, os.SEEK_END)
         if size:

@@ -101,7 +101,7 @@ def _of_one(run: FinishedRun, modes: Modes) -> Markup:
     band = main_band(spectra)
     if band is not None:
         mode = strongest(run, band, modes.get(damper_state(run), ()))
-        parts = [f"{100.0 * band.share:.0f} % of it (mean square) {_is_within(band)}"]
+        parts = [f"{100.0 * band.share:.0f} % of its mean square {_is_within(band)}"]
         if mode is not None:
             # The linear model has the smallest slope of sliding dampers, and no friction.
             named = mode_words(mode, "at least " if damper_state(run) == "sliding" else "")
@@ -265,7 +265,7 @@ def _reason(first: FinishedRun, run: FinishedRun, modes: Modes, run_modes: Modes
     if band is None:
         return ""
     share = f"{100.0 * band.share:.0f} %" if band.share <= 1.0 else "More than all"
-    parts = [f"{share} of the change (mean square) {_is_within(band)}"]
+    parts = [f"{share} of the change of the mean square {_is_within(band)}"]
     mode = strongest(first, band, modes.get(damper_state(first), ()))
     if mode is not None:
         states = [damper_state(each) for each in (first, run)]

@@ -158,7 +158,7 @@ def curves_over_each_other(runs: Sequence[FinishedRun]) -> Markup:
         channels = shared_channels([run for run, _ in with_response.values()], wanted)
         several = any(len(run.responses) > 1 for run, _ in with_response.values())
         plates = " and ".join(side_of(each, wheels) for each in motion.motion)
-        title = "Vertical frequency responses of all runs" + (f" to the plate {plates}" if several else "")
+        title = "Vertical frequency responses of all runs" + (f" from the plate {plates}" if several else "")
         parts.append(
             drawing(partial(plot_responses, runs=with_response, channels=channels, title=title, size=SIZE), title)
         )

@@ -30,7 +30,7 @@ class MainBand:
     parts: Vector  # their mean square, or its change; positive in the direction of the whole [(m/s2)^2], (n,)
 
     def explained_by(self, frequency: float) -> bool:
-        """Return True if a mode can cause the band: it lies inside, and its third octave is not below the mean.
+        """Return True if a mode can cause the band: it is inside, and its third octave is not below the mean.
 
         In a third octave below the mean of the band the vibration has a hole, not a resonance; on a road the wheelbase
         makes such holes at the frequencies where front and rear wheels move against each other.

@@ -64,7 +64,11 @@ def order_points_sentences(orders: OrderPoints) -> list[str]:
         single = len(orders.points) == 1
         edge = top in (0, len(orders.points) - 1)
         mode = _part_words(orders.parts[row])
-        slip = f"a damper slips {100.0 * orders.slip[top]:.0f} % of the time" if orders.slip[top] else "no damper slips"
+        slip = (
+            f"a damper slips for {100.0 * orders.slip[top]:.0f} % of the time"
+            if orders.slip[top]
+            else "no damper slips"
+        )
         error = float(orders.error[row, top])
         size = number(float(peaks[row])) + (f" ± {number(error, 2)}" if error > 0.01 * peaks[row] else "")
         sentences.append(
@@ -83,7 +87,7 @@ def _part_words(parts: Sequence[NamedMode]) -> str:
         return ""
     part = parts[0]
     if part.share > LARGEST_SHARE:
-        return "; no mode decides, large parts cancel"
+        return "; no mode dominates; large parts cancel"
     # A share above the whole, which others reduce, would only puzzle.
     share = f", {100.0 * part.share:.0f} %" if part.share <= 1.0 else ""
     role = f"in resonance{share}" if part.resonant else f"no mode is in resonance, largest part{share}"

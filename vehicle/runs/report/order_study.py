@@ -127,7 +127,7 @@ def order_study(settings: OrderSettings) -> OrderStudy:
         len(asked_channels) + len(car.vehicle.damped_wheels),
         reduced=settings.engine == "reduced",
     )
-    say_size(folder or Path(), f"runs of {settings.duration:g} s", memory, 0.0, "for less, set a shorter --duration")
+    say_size(folder or Path(), f"runs of {settings.duration:g} s", memory, 0.0, "for less, choose a shorter --duration")
     channels = order_points_at(
         car,
         asked_channels,
@@ -190,7 +190,9 @@ def points_of(option: str, text: str | None) -> list[float]:
     first, last, step = values
     count = math.floor((last - first) / step + 1e-9) + 1
     if count > MOST:
-        raise ConfigurationError(f"{option} {text}: gives {count} points, must be at most {MOST}; use a larger step")
+        raise ConfigurationError(
+            f"{option} {text}: gives {count} points, but at most {MOST} are allowed; use a larger step"
+        )
     return [round(first + index * step, 9) for index in range(count)]
 
 

@@ -142,7 +142,7 @@ def _of_one(run: FinishedRun, modes: Modes, trial_part: Markup) -> list[Part]:
         ("Result", "result", explained(single if changed is None else changed)),
         ("This run", "alone", None if changed is None else single),
         ("Frequency responses", "responses", sections.responses(run, modes) if run.responses else None),
-        ("Film", "film", film(run)),
+        ("Video", "film", film(run)),
         ("Car, signal, engine", "run", sections.what_was_run(run)),
         ("Try it", "trial", trial_part),
         ("Findings", "findings", sections.what_was_found(run, modes)),
@@ -192,7 +192,7 @@ def _of_several(
     verdict = answer([runs[k] for k in compared], [modes[k] for k in compared]) + warned(runs)
     parts = [
         ("Result", "result", few + explained(verdict)),
-        *([("Film", "film", film_part(pair))] if pair is not None else []),
+        *([("Video", "film", film_part(pair))] if pair is not None else []),
         ("Comparison of the runs", "comparison", numbers_beside(runs)),
         ("Frequency responses and spectra", "responses", curves_over_each_other(of_shown)),
         ("Time histories", "time", Markup().join(sections.time_figure(run, runs) for run in of_shown)),
@@ -206,7 +206,7 @@ def _of_several(
         new = drawn and all(run.car.vehicle != runs[k].car.vehicle for k in shown if k < index)
         of_run = (
             ("Pictures", None if drawn else fill("own_report", run=run.place)),
-            ("Film", film(run, 1.0 / len(runs)) if drawn else None),
+            ("Video", film(run, 1.0 / len(runs)) if drawn else None),
             ("Findings", sections.tiles(run) + sections.what_was_found(run, car_modes)),
             ("Notices", sections.notices(run)),
             ("Car, signal, engine", sections.what_was_run(run)),

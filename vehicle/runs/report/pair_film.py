@@ -84,7 +84,7 @@ def _simulated(run: FinishedRun) -> Run:
         signal = recorded_signal(run.summary, run.recording)
     except ConfigurationError as error:
         raise DataError(
-            f"{run.place}: cannot be simulated again for a film ({error}); run it with all default channels"
+            f"{run.place}: cannot be simulated again for a video ({error}); run it with all default channels"
         ) from None
     return replace(run.car.run(signal, engine="mujoco"), road=run.summary.input.road)
 

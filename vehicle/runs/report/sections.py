@@ -71,7 +71,7 @@ def tiles(run: FinishedRun) -> Markup:
     for wheel, plate, resonances in run.peaks[:1]:
         if peaks := resonances.get(f"knuckle_{wheel}_acc_z"):
             top = max(peaks, key=lambda peak: peak.magnitude)
-            to_plate = f", FRF to the {plate}" if plate else ""
+            to_plate = f", FRF from the {plate}" if plate else ""
             label = f"highest resonance of the vertical motion of the knuckle{to_plate}"
             values.append((f"{top.frequency_hz:.1f} Hz", label))
     if summary.input.rms_m:
@@ -197,7 +197,7 @@ def _resonances(
     """Return captions and rows of the highest resonances of the main output points with the nearest modes."""
     tables = []
     main = [
-        (f" to motion of the {plate}" if plate else "", point, resonances.get(channel, ()))
+        (f" from motion of the {plate}" if plate else "", point, resonances.get(channel, ()))
         for wheel, plate, resonances in run.peaks
         for channel, point in main_points(run, wheel).items()
     ]

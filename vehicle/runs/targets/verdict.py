@@ -128,7 +128,7 @@ def read_targets(file: Path | str) -> dict[str, Target]:
     figures = {}
     for name, table in tables.items():
         if not isinstance(table, Mapping):
-            raise ConfigurationError(f"{path}: {name}: found {table!r}, must be a section [{name}]")
+            raise ConfigurationError(f"{path}: {name}: must be a section [{name}], not {table!r}")
         try:
             figures[name] = build(Target, table, name)
         except ConfigurationError as error:

@@ -85,7 +85,7 @@ class CumulativeSpectrum:
         edges = 10.0 ** (np.append(numbers, numbers[-1] + 1) / 10.0) / HALF_BAND
         if edges[-1] > self._edges[-1]:
             raise DataError(
-                f"the highest third octave ends at {edges[-1]:.4g} Hz, must be at most {self._edges[-1]:.4g} Hz for "
+                f"the highest third octave ends at {edges[-1]:.4g} Hz but must be at most {self._edges[-1]:.4g} Hz for "
                 "this sampling rate; choose a lower range, or sample faster"
             )
         width = np.diff(edges)

@@ -160,17 +160,17 @@ def what_moves(motions: Sequence[Mapping[str, float]], chosen: int | None = None
         subject += " independently of each other" if len(motions) == len(wheels) else ""
         shared = [f"; {', '.join(motion)} move {motion_words(motion)}" for motion in motions if len(motion) > 1]
         each = ", ".join(next(iter(motion)) for motion in motions)
-        return f"{subject}{''.join(shared)}: an FRF to each of {each}, one coherence with {every} plates together"
+        return f"{subject}{''.join(shared)}: an FRF from each of {each}, one coherence with {every} plates together"
     motion = motions[chosen or 0]
     first = f"plate_{next(iter(motion))}_displacement"
     if len(motion) == 1:
-        return f"{subject}: the FRFs are to {first} alone, the coherence is with {every} plates together"
+        return f"{subject}: the FRFs are from {first} alone, the coherence is with {every} plates together"
     if len(motions) > 1:
         plates = ", ".join(f"plate_{wheel}_displacement" for wheel in motion)
         subject, every = f"{subject}, of them {plates}", "these"
     manner = motion_words(motion)
     motion_of_frfs = "their common motion" if manner == "alike" else f"{first} while {every} do"
-    return f"{subject} {manner}: the FRFs are to {motion_of_frfs}"
+    return f"{subject} {manner}: the FRFs are from {motion_of_frfs}"
 
 
 def _refusal(first: str, second: str, relation: Copy) -> DependentInputsError:

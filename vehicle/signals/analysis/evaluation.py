@@ -92,7 +92,7 @@ APPLICATIONS: MappingProxyType[str, Application] = MappingProxyType(
 def application(name: str) -> Application:
     """Return the weightings and factors of a point of contact; raise `ConfigurationError` for an unknown name."""
     if name not in APPLICATIONS:
-        raise ConfigurationError(f"point of contact: found {name!r}, must be one of {', '.join(APPLICATIONS)}")
+        raise ConfigurationError(f"point of contact: must be one of {', '.join(APPLICATIONS)}, not {name!r}")
     return APPLICATIONS[name]
 
 
@@ -126,7 +126,7 @@ def _axis(
     weighted, settled = span.whole(response), span.settled(response, name)
     if not settled.size:
         raise DataError(
-            f"acceleration: the record has {response.size * step:.4g} s, must be longer than the "
+            f"acceleration: the record lasts {response.size * step:.4g} s but must be longer than the "
             f"{weighting(name).settling_s:g} s in which {name} settles; use a longer record, or set --offset keep if "
             "it starts at rest"
         )

@@ -55,7 +55,7 @@ def mtvv(
         decay = float(np.exp(-step / integration_s))
         running = scipy.signal.lfilter([1.0 - decay], [1.0, -decay], square).max()
     else:
-        raise ConfigurationError(f"running average: found {average!r}, must be 'linear' or 'exponential'")
+        raise ConfigurationError(f"running average: must be 'linear' or 'exponential', not {average!r}")
     return float(np.sqrt(max(float(running), 0.0)))
 
 

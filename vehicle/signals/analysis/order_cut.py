@@ -55,7 +55,7 @@ def order_cut(
     highest, rate = max(orders) * float(np.max(speed)) / (2.0 * np.pi), 1.0 / float(time[1] - time[0])
     if highest >= 0.5 * rate:
         raise DataError(
-            f"orders: order {max(orders):g} reaches {highest:.4g} Hz, must be below half the sampling rate of "
+            f"orders: order {max(orders):g} reaches {highest:.4g} Hz but must be below half the sampling rate of "
             f"{rate:g} Hz"
         )
     middles = np.arange(first + 0.5 * TURNS, turned[-1] - 0.5 * TURNS + 1e-9, 0.5 * TURNS)

@@ -62,7 +62,7 @@ def order_lines(
     highest = max(orders) * turns
     if highest >= 0.5 / interval:
         raise DataError(
-            f"orders: order {max(orders):g} is {highest:.4g} Hz, must be below half the sampling rate of "
+            f"orders: order {max(orders):g} is {highest:.4g} Hz but must be below half the sampling rate of "
             f"{1.0 / interval:g} Hz"
         )
     # Whole segments to the end of the record, which is farthest from the start.

@@ -211,8 +211,8 @@ def _periodic_response(
         if not changes[-1] <= SETTLED * size and len(noisy) < NOISE_PERIODS:
             return count * period, (
                 f"the input repeats every {period * step:.4g} s, but {name} changes by "
-                f"{number(100.0 * changes[-1] / size if size else math.inf, 2)} % between the last two periods, must "
-                f"be at most {100.0 * SETTLED:g} %: evaluated as random; record more periods"
+                f"{number(100.0 * changes[-1] / size if size else math.inf, 2)} % between the last two periods but "
+                f"must change by at most {100.0 * SETTLED:g} %: evaluated as random; record more periods"
             )
         variance = np.sum(np.abs(noisy - noisy.mean(axis=0)) ** 2, axis=0) / (len(noisy) - 1)
         # Two periods do not distinguish noise from the end of a transient, which has decayed more in the last one.
@@ -225,7 +225,7 @@ def _periodic_response(
         if not distortion <= DISTORTED**2:
             return period, (
                 f"the input repeats every {period * step:.4g} s, but the FRF of {name} scatters by "
-                f"{number(100.0 * math.sqrt(distortion), 2)} % from line to line, must be at most "
+                f"{number(100.0 * math.sqrt(distortion), 2)} % from line to line but must scatter by at most "
                 f"{100.0 * DISTORTED:g} % (a nonlinear car, or lines too far apart): the last period is evaluated as "
                 "random"
             )

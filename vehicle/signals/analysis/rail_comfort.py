@@ -60,8 +60,8 @@ def rail_comfort(time_step: float, xyz: Vector, *, skip: float = 0.0, from_rest:
     in_zone = round(ZONE / INTERVAL)
     if count < in_zone:
         raise DataError(
-            f"EN 12299: only {(rows[0].size - first) * step:.4g} s are left after the first {begin:g} s, must be "
-            f"at least {ZONE:g} s for the mean comfort; use a longer record"
+            f"EN 12299: only {(rows[0].size - first) * step:.4g} s are left after the first {begin:g} s, but the mean "
+            f"comfort needs at least {ZONE:g} s; use a longer record"
         )
     kept = slice(first, first + count * interval)
     squares = [weighted_record(step, row, name)[kept] ** 2 for row, name in zip(rows, WEIGHTINGS, strict=True)]

@@ -67,7 +67,7 @@ def road_level(time_step: float, height: ArrayLike, speed: float, *, window_s: f
     """
     record = np.asarray(height, dtype=np.float64)
     if not speed > 0.0:
-        raise DataError(f"speed: found {speed:g} m/s, must be above 0 for a road spectrum over the wavenumber")
+        raise DataError(f"speed: found {speed:g} m/s, must be above 0 for a road spectrum against wavenumber")
     spectrum = power_spectral_density(time_step, record, window_s=min(window_s, record.size * time_step / 2.0))
     nyquist = 0.4 / time_step
     bands = CumulativeSpectrum(time_step, record).third_octaves(

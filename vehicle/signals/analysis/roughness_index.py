@@ -88,11 +88,11 @@ def roughness_index(step: float, height: ArrayLike, *, segment: float = 100.0) -
     length = (profile.size - 1) * step
     if step > COARSEST:
         raise DataError(
-            f"IRI: the heights are {step:g} m apart, must be at most {COARSEST:g} m, or waves to which the "
+            f"IRI: the heights are {step:g} m apart but must be at most {COARSEST:g} m, or waves to which the "
             "standard quarter car responds are lost"
         )
     if length < STARTED:
-        raise DataError(f"IRI: the road is {length:.4g} m long, must be at least {STARTED:g} m")
+        raise DataError(f"IRI: the road is {length:.4g} m long but must be at least {STARTED:g} m")
     averaged = max(1, round(AVERAGED / step))
     # The mean slope over a length is the difference of its ends.
     slope = (profile[averaged:] - profile[:-averaged]) / (averaged * step)

@@ -41,7 +41,7 @@ def checked_signals(label: str, signals: ArrayLike) -> Vector:
         row, column = (int(i) for i in np.argwhere(bad)[0])
         raise DataError(
             f"{label}: found {array[row, column]} at sample {column} of signal {row} "
-            f"({int(bad.sum())} values are not finite); repair or cut the record"
+            f"({int(bad.sum())} values are not finite); correct or cut the record"
         )
     return array
 
@@ -105,7 +105,8 @@ def refuse_constant(inputs: Vector, names: Sequence[str]) -> None:
     for row in np.flatnonzero(is_constant(inputs)).tolist():
         others = " or ".join(name for name in names if name != names[row])
         raise DataError(
-            f"{names[row]}: constant at {inputs[row, 0]:.3g}, so no FRF to it; use {others or 'a channel that moves'}"
+            f"{names[row]}: constant at {inputs[row, 0]:.3g}, so there is no FRF from this channel; use "
+            f"{others or 'a channel that moves'}"
         )
 
 

@@ -43,7 +43,7 @@ def seat_value(
     Source: ISO 10326-1; Griffin, Handbook of Human Vibration (1990), chapter 9.
     """
     if contact not in ("seat", "seat_bs6841"):
-        raise ConfigurationError(f"SEAT value: found point of contact {contact!r}, must be seat or seat_bs6841")
+        raise ConfigurationError(f"SEAT value: the point of contact must be seat or seat_bs6841, not {contact!r}")
     name = application(contact).weightings[2]
     above, below = (weighted_record(time_step, record, name)[round(skip / time_step) :] for record in (seat, rail))
     base = weighted_rms(below)

@@ -92,7 +92,7 @@ def cut_into_segments(
             needed += 1
         raise DataError(
             f"record too short: {samples * time_step:.4g} s give {averages:.3g} averages with windows of {window_s:g} "
-            f"s and {100 * overlap:g} % overlap, must be at least {minimum_averages:g}; record at least "
+            f"s and {100 * overlap:g} % overlap but must give at least {minimum_averages:g}; record at least "
             f"{(length + (needed - 1) * step) * time_step:.4g} s, or use a shorter window"
         )
     return Segments(length=length, step=step, count=count, averages=averages, window=window)

@@ -144,7 +144,7 @@ WEIGHTINGS: MappingProxyType[str, Weighting] = MappingProxyType(
 def weighting(name: str) -> Weighting:
     """Return the weighting of a name; raise `ConfigurationError` for an unknown name."""
     if name not in WEIGHTINGS:
-        raise ConfigurationError(f"weighting: found {name!r}, must be one of {', '.join(WEIGHTINGS)}")
+        raise ConfigurationError(f"weighting: must be one of {', '.join(WEIGHTINGS)}, not {name!r}")
     return WEIGHTINGS[name]
 
 

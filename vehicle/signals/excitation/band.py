@@ -49,7 +49,7 @@ def lines_in_band(*, steps: int, rate: float, lower: float, upper: float) -> NDA
     last = int(np.floor(upper / line * (1.0 + 1e-12)))
     if last < first:
         raise ConfigurationError(
-            f"band {lower:g} to {upper:g} Hz has no line (they are {line:g} Hz apart); set a longer duration"
+            f"band {lower:g} to {upper:g} Hz has no line (they are {line:g} Hz apart); choose a longer duration"
         )
     return np.arange(first, last + 1)
 

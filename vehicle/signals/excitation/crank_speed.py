@@ -34,7 +34,7 @@ def crank_overrides(rpm: str, duration: float | None) -> list[str]:
         return [f"crank.rpm={speeds[0]!r}"]
     if duration is None:
         raise ConfigurationError(
-            f"--rpm {rpm}: the length of the run-up is missing; set it in seconds, for example --duration 60"
+            f"--rpm {rpm}: the length of the run-up is missing; give it in seconds, for example --duration 60"
         )
     return [f"crank.rpm={speeds[0]!r}", f"crank.end_rpm={speeds[1]!r}", f"crank.run_up_time={duration!r}"]
 

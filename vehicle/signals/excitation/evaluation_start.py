@@ -17,7 +17,7 @@ def evaluation_start(durations: Mapping[str, float], skip: float | None, default
     for name, duration in durations.items():
         if not 0.0 <= start < duration:
             remark = " (the default)" if skip is None else ""
-            remedy = "; set a longer --duration" if skip is None else ""
+            remedy = "; choose a longer --duration" if skip is None else ""
             raise ConfigurationError(
                 f"--skip {start:g} s{remark}: must be at least 0 and below the {duration:g} s of {name}{remedy}"
             )

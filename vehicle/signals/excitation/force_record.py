@@ -120,14 +120,14 @@ def _history(record: ForceRecord, changed: int) -> RecordedForce:
     )
     time, values = chosen.time - chosen.time[0], chosen.values[where]
     if time.size < FEWEST:
-        raise DataError(f"{record.file}: {time.size} samples, must be at least {FEWEST}")
+        raise DataError(f"{record.file}: has {time.size} samples, but at least {FEWEST} are needed")
     steps = np.diff(time)
     # Times with six decimals give steps 1e-6 s off; a step above 1 s may be 1e-6 of its length off.
     if np.max(np.abs(steps / np.mean(steps) - 1.0)) > 1e-6 * max(1.0, 1.0 / float(np.mean(steps))):
         raise DataError(f"{record.file}: times are not uniform; resample the record of {where} to a uniform grid")
     size = float(np.sqrt(np.mean(values**2)))
     if size == 0.0:
-        raise DataError(f"{record.file}: the force of {where} is zero at all times; choose another channel")
+        raise DataError(f"{record.file}: the force of {where} is zero throughout; choose another channel")
     notices = [notice for notice in chosen.notices if not notice.startswith(f"{where}: channel")]
     if chosen.time[0] != 0.0:
         notices.append(f"time of {record.file} begins at {chosen.time[0]:.6g} s and was shifted to 0")
@@ -179,8 +179,8 @@ def _channel(record: ForceRecord, measurement: Measurement) -> int:
                 f"{n} {channel.name!r} [{channel.unit}]" for n, channel in enumerate(measurement.channels, 1)
             )
             raise DataError(
-                f"{record.file}: {len(named)} channels have the unit {UNITS[record.needed]}, must be one "
-                f"channel; set {record.path}.channel to a number or name of: {listed}"
+                f"{record.file}: {len(named)} channels have the unit {UNITS[record.needed]}, but one channel is "
+                f"needed; set {record.path}.channel to a number or name of: {listed}"
             )
         (index,) = named
     channel = measurement.channels[index]

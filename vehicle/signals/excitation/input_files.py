@@ -19,13 +19,14 @@ def find_input(name: str | Path) -> Path:
     if path.is_file():
         return path
     if path.exists():
-        raise ConfigurationError(f"input {str(name)!r} is not a file; set the path of a measurement file")
+        raise ConfigurationError(f"input {str(name)!r} is not a file; give the path of a measurement file")
     names = shipped_inputs()
     if path.name == str(name) and path.name in names:
         return INPUT_FOLDER / path.name
     hint = did_you_mean(path.name, names, cutoff=0.6)
     raise ConfigurationError(
-        f"input {str(name)!r} is neither a file nor a shipped input{hint or '.'} Set the path of a measurement file or "
+        f"input {str(name)!r} is neither a file nor a shipped input{hint or '.'} Give the path of a measurement file "
+        "or "
         f"one of: {', '.join(names)}"
     )
 

@@ -109,5 +109,5 @@ class DriveInput(Settings):
     def require_speed(self) -> float | str:
         """Return the speed."""
         if self.speed is None:
-            raise ConfigurationError("the speed on the road is missing; set it in km/h, for example --speed 80")
+            raise ConfigurationError("the speed on the road is missing; give it in km/h, for example --speed 80")
         return self.speed

@@ -222,8 +222,9 @@ def drive(
     needed, memory = 8.0 * steps * (3 * len(wheels) + COPIES), physical_memory()
     if needed > 0.5 * memory:
         raise ConfigurationError(
-            f"duration {duration:g} s at {rate:g} Hz: needs {needed / 1e9:.3g} GB, must be at most half the memory of "
-            f"this machine, {0.5 * memory / 1e9:.3g} GB; set a shorter --duration or a lower --rate"
+            f"duration {duration:g} s at {rate:g} Hz: needs {needed / 1e9:.3g} GB but may need at most half the "
+            "memory of "
+            f"this machine, {0.5 * memory / 1e9:.3g} GB; choose a shorter --duration or a lower --rate"
         )
     behind = [distance for distance, _ in wheels.values()]
     if not wheels or min(behind) < 0.0 or not np.isfinite(behind).all():

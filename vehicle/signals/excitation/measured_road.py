@@ -137,7 +137,7 @@ class MeasuredRoad:
         if positions.max() > self.length * (1.0 + 1e-9):
             raise DataError(
                 f"{self.source}: the road is {self.length:.6g} m long, but the car drives {positions.max():.6g} "
-                "m; set a shorter --duration"
+                "m; choose a shorter --duration"
             )
         track_heights = self.right if side == "right" else self.left
         degree = 3 if self.sampled else 1
@@ -233,7 +233,7 @@ def _surface_road(path: Path, track: float) -> MeasuredRoad:
             raise DataError(
                 f"{path}: the {side} wheels (v = {v:.3g} m) leave the road, which extends from {surface.v[0]:g} to "
                 f"{surface.v[-1]:g} m, at {missing.size} of {surface.u.size} points, first after "
-                f"{surface.u[missing[0]]:g} m; repair the surface, or cut it off there"
+                f"{surface.u[missing[0]]:g} m; correct the surface, or cut it off there"
             )
     return MeasuredRoad(
         distance=surface.u, right=tracks["right"], left=tracks["left"], source=path.name, notices=(road_words(surface),)

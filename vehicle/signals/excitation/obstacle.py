@@ -167,7 +167,7 @@ class Obstacle:
         if self.begin < 1.0 or self.begin + x[-1] >= length:
             raise ConfigurationError(
                 f"obstacle from {self.begin:g} to {self.begin + x[-1]:g} m: must be within 1 to {length:.4g} m, the "
-                "distance driven; set another place (@METRES), or a longer --duration"
+                "distance driven; choose another place (@METRES), or a longer --duration"
             )
         distance = np.concatenate(([0.0], self.begin + x, [length]))
         for side, z in tracks.items():

@@ -92,10 +92,10 @@ def check_level(
         rms = float(np.std(z))
         if rms < SMALLEST_RMS and not (moving and np.ptp(z) == 0.0):
             raise ImplausibleError(
-                f"{path}: RMS of plate {wheel} is {per_metre * rms:.3g} {unit}, must be at least "
+                f"{path}: RMS of plate {wheel} is {per_metre * rms:.3g} {unit} but must be at least "
                 f"{per_metre * SMALLEST_RMS:g} {unit}",
-                f"does the column contain metres{', not [mm]' if unit == 'mm' else ''}? Otherwise it is another "
-                "quantity, or a dead sensor",
+                f"does the column contain values in metres{', not [mm]' if unit == 'mm' else ''}? Otherwise the "
+                "column is another quantity, or the sensor is dead",
             )
         acceleration, index, peak = _peak_acceleration(wheel, z, timestep)
         # A pothole has high accelerations: 60 mm within 12 ms give 800 m/s2. Its depth is checked above.

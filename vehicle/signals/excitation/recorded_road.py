@@ -155,8 +155,9 @@ class RecordedDrive:
         speed = choose(measurement, self._choice_of_speed())
         if speed.quantities["speed"] != "velocity":
             raise DataError(
-                f"{self.road}: --speed {PREFIX}{self.channel}: is a {speed.quantities['speed']}, must be a velocity; "
-                "choose another channel, or set --unit speed=km/h or speed=m/s if the unit in the file is wrong"
+                f"{self.road}: --speed {PREFIX}{self.channel}: is a {speed.quantities['speed']}, but must be a "
+                "velocity; choose another channel, or set --unit speed=km/h or speed=m/s if the unit in the file is "
+                "wrong"
             )
         v, notices = self._speed(speed, time)
         return v, [*notices, *speed.notices]
@@ -233,7 +234,7 @@ class RecordedDrive:
         low, high = float(values.min()), float(values.max())
         if low < -BACKWARDS or high > FASTEST or high <= STANDING:
             raise DataError(
-                f"{self.road}: the speed {self.channel!r} is {low:.4g} to {high:.4g} m/s, must be {-BACKWARDS:g} "
+                f"{self.road}: the speed {self.channel!r} is {low:.4g} to {high:.4g} m/s but must be {-BACKWARDS:g} "
                 f"to {FASTEST:g} m/s, with some motion; is the unit right? set --unit speed=km/h or speed=m/s"
             )
         resampled_speed = np.maximum(np.interp(time, speed_time, values), 0.0)

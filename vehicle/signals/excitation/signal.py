@@ -95,7 +95,7 @@ class Signal:
             object.__setattr__(self, name, columns)
         self._check_time()
         if not self.displacement:
-            raise DataError(f"{self.source}: moves no wheel; set the displacement of at least one of {_wheels()}")
+            raise DataError(f"{self.source}: moves no wheel; give the displacement of at least one of {_wheels()}")
         for wheel in self.displacement:
             if not is_wheel(wheel):
                 raise DataError(f"{self.source}: unknown wheel {wheel!r}; must be one of {_wheels()}")
@@ -103,7 +103,7 @@ class Signal:
             columns, name = getattr(self, name), name.replace("_", " ")
             if columns and columns.keys() != self.displacement.keys():
                 raise DataError(
-                    f"{self.source}: has the {name} of {', '.join(columns)}; set it for the wheels with a "
+                    f"{self.source}: has the {name} of {', '.join(columns)}; give it for the wheels with a "
                     f"displacement, {', '.join(self.displacement)}, or leave it out"
                 )
             for wheel, values in columns.items():
@@ -115,23 +115,24 @@ class Signal:
                 if not np.isfinite(values).all():
                     bad = int(np.flatnonzero(~np.isfinite(values))[0])
                     raise DataError(
-                        f"{self.source}: {name} of {wheel} is {values[bad]} at sample {bad}, must be finite"
+                        f"{self.source}: {name} of {wheel} is {values[bad]} at sample {bad} but must be finite"
                     )
 
     def _check_time(self) -> None:
         time = self.time
         if time.ndim != 1 or time.size < MINIMUM_SAMPLES:
             raise DataError(
-                f"{self.source}: the time is an array of size {time.shape}, must be one vector of at least "
+                f"{self.source}: the time is an array of size {time.shape} but must be one vector of at least "
                 f"{MINIMUM_SAMPLES} samples"
             )
         if not np.isfinite(time).all() or time[0] != 0.0 or time[-1] <= 0.0:
-            raise DataError(f"{self.source}: the time begins at {time[0]} s, must be finite and increase from 0")
+            raise DataError(f"{self.source}: the time begins at {time[0]} s but must be finite and increase from 0")
         deviation = float(np.max(np.abs(np.diff(time) / self.timestep - 1.0)))
         if deviation > STEP_TOLERANCE:
             raise DataError(
                 f"{self.source}: a time step deviates by the factor {deviation:.3g} from the mean step of "
-                f"{self.timestep:.6g} s, must be at most {STEP_TOLERANCE:g}; resample the signal to a uniform "
+                f"{self.timestep:.6g} s; the factor must be at most {STEP_TOLERANCE:g}; resample the signal to a "
+                "uniform "
                 "grid first"
             )
 

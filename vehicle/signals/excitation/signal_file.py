@@ -91,7 +91,7 @@ def read_signal(
         needed=NEEDED,
         key=lambda header: plate_columns(header, wheel)["time"][0],
         missing="fill" if interpolate else "refuse",
-        remedy="repair the cell, or set --interpolate",
+        remedy="correct the cell, or add --interpolate",
     )
     is_plain_table = (choice is None or choice == Choice(resample=resample)) and is_table(path)
     try:
@@ -111,7 +111,7 @@ def read_signal(
     notices = [*table.notices, *(f"column {cell!r} converted from mm to m" for cell in cells)]
     time = table.values[:, table.key]
     if time.size < MINIMUM_SAMPLES:
-        raise DataError(f"{path}: {time.size} rows, must be at least {MINIMUM_SAMPLES} rows; use a longer record")
+        raise DataError(f"{path}: has {time.size} rows, but at least {MINIMUM_SAMPLES} are needed; use a longer record")
     check_stamps(path, time)
     check_increasing(table, time)
     columns = {}
@@ -174,7 +174,7 @@ def plate_columns(header: Header, wheel: str | None) -> dict[str, tuple[int, str
             plain `displacement` column without `wheel`.
     """
     if any(_is_number(cell) for cell in header.cells):
-        raise DataError(f"{header.where}:1: no header line, found {header.found}; must name {NEEDED}")
+        raise DataError(f"{header.where}:1: no header line, found {header.found}; add a header with {NEEDED}")
     named = [(index, cell, *name_and_unit(cell)) for index, cell in enumerate(header.cells)]
     of_road = [match is not None and is_wheel(match[1]) for match in (_OF_ROAD.fullmatch(row[2]) for row in named)]
     named = [row for row, beside in zip(named, of_road, strict=True) if not beside]
@@ -195,7 +195,7 @@ def plate_columns(header: Header, wheel: str | None) -> dict[str, tuple[int, str
         if _OTHER_UNIT.fullmatch(unit or "") or _OTHER_QUANTITY.search(name):
             raise DataError(
                 f"{where} is an acceleration or a velocity, but a plate needs its displacement. Integrate it with a "
-                f"high-pass against drift, for example --channel {wheel or 'fl'}={name!r} --highpass 0.5"
+                f"high-pass filter to prevent drift, for example --channel {wheel or 'fl'}={name!r} --highpass 0.5"
             )
         key = keys.get(name.lower())
         if key == "":
@@ -227,7 +227,7 @@ def _checked_unit(where: str, key: str, unit: str | None) -> str:
         unit_entry, hint = find_unit(unit), ""
         if unit_entry is not None and unit_entry.si == ("s" if key == "time" else "m"):
             hint = "; or name the channel, for example --channel fl=displacement: every unit is then read"
-        raise DataError(f"{where} has the unit [{unit}], must be {expected}{hint}")
+        raise DataError(f"{where} has the unit [{unit}] but must have {expected}{hint}")
     return unit
 
 

@@ -61,7 +61,7 @@ def fill_missing(table: Table, time: Vector, column: int) -> tuple[Vector, list[
     if gaps[largest] > limit * (1.0 + UNIFORM_TOLERANCE):
         begin = int(np.flatnonzero(valid)[largest]) + 1
         raise DataError(
-            f"{table.place(begin)}:{column + 1}: {name} has no value for {gaps[largest]:.3g} s from this line on, "
+            f"{table.place(begin)}:{column + 1}: {name} has no value for {gaps[largest]:.3g} s from this line on, but "
             f"interpolation fills at most {limit:.3g} s; use the part before or after it"
         )
     filled = values.copy()

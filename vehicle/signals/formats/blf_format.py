@@ -66,7 +66,8 @@ def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
         logger.removeHandler(warned)
     if warned.texts or left >= 16:
         raise DataError(
-            f"{path}: {warned.texts[0] if warned.texts else f'{left} bytes at its end are no whole object'}; {RECORD}"
+            f"{path}: {warned.texts[0] if warned.texts else f'{left} bytes at its end are not a whole object'}; "
+            f"{RECORD}"
         )
     forms = ", ".join(f"{form!r} {count}" for form, count in other.most_common())
     if first is None:

@@ -57,7 +57,7 @@ def load_database(path: Path) -> Any:
     """Load a database of CAN messages: DBC, or another format of canmatrix."""
     extra("asammdf", "mdf", "decoding a bus log")
     if not path.is_file():
-        raise ConfigurationError(f"--dbc {path}: file not found; set the path of a database of CAN messages")
+        raise ConfigurationError(f"--dbc {path}: file not found; give the path of a database of CAN messages")
     from asammdf.blocks.utils import load_can_database
 
     try:
@@ -121,7 +121,7 @@ def decode(
             same = [other for other, (of_other, _) in messages.items() if of_other is message]
             channels += _signals(source, log[source], message, j1939, _difference(source, same), missing)
     except Exception as error:  # damaged databases describe impossible signals
-        raise DataError(f"{path}: {names} cannot decode its frames ({error}); use another database") from None
+        raise DataError(f"{path}: the frames cannot be decoded with {names} ({error}); use another database") from None
     undecoded = {source: frames for source, frames in log.items() if source not in messages}
     decoded = frame_count - sum(frames.time.size for frames in undecoded.values())
     notices = [f"log of a CAN bus: {frame_count} frames, {decoded} decoded by {names}"]

@@ -32,8 +32,8 @@ def check_increasing(table: Table, time: Vector) -> None:
     row = int(np.flatnonzero(steps <= 0.0)[0]) + 1
     relation = "repeats" if steps[row - 1] == 0.0 else "is before"
     raise DataError(
-        f"{table.place(row)}: time {time[row]:.9g} s {relation} {time[row - 1]:.9g} s of {table.row(row - 1)}, must "
-        "increase from row to row; were two logs concatenated?"
+        f"{table.place(row)}: time {time[row]:.9g} s {relation} {time[row - 1]:.9g} s of {table.row(row - 1)}; times "
+        "must increase from row to row; were two logs concatenated?"
     )
 
 
@@ -53,7 +53,7 @@ def check_uniform(table: Table, time: Vector, remedy: str = "resample it to unif
     if worst > UNIFORM_TOLERANCE:
         raise DataError(
             f"{table.place(row)}: time steps are not uniform: {step:.6g} s deviates from the median "
-            f"{float(np.median(np.diff(time))):.6g} s by the factor {worst:.3g}, must be at most "
+            f"{float(np.median(np.diff(time))):.6g} s by the factor {worst:.3g}, which must be at most "
             f"{UNIFORM_TOLERANCE:g}; write the time with more digits, or {remedy}"
         )
 

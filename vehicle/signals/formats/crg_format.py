@@ -95,7 +95,7 @@ def read_surface(path: Path) -> Surface:
             f"{path}: the numbers have the format {number_format!r}; must be one of {', '.join([*WIDTHS, *BINARY])}"
         )
     if len(longs) < 2 or any(units[index] not in ("m", "") for index in longs):
-        raise DataError(f"{path}: has {len(longs)} long sections (columns of heights), must be at least 2")
+        raise DataError(f"{path}: has {len(longs)} long sections (columns of heights), but at least 2 are needed")
     step = numbers.get("reference_line_increment", 0.0)
     if not 0.0 < step < 100.0:
         raise DataError(f"{path}: reference_line_increment {step:g} m; must be above 0")
@@ -104,7 +104,8 @@ def read_surface(path: Path) -> Surface:
     table = _table(path, data[end.end() :], number_format, len(names), rows)
     if float(np.nanmax(np.abs(table), initial=0.0)) > LARGEST:
         raise DataError(
-            f"{path}: has a height of {np.nanmax(np.abs(table)):.3g} m, must be at most {LARGEST:g} m; the file "
+            f"{path}: has a height of {np.nanmax(np.abs(table)):.3g} m, but at most {LARGEST:g} m is possible; the "
+            "file "
             "is damaged, perhaps by a transfer that changes line ends; copy it as a binary file"
         )
     jump = np.nan_to_num(np.abs(np.diff(table[:, longs], axis=0))).max(axis=1)
@@ -112,7 +113,8 @@ def read_surface(path: Path) -> Surface:
     if high.size:
         raise DataError(
             f"{path}: the height changes by {jump[high[0]]:.3g} m between rows {high[0] + 1} and {high[0] + 2} of the "
-            f"numbers, {step:g} m apart, must be at most {STEEPEST + 2.0 * step:.3g} m; the file is damaged; export it "
+            f"numbers, {step:g} m apart, but must change by at most {STEEPEST + 2.0 * step:.3g} m; the file is "
+            "damaged; export it "
             "again"
         )
     u, v = uniform_axis(table.shape[0], step, start), _places(path, [names[index] for index in longs], numbers)
@@ -199,7 +201,7 @@ def _parameters(path: Path, lines: Sequence[str], section: str = "ROAD_CRG") -> 
             try:
                 parameters[name.strip().lower()] = float(value)
             except ValueError:
-                raise DataError(f"{path}: {line!r} in ${section}: must be a number") from None
+                raise DataError(f"{path}: {line!r} in ${section}: the value must be a number") from None
     return parameters
 
 

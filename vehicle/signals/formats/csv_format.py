@@ -146,7 +146,9 @@ def _texts(
     for line, row in zip(numbers, rows, strict=True):
         cells = row.split(delimiter or None) if unquoted else cells_of(row, delimiter)
         if len(cells) != len(kinds):
-            raise DataError(f"{path}:{line}: the row has {len(cells)} cells, but the header {len(kinds)}; repair it")
+            raise DataError(
+                f"{path}:{line}: the row has {len(cells)} cells, but the header {len(kinds)}; correct the row"
+            )
         for column in columns:
             if column in texts:
                 texts[column].append(cells[column].strip())
@@ -242,8 +244,8 @@ def _clock_axis(path: Path, heads: Heads, texts: dict[int, list[str]], numbers: 
         except ValueError as error:
             row = int(error.args[0])
             raise DataError(
-                f"{path}:{numbers[row]}:{column + 1}: column {heads.names[column]!r} has the cell {cells[row]!r}, must "
-                f"be a date or clock such as {cells[0]!r}; repair or remove the row"
+                f"{path}:{numbers[row]}:{column + 1}: column {heads.names[column]!r} has the cell {cells[row]!r}, not "
+                f"a date or clock such as {cells[0]!r}; correct or remove the row"
             ) from None
         columns = (column,) if day is None else (day, column)
         shown = " and ".join(repr(heads.names[day_column]) for day_column in columns)

@@ -43,8 +43,8 @@ def read(path: Path, wanted: Wanted) -> Table:
     numbered = ((n, line) for start, lines in text.pieces() for n, line in enumerate(lines, start))
     head, first = next(((n, line) for n, line in numbered if not _is_comment(line)), (0, ""))
     if not head:
-        raise DataError(f"{path}: contains only comments; must have the columns {wanted.needed} in a header line and "
-            "one row per sample")  # fmt: skip
+        raise DataError(f"{path}: contains only comments; it needs a header line with the columns {wanted.needed} and "
+        "one row per sample")  # fmt: skip
     header, notices = _header(path, head, first), list(text.notices)
     try:
         key = wanted.key(header)
@@ -61,13 +61,13 @@ def read(path: Path, wanted: Wanted) -> Table:
         header, head = below, below.line
         notices.append(f"the lines above the header in line {head} are skipped")
     if header.delimiter != ",":
-        notices.append(f"delimiter {header.delimiter!r} accepted; ',' is the usual one")
+        notices.append(f"the columns are separated by {header.delimiter!r} instead of the usual ','")
     parsed = _plain(text, header)
     if parsed is None:
         lines = text.lines
         numbers = [n for n, line in enumerate(lines[head:], head + 1) if not _is_comment(line)]
         if not numbers:
-            raise DataError(f"{path}:{head}: the file ends after the header; must have one row per sample below it")
+            raise DataError(f"{path}:{head}: the file ends after the header; add one row per sample below it")
         rows = [lines[n - 1] for n in numbers]
         rows, remarks = decimal_points(numbers, rows, header)
         notices += remarks
@@ -275,18 +275,19 @@ def careful(
             if used is not None and column not in used and column != key:
                 continue
             if np.isfinite(number) and wanted.missing != "mark":
-                raise DataError(f"{where} is {cell!r}, must be a number up to {LARGEST:g}; repair the cell")
+                raise DataError(f"{where} is {cell!r} but must be a number up to {LARGEST:g}; correct the cell")
             if not (_MISSING.fullmatch(cell) or _SPREADSHEET_ERROR.match(cell) or not np.isnan(number)):
                 if texts is not None and column != key:
-                    texts.setdefault(column, f"{cell!r} in line {line} is no number")
+                    texts.setdefault(column, f"{cell!r} in line {line} is not a number")
                     continue
-                raise DataError(f"{where} is {cell!r}, must be a number, for example -1.25e-4; repair the cell")
+                raise DataError(f"{where} is {cell!r} but must be a number, for example -1.25e-4; correct the cell")
             if column == key:
                 stamp = "time stamp" if header.cells[column].lower().startswith("time") else "frequency"
-                raise DataError(f"{where} is {cell!r}; a {stamp} is never interpolated; repair or remove the row")
+                raise DataError(f"{where} is {cell!r}; a {stamp} is never interpolated; correct or remove the row")
             if wanted.missing == "empty":
                 if cell:
-                    raise DataError(f"{where} is {cell!r}, must be a finite number, or empty if undefined")  # fmt: skip
+                    raise DataError(f"{where} is {cell!r} but must be a finite number, or empty if "
+                    "undefined")  # fmt: skip
                 continue
             if wanted.missing == "mark":
                 if "inf" in cell.lower():
@@ -295,7 +296,7 @@ def careful(
             if not cell and index > 0 and _ends_here(rows[index:], column, header):
                 raise _different_length(where)
             if wanted.missing == "refuse":
-                raise DataError(f"{where} is {cell!r}, must be a finite number; {wanted.remedy}")
+                raise DataError(f"{where} is {cell!r} but must be a finite number; {wanted.remedy}")
     return values
 
 
@@ -326,7 +327,7 @@ def _wrong_count(index: int, numbers: list[int], rows: list[str], header: Header
 
 def _different_length(where: str) -> DataError:
     return DataError(
-        f"{where} ends before the other columns, must have the same length; export them over the same time"
+        f"{where} ends before the other columns but must have the same length; export all columns over the same time"
     )
 
 

@@ -48,13 +48,13 @@ def read(path: Path) -> Measurement:
     if distance_unit is None or distance_unit.quantity != "displacement":
         raise DataError(
             f"{path}: XUNITS {keywords.get('XUNITS', '').strip()!r}: must be a unit of length; the profile must be "
-            "over distance, not time; write the unit of the distance"
+            "given against distance, not time; write the unit of the distance"
         )
     rows = [line.replace(",", " ") for line in lines[end + 1 :] if line.strip()]
     try:
         values = np.array(" ".join(rows).split(), dtype=np.float64)
     except ValueError as error:
-        raise DataError(f"{path}: after line {end + 1}: {error}; must be numbers only") from None
+        raise DataError(f"{path}: after line {end + 1}: {error}; write only numbers there") from None
     if values.size % count or not values.size or (samples > 0 and values.size != samples * count):
         claim = f"{samples} samples of " if samples > 0 else ""
         raise DataError(

@@ -32,12 +32,12 @@ LEAST_LINES = 8
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class FrfData:
-    """Measured FRFs of one level.
+    """Measured FRFs at a level.
 
     Attributes:
         frequency: increasing frequencies [Hz], shape (m,).
         names: output and input of the k FRFs.
-        response: acceleration over plate displacement [m/s2 per m], shape (k, m); NaN where undefined.
+        response: acceleration per plate displacement [m/s2 per m], shape (k, m); NaN where undefined.
         coherence: gamma^2 [-], shape (k, m); NaN where undefined.
         random_error: standard error of |H| [m/s2 per m], shape (k, m); NaN if unknown.
     """
@@ -130,7 +130,7 @@ def read_frf(path: Path) -> FrfData:
     """
     table = read_table(path, Wanted(needed=NEEDED, key=_frequency, missing="empty"))
     if len(table.values) < LEAST_LINES:
-        raise DataError(f"{path}: {len(table.values)} rows, must be at least {LEAST_LINES} rows")
+        raise DataError(f"{path}: has {len(table.values)} rows, but at least {LEAST_LINES} are needed")
     frequency = table.values[:, table.key]
     for index in np.flatnonzero(np.diff(frequency, prepend=0.0) <= 0.0)[:1].tolist():
         after = f" after {frequency[index - 1]:g}; frequencies must increase" if index else ", must be above 0"
@@ -167,7 +167,7 @@ def _channels(header: Header) -> tuple[str, ...]:
         )
     channels = tuple(dict.fromkeys(name.removesuffix(end or "") for name, end in suffix_of.items()))
     if not channels:
-        raise DataError(f"{header.where}: contains no channel, must be {NEEDED}")
+        raise DataError(f"{header.where}: contains no channel; the columns must be {NEEDED}")
     missing = next((channel + end for channel in channels for end in SUFFIXES if channel + end not in names), None)
     if missing is not None:
         raise DataError(f"{header.where}: no column {missing!r}; a channel needs magnitude, phase and coherence")
@@ -185,7 +185,8 @@ def _columns(table: Table, channels: Sequence[str], suffix: str) -> Vector:
         channel, row = (int(index) for index in bad[0])
         allowed = f"{lowest:g} to {highest:g}" if math.isfinite(highest) else f"{lowest:g} and above"
         raise DataError(
-            f"{table.place(row)}: column {columns[channel]!r} has the value {values[channel, row]:g}, must be {allowed}"
+            f"{table.place(row)}: column {columns[channel]!r} has the value {values[channel, row]:g} but must be "
+            f"{allowed}"
         )
     return values
 
@@ -215,7 +216,7 @@ def write_frf(
                 response_to.random_error[row],
             ]
     description = (
-        "acceleration over plate displacement, magnitude and its random error (one standard error) in m/s2 per m, "
+        "acceleration per plate displacement, magnitude and its random error (one standard error) in m/s2 per m, "
         f"coherence without unit; {first.estimator}; frame: {frame}"
     )
     write_table(path, heads, columns, [description, inputs] if inputs else [description])

@@ -262,7 +262,7 @@ def _stated(numbers: dict[str, Any], *, signed: bool = False) -> tuple[float | N
 def _fields(path: Path, name: str, dataset: Any, notices: list[str]) -> list[Channel]:
     """Return the fields of a record array as channels; time fields become their axes."""
     if dataset.ndim != 1:
-        notices.append(f"array {name!r} is ignored: it has records in {dataset.ndim} dimensions, must be one dimension")
+        notices.append(f"array {name!r} is ignored: it has records in {dataset.ndim} dimensions instead of one")
         return []
     table = dataset[()]
     numeric = [field for field in table.dtype.names if table[field].dtype.kind in "fiu" and table[field].ndim == 1]

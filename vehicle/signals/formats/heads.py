@@ -176,7 +176,9 @@ def _lines_of_heads(
             break
         if not above and _is_number(cells[0]) and not all(_is_number(cell) for cell in cells if cell):
             shown = ", ".join(map(repr, cells[:4]))
-            raise DataError(f"{path}:{index + 1}: the line mixes names and numbers: {shown}; repair or remove it")
+            raise DataError(
+                f"{path}:{index + 1}: the line mixes names and numbers: {shown}; correct or remove the line"
+            )
         if above and any(_is_number(cell) for cell in cells) and not all(_is_number(cell) for cell in cells if cell):
             break
         above.append(cells)

@@ -61,8 +61,8 @@ def read(path: Path) -> Measurement:
     layout = head.get("X_Columns", "One").lower()
     if separator is None or layout not in ("no", "one", "multi"):
         raise DataError(
-            f"{path}: Separator is {head.get('Separator')!r}, must be Tab or Comma; X_Columns is "
-            f"{head.get('X_Columns')!r}, must be No, One or Multi; export it again"
+            f"{path}: Separator is {head.get('Separator')!r} but must be Tab or Comma; X_Columns is "
+            f"{head.get('X_Columns')!r} but must be No, One or Multi; export it again"
         )
     segments = _segments(path, lines, first, separator)
     sign = {",": ",", ".": "."}.get(head.get("Decimal_Separator", ""), "")
@@ -227,7 +227,7 @@ def _times(
         if np.isfinite(times).all():
             return times.copy(), ""
         row = int(np.flatnonzero(~np.isfinite(times))[0])
-        raise DataError(f"{path}:{segment.rows[row][0]}: the X_Value is missing; repair or remove the row")
+        raise DataError(f"{path}:{segment.rows[row][0]}: the X_Value is missing; correct or remove the row")
     try:
         start, text = (segment.value(key, column).replace(",", ".") for key in ("X0", "Delta_X"))
         origin, (step, remark) = float(start or "0"), _step(text)
@@ -304,6 +304,6 @@ def _starts(path: Path, segments: Sequence[_Segment], columns: Sequence[list[Cha
         if gap <= 0.0 or gap < (1.0 - JOINED) * step * 0.5:
             raise DataError(
                 f"{path}:{segments[index].line}: segment {index + 1} begins {-gap:.3g} s before the end of segment "
-                f"{index}, must begin after it; export each segment to a separate file"
+                f"{index} but must begin after it; export each segment to a separate file"
             )
     return [float(shift) for shift in shifts]

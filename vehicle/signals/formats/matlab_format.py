@@ -114,7 +114,7 @@ def channels_of(
         raise DataError(f"{path}: no numeric array; {remedy}")
     if not channels:
         names = ", ".join(name for name in list(variables)[:12] if not name.startswith("__")) or "nothing"
-        raise DataError(f"{path}: has {names}; must have a structure with x_values and y_values or a numeric array")
+        raise DataError(f"{path}: has {names}; it needs a structure with x_values and y_values or a numeric array")
     notices = [f"single numbers: {', '.join(scalars[:12])}"] if scalars else []
     if objects:
         notices.append(f"ignored: {remedy}")
@@ -221,7 +221,7 @@ def _signal(path: Path, label: str, record: Mapping[str, Any]) -> list[Channel]:
             note = f"unit {unit!r} and its stated factor to SI, {factor:g}, contradict each other"
             unit = ""
         elif unit_entry.factor != 1.0:
-            note = f"read in SI units; the file displays {unit!r} ({factor:g} {unit} are 1 {unit_entry.si})"
+            note = f"read in SI units; the file displays {unit!r} ({factor:g} {unit} = 1 {unit_entry.si})"
             unit = unit_entry.si
         else:
             note = ""

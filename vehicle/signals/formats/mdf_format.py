@@ -85,7 +85,7 @@ def write(path: Path, channels: Sequence[Channel], description: str) -> None:
     groups: dict[int, tuple[Any, list[Any]]] = {}
     for channel in channels:
         if channel.axis is None or channel.kind != "time":
-            raise DataError(f"{path}: {channel.name} is no time history, and MDF stores nothing else; leave it out")
+            raise DataError(f"{path}: {channel.name} is not a time history, and MDF stores nothing else; leave it out")
         _, signals = groups.setdefault(id(channel.axis), (channel.axis, []))
         signals.append(
             asammdf.Signal(

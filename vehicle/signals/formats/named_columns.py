@@ -26,17 +26,17 @@ def named_columns(path: Path, wanted: Mapping[str, str]) -> dict[str, Vector]:
         matches = [channel for channel in measurement.channels if channel.name.strip().lower() == name]
         if len(matches) != 1:
             shown = ", ".join(f"{channel.name!r} [{channel.unit}]" for channel in measurement.channels[:12]) or "none"
-            raise DataError(f"{path}: {len(matches)} columns {name!r}, must be one [{si}]; found {shown}")
+            raise DataError(f"{path}: has {len(matches)} columns {name!r} instead of one [{si}]; found {shown}")
         unit_entry, needed = find_unit(matches[0].unit), find_unit(si)
         if unit_entry is None or needed is None or unit_entry.quantity != needed.quantity:
             units = allowed_units(needed.quantity if needed is not None else None)
-            raise DataError(f"{path}: column {name!r} has the unit {matches[0].unit!r}, must be one of {units}")
+            raise DataError(f"{path}: column {name!r} has the unit {matches[0].unit!r} but must have one of {units}")
         values = np.asarray(matches[0].si_values, dtype=np.float64)
         if not np.isfinite(values).all():
             row = int(np.flatnonzero(~np.isfinite(values))[0]) + 1
-            raise DataError(f"{path}: column {name!r}: row {row} is not a number; repair or remove the row")
+            raise DataError(f"{path}: column {name!r}: row {row} is not a number; correct or remove the row")
         columns[name] = values
     if len({channel.size for channel in columns.values()}) > 1:
         sizes = ", ".join(f"{name} {channel.size}" for name, channel in columns.items())
-        raise DataError(f"{path}: the columns have different lengths ({sizes}), must be equal")
+        raise DataError(f"{path}: the columns must have equal lengths ({sizes})")
     return columns

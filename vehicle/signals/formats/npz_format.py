@@ -30,9 +30,9 @@ def read(path: Path, wanted: Wanted) -> Table:
     count = numbers["time"].size
     for name, values in numbers.items():
         if values.size != count:
-            raise DataError(f"{path}: array {name!r} has {values.size} samples, must be {count}, one for each time")
+            raise DataError(f"{path}: array {name!r} has {values.size} samples instead of {count}, one for each time")
         if not np.isfinite(values).all():
-            raise DataError(f"{path}: array {name!r} contains NaN or infinity; repair or cut the record")
+            raise DataError(f"{path}: array {name!r} contains NaN or infinity; correct or cut the record")
     header = Header(path=path, line=0, cells=tuple(f"{name} [{units.get(name) or ''}]" for name in numbers))
     key = wanted.key(header)
     loaded.clear()

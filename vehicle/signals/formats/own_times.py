@@ -104,7 +104,7 @@ def own_times(
         if lost.size:
             raise DataError(
                 f"{where}: column {names[channel]!r} has a value in row {lost[0] + 1} of the numbers, but its time "
-                f"column {names[time]!r} has none; repair or remove the row"
+                f"column {names[time]!r} has none; correct or remove the row"
             )
     for time in times[1:]:
         if np.array_equal(seconds[time], seconds[times[0]]):

@@ -81,7 +81,7 @@ def read_columns(path: Path, needed: str = "'time [s]' and '<channel> [<unit>]'"
         channels[name], units[name] = table.values[:, index], unit or ""
     time, _ = channels.pop("time"), units.pop("time")
     if time.size < MINIMUM_SAMPLES:
-        raise DataError(f"{path}: contains {time.size} samples, must be at least {MINIMUM_SAMPLES}")
+        raise DataError(f"{path}: contains {time.size} samples, but at least {MINIMUM_SAMPLES} are needed")
     check_stamps(path, time)
     check_increasing(table, time)
     uniform, notices = without_rounding(time)

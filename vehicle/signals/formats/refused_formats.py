@@ -64,13 +64,13 @@ def refuse(head: Head) -> None:
                 f"{path}: enDAQ IDE recordings are not supported; export CSV from enDAQ Lab, or with Python: "
                 f"endaq.ide.to_pandas(endaq.ide.get_doc({path.name!r}).channels[8]).to_csv('{path.stem}.csv')"
             )
-        raise DataError(f"{path}: is a film or another EBML file, which is not supported; use a measurement file")
+        raise DataError(f"{path}: is a video or another EBML file, which is not supported; use a measurement file")
     for signature, (name, instead) in SIGNATURES.items():
         if data.startswith(signature) or (signature == b"<usi:tdm" and signature in data):
             raise DataError(f"{path}: {name}, not supported; export {instead}")
     if ending in TEXT_ENDINGS:
         return  # the text reader reports the position of the invalid byte
-    name, instead = ENDINGS.get(ending, ("of no known format", "UFF 58, MAT, RPC III, MDF4 or CSV"))
+    name, instead = ENDINGS.get(ending, ("not in any known format", "UFF 58, MAT, RPC III, MDF4 or CSV"))
     binary = b"\0" in data and not data.startswith((b"\xff\xfe", b"\xfe\xff"))
     if binary or (ending in ENDINGS and not data.isascii()):
         raise DataError(f"{path}: {'binary file, ' if binary else ''}{name}, not supported; export {instead}")

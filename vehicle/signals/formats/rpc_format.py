@@ -34,10 +34,10 @@ def read(path: Path) -> Measurement:
     for key, allowed in (("FORMAT", tuple(ORDERS)), ("FILE_TYPE", ("TIME_HISTORY",)), ("DATA_TYPE", tuple(WIDTHS))):
         value = head.get(key, "TIME_HISTORY" if key == "FILE_TYPE" else "SHORT_INTEGER" if key == "DATA_TYPE" else "")
         if value not in allowed:
-            raise DataError(f"{path}: {key} is {value!r}, must be one of {', '.join(allowed)}")
+            raise DataError(f"{path}: {key} is {value!r} but must be one of {', '.join(allowed)}")
     numbers = {key: _number(path, head, key) for key in ("CHANNELS", "FRAMES", "PTS_PER_FRAME", "PTS_PER_GROUP")}
     if any(value < 1 or value != int(value) for value in numbers.values()):
-        raise DataError(f"{path}: found {numbers}, must be whole numbers of at least 1")
+        raise DataError(f"{path}: must be whole numbers of at least 1, not {numbers}")
     channels, frames, frame, group = (int(value) for value in numbers.values())
     step = _number(path, head, "DELTA_T")
     if step <= 0.0 or group % frame:
@@ -53,7 +53,7 @@ def read(path: Path) -> Measurement:
     notices = []
     samples = int(_number(path, head, "SAMPLES")) if "SAMPLES" in head else total
     if not 0 < samples <= total:
-        raise DataError(f"{path}: SAMPLES is {samples}, must be 1 to {total}, the samples in all frames")
+        raise DataError(f"{path}: SAMPLES is {samples} but must be 1 to {total}, the samples in all frames")
     order = ORDERS[head["FORMAT"]]
     table = np.frombuffer(data, f"{order}{number_type}", groups * group * channels, start).reshape(
         groups, channels, group
@@ -135,7 +135,7 @@ def _number(path: Path, head: dict[str, str], key: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise DataError(f"{path}: {key} is {head[key]!r}, must be a number")
+        raise DataError(f"{path}: {key} is {head[key]!r} but must be a number")
     return value
 
 
@@ -189,7 +189,9 @@ def write(path: Path, channels: tuple[Channel, ...], description: str) -> None:
     rate = first.rate
     for channel in channels:
         if channel.kind != "time" or channel.values.size != first.values.size or channel.rate != rate or rate is None:
-            raise DataError(f"{path}: {channel.name} has another sampling rate, RPC III stores one; resample it")
+            raise DataError(
+                f"{path}: {channel.name} has another sampling rate, but RPC III stores only one; resample the channel"
+            )
         if not np.isfinite(channel.values).all():
             raise DataError(f"{path}: {channel.name} has a missing value, which RPC III cannot store; leave it out")
     samples, count = first.values.size, len(channels)

@@ -67,7 +67,7 @@ class Wanted:
     needed: str
     key: Callable[[Header], int]
     missing: Literal["refuse", "fill", "empty", "mark"] = "refuse"
-    remedy: str = "repair the cell or cut the record"
+    remedy: str = "correct the cell or cut the record"
     columns: Callable[[Header], Collection[int]] | None = None
 
 
@@ -121,9 +121,11 @@ class Record:
     def __post_init__(self) -> None:
         for name, values in self.channels.items():
             if values.shape != self.time.shape:
-                raise DataError(f"record: {name} has {values.size} samples, the time {self.time.size}; store as many")
+                raise DataError(
+                    f"record: {name} has {values.size} samples, but the time {self.time.size}; store equally many"
+                )
             if not np.isfinite(values).all():
-                raise DataError(f"record: {name} contains NaN or infinity; repair the record, or cut this part out")
+                raise DataError(f"record: {name} contains NaN or infinity; correct the record, or cut this part out")
 
     @property
     def start(self) -> float:
@@ -161,7 +163,7 @@ def key_column(cell: str, needed: str) -> Callable[[Header], int]:
             raise DataError(f"{header.where}: column {twice!r} appears twice; rename or remove one of them")
         if cell not in header.cells:
             shown = ", ".join(map(repr, header.cells[:8]))
-            raise DataError(f"{header.where}: column {cell!r} is missing; found {shown}, must be {needed}")
+            raise DataError(f"{header.where}: column {cell!r} is missing; expected {needed}, found {shown}")
         return header.cells.index(cell)
 
     return check

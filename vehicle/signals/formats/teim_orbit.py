@@ -107,7 +107,7 @@ class PropertyFile:
             raise DataError(f"{self.path}: [UNITS] has no {quantity}; add a line such as {quantity} = "
                             f"'{next(iter(UNITS[quantity]))}'")  # fmt: skip
         if (name := units[quantity].lower()) not in UNITS[quantity]:
-            raise DataError(f"{self.path}: [UNITS] has {quantity} = {units[quantity]!r}, must be one of "
+            raise DataError(f"{self.path}: [UNITS] has {quantity} = {units[quantity]!r}, which must be one of "
                             f"{', '.join(UNITS[quantity])}")  # fmt: skip
         return UNITS[quantity][name]
 
@@ -129,15 +129,15 @@ class PropertyFile:
         for line, row in self.block(block).rows:
             where = f"{self.path}:{line}: [{block}]"
             if len(row) != 2:
-                raise DataError(f"{where} has a row of {len(row)} columns, must be 2: curves over two "
-                    "variables cannot be read")  # fmt: skip
+                raise DataError(f"{where} has a row of {len(row)} columns instead of 2: curves of two variables "
+                "cannot be read")  # fmt: skip
             x, y = (_finite(word, where) for word in row)
             if points and x * x_unit <= points[-1][0]:
-                raise DataError(f"{where} has {x:g} after {points[-1][0] / x_unit:g}, must be ascending; sort the "
+                raise DataError(f"{where} has {x:g} after {points[-1][0] / x_unit:g} but must be ascending; sort the "
                                 "points, and give each once")  # fmt: skip
             points.append((x * x_unit, y * y_unit))
         if len(points) < 2:
-            raise DataError(f"{self.path}: [{block}] has {len(points)} points, must be at least 2")
+            raise DataError(f"{self.path}: [{block}] has {len(points)} points, but at least 2 are needed")
         return _corners(points)
 
 
@@ -163,8 +163,8 @@ def read_property_file(path: Path) -> PropertyFile:
         raise ConfigurationError(f"{path}: is larger than {LARGEST_FILE / 1e6:g} MB, so it is not a property file")
     text = path.read_bytes().decode("latin-1")
     if text.lstrip().startswith("<"):
-        raise DataError(f"{path}: is an XML property file; save it in TeimOrbit format (text, FILE_TYPE) in the "
-                        "property file editor of Adams")  # fmt: skip
+        raise DataError(f"{path}: is an XML property file; save it in TeimOrbit format (text, FILE_TYPE) with the "
+        "property file editor of Adams")  # fmt: skip
     blocks: dict[str, Block] = {}
     current: Block | None = None
     skipped = False
@@ -208,7 +208,7 @@ def _finite(word: str, where: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise DataError(f"{where} has {word[:20]!r}, must be a finite number")
+        raise DataError(f"{where} has {word[:20]!r} instead of a finite number")
     return value
 
 

@@ -75,7 +75,7 @@ def read_text(path: Path) -> Text:
     except OSError as error:
         raise DataError(f"{path}: cannot be read ({error.strerror}); check the file and its permissions") from error
     if not data.strip():
-        raise DataError(f"{path}: the file is empty; must have a header line with units and one row per sample")
+        raise DataError(f"{path}: the file is empty; it needs a header line with units and one row per sample")
     _check_bytes(path, data)
     notices = []
     digest = hashlib.sha256(data).hexdigest()
@@ -83,7 +83,7 @@ def read_text(path: Path) -> Text:
         notices.append("the byte order mark at the beginning of the file is skipped")
         data = data[len(BOM) :]
     if b"\r" in data:
-        notices.append("line ends of Windows (CR LF) or old Mac (CR) are accepted")
+        notices.append("line endings of Windows (CR LF) or old Macs (CR) are accepted")
         data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     try:
         body = data.decode("utf-8")
@@ -101,10 +101,12 @@ def read_text(path: Path) -> Text:
 def _check_bytes(path: Path, data: bytes) -> None:
     """Reject UTF-16, NUL bytes and a too long first line; for the first megabyte and then the whole file."""
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
-        raise DataError(f"{path}:1:1: the file is UTF-16, must be UTF-8; save it as UTF-8 text")
+        raise DataError(f"{path}:1:1: the file is UTF-16 but must be UTF-8; save it as UTF-8 text")
     nul = data.find(b"\0")
     if nul >= 0:
-        raise DataError(f"{_place(path, data, nul)}: contains a NUL character: binary or damaged, must be UTF-8")
+        raise DataError(
+            f"{_place(path, data, nul)}: contains a NUL character, so it is binary or damaged; it must be UTF-8 text"
+        )
     if len(data) == LONGEST_LINE + 1 and b"\n" not in data and b"\r" not in data:
         raise _line_too_long(path, 1)
 
@@ -114,8 +116,8 @@ def _check_memory(path: Path, size: int, head: bytes) -> None:
     needed = TEXT_COPIES * size + BYTES_PER_ROW * rows
     if needed > MEMORY_LIMIT:
         raise DataError(
-            f"{path}: about {rows:.3g} rows in {size / 1e9:.3g} GB need {needed / 1024**3:.3g} GiB of memory, must be "
-            f"at most {MEMORY_LIMIT / 1024**3:.3g} GiB; cut the record into parts or lower its sampling rate"
+            f"{path}: about {rows:.3g} rows in {size / 1e9:.3g} GB need {needed / 1024**3:.3g} GiB of memory but may "
+            f"need at most {MEMORY_LIMIT / 1024**3:.3g} GiB; cut the record into parts or lower its sampling rate"
         )
 
 
@@ -126,6 +128,6 @@ def _place(path: Path, data: bytes, offset: int) -> str:
 
 def _line_too_long(path: Path, line: int) -> DataError:
     return DataError(
-        f"{path}:{line}: the line is longer than {LONGEST_LINE} characters; must be one row per sample; "
-        "check the line ends"
+        f"{path}:{line}: the line is longer than {LONGEST_LINE} characters; write one row per sample and check the "
+        "line endings"
     )

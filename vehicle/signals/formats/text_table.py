@@ -55,7 +55,7 @@ def find_table(path: Path, lines: Sequence[str]) -> TextTable:
         if len(following) > 2 and all(kinds_of(line, ";") == ["number"] for line in following):
             return TextTable(start=start, delimiter=";", kinds=("number",))
     raise DataError(
-        f"{path}: found no table of numbers in the first {TEXT_LINES} lines; must be rows of numbers, separated "
+        f"{path}: found no table of numbers in the first {TEXT_LINES} lines; it needs rows of numbers, separated "
         "by ';', tab, ',' or blanks, with a line of names and units above"
     )
 

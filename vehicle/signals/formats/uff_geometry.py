@@ -132,7 +132,7 @@ class Nodes:
             below = self.systems.get(reference, GLOBAL)
             if system_type not in (0, 1):
                 raise ValueError(
-                    f"axis system {number} has type {system_type}, must be 0 (Cartesian) or 1 (cylindrical)"
+                    f"axis system {number} has type {system_type} but must be 0 (Cartesian) or 1 (cylindrical)"
                 )
             x_axis = ahead - origin
             y_axis = np.cross(plane - origin, x_axis)  # z is in the plane: y = z x x = (plane - origin) x x

@@ -77,7 +77,7 @@ def _shape(path: Path, where: str, head: _Head, nodes: Nodes, units: Units) -> M
         return f"result of analysis {analysis} and characteristic {characteristic}"
     if count != VECTORS[characteristic]:
         raise ValueError(
-            f"{count} values per node, must be {VECTORS[characteristic]} for data characteristic {characteristic}"
+            f"{count} values per node instead of {VECTORS[characteristic]} for data characteristic {characteristic}"
         )
     width = count * (2 if data_type > 4 else 1)
     labels, rows, index = [], [], 0
@@ -90,7 +90,7 @@ def _shape(path: Path, where: str, head: _Head, nodes: Nodes, units: Units) -> M
             row += numbers([body[index]])
             index += 1
         if len(row) > width:
-            raise ValueError(f"{len(row)} numbers at node {label}, must be {width}")
+            raise ValueError(f"{len(row)} numbers at node {label} instead of {width}")
         labels.append(label)
         rows.append(row)
     if not rows:

@@ -33,7 +33,7 @@ def require_unpacked(
     limit, freely = MEMORY_LIMIT if limit is None else limit, FREELY if freely is None else freely
     if size > limit:
         raise DataError(
-            f"{label}: unpacked, its data need {size / 1024**3:.3g} GiB, must be at most {limit / 1024**3:.3g} "
+            f"{label}: unpacked, its data need {size / 1024**3:.3g} GiB but may need at most {limit / 1024**3:.3g} "
             "GiB; cut the record into parts"
         )
     if size > freely and size > densest * packed:
@@ -55,10 +55,11 @@ def require_archive(
         with zipfile.ZipFile(file) as archive:
             entries = archive.infolist()
     except (zipfile.BadZipFile, OSError, NotImplementedError, ValueError) as error:
-        raise DataError(f"{label}: cannot be read as a ZIP archive ({error}); write it again") from None
+        raise DataError(f"{label}: cannot be read as a ZIP archive ({error}); save or export it again") from None
     if len(entries) > MOST_ENTRIES:
         raise DataError(
-            f"{label}: found {len(entries)} files in the archive, must be at most {MOST_ENTRIES}; write it again"
+            f"{label}: found {len(entries)} files in the archive, must be at most {MOST_ENTRIES}; save or export it "
+            "again"
         )
     size, packed = sum(entry.file_size for entry in entries), file.seek(0, io.SEEK_END)
     file.seek(0)

@@ -50,7 +50,9 @@ def read(path: Path) -> Measurement:
     columns = " ".join(line for _, line in sections.get("column names", [])).split() or heads
     rows = sections.get("data", [])
     if not columns or len(rows) < 2:
-        raise DataError(f"{path}: {len(columns)} columns and {len(rows)} rows; must have [column names] and [data]")
+        raise DataError(
+            f"{path}: {len(columns)} columns and {len(rows)} rows; the file needs [column names] and [data]"
+        )
     header = Header(path=path, line=rows[0][0] - 1, cells=tuple(columns), delimiter=" ")
     numbers, data_rows = [number for number, _ in rows], [" ".join(line.split()) for _, line in rows]
     data_rows, points = decimal_points(numbers, data_rows, header)
@@ -96,8 +98,7 @@ def _clock(path: Path, column: Vector, numbers: list[int], notices: list[str]) -
             seconds[row] = clock_of_day(value)
         except ValueError:
             raise DataError(
-                f"{path}:{numbers[row]}: time {value!r}, must be a time of day such as 162235.40; repair or remove the "
-                "row"
+                f"{path}:{numbers[row]}: {value!r} is not a time of day such as 162235.40; correct or remove the row"
             ) from None
     for at in np.flatnonzero(np.diff(seconds) < -0.5 * DAY):
         seconds[at + 1 :] += DAY

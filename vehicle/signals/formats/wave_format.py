@@ -21,16 +21,16 @@ def read(path: Path) -> Measurement:
         warnings.filterwarnings("ignore", message="Chunk .* not understood")
         rate, data = wavfile.read(path)
     if data.size == 0 or rate <= 0:
-        raise DataError(f"{path}: contains {data.size} samples at {rate} Hz, must be a record; export it again")
+        raise DataError(f"{path}: contains {data.size} samples at {rate} Hz, which is not a record; export it again")
     if not np.isfinite(data).all():
-        raise DataError(f"{path}: contains numbers that are not finite; repair the record")
+        raise DataError(f"{path}: contains numbers that are not finite; correct the record")
     values = data.reshape(len(data), -1).astype(np.float64)
     if data.dtype.kind == "u":
         values = (values - 128.0) / 128.0
     elif data.dtype.kind == "i":
         values /= -float(np.iinfo(data.dtype).min)
     axis = uniform_axis(len(values), 1.0 / rate)
-    remark = "no unit, values are fractions of full scale; set the full scale, for example --unit '12.5 mm'"
+    remark = "no unit, values are fractions of full scale; give the full scale, for example --unit '12.5 mm'"
     channels = tuple(
         Channel(name=f"channel {n + 1}", values=values[:, n].copy(), axis=axis, remark=remark)
         for n in range(values.shape[1])

@@ -61,7 +61,8 @@ def _chosen(path: Path, choice: Choice, names: list[str]) -> Record:
     wrong = next((role for role, quantity in chosen.quantities.items() if quantity != "acceleration"), None)
     if wrong is not None:
         raise DataError(
-            f"{path}: channel {roles[wrong]!r} for {wrong} is a {chosen.quantities[wrong]}, must be an acceleration; "
+            f"{path}: channel {roles[wrong]!r} for {wrong} is a {chosen.quantities[wrong]} but must be an "
+            "acceleration; "
             f"choose another channel, or set --unit {wrong}=m/s2 or {wrong}=g if the unit in the file is wrong"
         )
     chosen.require_uniform(path)
@@ -119,10 +120,10 @@ def read_acceleration(path: str | Path, point: str | None = None, choice: Choice
             points = dict.fromkeys(channel[:-6] for channel in record.channels if channel.endswith("_acc_x"))
             points_shown = f"; set --channel POINT, one of {', '.join(points)}" if points else ""
             shown = ", ".join(list(record.channels)[:6])
-            raise DataError(f"{file}: column {name} is missing; found {shown}, must be {needed}{points_shown}")
+            raise DataError(f"{file}: column {name} is missing; expected {needed}, found {shown}{points_shown}")
         if (unit := record.units[name]) not in UNITS:
             raise DataError(
-                f"{file}: column {name!r} has the unit {unit!r}, must be one of "
+                f"{file}: column {name!r} has the unit {unit!r} but must have one of "
                 f"{', '.join(f'[{allowed}]' for allowed in UNITS)}; write the header as {needed}"
             )
         values = record.channels[name] * UNITS[unit]
@@ -135,7 +136,7 @@ def read_acceleration(path: str | Path, point: str | None = None, choice: Choice
             )
         elif largest > LARGEST_ACCELERATION:
             raise DataError(
-                f"{file}: column {name!r} deviates by {largest:.3g} m/s2 from its mean, must be at most "
+                f"{file}: column {name!r} deviates by {largest:.3g} m/s2 from its mean but must deviate by at most "
                 f"{LARGEST_ACCELERATION:g}; is it in mm/s2, or is there a spike? Correct the header or the record"
             )
         xyz[axis] = values

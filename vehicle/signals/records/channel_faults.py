@@ -93,7 +93,7 @@ def faults(
         for side, level, share in clipped(values):
             findings.append(
                 Finding(
-                    f"{name}: clipped? {100.0 * share:.3g} % of the samples stand at the {side}, {level:.3g}, so "
+                    f"{name}: clipped? {100.0 * share:.3g} % of the samples are at the {side}, {level:.3g}, so "
                     "peaks, RMS and spectra are wrong; measure with a larger range, or select another part (--from, "
                     "--to)",
                     "clipped",

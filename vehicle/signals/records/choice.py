@@ -145,7 +145,7 @@ def pick(
     listed = ", ".join(f"{index + 1} {channel.name!r} [{channel.unit}]" for index, channel in channels[:40])
     more = f" and {len(channels) - 40} more" if len(channels) > 40 else ""
     raise DataError(
-        f"{measurement.path}: {option} {wanted!r} {several if matches else 'matches no channel'}; set a number, an "
+        f"{measurement.path}: {option} {wanted!r} {several if matches else 'matches no channel'}; give a number, an "
         f"exact name, or a pattern with * that matches one of: {listed}{more}"
     )
 
@@ -193,7 +193,7 @@ def choose(measurement: Measurement, choice: Choice) -> Chosen:
             fault = f"the unknown unit {channel.unit!r}" if channel.unit else f"no unit{remark}"
             raise DataError(f"{where} has {fault}; set --unit {role}=UNIT to one of {allowed_units()}")
         if channel.kind != "time" or np.iscomplexobj(channel.values) or channel.function in NOT_OVER_TIME:
-            raise DataError(f"{where} is a {channel.function}, must be a time history; choose another channel")
+            raise DataError(f"{where} is a {channel.function} but must be a time history; choose another channel")
         if channel.direction.startswith("-"):
             notices.append(f"{role}: sign inverted, because it was measured along {channel.direction}")
             channels[role] = channel = replace(channel, values=-channel.values)
@@ -262,8 +262,8 @@ def _part(path: Path, block: Block, choice: Choice, notices: list[str]) -> tuple
         first, last = -np.inf if choice.first is None else choice.first, np.inf if choice.last is None else choice.last
         selected = (time >= first) & (time <= last)
         if np.count_nonzero(selected) < 3:
-            raise DataError(f"{path}: the part between --from and --to has {np.count_nonzero(selected)} samples, "
-                f"must be at least 3; the record is from {time[0]:.6g} to {time[-1]:.6g} s")  # fmt: skip
+            raise DataError(f"{path}: the part between --from and --to has {np.count_nonzero(selected)} samples, but "
+            f"at least 3 are needed; the record is from {time[0]:.6g} to {time[-1]:.6g} s")  # fmt: skip
         time = time[selected]
         notices.append(f"excerpt from {time[0]:.6g} to {time[-1]:.6g} s")
     values = {role: np.asarray(channel.si_values, dtype=np.float64)[selected] for role, channel in channels.items()}
@@ -271,7 +271,7 @@ def _part(path: Path, block: Block, choice: Choice, notices: list[str]) -> tuple
         absurd = np.flatnonzero(np.abs(samples) > LARGEST)
         if absurd.size:
             raise DataError(f"{path}: {role}: {samples[absurd[0]]:.4g} at {time[absurd[0]]:.6g} s is too large for a "
-                f"measured value, must be at most {LARGEST:g}; exclude it with --from and --to, or repair the "
+                f"measured value (at most {LARGEST:g}); exclude it with --from and --to, or correct the "
                 "file")  # fmt: skip
         missing = np.count_nonzero(~np.isfinite(samples))
         if missing == samples.size:
@@ -283,7 +283,7 @@ def _part(path: Path, block: Block, choice: Choice, notices: list[str]) -> tuple
         if missing:
             at, remark = time[np.flatnonzero(~np.isfinite(samples))[0]], channels[role].remark
             raise DataError(f"{path}: {role}: {missing} missing values{f' ({remark})' if remark else ''}, the first at "
-                            f"{at:.6g} s; exclude them with --from and --to, or repair the file")  # fmt: skip
+                            f"{at:.6g} s; exclude them with --from and --to, or correct the file")  # fmt: skip
     time = _uniform(path, time, notices)
     notices += channel_findings(
         path,
@@ -346,7 +346,8 @@ def _uniform(path: object, time: Vector, notices: list[str]) -> Vector:
     if not np.isfinite(time).all() or not (steps > 0.0).all():
         at = int(np.flatnonzero(~(steps > 0.0))[0]) + 1
         raise DataError(
-            f"{path}: sample {at + 1}: time {time[at]:.9g} s after {time[at - 1]:.9g} s, must increase; exclude this "
+            f"{path}: sample {at + 1}: time {time[at]:.9g} s after {time[at - 1]:.9g} s; times must increase; exclude "
+            "this "
             "part with --from and --to"
         )
     median = float(np.median(steps))

@@ -122,12 +122,13 @@ def exchange_finding(exchanged: Mapping[str, str], mapped: Mapping[str, str], *,
         plates = {f"plate_{b}_displacement": f"plate_{a}_displacement" for a, b in wheels.items()}
         plate_options = shlex.join(_renamed(mapped, plates, complete=complete))
         text = (
-            f"the plates or all other channels are exchanged: {pairs}; if the plates, "
-            f"{f'set {plate_options}' if plate_options else 'exchange the plates of the run'}; if the channels, set "
+            f"the plates or all other channels are swapped: {pairs}; if the plates, "
+            f"{f'set {plate_options}' if plate_options else 'swap the plate signals of the run between the wheels'}; "
+            "if the channels, set "
             f"{shlex.join(options)}"
         )
         return [Finding(text, "exchanged")]
-    return [Finding(f"exchanged channels: {pairs}; set {shlex.join(options)}", "exchanged", options)]
+    return [Finding(f"swapped channels: {pairs}; set {shlex.join(options)}", "exchanged", options)]
 
 
 def _renamed(mapped: Mapping[str, str], names: Mapping[str, str], *, complete: bool) -> tuple[str, ...]:

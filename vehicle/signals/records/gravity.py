@@ -59,7 +59,7 @@ def gravity_findings(
         low, high = (pick(map(abs, with_gravity.values())) for pick in (min, max))
         shown = f"{high:.4g}" if high - low < 5e-3 * high else f"{low:.4g} to {high:.4g}"
         which = "the mean" if len(with_gravity) == 1 else "the means"
-        text = f"{', '.join(with_gravity)}: gravity is in {which} ({shown} m/s2); --detrend subtracts it"
+        text = f"{', '.join(with_gravity)}: gravity is included in {which} ({shown} m/s2); --detrend subtracts it"
         findings.append(Finding(text, "gravity", ("--detrend",)))
     return findings
 

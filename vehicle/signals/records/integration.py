@@ -29,7 +29,7 @@ def displacement(chosen: Chosen, choice: Choice, where: str) -> tuple[dict[str, 
     for role, values in chosen.values.items():
         quantity = chosen.quantities[role]
         if quantity not in orders:
-            raise DataError(f"{where}: {role} is a {quantity}, must be a motion of the plate")
+            raise DataError(f"{where}: {role} is a {quantity} but must be a motion of the plate")
         if choice.highpass is None:
             if orders[quantity]:
                 raise DataError(

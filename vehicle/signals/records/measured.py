@@ -152,7 +152,8 @@ def read_measured(
         wrong = next((output for name in spectra if channel_units([output := output_of[name]])[output] != "m/s2"), None)
         if wrong is not None:
             raise DataError(
-                f"{path}: --map {wrong}=...: is a frequency response, which only accelerations of the model have; "
+                f"{path}: --map {wrong}=...: the channel is a frequency response, but the model gives these only for "
+                "accelerations; "
                 "choose another channel"
             )
         frf, notices = measured_frfs(file, spectra, selection, inverted)
@@ -175,7 +176,9 @@ def read_measured(
                 frf, estimator = estimated
                 notices.append(f"FRFs estimated from the time histories: {estimator}")
             elif "m/s2" in record.units.values():
-                notices.append("no FRFs without the motion of a plate; name it with --map plate_fl_displacement=NAME")
+                notices.append(
+                    "FRFs need the motion of a plate; name its channel with --map plate_fl_displacement=NAME"
+                )
     return Measured(
         file=file,
         frf=frf,
@@ -265,7 +268,8 @@ def _record(file: Measurement, choice: Choice, inverted: Collection[str], delays
         model_unit = find_unit(units[name].replace(" ", ""))
         if model_unit is not None and chosen.quantities[name] != model_unit.quantity:
             raise DataError(
-                f"{file.path}: {name} is a {chosen.quantities[name]}, must be a {model_unit.quantity}; choose another "
+                f"{file.path}: {name} is a {chosen.quantities[name]} but must be a {model_unit.quantity}; choose "
+                "another "
                 f"channel, or set --unit {name}={units[name]} if the unit in the file is wrong"
             )
     notices = list(chosen.notices)

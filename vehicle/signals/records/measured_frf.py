@@ -142,7 +142,7 @@ def _acceleration_per_displacement(channel: Channel, where: str, name: str) -> t
         raise DataError(f"{where} has no frequencies; export it with frequencies")
     if channel.function not in RESPONSES and not np.iscomplexobj(channel.values):
         raise DataError(
-            f"{where} is a {channel.function} without a phase; must be complex, or two columns, real and imag or "
+            f"{where} is a {channel.function} without a phase; give complex values or two columns, real and imag or "
             "magnitude and phase"
         )
     unit = find_ratio(channel.unit)
@@ -160,7 +160,8 @@ def _acceleration_per_displacement(channel: Channel, where: str, name: str) -> t
         )
     if upper not in ORDERS or lower not in ORDERS:
         raise DataError(
-            f"{where} is in {channel.unit}, must be a motion per motion of the plate, for example m/s2/m, g/m or m/m; "
+            f"{where} is in {channel.unit} but must be a motion per motion of the plate, for example m/s2/m, g/m or "
+            "m/m; "
             f"if the unit in the file is wrong, set --unit {name}=UNIT"
         )
     values = np.asarray(channel.si_values, dtype=np.complex128)

@@ -200,7 +200,7 @@ def evaluate_comfort(
     """
     application(contact)
     if offset not in OFFSETS:
-        raise ConfigurationError(f"offset: found {offset!r}, must be one of {', '.join(OFFSETS)}")
+        raise ConfigurationError(f"offset: must be one of {', '.join(OFFSETS)}, not {offset!r}")
     seated = rail is not None or rail_choice is not None
     if seated and contact not in ("seat", "seat_bs6841"):
         raise ConfigurationError(f"--place {contact}: only a seat has a SEAT value (--rail); leave out one of them")
@@ -245,7 +245,8 @@ def evaluate_comfort(
                 f"{1.0 / step:.6g} Hz from {first:.6g} to {last:.6g} s" for first, last, step in (ends, ends_below)
             ]
             raise DataError(
-                f"{file}: the seat has {spans[0]}, the rail {spans[1]}, must be the same; set --resample HZ for "
+                f"{file}: the seat has {spans[0]}, the rail {spans[1]}, but both must be the same; set --resample HZ "
+                "for "
                 "another rate, --from and --to for another span"
             )
         seat_and_rail = np.array([record.channels["z"], below.channels["z"]])

@@ -54,7 +54,8 @@ def resampled(
     """
     if time.size <= DEGREE:
         raise DataError(
-            f"{sample_name(0)}: {time.size} samples, must be at least {DEGREE + 1} for --resample; use a longer record"
+            f"{sample_name(0)}: has {time.size} samples, but --resample needs at least {DEGREE + 1}; use a longer "
+            "record"
         )
     steps = np.diff(time)
     median = float(np.median(steps))
@@ -70,8 +71,8 @@ def resampled(
     samples = int(np.floor((last - first) * rate * factor * (1.0 + 1e-12))) + 1
     if samples > LARGEST_GRID:
         raise DataError(
-            f"{sample_name(0)}: --resample {rate:g} Hz gives {samples} samples, must be at most {LARGEST_GRID}; set a "
-            "lower rate"
+            f"{sample_name(0)}: --resample {rate:g} Hz gives {samples} samples, but at most {LARGEST_GRID} are "
+            "allowed; choose a lower rate"
         )
     fine = np.minimum(first + np.arange(samples) / (rate * factor), last)
     result = {}

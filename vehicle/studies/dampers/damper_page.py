@@ -53,7 +53,7 @@ def _conditions(fits: Sequence[FittedDamper]) -> Markup:
     heads = ["condition", "damping [N s/m]", "friction [N]", "bend force [N]", "slope [N s/m]"]
     rows = [(each.words, *(number(value, 4) for value in each[1:])) for each in settings]
     shown = {each.words: (each.damping, each.friction) for each in settings}
-    figure = drawing(partial(plot_settings, curves=curve_lines(fits), settings=shown), "Laws over the conditions")
+    figure = drawing(partial(plot_settings, curves=curve_lines(fits), settings=shown), "Laws against the conditions")
     return fill("settings", heads=heads, rows=rows, figure=figure, lines=control_lines(fits))
 
 

@@ -179,7 +179,9 @@ def read_test(path: Path, choice: Choice | None = None, *, compression: bool = F
     notices += findings_of(chosen.notices)
     time, sign = chosen.time, -1.0 if compression else 1.0
     if time.size < LEAST_SAMPLES:
-        raise DataError(f"{path}: contains {time.size} samples, must be at least {LEAST_SAMPLES}; record a longer test")
+        raise DataError(
+            f"{path}: contains {time.size} samples, but at least {LEAST_SAMPLES} are needed; record a longer test"
+        )
     x, force = sign * chosen.values["displacement"], sign * chosen.values["force"]
     names = {role: measurement.channels[pick(measurement, complete.channels[role])].name for role in chosen.values}
     require_sensors(path, chosen.values, names)
@@ -255,7 +257,7 @@ def _complete(measurement: Measurement, choice: Choice) -> Choice:
             listed = ", ".join(f"{i + 1} {each.name!r} [{each.unit}]" for i, each in enumerate(measurement.channels))
             raise DataError(
                 f"{measurement.path}: {len(matches) or 'no'} channels can be the {role}; choose one with --channel "
-                f"{role}=NAME, and --unit {role}=UNIT if the file has no unit. The file has {listed}"
+                f"{role}=NAME, and --unit {role}=UNIT if the file has no unit. The file contains {listed}"
             )
     units = _units_by_role(measurement, channels, choice.units)
     unknown = next((name for name in units if name not in ("", "time", *ROLES)), None)

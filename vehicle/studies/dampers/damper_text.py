@@ -182,7 +182,7 @@ def summary_lines(fitted: FittedDamper) -> list[str]:
         f"chosen: {fit.law.title}, the simplest law whose error on left-out tests is within one standard "
         "error of the best"
     )
-    lines.append(f"{'RMS error over standard deviation of force':<44}{'fitted':>8}{'left out':>10}{'whole':>8}")
+    lines.append(f"{'RMS error divided by standard deviation of force':<44}{'fitted':>8}{'left out':>10}{'whole':>8}")
     for test, inside, outside, whole in zip(fitted.tests, fit.fitted, fit.left_out, fit.whole, strict=True):
         lines.append(f"{f'{test.name}: {test.caption}':<44}{inside:>8.3f}{outside:>10.3f}{whole:>8.3f}")
     if float(np.max(fit.fitted)) > POOR:

@@ -59,8 +59,8 @@ class Direction(NamedTuple):
             )
         if self.by_damping < 0:
             texts.append(
-                f"bump has {self.bump:.0f} N at {1e3 * self.velocity:.0f} mm/s and rebound {self.rebound:.0f} N, but "
-                "dampers of cars damp rebound more"
+                f"the force at {1e3 * self.velocity:.0f} mm/s is {self.bump:.0f} N in bump and {self.rebound:.0f} N "
+                "in rebound, but car dampers are stiffer in rebound"
             )
         return "; ".join(texts)
 

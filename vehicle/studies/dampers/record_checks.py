@@ -51,7 +51,8 @@ def require_sensors(path: Path, values: Mapping[str, Vector], names: Mapping[str
         if size > largest:
             word = "stroke" if role == "displacement" else "force"
             raise DataError(
-                f"{path}: the {word} is {number(size, 3)} {unit}, must be at most {largest:g} {unit}; check the unit "
+                f"{path}: the {word} is {number(size, 3)} {unit} but must be at most {largest:g} {unit}; check the "
+                "unit "
                 f"of channel {names[role]!r}, for example --unit {role}={other}"
             )
     for role, copy in (("displacement", "force"), ("displacement", "velocity"), ("velocity", "force")):
@@ -99,7 +100,7 @@ def usable_velocity(
     if abs(correlation) < SAME_MOTION:
         raise DataError(
             f"{path}: the channels {names['displacement']!r} and {names['velocity']!r} belong to different motions: "
-            f"the correlation of displacement and integrated velocity is {number(correlation, 2)}, must be at least "
+            f"the correlation of displacement and integrated velocity is {number(correlation, 2)} but must be at least "
             f"{SAME_MOTION:g}; choose another channel with --channel displacement=NAME or --channel velocity=NAME"
         )
     if not 1.0 / SAME_UNIT <= ratio <= SAME_UNIT:
@@ -135,8 +136,9 @@ def require_damping(path: Path, force: Vector, velocity: Vector, names: Mapping[
         )
     if size < LEAST_DAMPING * speed:
         raise DataError(
-            f"{path}: the force, channel {names['force']!r}, is {number(size, 2)} N RMS at {number(speed, 2)} m/s RMS, "
-            f"must be at least {LEAST_DAMPING:g} N s/m times the velocity; if its values are in kN, set --unit force=kN"
+            f"{path}: the force, channel {names['force']!r}, is {number(size, 2)} N RMS at {number(speed, 2)} m/s RMS "
+            f"but must be at least {LEAST_DAMPING:g} N s/m times the velocity; if its values are in kN, set --unit "
+            "force=kN"
         )
 
 

@@ -67,21 +67,23 @@ def balanced(table: dict[str, Any], template: TemplateCar, stated: StatedNumbers
         ]
         raise ConfigurationError(
             f"{', '.join(map(option, stated_names))}: the centre of gravity would be {share * wheelbase:.3f} m "
-            f"behind the front axle, must be inside the wheelbase of {wheelbase:g} m (kerb mass {mass:g} kg)"
+            f"behind the front axle but must be inside the wheelbase of {wheelbase:g} m (kerb mass {mass:g} kg)"
         )
     for name, load in (("front_axle_load", front), ("rear_axle_load", rear)):
         if load is not None and load < LEAST_SHARE * mass:
             low, high = usual_ranges()["load on the front axle [%]"]["all"]
             percent = f"; for {load:g} % of the kerb mass type {option(name)} {load:g}%" if load < 100.0 else ""
             raise ConfigurationError(
-                f"{option(name)} {load:g} kg: is {100.0 * load / mass:.1f} % of the kerb mass of {mass:g} kg, must be "
+                f"{option(name)} {load:g} kg: is {100.0 * load / mass:.1f} % of the kerb mass of {mass:g} kg but must "
+                "be "
                 f"at least {100.0 * LEAST_SHARE:g} %; cars have {low} to {high} % of it on the front axle{percent}"
             )
     parts = car_masses(kerb_model(table, template), body=False)
     if mass - parts.mass < LIGHTEST_BODY:
         minimum = LIGHTEST_BODY / (1.0 - parts.mass / mass) if parts.mass < mass else parts.mass + LIGHTEST_BODY
         raise ConfigurationError(
-            f"{option('kerb_mass')} {mass:g} kg: leaves {mass - parts.mass:.1f} kg for the body, must be at least "
+            f"{option('kerb_mass')} {mass:g} kg: leaves {mass - parts.mass:.1f} kg for the body but must leave at "
+            "least "
             f"{LIGHTEST_BODY:g} kg; axles, engine and other parts, scaled from {template.name}, weigh {parts.mass:.1f} "
             f"kg: state a kerb mass of at least {math.ceil(minimum)} kg"
         )
@@ -139,7 +141,7 @@ def _body_numbers(body: MassProperties) -> dict[str, Any]:
         others = moments.sum() - moment
         if not 0.0 < moment < others:
             raise ConfigurationError(
-                f"the body would have I{'xyz'[axis] * 2} = {moment:.0f} kg m2, must be above 0 and below the "
+                f"the body would have I{'xyz'[axis] * 2} = {moment:.0f} kg m2 but it must be above 0 and below the "
                 f"sum of the two others ({others:.0f} kg m2): check {option(f'{name}_inertia')} and the other moments, "
                 f"{option('cog_height')} and {option('kerb_mass')}"
             )

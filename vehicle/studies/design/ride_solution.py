@@ -284,7 +284,7 @@ class RideProblem:
         name = target.name.removesuffix("_front").removesuffix("_rear")
         of = field_quantity(StatedNumbers, target.name)["unit"]
         return ConfigurationError(
-            f"{option(target.name)} {target.value:g} {'' if of == '-' else of}: cannot be reached, must be "
+            f"{option(target.name)} {target.value:g} {'' if of == '-' else of}: cannot be reached; must be "
             f"{low:.4g} to {high:.4g} {'' if of == '-' else of}, with {path} from {first} to {last} "
             f"{unit}{LIMITS.get(name, '')}. {WIDENS[name]}".replace(" :", ":").replace(" ,", ",")
         )
@@ -313,7 +313,7 @@ def _require_inertia(table: Mapping[str, Any], targets: Sequence[Target]) -> Non
             if not abs(izz - ixx) < iyy < ixx + izz:
                 raise ConfigurationError(
                     f"{option(target.name)} {target.value:g} Hz: with these ride frequencies it needs Iyy = {iyy:.0f} "
-                    f"kg m2 of the body, must be between {abs(izz - ixx):.0f} and {ixx + izz:.0f} kg m2 (Ixx "
+                    f"kg m2 of the body, which must be between {abs(izz - ixx):.0f} and {ixx + izz:.0f} kg m2 (Ixx "
                     f"{ixx:.0f}, Izz {izz:.0f}); check it against the ride frequencies, or leave it out"
                 )
 

@@ -58,7 +58,7 @@ def scaled_parts(
         several = isinstance(value, list | tuple)
         numbers = [rounded(factor * number, 12) for number in (value if several else [value])]
         put(table, {path: numbers if several else numbers[0]})  # type: ignore[dict-item]
-        sources[path] = f"template {template.name} times {factor:g}, scaled by the kerb mass"
+        sources[path] = f"value from template {template.name} times {factor:g}, in proportion to the kerb mass"
     try:
         vehicle_of(table, template.file.parent)
     except ConfigurationError as error:

@@ -25,7 +25,7 @@ CAR: dict[str, Any] = {"at_least": 100.0, "why": "kg, not t"}
 AXLE: dict[str, Any] = {"at_least": 20.0, "why": "kg, neither a share nor t"}
 METRES: dict[str, Any] = {"why": "m, not mm"}
 HOP: dict[str, Any] = {"at_least": 4.0, "at_most": 30.0, "why": "wheels of cars hop at 8 to 16 Hz"}
-RATIO: dict[str, Any] = {"why": "a ratio: 30 % of the critical damping are 0.3"}
+RATIO: dict[str, Any] = {"why": "a ratio: 30 % of critical damping is 0.3"}
 
 optional = partial(quantity, default=None)
 """Declaration of a number that need not be stated."""
@@ -128,7 +128,7 @@ class StatedNumbers:
         ):
             raise ConfigurationError(
                 f"{option('front_axle_load')} {front:g} kg and {option('rear_axle_load')} {rear:g} kg: together "
-                f"{front + rear:g} kg, must be the kerb mass of {mass:g} kg; leave one of the three out"
+                f"{front + rear:g} kg instead of the kerb mass of {mass:g} kg; leave one of the three out"
             )
         for name, load in self.load.items():
             build(Load, {key: value for key, value in load.items() if key not in ("at", "on")}, f"load.{name}")

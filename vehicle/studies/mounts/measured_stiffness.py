@@ -62,8 +62,8 @@ def read_stiffness(path: Path) -> MeasuredStiffness:
     rows, lines = len(frequency), len(np.unique(frequency))
     if rows < LEAST_ROWS or lines < LEAST_FREQUENCIES:
         raise DataError(
-            f"{path}: has {rows} rows with {lines} frequencies, must be at least {LEAST_ROWS} rows and "
-            f"{LEAST_FREQUENCIES} frequencies; measure more points"
+            f"{path}: has {rows} rows with {lines} frequencies, but at least {LEAST_ROWS} rows and "
+            f"{LEAST_FREQUENCIES} frequencies are needed; measure more points"
         )
     stiffness = columns["stiffness"] * np.exp(1j * columns["loss_angle"])
     return MeasuredStiffness(frequency=frequency, amplitude=amplitude, stiffness=stiffness)
@@ -85,8 +85,8 @@ def _index(header: Header, name: str) -> int:
     columns = [index for index, (head, _) in enumerate(heads) if head.strip().lower().replace(" ", "_") == name]
     if len(columns) != 1:
         raise DataError(
-            f"{header.where}: has {len(columns) or 'no'} column{'s' if columns else ''} {name!r}, must be a "
-            f"single column; found {header.found}; the table needs {NEEDED}"
+            f"{header.where}: has {len(columns) or 'no'} column{'s' if columns else ''} {name!r} instead of one; "
+            f"found {header.found}; the table needs {NEEDED}"
         )
     unit = heads[columns[0]][1]
     if unit not in UNITS[name]:

@@ -200,7 +200,7 @@ def _ranges(vary: Mapping[str, Sequence[float]] | Sequence[Range]) -> Sequence[R
         return vary
     wrong = next((path for path, bounds in vary.items() if len(bounds) != 2), None)
     if wrong is not None:
-        raise ConfigurationError(f"vary {wrong}: found {vary[wrong]}, must be (lower, upper)")
+        raise ConfigurationError(f"vary {wrong}: must be (lower, upper), not {vary[wrong]}")
     return [Range(path=path, low=low, high=high) for path, (low, high) in vary.items()]
 
 
@@ -213,6 +213,6 @@ def _quantile_and_samples(quantile: float | None, samples: int | None) -> tuple[
     if samples < needed:
         raise ConfigurationError(
             f"--quantile {chosen:g}: needs at least {needed} cars, found --samples {samples}; set --samples {needed}, "
-            f"lower quantile, or --quantile 1 for the worst of {samples} cars"
+            f"a lower quantile, or --quantile 1 for the worst of {samples} cars"
         )
     return chosen, samples

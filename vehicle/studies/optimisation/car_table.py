@@ -83,7 +83,9 @@ class CarTable:
             try:
                 (row,) = csv.reader([line])
                 if len(row) != len(self._head) or int(row[0]) != number - 2:
-                    raise ValueError(f"found {len(row)} cells, must be {len(self._head)}, and the next number of a car")
+                    raise ValueError(
+                        f"found {len(row)} cells, must be {len(self._head)} beginning with the next number of a car"
+                    )
                 if int(row[1]) == len(generations):
                     generations.append([])
                 elif int(row[1]) != len(generations) - 1:
@@ -107,7 +109,7 @@ class CarTable:
 def _number(cell: str) -> float:
     """Return the number of a cell, NaN for an empty one; raise a ValueError for an infinite number or NaN."""
     if cell and not math.isfinite(float(cell)):
-        raise ValueError(f"found {cell[:20]!r}, must be a finite number")
+        raise ValueError(f"must be a finite number, not {cell[:20]!r}")
     return float(cell) if cell else math.nan
 
 

@@ -167,7 +167,7 @@ def parsed_criteria(
 
 
 def _criterion(option: str, text: str, sense: float, limit: float, inputs: Sequence[str]) -> Criterion:
-    """Parse one objective or limit."""
+    """Parse an objective or a limit."""
     number, at, input_name = (part.strip() for part in text.partition("@"))
     allowed = [*inputs, MEAN, WORST]
     if at and input_name not in allowed:

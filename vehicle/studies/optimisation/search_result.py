@@ -180,14 +180,14 @@ class FoundCars:
         if beside is not None:
             difference = agreement(outcome, beside)
             lines.append(
-                f"front of {beside.folder}: hypervolume {100 * difference['hypervolume_change']:+.2f} % from this "
-                f"front, mean distance {100 * difference['mean_distance']:.2f} % of the extents"
+                f"front of {beside.folder}: hypervolume {100 * difference['hypervolume_change']:+.2f} % relative to "
+                f"this front, mean distance {100 * difference['mean_distance']:.2f} % of the range of the objectives"
             )
         if self.notices:
             file = " in summary.json" if folder is not None else ""
             lines.append(
-                f"{len(self.notices)} notices{file}: named cars leave the valid range of the reduced engine; --check "
-                "shows the error"
+                f"{len(self.notices)} notices{file}: the cars they name are outside the valid range of the reduced "
+                "engine; run with --check to see the error"
             )
         return "\n".join(lines)
 

@@ -47,14 +47,15 @@ class SearchSettings(PoolSettings):
         metavar="N",
     )
     tolerances: Tolerances = setting(
-        "path to half the width of the tolerance band of a parameter, varied or not: in its unit, or as '15%%'",
+        "path to half the width of the tolerance band of a parameter, whether varied or not: in the unit of the "
+        "parameter, or as '15%%'",
         (),
         flag="--tolerance",
         action="append",
         type=_tolerance,
         metavar="PATH=SIZE",
-        help="half the width of the tolerance band of a parameter, varied or not: in its unit, or in percent (15%%); "
-        "for a coordinate in m (0.002); may be repeated",
+        help="half the width of the tolerance band of a parameter, whether varied or not: in the unit of the "
+        "parameter, in percent (15%%), or for a coordinate in m (0.002). May be repeated",
     )
     samples: int | None = setting(
         "cars within the tolerances for each car tried; 8 by default, more where the quantile needs them",

@@ -176,7 +176,7 @@ def meet_targets(
     """
     started = tuple(_with_start(car.vehicle, each) for each in ranges)
     if not 1 <= len(started) <= MOST_PARAMETERS:
-        raise ConfigurationError(f"--vary: {len(started)} parameters; must be 1 to {MOST_PARAMETERS}")
+        raise ConfigurationError(f"--vary: found {len(started)} parameters, must be 1 to {MOST_PARAMETERS}")
     measures = dict(measures_of(car, figures, duration))
     names = list(figures)
     scale = np.array([figure.weight / (abs(figure.limit) or 1.0) for figure in figures.values()])
@@ -240,7 +240,7 @@ def outlook(ranges: int, figures: Mapping[str, Target], duration: float) -> str:
     text += "" if len(inputs) == 1 else "s"
     if not any(len(each.road) == 1 for each in figures.values()):
         return text
-    shorter = "a quarter of --duration takes a quarter of the time and doubles the errors"
+    shorter = "a quarter of the --duration takes a quarter of the time and doubles the errors"
     return f"{text}; roads of {number(duration)} s: {shorter}"
 
 

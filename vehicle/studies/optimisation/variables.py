@@ -57,7 +57,7 @@ def toleranced(vehicle: Vehicle, tolerances: Sequence[Tolerance]) -> tuple[tuple
         if tolerance.relative and any(is_coordinate(vehicle, path) for path in values):
             raise ConfigurationError(
                 f"--tolerance {tolerance.path}={100.0 * tolerance.width:g}%: a percentage of a coordinate depends on "
-                f"the origin; set a length in m, e.g. {tolerance.path}=0.002"
+                f"the origin; give a length in m, for example {tolerance.path}=0.002"
             )
     _require_unique("--tolerance", each)
     return tuple(zip(tolerances, each, strict=True))

@@ -71,7 +71,7 @@ def read_target(path: Path, names: Mapping[str, str], choice: Choice, band: tupl
     for role, quantity in chosen.quantities.items():
         if quantity != "acceleration":
             raise DataError(
-                f"{path}: {role}: found a {quantity}, must be an acceleration; choose another channel, or set "
+                f"{path}: {role}: is a {quantity} but must be an acceleration; choose another channel, or set "
                 f"--unit {role}=m/s2 or {role}=g if the file is wrong"
             )
     values, notices = dict(chosen.values), list(chosen.notices)
@@ -80,7 +80,9 @@ def read_target(path: Path, names: Mapping[str, str], choice: Choice, band: tupl
         notices = list(messages)
     count = chosen.time.size
     if count < MINIMUM_SAMPLES:
-        raise DataError(f"{path}: contains {count} samples, must be at least {MINIMUM_SAMPLES}; use a longer record")
+        raise DataError(
+            f"{path}: contains {count} samples, but at least {MINIMUM_SAMPLES} are needed; use a longer record"
+        )
     step = float(chosen.time[-1] - chosen.time[0]) / (count - 1)
     _check_band(path, band, step, count, chosen.highest)
     accelerations, rate_notices = _resampled(np.array([values[name] for name in names]), step, band, rate)

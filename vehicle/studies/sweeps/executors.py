@@ -189,7 +189,8 @@ def _own(module: str, name: str) -> Callable[[], Executor]:
             ) from None
         if not isinstance(executor, Executor):
             raise ConfigurationError(
-                f"--executor {module}:{name}: returned {type(executor).__name__}, must be a concurrent.futures.Executor"
+                f"--executor {module}:{name}: returned {type(executor).__name__} instead of a "
+                "concurrent.futures.Executor"
             )
         return executor
 

@@ -27,7 +27,7 @@ class NamedFunctions:
         for name, function in self.functions.items():
             value = run.figure(function) if isinstance(function, str) else function(run)
             if isinstance(value, Mapping):
-                raise ConfigurationError(f"measure {name!r}: its function returned a dictionary, must be a number")
+                raise ConfigurationError(f"measure {name!r}: its function returned a dictionary instead of a number")
             numbers[name] = math.nan if isinstance(function, str) and math.isinf(value) else float(value)
         return numbers
 

@@ -146,7 +146,8 @@ def sobol_indices(ranges: Sequence[Range], values: npt.ArrayLike) -> SobolIndice
     left = base - int(np.count_nonzero(finite))
     if left > (1.0 - LEAST_LEFT) * base or len(np.unique(group[finite])) < 2:
         raise DataError(
-            f"values: {left} of {base} base points have a failed run or no value, must be at most half; table.csv "
+            f"values: {left} of {base} base points have a failed run or no value, but at most half may have none; "
+            "table.csv "
             "has the reasons: narrow the ranges, or repeat with --retry-failed"
         )
     y, group = y[finite], group[finite]

@@ -89,14 +89,14 @@ class SweepPlan:
         asked = f"engine mujoco, as requested; {reduced}"
         if not reasons:
             inside = engine == "mujoco" and None not in states
-            return (f"{asked}, within its valid range ({ERROR_IN_RANGE})",) if inside else ()
+            return (f"{asked}, within the valid range of the reduced engine ({ERROR_IN_RANGE})",) if inside else ()
         names = ", ".join(list(reasons)[:MOST_NAMED]) + (" ..." if len(reasons) > MOST_NAMED else "")
         which, reason = next(iter(reasons.values()))
         where = (
             f"on {names} ({len(reasons)} of {len(self.cases.inputs)} inputs), at least for the {which} car: {reason}"
         )
         if engine == "mujoco":
-            return (f"{asked}{_difference(reason)}, outside its valid range {where}",)
+            return (f"{asked}{_difference(reason)}, outside the valid range of the reduced engine {where}",)
         return (f"engine mujoco {where}; {reduced}{_difference(reason)}",)
 
     def _outside_range(self, measure: BatchMeasure) -> tuple[str, ...]:

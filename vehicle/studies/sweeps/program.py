@@ -50,6 +50,7 @@ def require_same_program(digest: str) -> None:
     """
     if digest != program_digest():
         raise ConfigurationError(
-            f"the workers run a different program ({program_digest()} with {libraries()}) from this sweep ({digest}): "
-            "install the same version of this package and its libraries on them; do not change it during a sweep"
+            f"the workers run a different version of this package or its libraries ({program_digest()} with "
+            f"{libraries()}) from that of this sweep ({digest}): install the same versions on the workers, and do not "
+            "change them during a sweep"
         )

@@ -61,11 +61,11 @@ def state_size(
     memory = busy * worker + (settings.jobs - busy) * BASE + CASE * runs if worker else 0.0
     disk = cars * (ROW_OF_CAR + VALUE_OF_CAR * numbers) if cars else runs * (ROW + VALUE * len(measure.units))
     disk = 0.0 if settings.folder is None else disk
-    remedy = "to reduce it, shorten the inputs, or set a lower solver.record_rate"
+    remedy = "to reduce it, shorten the inputs, or choose a lower solver.record_rate"
     if settings.jobs > 1 and worker:
         fit = max(int((free_memory() - CASE * runs) / worker), 1)
         fewer = f"--jobs {fit}" if fit < busy else "fewer processes (--jobs)"
-        remedy = f"to reduce it, use {fewer}, shorten the inputs, or set a lower solver.record_rate"
+        remedy = f"to reduce it, use {fewer}, shorten the inputs, or choose a lower solver.record_rate"
     if disk > memory:
         remedy = "to reduce it, vary fewer values, or use fewer inputs"
     subject = f"{runs} runs of up to {samples:.3g} samples on {settings.jobs} processes" if samples else f"{runs} runs"

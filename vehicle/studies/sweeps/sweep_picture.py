@@ -42,7 +42,7 @@ def draw_ranked(path: Path, cars: RankedCars, caption: str = "") -> None:
     """
     parameters = cars.numbers()
     assert parameters is not None
-    title = f"Comfort {cars.point} over the varied parameters"
+    title = f"Comfort {cars.point} against the varied parameters"
     over = f"mean of {cars.inputs} inputs" if cars.inputs > 1 else "one input"
     plot_sweep(
         path,

@@ -57,7 +57,7 @@ class SweptCases(Protocol):
         """Return the values of a column, NaN for a failed run; (cases,)."""
 
     def paths(self) -> list[str]:
-        """Return all modified parameter paths."""
+        """Return the modified parameter paths."""
 
     def rows(self) -> Iterator[Row]:
         """Return the rows with numbers as texts of all digits."""
@@ -116,7 +116,7 @@ class RankedCars:
             first, best = min(cars), cars[0]
             text = ", ".join(f"{self.paths[at]} = {self.cells[best][at]}" for at in chosen)
             change = 100.0 * (float(self.relative[best]) / float(self.relative[first]) - 1.0)
-            against = "the first in this state" if best == first else f"{change:+.2f} % weighted from the first"
+            against = "the first in this state" if best == first else f"{change:+.2f} % weighted, relative to the first"
             sentences.append(f"{', '.join(state)}: the most comfortable car has {text} ({against})")
         return sentences
 
@@ -264,7 +264,7 @@ def ranking_lines(cars: RankedCars) -> list[str]:
     elif best and cars.best == 0:
         lines.append(f"the first car is the most comfortable: {best}")
     elif best:
-        change = f"{cars.change_text(cars.best)} % weighted from the first{cars.doubt}"
+        change = f"{cars.change_text(cars.best)} % weighted, relative to the first{cars.doubt}"
         lines.append(f"most comfortable car: {best} ({change})")
     return lines
 

@@ -92,9 +92,7 @@ def ranges_of(vehicle: Vehicle, parameters: Mapping[str, Bounds] | Sequence[Rang
     ranges = []
     for path, bounds in parameters.items():
         if len(bounds) not in (2, 3):
-            raise ConfigurationError(
-                f"parameter {path}: found {bounds}, must be (lower, upper) or (lower, upper, start)"
-            )
+            raise ConfigurationError(f"parameter {path}: must be (lower, upper) or (lower, upper, start), not {bounds}")
         overrides_of(vehicle, {path: bounds[0]})  # raises if the path is not a numeric parameter of the car
         start = bounds[2] if len(bounds) == 3 else value_of(vehicle, path)
         length = LENGTH_OF_ONE if is_coordinate(vehicle, path) else math.nan

@@ -119,7 +119,7 @@ class ResponseSettings(ReadingSettings, BandSettings):
 class HistorySettings(ReadingSettings):
     """Settings of measured time histories."""
 
-    drift: float = setting("relative amount by which the clock of the record is slow [-]", 0.0)
+    drift: float = setting("relative amount by which the clock of the record runs slow [-]", 0.0)
     stretch: tuple[float, float] | None = setting(
         "part of the record to fit, in times of the file, like --from and --to [s]; default: the whole record, or on "
         "a road from 2 s on",

@@ -43,5 +43,5 @@ def state_fit_size(vehicle: Vehicle, measurements: Sequence[MeasuredTarget], par
         f"{len(measurements)} measurements of up to {longest:.3g} samples",
         memory + 8.0 * residuals * (1.0 + TABLES * parameters),
         0.0,
-        "to reduce it, compare a shorter part or fewer channels, or set a lower solver.record_rate",
+        "to reduce it, compare a shorter part or fewer channels, or choose a lower solver.record_rate",
     )

@@ -226,7 +226,7 @@ def to_driven_plates(data: FrfData, motions: Sequence[Mapping[str, float]], wher
             raise DataError(f"{where}: {error}") from None
         if pair is None:
             raise DataError(
-                f"{where}: {name}: is an FRF to {name.input}, but the signal drives "
+                f"{where}: {name}: is an FRF from the input {name.input}, but the signal drives "
                 f"{', '.join(candidate.input for candidate in candidates)}; use the signal of this measurement, "
                 "or choose other FRFs with --channels"
             )

@@ -328,7 +328,10 @@ class _Problem:
         # predicts is then still large.
         predicted = np.sum((answer.jac @ np.linalg.lstsq(answer.jac, -answer.fun)[0]) ** 2) if impossible else 0.0
         if predicted > FAR * tolerance * np.sum(answer.fun**2):
-            return whole(answer.x), (False, f"the fit ends where trial values make no model ({impossible[-1]})")
+            return whole(answer.x), (
+                False,
+                f"the fit stopped because the trial values do not give a valid model ({impossible[-1]})",
+            )
         return whole(answer.x), (answer.status > 0, str(answer.message))
 
     def result(

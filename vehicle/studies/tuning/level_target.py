@@ -246,7 +246,9 @@ def level_target(
         data=FrfData(frequency=lines / window, names=names, response=response, coherence=coherence, random_error=error),
     )
     if not np.isfinite(target.deviation).any():
-        raise DataError(f"{histories.name}: no channel is coherent with the input {reference}; set another --reference")
+        raise DataError(
+            f"{histories.name}: no channel is coherent with the input {reference}; choose another --reference"
+        )
     return target
 
 

@@ -31,7 +31,7 @@ OFTEN_WRONG = (
 )  # fmt: skip
 """Parameters that vary most between specimens or are known least, named as examples for a further fit."""
 
-FIRST = "check delays (--delay), signs (--turn) and units (--unit) of the channels first"
+FIRST = "first check the delays (--delay), signs (--turn) and units (--unit) of the channels"
 """Advice: check the channels before the model is doubted."""
 
 

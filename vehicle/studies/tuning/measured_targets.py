@@ -183,8 +183,9 @@ def _histories(
     names, step = list(held.channels), 1.0 / car.vehicle.solver.record_rate
     if contained and (begin, settings.drift) != (0.0, 0.0):
         raise ConfigurationError(
-            f"{path}: --delay S and --drift correct the clock against a signal of another file; this record contains "
-            "its plate. Remove both, or add --signal FILE; --delay GROUP=TIME is for sensors that lag the plate"
+            f"{path}: --delay S and --drift align the clock with a signal from another file, but this record contains "
+            "the plate signal. Remove both, or add --signal FILE; --delay GROUP=TIME is for sensors that lag the "
+            "plate"
         )
     signal, road, settled = _driven_input(car, path, measured, asked, settings, plates)
     delays = response_delays(measured, tuple(names), asked.delays, contained=contained)
@@ -213,7 +214,7 @@ def _histories(
     length, shortest = max(window[1] - window[0], 0.0), LEAST_VALUES / (KEPT * lowpass)
     if length < shortest:
         raise DataError(
-            f"{path}: {length:.3g} s of the record are evaluated, must be at least {shortest:.3g} s "
+            f"{path}: {length:.3g} s of the record are evaluated, but at least {shortest:.3g} s are needed "
             f"({LEAST_VALUES} independent values below {lowpass:g} Hz); use a longer record or --stretch FROM:TO"
         )
     signal = signal_until(signal, window[1] + AFTER / lowpass)

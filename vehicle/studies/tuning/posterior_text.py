@@ -53,7 +53,7 @@ def posterior_sentences(posteriors: Sequence[NamedPosterior]) -> list[str]:
     if posterior.misfit > UNEXPLAINED:
         sentences.append(
             f"the best car differs from the data by {number(posterior.misfit, 2)} standard deviations (RMS, limit "
-            f"{UNEXPLAINED:g}), so the intervals are too narrow; add parameters or set a larger --discrepancy"
+            f"{UNEXPLAINED:g}), so the intervals are too narrow; add parameters or choose a larger --discrepancy"
         )
     sentences += [f"evidence: {verdict(posteriors[0], rival)}" for rival in posteriors[1:]]
     return sentences

@@ -104,7 +104,7 @@ class BodyMatrices(BodyNodes):
         for name, matrix in (("stiffness", self.stiffness), ("mass", self.mass)):
             if matrix.shape != (size, size):
                 raise DataError(
-                    f"{name}: has {matrix.shape[0]} rows and {matrix.shape[1]} columns, must be {size}, the "
+                    f"{name}: has {matrix.shape[0]} rows and {matrix.shape[1]} columns but must have {size}, the "
                     "number of degrees of freedom. Use the list of degrees of freedom of these matrices, in the "
                     "same order."
                 )
@@ -201,8 +201,8 @@ class BodyMatrices(BodyNodes):
         lowest, highest = np.linalg.eigvalsh(inertia)[[0, -1]]
         if lowest <= 1e-9 * highest:
             raise DataError(
-                f"mass: all mass is on one line (principal moments of inertia {lowest:.3g} to {highest:.3g} kg "
-                "m2). Add rotational inertia to the point masses, or mass off this line."
+                f"mass: all mass is on one axis (principal moments of inertia {lowest:.3g} to {highest:.3g} kg "
+                "m2). Add rotational inertia to the point masses, or add mass at points that do not lie on this axis."
             )
         return MassProperties(mass=mass, cog=cog, inertia=inertia)
 
@@ -241,9 +241,10 @@ class BodyMatrices(BodyNodes):
         if rigid_frequency > max(_RIGID_MOTION * first_elastic, rounded):
             raise DataError(
                 f"stiffness: the body is not free: its rigid motions have {rigid_frequency:.3g} Hz instead of 0, "
-                f"its first elastic mode {first_elastic:.4g} Hz. Either it is supported, or nodes and matrices "
-                "have different axes or units, or elements resist rotations (as constraints do by which "
-                "CalculiX expands shells and beams to solids). Export the matrices of the free body; with "
+                f"its first elastic mode {first_elastic:.4g} Hz. Either the body is held by supports, or the nodes "
+                "and the matrices use different axes or units, or some elements resist rotation (as do the "
+                "constraints with which CalculiX expands shells and beams into solids). Export the matrices of the "
+                "free body; with "
                 "CalculiX, use solid elements."
             )
 

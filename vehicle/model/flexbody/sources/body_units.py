@@ -124,7 +124,7 @@ def require_first_mode(frequency: float, units: Units) -> None:
         return
     force = f"{units.mass} {units.length}/s2" if units.stated else ("lbf" if units.length == "in" else "N")
     raise DataError(
-        f"stiffness and mass: the first elastic mode is at {frequency:.4g} Hz, must be {LOWEST_FIRST_MODE:g} to "
+        f"stiffness and mass: the first elastic mode is at {frequency:.4g} Hz but must be {LOWEST_FIRST_MODE:g} to "
         f"{HIGHEST_FIRST_MODE:g} Hz. With {units.words}, the stiffness must be in ({force})/{units.length} and "
         "time in s: K in N/mm needs M in t (a wrong unit by a factor of 1000 changes frequencies by a factor of "
         "31.6). Export K and M in a consistent system of units."
@@ -157,8 +157,8 @@ def require_level(vectors: Vector, modal_mass: Vector, mass: float, units: Units
     best = _unit(1.0 / level**2, units)
     remedy = f'Set --mass-unit "{best}"' if best else "Check the modal masses"
     raise DataError(
-        f"shapes: their RMS is {level:.3g} times that of a rigid motion of {mass:.4g} kg with {units.words}, "
-        f"must be about 1, so the unit of mass is wrong. {remedy}."
+        f"shapes: their RMS is {level:.3g} times that of a rigid motion of {mass:.4g} kg with {units.words} instead "
+        f"of about 1, so the unit of mass is wrong. {remedy}."
     )
 
 

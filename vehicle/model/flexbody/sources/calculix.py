@@ -69,7 +69,7 @@ def assembled(
         missing = []
     if missing:
         raise DataError(
-            f"{path}: {len(missing)} nodes of the matrices have no position in the list of nodes, the first is "
+            f"{path}: {len(missing)} nodes of the matrices have no position in the list of nodes; the first is "
             f"{missing[0]}. Give the list of all nodes; CalculiX expands shells and beams to solids with "
             "additional nodes and constraints, so only matrices of solid elements describe a free body."
         )

@@ -36,7 +36,7 @@ def read_harwell_boeing(path: Path) -> Any:
         counts = [int(word) for word in lines[1].split()]
         matrix_type, shape = lines[2][:3].upper(), [int(word) for word in lines[2][3:].split()]
         if matrix_type not in ("RSA", "RUA"):
-            raise ValueError(f"the type is {matrix_type}, must be RSA or RUA (real, assembled)")
+            raise ValueError(f"the type is {matrix_type} but must be RSA or RUA (real, assembled)")
         rows, columns, entries = shape[:3]
         formats = [lines[3][i:j].replace(" ", "") for i, j in ((0, 16), (16, 32), (32, 52))]
         first = 4 + (len(counts) > 4 and counts[4] > 0)
@@ -52,7 +52,7 @@ def read_harwell_boeing(path: Path) -> Any:
                 for i in range(0, len(line.rstrip()), width)
             ]
             if len(fields) != size:
-                raise ValueError(f"contains {len(fields)} numbers, must be {size}; the file is truncated")
+                raise ValueError(f"contains {len(fields)} numbers instead of {size}; the file is truncated")
             blocks.append(np.array([float(word.upper().replace("D", "E")) for word in fields]))
             first += count
         start, row = blocks[0].astype(int) - 1, blocks[1].astype(int) - 1

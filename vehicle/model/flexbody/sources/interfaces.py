@@ -72,7 +72,7 @@ def interfaces(
         gap = np.linalg.norm(body.positions[moving] - np.array(position), axis=1)
         if name in chosen:
             if chosen[name] not in body.nodes:
-                missing_nodes.append(f"the body has no node {chosen[name]!r}, which is chosen for {name}")
+                missing_nodes.append(f"node {chosen[name]!r}, chosen for {name}, does not exist in the body")
                 continue
             results.append(_of_node(body, name, position, body.nodes.index(chosen[name])))
             continue

@@ -65,7 +65,7 @@ def modes_of_measurement(measurement: Measurement) -> GivenModes:
     unplaced = [name for name in points if name not in measurement.geometry.points]
     if unplaced or len(points) < 3:
         raise DataError(
-            f"{measurement.path}: {len(points)} nodes appear in all mode shapes, must be at least 3, and "
+            f"{measurement.path}: {len(points)} nodes appear in all mode shapes; there must be at least 3, and "
             f"{len(unplaced)} of them have no position. Export the geometry (datasets 15, 2411) with the modes."
         )
     rows = [[shape.points.index(name) for name in points] for shape in measurement.shapes]

@@ -142,9 +142,9 @@ def _dmig(
     name = fields[0].upper()
     if fields[1] == "0":  # the head of a matrix: form, type
         if int(fields[2]) not in (_SQUARE, _SYMMETRIC):
-            others[name] = f"the matrix form is {fields[2]}, must be 6 (symmetric) or 1 (square)"
+            others[name] = f"the matrix form is {fields[2]} but must be 6 (symmetric) or 1 (square)"
         elif int(fields[3]) not in (1, 2):
-            others[name] = f"the number type is {fields[3]}, must be 1 or 2 (real)"
+            others[name] = f"the number type is {fields[3]} but must be 1 or 2 (real)"
         else:
             matrices.setdefault(name, {})
         return

@@ -53,7 +53,7 @@ def rows_of_numbers(path: Path, columns: int, *, separator: str = ",") -> Vector
     except ValueError as error:
         raise DataError(
             f"{path}: cannot be read as rows of numbers, or is truncated: {error}. The file must contain only "
-            "numbers, with at most a line of names above."
+            "numbers, with at most one line of names at the top."
         ) from error
     if not np.all(np.isfinite(numbers)):
         raise DataError(
@@ -97,7 +97,7 @@ def whole_numbers(path: Path, values: npt.NDArray[Any]) -> Indices:
     integers = values.astype(int)
     if np.any(integers != values):
         raise DataError(
-            f"{path}: found {values[integers != values][0]:g}, must be a whole number (node, direction, row)."
+            f"{path}: must contain only whole numbers (node, direction, row), not {values[integers != values][0]:g}."
         )
     return integers
 
