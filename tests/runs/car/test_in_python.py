@@ -64,3 +64,9 @@ def test_cars_with_equal_parameters_are_equal(tmp_path):
         file.write_text('base = "focus"\n[body]\nsuperelement = "mine.toml"\n', encoding="utf-8")
         cars[folder] = Car.load(file)
     assert cars["first"] == cars["same"] != cars["second"]
+
+
+def test_cars_whose_body_files_were_moved_are_unequal(tmp_path, monkeypatch):
+    monkeypatch.setattr("vehicle.runs.car.car.own_body_file", lambda vehicle, folder: tmp_path / f"{next(names)}.toml")
+    names = iter(("first", "other"))
+    assert Car.load("sedan") != Car.load("sedan")

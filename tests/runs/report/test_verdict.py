@@ -2,11 +2,14 @@
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
 from vehicle.commands.report import main
 from vehicle.digits import number
+from vehicle.runs.report.verdict_section import verdict_section
 
 
 @pytest.mark.usefixtures("no_figures")
@@ -34,3 +37,11 @@ def test_targets_come_first(reported, tmp_path, monkeypatch, capsys):
     file.write_text(file.read_text(encoding="utf-8").replace("seat rail x", "seat rail q"), encoding="utf-8")
     assert main([str(reported.folder), "--targets", "targets.toml", "--output", "wrong.html"]) == 2
     assert "loud on run: " in capsys.readouterr().err and not Path("wrong.html").exists()
+
+
+def test_cars_with_equal_words_stay_apart():
+    cars = ["focus, front.bushings.mount.x=1", "focus, front.hardpoints.mount.x=1"]
+    runs: list[Any] = [SimpleNamespace(label=car) for car in cars]
+    section = verdict_section({}, runs)
+    assert all(f'<th class="number">{car}</th>' in section for car in cars)
+    assert "front mount x 1" in verdict_section({}, runs[:1])

@@ -52,7 +52,7 @@ def test_comfort_reads_a_place_of_a_run(run, tmp_path, capsys):
     assert main(["--input", str(run)]) == 3
     said = capsys.readouterr().err
     assert ": column x is missing; found " in said
-    assert "set --channel to one of seat_rail" in said
+    assert "--channel POINT, one of seat_rail" in said
     assert main(["--input", str(run), "--channel", "roof"]) == 3
     assert "column roof_acc_x is missing" in capsys.readouterr().err
 

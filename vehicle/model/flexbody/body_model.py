@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from filecmp import cmp
 from functools import lru_cache
 from pathlib import Path
 
@@ -117,6 +118,14 @@ def own_body_file(vehicle: Vehicle, folder: Path | None) -> Path | None:
     """Return the body file of a vehicle, or None if it belongs to the package; see `body_model` for the arguments."""
     file = None if vehicle.body.superelement is None else _find(vehicle.body.superelement, folder)
     return None if file is None or file.parent == PACKAGE_FOLDER else file
+
+
+def equal_files(first: Path | None, other: Path | None) -> bool:
+    """True if two paths are equal or their files have the same bytes; False if a file was moved."""
+    try:
+        return first == other or bool(first and other and cmp(first, other, shallow=False))
+    except OSError:
+        return False
 
 
 def body_file(vehicle: Vehicle, folder: Path | None = None) -> Path:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from filecmp import cmp
 from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict
@@ -27,7 +26,7 @@ from vehicle.engines.simulation.stepping import Progress
 from vehicle.errors import ConfigurationError
 from vehicle.handed_down import HANDED
 from vehicle.leftovers import mention
-from vehicle.model.flexbody.body_model import body_model, own_body_file
+from vehicle.model.flexbody.body_model import body_model, equal_files, own_body_file
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.laws.controller_fmu import require_controllers
 from vehicle.model.parameters.further_forces import new_tables
@@ -210,9 +209,8 @@ class Car:
         """True if all parameters and the body models are equal, however the values were set."""
         if not isinstance(other, Car):
             return NotImplemented
-        body, others = (own_body_file(car.vehicle, car.folder) for car in (self, other))
-        same = body == others or bool(body and others and cmp(body, others, shallow=False))
-        return same and self.vehicle == other.vehicle
+        files = (own_body_file(car.vehicle, car.folder) for car in (self, other))
+        return self.vehicle == other.vehicle and equal_files(*files)
 
     def __hash__(self) -> int:
         """Return the hash of name and wheels, which equal cars share."""

@@ -163,7 +163,7 @@ def compare_modes(
     unknown = next((name for name in mapping if name not in geometry.points), None)
     if unknown is not None:
         raise ConfigurationError(
-            f"--map {unknown}=...: the car has no output point of this name; choose from {', '.join(geometry.points)}"
+            f"--map POINT=NODE: the car has no output point {unknown!r}; choose from {', '.join(geometry.points)}"
         )
     moved = {point for shape in measurement.shapes for point in shape.points}
     nodes = {name: wanted.lower().removeprefix("dof").strip() for name, wanted in mapping.items()}

@@ -23,7 +23,9 @@ def verdict_section(figures: Mapping[str, Target], runs: Sequence[FinishedRun]) 
         figures: figures with their limits, see `vehicle.runs.targets.verdict.read_targets`.
         runs: finished runs of one or several cars.
     """
-    rated = {_car_words(car): each for car, each in verdict(figures, runs).items()}
+    rated = verdict(figures, runs)
+    words = [_car_words(car) for car in rated]
+    cars = words if len(set(words)) == len(words) else list(rated)
     rows = [
         {
             "words": figure.words or name.replace("_", " "),
@@ -37,8 +39,8 @@ def verdict_section(figures: Mapping[str, Target], runs: Sequence[FinishedRun]) 
     ]
     return fill(
         "verdict",
-        sentences=[sentence(figures, car, each) for car, each in rated.items()],
-        cars=list(rated),
+        sentences=[sentence(figures, car, each) for car, each in zip(cars, rated.values(), strict=True)],
+        cars=cars,
         rows=rows,
         caption="value and its 95 % interval on a random road; undecided if the limit lies inside the interval; the "
         "worst of several runs",

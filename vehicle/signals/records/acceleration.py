@@ -119,7 +119,7 @@ def read_acceleration(path: str | Path, point: str | None = None, choice: Choice
             continue
         if name not in record.channels:
             points = dict.fromkeys(channel[:-6] for channel in record.channels if channel.endswith("_acc_x"))
-            points_shown = f"; set --channel to one of {', '.join(points)}" if points else ""
+            points_shown = f"; set --channel POINT, one of {', '.join(points)}" if points else ""
             shown = ", ".join(list(record.channels)[:6])
             raise DataError(f"{file}: column {name} is missing; expected {needed}, found {shown}{points_shown}")
         if (unit := record.units[name]) not in UNITS:

@@ -293,7 +293,7 @@ class RideProblem:
         """Return the error of an iterate that is no car: of the target whose parameter it names, with its interval."""
         for index, target in enumerate(self.targets):
             names = (option(target.name), *(path.removesuffix(".z") for path in target.paths))
-            if any(name in str(error) for name in names):
+            if any(name in error.args[0] for name in names):  # the text with options, also in Python
                 return self.unreachable_error(index)
         values = ", ".join(f"{option(target.name)} {target.value:.4g}" for target in self.targets)
         return ConfigurationError(f"with {values}: {error}")
