@@ -65,7 +65,7 @@ def test_inputs_of_many_runs(sedan):
     signal = Signal(time=np.arange(40) / 100.0, displacement={"fr": np.zeros(40)}, source="mine", highest=40.0)
     with pytest.raises(DataError, match="mine: contains vibration only up to 40 Hz"):
         inputs_of(sedan, signal)
-    with pytest.raises(ConfigurationError, match="inputs: no input"):
+    with pytest.raises(ConfigurationError, match="inputs: none given"):
         inputs_of(sedan, [])
     with pytest.raises(ConfigurationError, match=r"road class 'nowhere\.csv'"):
         inputs_of(sedan, Road("nowhere.csv", speed=60))[0].signal()
@@ -100,7 +100,7 @@ def test_parameters_of_a_fit_start_at_the_car(focus):
 
 
 def test_gravity_in_a_record_is_refused_until_it_is_removed(record):
-    with pytest.raises(DataError, match=r"gravity is in the mean \(9\.8"):
+    with pytest.raises(DataError, match=r"gravity is included in the mean \(9\.8"):
         evaluate_comfort(record)
     found = evaluate_comfort(record, offset="remove")
     assert found.offset.mean["z"] == pytest.approx(9.81, abs=0.05)

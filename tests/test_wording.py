@@ -139,7 +139,7 @@ def test_workers_of_a_command_keep_them_too():
 
 
 def test_an_impossible_iterate_is_explained_by_its_target_in_python_too(python):
-    targets = [Target(name=f"damping_ratio_{word}", value=0.3, paths=()) for word in ("front", "rear")]
+    targets: Any = [Target(name=f"damping_ratio_{word}", value=0.3, paths=()) for word in ("front", "rear")]
     problem: Any = SimpleNamespace(targets=targets, unreachable_error=targets.__getitem__)
     error: Any = ConfigurationError("--damping-ratio-rear --skip 2")
     assert RideProblem.explained_error(problem, error) == targets[1]

@@ -70,4 +70,4 @@ def test_spectra_use_the_advice(tmp_path, capsys):
 
 def test_gravity_that_is_kept_is_mentioned(tmp_path, capsys):
     assert comfort(["--input", written(tmp_path / "a.csv", 9.80665), "--channel", "z=Seat Z", "--offset", "keep"]) == 0
-    assert "gravity is in the mean" in capsys.readouterr().err
+    assert "gravity is included in the mean" in capsys.readouterr().err

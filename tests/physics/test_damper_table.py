@@ -141,7 +141,7 @@ def test_a_file_of_a_test_gives_the_same_law(tmp_path, tabled):
 
 
 BAD = [
-    ({"velocity": VELOCITY, "force": FORCE[1:]}, "front.damper.force: found 6 numbers for 7 of velocity"),
+    ({"velocity": VELOCITY, "force": FORCE[1:]}, "front.damper.force: found 6 forces for 7 values of velocity"),
     ({}, "front.damper.velocity: found 0 points, must be 2 to 40"),
     ({"velocity": [-11, 1], "force": [0, 1]}, "front.damper.velocity: found -11.0 m/s, must be at least -10.0"),
     ({"curve": "none.csv"}, "front.damper.curve: "),

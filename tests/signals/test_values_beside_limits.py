@@ -1,5 +1,7 @@
 """Values that exceed a limit by less than the digits of a message: the message has more digits."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -64,5 +66,5 @@ def test_a_rotation_just_beyond_the_valid_range_does_not_read_as_its_end():
 def test_a_spot_late_in_a_record_is_found():
     z = np.zeros(1_300_000)
     z[1_200_040:1_200_060] = 0.2
-    (text, *_) = check_level("road.csv", {"fl": z}, 0.01)
+    (text, *_) = check_level(Path("road.csv"), {"fl": z}, 0.01)
     assert "at 12000.4 s" in text

@@ -105,7 +105,7 @@ def test_a_road_is_evaluated_from_two_seconds_on(shaker, tmp_path):
     value = comfort_values(time[1] - time[0], [[record[late] for record in rail]])
     expected, half = value.overall[0], summary["comfort"]["seat_rail"]["half_interval"]
     assert half["unweighted"] == pytest.approx(1.96 * value.error[0] * expected, rel=1e-9)
-    assert "2 wheels alone; its blocks (rear support right, rear support left) do not move" in outcome.out
+    assert "only 2 wheels" in outcome.out and "(rear support right, rear support left)" in outcome.out
     assert f"seat rail {expected:.4f} ± {half['unweighted']:.4f} m/s2 unweighted RMS" in outcome.out
     assert f" ± {half['weighted']:.4f} m/s2 weighted RMS (ISO 2631-1); ±: 95 % interval over roads of" in outcome.out
     assert summary["comfort"]["seat_rail"]["rms_2_50_hz"]["overall"] == pytest.approx(expected, rel=1e-9)

@@ -67,6 +67,6 @@ def test_cars_with_equal_parameters_are_equal(tmp_path):
 
 
 def test_cars_whose_body_files_were_moved_are_unequal(tmp_path, monkeypatch):
-    monkeypatch.setattr("vehicle.runs.car.car.own_body_file", lambda vehicle, folder: tmp_path / f"{next(names)}.toml")
     names = iter(("first", "other"))
+    monkeypatch.setattr("vehicle.runs.car.car.own_body_file", lambda vehicle, folder: tmp_path / f"{next(names)}.toml")
     assert Car.load("sedan") != Car.load("sedan")

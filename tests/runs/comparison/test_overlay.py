@@ -178,7 +178,7 @@ def test_gravity_in_a_record_is_named_with_its_remedy(run, tmp_path):
     write_table(path, ["time [s]", "seat_rail_acc_z [m/s2]"], [truth.time, values + 9.80665])
     comparison = comparison_of(read_measured(path, tuple(truth.channels)), of_folder(run))
     (said,) = [text for text in comparison.notices if "gravity" in text]
-    assert said.startswith("seat_rail_acc_z: gravity is in the mean (9.8") and "--detrend" in said
+    assert said.startswith("seat_rail_acc_z: gravity is included in the mean (9.8") and "--detrend" in said
     assert comparison.records[0].rms_ratio < 0.1
     level = read_measured(path, tuple(truth.channels), choice=Choice(detrend=True))
     again = comparison_of(level, of_folder(run))

@@ -132,7 +132,6 @@ def test_command_says_it_and_takes_it_out(run, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("option", "message"),
     [
-        ("accelerations=12.3", None),
         ("accelerations=x", "--delay accelerations=x: .* ms or us"),
         ("accelerations=3min", "--delay accelerations=3min: "),
         ("forces=1ms", "--delay forces=.*plates, velocities, accelerations"),

@@ -73,7 +73,7 @@ def test_an_input_without_the_figure_is_refused(car):
     damper, ride = {"rear.damper.viscous": [1500.0, 2000.0]}, road("C", 80, duration=3)
     with pytest.raises(ConfigurationError, match=r"settling time, seat rail acc z on .*: settling: the run has no"):
         sweep(car, damper, ride, measure=f"settling:{Z}")
-    with pytest.raises(ConfigurationError, match=r"order amplitude, 1, .* nothing turns"):
+    with pytest.raises(ConfigurationError, match=r"order amplitude, 1, .* nothing rotates"):
         sweep(car, damper, "low.csv", measure=f"order:1:{Z}")
     with pytest.raises(ConfigurationError, match="the run has no obstacle"):
         optimise(car, {"rear.damper.viscous": (1500.0, 2000.0)}, ride, [f"settling:{Z}"])

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.arrays import Vector
+from vehicle.digits import number
 from vehicle.engines.linear.load_rows import LoadRows, load_rows, stop_rows
 from vehicle.engines.reduced.load_outputs import direct_applied, direct_forces, direct_laws, direct_slopes, load_outputs
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
@@ -260,7 +261,7 @@ def watched_outputs(car: Car, model: PoleModel | None = None, largest_angle: flo
     ]
     notices += [
         (
-            f"{body} rotates by more than {np.degrees(largest_angle):.2g} deg about {axis}; the linear geometry is "
+            f"{body} rotates by more than {number(np.degrees(largest_angle), 2)} deg about {axis}; the linear geometry is "
             "checked up to that angle"
         )
         for body in bodies

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from vehicle.digits import number
 from vehicle.engines.reduced.group_run import time_steps
 from vehicle.engines.reduced.reduced_run import LONGEST_STEP
 from vehicle.engines.reduced.validity import (
@@ -133,7 +134,7 @@ def trial_data(
         "sliders": [*_sliders(car, base, road), *stepped],
         "roadClass": road and road.road_class,
         "road": drive.road is not None,
-        "checked": f"Checked against MuJoCo while parts rotate by up to {np.degrees(angle):.2g} deg: {error}.",
+        "checked": f"Checked against MuJoCo while parts rotate by up to {number(np.degrees(angle), 2)} deg: {error}.",
     }
     return json.dumps(data, separators=(",", ":")).replace("<", "\\u003c")
 

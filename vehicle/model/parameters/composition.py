@@ -351,8 +351,9 @@ class Composition:
         first = next((force.law.angle or force.name for force in self.forces if force.harmonics), None)
         chosen = name or first or next(iter(speeds), None)
         if chosen not in speeds:
+            missing = "nothing rotates" if chosen is None else f"{chosen} does not rotate"
             message = f"choose from {', '.join(speeds)}" if speeds else "set --speed or crank.rpm"
-            raise ConfigurationError(f"angle: found {chosen!r}, which does not rotate; {message}")
+            raise ConfigurationError(f"angle: {missing}; {message}")
         return chosen, speeds[chosen]
 
     def attachments(self) -> dict[str, Point]:
