@@ -120,7 +120,7 @@ def test_149_no_delay_is_advised_where_the_plates_are_unlike(logger):
 def test_inspect_prints_the_findings_and_commands_with_their_options(logger, capsys):
     assert inspect([str(logger)]) == 0
     said = capsys.readouterr().out
-    assert said.count("finding: ") == 2 and "position of the sensor" in said and "gravity is included in the means" in said
+    assert said.count("finding: ") == 2 and "position of the sensor" in said and "gravity is included in" in said
     assert said.rstrip().endswith("--detrend")
     # Without a car each channel is diagnosed by itself.
     assert [each.kind for each in diagnose(logger).findings] == ["gravity"] * 5

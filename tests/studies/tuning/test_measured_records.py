@@ -108,7 +108,7 @@ def test_a_record_contains_its_plate(tmp_path):
     # What is left of the start at rest: sticking is remembered longer than two seconds at single instants.
     assert isinstance(entry.target, RecordTarget)
     assert np.sqrt(np.mean(entry.target.residuals(Car.load()) ** 2)) < 0.02
-    wrong: dict[str, dict[str, Any]] = {"--lowpass 0: ": {"lowpass": 0.0}, "this record contains the plate signal": {"delay": 0.1}}
+    wrong: dict[str, dict[str, Any]] = {"--lowpass 0: ": {"lowpass": 0.0}, "contains the plate signal": {"delay": 0.1}}
     for message, options in wrong.items():
         with pytest.raises(ConfigurationError, match=message):
             measured_histories(Car.load(), file, None, names, **options)

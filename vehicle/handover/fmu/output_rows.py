@@ -261,8 +261,8 @@ def watched_outputs(car: Car, model: PoleModel | None = None, largest_angle: flo
     ]
     notices += [
         (
-            f"{body} rotates by more than {number(np.degrees(largest_angle), 2)} deg about {axis}; the linear geometry is "
-            "checked up to that angle"
+            f"{body} rotates by more than {number(np.degrees(largest_angle), 2)} deg about {axis}; the linear geometry "
+            "is checked up to that angle"
         )
         for body in bodies
         for axis in "xyz"
