@@ -118,7 +118,7 @@ def test_rows_that_are_links_are_not_continued(tmp_path, capsys):
     (tmp_path / "study" / ROWS).unlink()
     with study_folder(tmp_path / "study", force=False, resume=True, rows=(ROWS,)) as work:
         assert not (work / ROWS).exists()
-    assert tree(victim) == outside and ".study.partial is not" in capsys.readouterr().err
+    assert tree(victim) == outside and ".study.partial does not" in capsys.readouterr().err
 
 
 def test_nothing_is_written_through_a_link_below_the_output(tmp_path):

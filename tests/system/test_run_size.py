@@ -39,7 +39,7 @@ def test_a_long_run_is_stated_with_its_remedy(tmp_path, monkeypatch):
 
 def test_what_exceeds_the_free_disk_or_the_memory_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(module, "physical_memory", lambda: 3e9)
-    with pytest.raises(ConfigurationError, match=r"need 4\.19 GB of memory, .* 3 GB; for less"):
+    with pytest.raises(ConfigurationError, match=r"need 4\.19 GB of memory .* 3 GB; for less"):
         run_size(tmp_path, 3600.0, 1000.0, 100, ["npz"], reduced=True)
     monkeypatch.setattr(module, "physical_memory", lambda: 1e11)
     monkeypatch.setattr(shutil, "disk_usage", lambda _: SimpleNamespace(free=1e9))

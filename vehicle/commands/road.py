@@ -46,7 +46,7 @@ def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser(
         "road",
-        "Write the plate signals that reproduce driving on a road: a road class, a measured profile or an obstacle.",
+        "Write the plate signals of driving on a road: a road class, a measured profile or an obstacle.",
     )
     vehicle_options(parser)
     parser.add_argument("--class", dest="road_class", metavar="C", help="class of ISO 8608, A to H")

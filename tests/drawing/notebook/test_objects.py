@@ -32,7 +32,7 @@ def test_each_says_itself_in_a_line(run, response):
     for one in (run.car, run, response):
         assert "\n" not in repr(one) and len(repr(one)) < 200
     assert "4 s, reduced, Car(focus, wheels fr, fl)" in repr(run)
-    assert "FRFs of seat_rail_acc_z, engine_acc_z to plate_fr_displacement" in repr(response)
+    assert "FRFs of seat_rail_acc_z, engine_acc_z from plate_fr_displacement" in repr(response)
 
 
 def test_each_has_a_table_and_a_drawing(run, response):

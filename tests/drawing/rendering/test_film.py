@@ -111,7 +111,7 @@ def test_the_chosen_exaggeration_makes_motion_visible(run):
     ],
 )
 def test_options_out_of_range_are_refused(run, options, found):
-    with pytest.raises(ConfigurationError, match=f"film.*{found}"):
+    with pytest.raises(ConfigurationError, match=f"video.*{found}"):
         Layout(width=options["size"][0], height=options["size"][1]) if "size" in options else shot(run, **options)
 
 

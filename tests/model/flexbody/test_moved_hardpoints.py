@@ -183,7 +183,7 @@ def test_an_imported_body_says_how_far_its_nodes_may_be(tmp_path):
     assert rms(car, "mujoco") == pytest.approx(rms(Car.load(None, changes[1:]), "mujoco"), rel=1e-3)
     for bad, message in (
         ("0.0", "hardpoint_tolerance: found 0 m, must be above 0"),
-        ("[1]", r"hardpoint_tolerance_m: .*\[1\]"),
+        ("[1]", r"hardpoint_tolerance_m: .*\[1\.0\]"),
     ):
         (tmp_path / "mine.toml").write_text(text.replace("tolerance_m = 0.001", f"tolerance_m = {bad}"))
         with pytest.raises(DataError, match=message):

@@ -112,7 +112,7 @@ def test_runs_stand_beside_each_other(reported, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr("vehicle.drawing.rendering.backend.require_film", lambda: "osmesa")
     page = tmp_path / "two.html"
     assert main([*[str(reported.folder)] * 2, "--output", str(page), "--video", "--slow-motion", "4"]) == 0
-    assert "film        film.mp4: as they are" in capsys.readouterr().out
+    assert "video       film.mp4: as they are" in capsys.readouterr().out
     found = Outline()
     found.feed(page.read_text(encoding="utf-8"))
     wanted = ["Result", "Film", "Comparison of the runs", "Frequency responses and spectra", "Time histories"]

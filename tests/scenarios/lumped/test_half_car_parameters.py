@@ -66,7 +66,7 @@ def test_assumed_values_say_so():
             "semi_active.maximum_damping=200.0",
             "semi_active.maximum_damping: found 200.0 N s/m, must be at least minimum_damping 300.0 N s/m",
         ),
-        ("upper_limb.mass=true", "upper_limb.mass: found True, must be a number"),
+        ("upper_limb.mass=true", "upper_limb.mass: must be a number, not True"),
     ],
 )
 def test_bad_rider_parameters_are_refused_by_name(assignment, message):

@@ -123,7 +123,7 @@ def test_printed_diagonals_agree_but_for_the_pitch_damping():
 
 
 def test_unknown_coordinate_in_an_element_is_refused():
-    with pytest.raises(ConfigurationError, match="linear form: found 'wheell', must be one of wheel, road"):
+    with pytest.raises(ConfigurationError, match="linear form: must be one of wheel, road, not 'wheell'"):
         Network(
             coordinates=("wheel",), masses=masses_of({"wheel": 1.0}), links=(spring_damper({"wheell": 1.0}, 1.0, 0.0),)
         ).system()

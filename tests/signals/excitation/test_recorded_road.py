@@ -94,7 +94,7 @@ def test_tyres_roll_at_the_mean_speed_and_the_evaluation_begins_behind_the_rise(
 def test_the_speed_may_be_slower_and_in_another_unit(tmp_path):
     first = drive(recorded(tmp_path / "a.csv")).signal()
     wrong = recorded(tmp_path / "b.csv", unit="V", factor=3.6)
-    with pytest.raises(DataError, match="a voltage but must be a velocity"):
+    with pytest.raises(DataError, match="a voltage, but must be a velocity"):
         drive(wrong).signal()
     second = drive(wrong, choice=Choice(units={"speed": "km/h"})).signal()
     np.testing.assert_allclose(second.displacement["rl"], first.displacement["rl"], atol=1e-9)
@@ -131,7 +131,7 @@ def test_a_car_that_stands_goes_on_from_its_place():
 def test_what_is_no_speed_is_refused(tmp_path):
     path = recorded(tmp_path / "road.csv")
     for options, error, message in (
-        ({"channel": "left"}, DataError, "a displacement but must be a velocity"),
+        ({"channel": "left"}, DataError, "a displacement, but must be a velocity"),
         ({"duration": 30.0}, ConfigurationError, r"--duration 30 s: .* 11\.99"),
         ({"choice": Choice(channels={"fr": "left"})}, ConfigurationError, "--channel fr=.*left, right or height"),
     ):

@@ -36,7 +36,7 @@ def test_gas_and_damping_of_a_test(tmp_path):
 def test_files_of_the_other_direction_are_refused(tmp_path, signs):
     """The displacement is positive in compression; force and velocity have either sign, and their signs are found."""
     path = write(tmp_path / "a.csv", signs=signs)
-    said = r"a: positive in compression, .* gas force is -2\d\d\.\d \+- .*bump has .*; set --positive compression"
+    said = r"a: positive in compression, .* gas force is -2\d\d\.\d \+- .* in bump .*; set --positive compression"
     for compression in (None, False):
         with pytest.raises(DataError, match=said):
             require_direction([read_test(path)], compression)

@@ -171,7 +171,7 @@ def test_a_number_is_typed_or_of_the_file_and_an_axle_load_in_percent_is_a_share
     [
         ("--kerb-mass 120", "--kerb-mass: .*0.0726, .*engine.parts.engine.mass"),
         ("--kerb-mass 1500 --front-axle-load 1800", "--front-axle-load: .*2.757"),
-        ("--kerb-mass 1450 --front-axle-load 57", "57 kg: .*3.9 % .* 1450 kg, .* 20 %; .*--front-axle-load 57%"),
+        ("--kerb-mass 1450 --front-axle-load 57", "57 kg: .*3.9 % .* 1450 kg .* 20 %; .*--front-axle-load 57%"),
         ("--rear-axle-load 43%", "--rear-axle-load 43%: .*--kerb-mass"),
         ("--front-axle-load many%", "'many%': .*57%"),
         ("--cog-height 550", "--cog-height: found 550.0 m, .* 1.5 .*0.44 to 0.85 m"),

@@ -239,7 +239,7 @@ def test_an_interruption_keeps_the_rows(tmp_path):
 def test_a_worker_with_another_program_is_rejected():
     cases = many(1)
     assert not carry_out(cases, [""], Peak(), program_digest()).failed
-    with pytest.raises(ConfigurationError, match=r"program .*\(another\)"):
+    with pytest.raises(ConfigurationError, match=r"libraries .*\(another\)"):
         carry_out(cases, [""], Peak(), "another")
     # An error of the worker, not of the run, is not a row.
     with pytest.raises(ConfigurationError, match="of the worker"):

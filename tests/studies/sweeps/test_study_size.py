@@ -85,7 +85,7 @@ def test_memory_follows_length_engine_inputs_and_processes(machine, capsys):
 
 def test_what_exceeds_the_free_memory_is_refused_with_the_processes_that_fit(machine, tmp_path):
     machine(memory=5e9)
-    with pytest.raises(ConfigurationError, match=r"10\.9 GB of memory, .* 5 GB; .*--jobs 3,"):
+    with pytest.raises(ConfigurationError, match=r"10\.9 GB of memory .* 5 GB; .*--jobs 3,"):
         state(cases(1.0)[:1], jobs=8)
     machine(memory=1e9)
     with pytest.raises(ConfigurationError, match=r"1\.36 GB of memory, .* 1 GB; .*solver.record_rate"):

@@ -256,7 +256,7 @@ def test_a_user_defined_executor():
     ("nowhere.at_all:make", "No module named 'nowhere'"),
     ("tests.studies.sweeps.sweep_samples:missing", "has no attribute 'missing'"),
     ("threads", "dask://host:port or module:factory"),
-    ("tests.studies.sweeps.sweep_samples:no_executor", r"str, .*concurrent\.futures\.Executor"),
+    ("tests.studies.sweeps.sweep_samples:no_executor", r"str .*concurrent\.futures\.Executor"),
 ])  # fmt: skip
 def test_bad_executors(text, message):
     with pytest.raises(ConfigurationError, match=message):
