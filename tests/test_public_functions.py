@@ -69,7 +69,7 @@ def test_inputs_of_many_runs(sedan):
         inputs_of(sedan, [])
     with pytest.raises(ConfigurationError, match=r"road class 'nowhere\.csv'"):
         inputs_of(sedan, Road("nowhere.csv", speed=60))[0].signal()
-    with pytest.raises(ConfigurationError, match="tyre: .* not 'soft'"):
+    with pytest.raises(ConfigurationError, match=r"tyre: .* not 'soft'"):
         Road("A", speed=72, tyre="soft").under(sedan.vehicle)
 
 
@@ -106,7 +106,7 @@ def test_gravity_in_a_record_is_refused_until_it_is_removed(record):
     assert found.offset.mean["z"] == pytest.approx(9.81, abs=0.05)
     assert found.overall == pytest.approx(np.sqrt(sum(value**2 for value in found.weighted_rms.values())))
     assert "weighted RMS" in repr(found) and found.seat_value is None
-    with pytest.raises(ConfigurationError, match="offset: .* not 'drop'"):
+    with pytest.raises(ConfigurationError, match=r"offset: .* not 'drop'"):
         evaluate_comfort(record, offset="drop")
 
 

@@ -13,6 +13,7 @@ from vehicle.commands.command_line import command
 from vehicle.commands.console import Console
 from vehicle.commands.options import FORCE_HELP, command_parser, destination_of, message_options, read, setting_options
 from vehicle.commands.parser import Parser
+from vehicle.digits import number
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.quantity import field_quantity
 from vehicle.model.parameters.shipped import CARS
@@ -169,7 +170,7 @@ def _report(result: NewCar, file: Path, figures: Sequence[MotionFigure]) -> str:
     for check in sorted(result.checks, key=lambda check: ranks.get(check.name, len(ranks)) if check.origin else -1):
         name = check.name.replace("_", " ") + (f" [{check.unit}]" if check.unit != "-" else "")
         if check.origin:
-            others.append(f"{name:<44}{check.value:>12.6g}  {check.origin}")
+            others.append(f"{name:<44}{number(check.value, 4):>12}  {check.origin}")
         else:
             lines.append(f"{name:<34}{check.stated:>10.6g}{check.value:>12.6g}{100.0 * check.deviation:z10.3f} %")
     others += [f"{name:<56}  {origin}" for name, origin in result.parts]

@@ -22,7 +22,7 @@ def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser(
         "orders",
-        "Compute amplitudes at orders of the crankshaft or the wheels at steady speeds, with limits and Campbell map.",
+        "Compute amplitudes at orders of the crankshaft or the wheels at steady speeds; limits and Campbell map.",
     )
     vehicle_options(parser)
     setting_options(parser, OrderSettings, "rpm", "speed", "orders", "channel", "angle", "road", "duration", "engine")

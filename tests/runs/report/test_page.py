@@ -115,7 +115,7 @@ def test_runs_stand_beside_each_other(reported, tmp_path, monkeypatch, capsys):
     assert "video       film.mp4: as they are" in capsys.readouterr().out
     found = Outline()
     found.feed(page.read_text(encoding="utf-8"))
-    wanted = ["Result", "Film", "Comparison of the runs", "Frequency responses and spectra", "Time histories"]
+    wanted = ["Result", "Video", "Comparison of the runs", "Frequency responses and spectra", "Time histories"]
     assert found.titles[:5] == wanted and found.titles[6:] == ["Modes", "Each run"]
     assert "None: the cars have equal parameters." in found.words
     assert page.stat().st_size < 6e6

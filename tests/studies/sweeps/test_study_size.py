@@ -88,7 +88,7 @@ def test_what_exceeds_the_free_memory_is_refused_with_the_processes_that_fit(mac
     with pytest.raises(ConfigurationError, match=r"10\.9 GB of memory .* 5 GB; .*--jobs 3,"):
         state(cases(1.0)[:1], jobs=8)
     machine(memory=1e9)
-    with pytest.raises(ConfigurationError, match=r"1\.36 GB of memory, .* 1 GB; .*solver.record_rate"):
+    with pytest.raises(ConfigurationError, match=r"1\.36 GB of memory .* 1 GB; .*solver.record_rate"):
         sweep_cases(cases(1.0), MEASURE, RunSettings(folder=tmp_path))
     assert not (tmp_path / "table.csv").exists()
 
