@@ -206,8 +206,8 @@ def test_units_and_sizes(capsys):
     assert said(capsys, "2.1", "0.0791 -").startswith("not yet: - is no unit of this answer")
     assert said(capsys, "8.1", "115.7 %") == said(capsys, "8.1", "1.157") == "right: 1.16"
     assert said(capsys, "5.2", "6.76 m/s").startswith("right: 24.3 km/h")
-    assert said(capsys, "1.1", "1.187") == "not yet: the unit is missing; the page asks for mm"
-    assert said(capsys, "1.1", "1.187 N") == "not yet: N is no unit of this answer; the page asks for mm"
+    assert said(capsys, "1.1", "1.187") == "not yet: the unit is missing; the answer is in mm"
+    assert said(capsys, "1.1", "1.187 N") == "not yet: N is no unit of this answer; the answer is in mm"
     assert "1000 times too large" in said(capsys, "1.1", "1.187 m")
     assert said(capsys, "6.2", "-1481 N s/m") == "not yet: look at the sign"
     assert said(capsys, "6.2", "1.481 N s/mm").startswith("right: 1480")

@@ -144,7 +144,7 @@ def test_undeletable_old_results_are_no_error(tmp_path, monkeypatch, capsys):
         patch.setattr(work_folder, "discard", fails)
         results(tmp_path / "run", "new")
     assert read(tmp_path / "run") == ["new", "new"]
-    assert "is complete; .run.old remains" in capsys.readouterr().err
+    assert "removes .run.old" in capsys.readouterr().err
     put_in_order(tmp_path / "run")
     assert visible(tmp_path) == ["run"] and "left .run.old; it was removed" in capsys.readouterr().err
 
