@@ -82,7 +82,7 @@ ROOMS: dict[str, set[str]] = {
     | {"parameters", "reduced", "rendering", "report", "shapes", "threads"},
     "design": {"car", "flexbody", "kinematics", "parameters", "simulation", "threads"},
     "mounts": {"formats", "parameters"},
-    "dampers": {"formats", "parameters", "records", "rendering", "report"},
+    "dampers": {"core", "formats", "parameters", "records", "rendering", "report", "threads"},
     "replication": {"car", "excitation", "formats", "output", "records", "reduced", "rendering", "threads"},
     "sweeps": {"analysis", "car", "excitation", "figures", "flexbody", "formats", "machine", "notebook"}
     | {"output", "parameters", "reduced", "rendering", "report", "simulation", "threads"},

@@ -1,0 +1,147 @@
+"""Errors of a damper law outside its tests: ranges of velocity and amplitude that its fit does not contain.
+
+Of all tests the samples are left out that are slower than half of the highest velocity of the slowest test, then those
+faster than half of that of the fastest test; and the tests with the smaller half of the amplitudes, then with the
+larger. The law is fitted to the rest, and its bends begin there.
+
+What no law of the family describes is an unknown function of the velocity. Its increments over equal ratios of the
+velocity are taken as independent, so that its variance grows in proportion to the logarithm. Over a factor of 2, tau^2
+is the mean increase of the squared error where samples are left out, over that of the fit of all samples. At a velocity
+outside the tests by a factor r, the squared error is
+
+    e^2 = e_in^2 + tau^2 ln(r)/ln(2);    in nine of ten tests at most   e_in,90^2 + F_90(1, n) tau^2 ln(r)/ln(2),
+
+where F_90 is the quantile of the F distribution: one unknown force, its variance estimated from n tests. Slower
+samples are in every test, as its velocity passes zero; faster ones are in none. Above the fastest test the curve may
+bend: with b bends in m octaves of tested velocities, the probability of one in an octave is (b + 1)/(m + 2) (rule of
+succession). The error after a bend is the larger one of a force that stays constant and of one that grows in proportion
+to the velocity; its square counts in e^2 with the probability, and in the limit wholly if that exceeds 10 %. Inside, e_in
+is the geometric mean of the errors left out, and e_in,90 the upper limit of a further value of a normal distribution
+of their logarithms, from Student's t: m + t_90(n - 1) s sqrt(1 + 1/n).
+
+Sources: rule of succession: Laplace, Essai philosophique sur les probabilites; random walk as discrepancy of a model: Kennedy and O'Hagan, J. R. Stat. Soc. B 63 (2001), 4.2; limits of a
+further value: Hahn and Meeker, Statistical Intervals, 4.7.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+import scipy
+
+from vehicle.arrays import Mask, Vector
+from vehicle.studies.dampers.damper_fit import DamperFit, fit_law, squares_of
+from vehicle.studies.dampers.damper_force import steady_force
+from vehicle.studies.dampers.damper_law import DamperLaw, plain_parameters, sums_of
+from vehicle.studies.dampers.damper_test import DamperTest
+
+RATIO = 2.0
+"""Ratio of velocities to which a law is extrapolated: of samples outside to the nearest sample that is fitted."""
+
+LEAST_SAMPLES = 8
+"""Minimum number of samples of a test in a range."""
+
+PHASES = 64
+"""Even number of velocities in a sine; none is zero."""
+
+SHARE = 0.9
+"""Share of tests whose error is below the larger of the two stated errors."""
+
+
+class Expected(NamedTuple):
+    """Error that is expected in a further test, over the standard deviation of its force."""
+
+    usual: float
+    most: float  # limit of nine of ten tests; NaN with less than three tests
+
+
+def speeds_of(tests: Sequence[DamperTest]) -> tuple[float, float]:
+    """Return the highest velocities of the slowest and of the fastest test [m/s]."""
+    speeds = [float(np.max(np.abs(test.velocity))) for test in tests]
+    return min(speeds), max(speeds)
+
+
+def range_errors(tests: Sequence[DamperTest], fit: DamperFit) -> Mapping[str, Vector]:
+    """Return the RMS errors in ranges over the standard deviation of the force there, by the name of the range.
+
+    Returns:
+        Range to (2, tests): without the range in the fit, and with it; NaN for a test without samples there. Ranges are
+        "slower" and "faster" (samples), "smaller" and "larger" (tests, by amplitude).
+    """
+    slowest, fastest = speeds_of(tests)
+    strokes = [float(np.ptp(test.displacement)) for test in tests]
+    middle = float(np.median(strokes))
+    ranges: dict[str, tuple[Callable[[DamperTest], Mask], float, float]] = {
+        "slower": (lambda test: np.abs(test.velocity) < slowest / RATIO, slowest / RATIO, np.inf),
+        "faster": (lambda test: np.abs(test.velocity) > fastest / RATIO, 0.0, fastest / RATIO),
+        "smaller": (lambda test: np.full(test.time.size, np.ptp(test.displacement) < middle), 0.0, np.inf),
+        "larger": (lambda test: np.full(test.time.size, np.ptp(test.displacement) > middle), 0.0, np.inf),
+    }
+    results = {}
+    for name, (outside, lowest, highest) in ranges.items():
+        masks = [outside(test) & test.settled for test in tests]
+        masks = [mask & (np.count_nonzero(mask) >= LEAST_SAMPLES) for mask in masks]
+        results[name] = np.full((2, len(tests)), np.nan)
+        remaining = [test.settled & ~mask for test, mask in zip(tests, masks, strict=True)]
+        if not any(mask.any() for mask in masks) or not any(mask.any() for mask in remaining):
+            continue
+        start = _bends_within(fit.law, fit.parameters, lowest, highest)
+        for row, parameters in enumerate((fit_law(tests, fit.law, [start], remaining), fit.parameters)):
+            for at, (test, mask, squares) in enumerate(
+                zip(tests, masks, squares_of(tests, fit.law, parameters), strict=True)
+            ):
+                if mask.any():
+                    share = test.weights[mask]
+                    force = test.force[mask] - np.average(test.force[mask], weights=share)
+                    size = np.average(force**2, weights=share) / test.scale**2
+                    results[name][row, at] = np.sqrt(np.average(squares[mask], weights=share) / size)
+    return results
+
+
+def _bends_within(law: DamperLaw, parameters: Vector, lowest: float, highest: float) -> Vector:
+    """Return parameters of a law whose velocities are within a range [m/s]: a start that knows nothing outside; (p,)."""
+    plain = plain_parameters(law, parameters)
+    for at, name in enumerate(law.parameters):
+        if "velocity" in name:
+            plain[at] = np.clip(plain[at], lowest, highest)
+    return np.asarray(np.linalg.solve(sums_of(law), plain))
+
+
+def expected_error(fit: DamperFit, speeds: tuple[float, float], velocity: float) -> Expected:
+    """Return the error that is expected in a further test.
+
+    Args:
+        fit: law with its errors left out and in ranges.
+        speeds: highest velocities of the slowest and of the fastest test that are fitted [m/s].
+        velocity: highest velocity of the further test [m/s].
+    """
+    logarithms = np.log(fit.left_out)
+    tests = logarithms.size
+    slowest, fastest = speeds
+    slower = velocity < slowest
+    distance = np.log(slowest / velocity if slower else max(velocity / fastest, 1.0)) / np.log(RATIO)
+    change = 0.0
+    if distance > 0.0:
+        without, fitted = fit.ranges["slower" if slower else "faster"]
+        change = distance * max(float(np.nanmean(without**2 - fitted**2)), 0.0)
+    mean, spread = float(np.mean(logarithms)), np.nan
+    if tests > 2:
+        spread = float(np.std(logarithms, ddof=1) * scipy.stats.t.ppf(SHARE, tests - 1) * np.sqrt(1.0 + 1.0 / tests))
+    at_most = scipy.stats.f.ppf(SHARE, 1, tests) * change
+    if distance > 0.0 and not slower:
+        octaves = np.log(fastest / slowest) / np.log(RATIO)
+        probability = min(distance * (fit.law.bends + 1.0) / (octaves + 2.0), 1.0)
+        after = _error_after_bend(fit, fastest, velocity) ** 2
+        change = max(change, probability * after)
+        at_most = max(at_most, after if probability > 1.0 - SHARE else 0.0)
+    most = np.sqrt(np.exp(2.0 * (mean + spread)) + at_most)
+    return Expected(float(np.sqrt(np.exp(2.0 * mean) + change)), float(most))
+
+
+def _error_after_bend(fit: DamperFit, fastest: float, velocity: float) -> float:
+    """Return the error of a sine up to a velocity, if the curve bends at the fastest test [m/s]."""
+    moving = velocity * np.sin(np.pi * (np.arange(PHASES) + 0.5) / PHASES * 2.0)
+    tested = np.clip(moving, -fastest, fastest)
+    force, constant = (steady_force(fit.law, fit.parameters, each)[0] for each in (moving, tested))
+    after = (constant, constant * moving / tested)
+    return max(float(np.sqrt(np.mean((force - each) ** 2)) / np.std(each)) for each in after)
