@@ -4,18 +4,19 @@ A law grows by one part at a time (`DamperLaw.larger`), and is pursued while its
 candidate is fitted without one test in turn, and judged by that test. With less than three tests, parts of the records
 are left out instead of tests. The error of a law is the mean of the logarithms of its RMS errors, so that all tests
 count alike. In the end the law with the fewest parameters is chosen whose error is within one standard error of the
-best, and which is on no test worse than the best by more than `WORST`.
+best, and which is on no test worse than the best by more than `WORST` and one standard error there.
 
 The standard error is that of the best law's own error. Tests are chosen by the engineer, not drawn at random: the error
-is a mean over strata, and only the blocks within each test count,
+is a mean over strata (Cochran, Sampling Techniques, 5.3). In each of the n tests, the mean square varies between its B
+blocks, and by the errors s of the force that the other tests leave in the parameters, common to all blocks,
 
-    SE^2 = 1/n^2 sum over tests of var(e^2)/(4 B mean(e^2)^2),   e^2: mean squares of B blocks.
+    SE^2 = 1/n^2 sum over tests of (var(e^2)/B + 2 s^4)/(4 mean(e^2)^2),   s^2 = mean of x' cov x <= e^2,   x = dF/dp.
 
 The spread between tests is no part of it. It is common to all laws, as one test is harder than another, and would take
 laws in that describe no test best.
 
 Sources: leave-one-out and the rule of one standard error: Hastie, Tibshirani, Friedman, The Elements of Statistical
-Learning, 7.10; strata: Cochran, Sampling Techniques, 5.3.
+Learning, 7.10.
 """
 
 import dataclasses
@@ -25,7 +26,16 @@ import numpy as np
 
 from vehicle.arrays import Mask, Vector
 from vehicle.errors import DataError
-from vehicle.studies.dampers.damper_fit import DamperFit, finished, fit_law, squares_of, starts_of
+from vehicle.studies.dampers.damper_fit import (
+    DamperFit,
+    covariances,
+    deviations,
+    finished,
+    fit_law,
+    squares_of,
+    starts_of,
+)
+from vehicle.studies.dampers.damper_force import force_and_slopes
 from vehicle.studies.dampers.damper_law import DamperLaw
 from vehicle.studies.dampers.damper_ranges import range_errors
 from vehicle.studies.dampers.damper_test import DamperTest
@@ -60,6 +70,7 @@ RELEVANT = 0.03
 
 WORST = 1.5
 """Largest ratio of an error on a left-out test to that of the best law: the accuracy that is asked of stated errors."""
+
 
 def folds_of(tests: Sequence[DamperTest]) -> list[list[Mask]]:
     """Return the samples left out by each fit, for each test: whole tests, or parts of the records of few tests."""
@@ -160,25 +171,48 @@ def choose_law(
             if fit.left_out_error * (1.0 + RELEVANT) < lowest_error
         ]
     compared = sorted(fits.values(), key=lambda fit: fit.left_out_error)
-    tolerance = max(standard_error(compared[0]), np.log(1.0 + RELEVANT))
-    accepted = [is_accepted(compared[0], fit, tolerance) for fit in compared]
+    errors = standard_errors(few, compared[0])
+    accepted = [is_accepted(compared[0], fit, errors) for fit in compared]
     compared = [
         dataclasses.replace(finished(few, fit), ranges=range_errors(few, fit), accepted=True) if within else fit
         for fit, within in zip(compared, accepted, strict=True)
     ]
     chosen = min(compared, key=lambda fit: (not fit.accepted, len(fit.law.parameters), fit.left_out_error))
     whole = judged(tests, chosen.law, [chosen.parameters])
-    return dataclasses.replace(finished(tests, whole), ranges=chosen.ranges, accepted=True), compared
+    chosen = dataclasses.replace(
+        finished(tests, whole), ranges=chosen.ranges, accepted=True, tolerance=tolerance_of(errors)
+    )
+    return chosen, compared
 
 
-def standard_error(fit: DamperFit) -> float:
-    """Return the standard error of the logarithm of the error left out, from the blocks of each test."""
-    tests, blocks = fit.blocks.shape
-    shares = np.std(fit.blocks, axis=1, ddof=1) / np.mean(fit.blocks, axis=1)
-    return float(np.sqrt(np.sum(0.25 * shares**2 / blocks)) / tests)
+def standard_errors(tests: Sequence[DamperTest], fit: DamperFit) -> Vector:
+    """Return the standard errors of the logarithms of the errors left out; (tests,)."""
+    variances = np.zeros(len(tests))
+    for masks in folds_of(tests):
+        remaining = [test.settled & ~mask for test, mask in zip(tests, masks, strict=True)]
+        parameters = fit_law(tests, fit.law, [fit.parameters], remaining, 12)
+        spreads = covariances(tests, fit.law, parameters, remaining)
+        for at, (test, mask) in enumerate(zip(tests, masks, strict=True)):
+            if mask.any():
+                slopes = force_and_slopes(fit.law, parameters, test.motion)[1]
+                squares = (deviations(spreads, slopes[mask]) / test.scale) ** 2
+                variances[at] += np.sum(squares * test.weights[mask]) / np.sum(test.weights[test.settled])
+    means = np.mean(fit.blocks, axis=1)
+    between = np.var(fit.blocks, axis=1, ddof=1) / fit.blocks.shape[1]
+    # The linear estimate may exceed the error itself, which is one draw of it.
+    return np.asarray(np.sqrt(between + 2.0 * np.minimum(variances, means) ** 2) / (2.0 * means))
 
 
-def is_accepted(best: DamperFit, fit: DamperFit, tolerance: float) -> bool:
-    """True if the error of a fit is within the tolerance of the best, and nowhere worse by more than `WORST`."""
+def is_accepted(best: DamperFit, fit: DamperFit, errors: Vector) -> bool:
+    """True if the error of a fit is within the tolerance of the best, and nowhere worse by more than `WORST`.
+
+    Args:
+        errors: standard errors of the logarithms of the best errors; (tests,).
+    """
     worse = fit.logarithms - best.logarithms
-    return bool(np.mean(worse) <= tolerance and np.max(worse) <= np.log(WORST))
+    return bool(np.mean(worse) <= tolerance_of(errors) and np.all(worse <= np.log(WORST) + errors))
+
+
+def tolerance_of(errors: Vector) -> float:
+    """Return the standard error of the mean logarithm, at least that of the relative difference `RELEVANT`."""
+    return max(float(np.sqrt(np.sum(errors**2))) / errors.size, float(np.log(1.0 + RELEVANT)))

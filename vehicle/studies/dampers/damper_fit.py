@@ -63,6 +63,7 @@ class DamperFit:
     # mean squares of the errors left out and of `FLOOR`, by blocks of each test; (tests, blocks)
     blocks: Vector = field(default_factory=lambda: np.ones((0, 1)))
     accepted: bool = False  # True for a law within the tolerance of the choice
+    tolerance: float = np.nan  # of the logarithm of the error left out, in the choice of this law
     # errors of ranges that the fit does not contain, see `damper_choice.range_errors`: range to (tests,)
     ranges: Mapping[str, Vector] = field(default_factory=dict)
 
@@ -144,16 +145,16 @@ def fit_law(tests: Sequence[DamperTest], law: DamperLaw, starts: Sequence[Vector
             last[key] = triangle[:, -1], triangle[:, :-1]
         return last[key]
 
-    results = []
     bounds = internal(low), internal(high)
-    for start in starts:
-        begin = np.clip(internal(np.clip(start, low, high)), bounds[0] + 1e-6, bounds[1] - 1e-6)
-        results.append(
-            scipy.optimize.least_squares(
-                lambda inner: evaluate(inner)[0], begin, lambda inner: evaluate(inner)[1], bounds=bounds,
-                max_nfev=evaluations, x_scale=0.3, ftol=tolerance, xtol=tolerance,
-            )
+
+    def search(begin: Vector) -> scipy.optimize.OptimizeResult:
+        return scipy.optimize.least_squares(
+            lambda inner: evaluate(inner)[0], np.clip(begin, bounds[0] + 1e-6, bounds[1] - 1e-6),
+            lambda inner: evaluate(inner)[1], bounds=bounds, max_nfev=evaluations, x_scale=0.3, ftol=tolerance,
+            xtol=tolerance,
         )  # fmt: skip
+
+    results = [search(internal(np.clip(start, low, high))) for start in starts]
     return plain(min(results, key=lambda each: float(each.cost)).x)
 
 
@@ -201,32 +202,44 @@ def squares_of(tests: Sequence[DamperTest], law: DamperLaw, parameters: Vector) 
 
 def finished(tests: Sequence[DamperTest], fit: DamperFit) -> DamperFit:
     """Return a fit of all samples, with standard errors and the errors of each test."""
-    law = fit.law
-    parameters = fit_law(tests, law, [fit.parameters], tolerance=1e-7)
-    scores, curvature, fitted, whole = [], np.zeros((parameters.size,) * 2), [], []
-    noise = np.zeros_like(curvature)
+    parameters = fit_law(tests, fit.law, [fit.parameters], tolerance=1e-7)
+    spreads = covariances(tests, fit.law, parameters)
+    squares = squares_of(tests, fit.law, parameters)
+    fitted = [np.average(each[t.settled], weights=t.weights[t.settled]) for each, t in zip(squares, tests, strict=True)]
+    return dataclasses.replace(
+        fit, parameters=parameters, spreads=spreads, errors=deviations(spreads, sums_of(fit.law)),
+        fitted=np.sqrt(fitted), whole=np.sqrt([np.mean(each) for each in squares]),
+    )  # fmt: skip
+
+
+def covariances(
+    tests: Sequence[DamperTest], law: DamperLaw, parameters: Vector, masks: Sequence[Mask] | None = None
+) -> Vector:
+    """Return the covariances of fitted parameters, from correlated and from independent residuals; (2, p, p).
+
+    Args:
+        masks: samples of each test that were fitted; the settled samples by default.
+    """
     # Columns of equal size: the parameters differ by many orders of magnitude.
     sizes = np.maximum(
         np.abs(parameters), [{"gas_force": 1.0, "gas_stiffness": 10.0}.get(n, 0.0) for n in law.parameters]
     )
-    for test in tests:
-        force, slopes = force_and_slopes(law, parameters, test.motion)
+    scores, curvature = [], np.zeros((parameters.size,) * 2)
+    noise = np.zeros_like(curvature)
+    for test, mask in zip(tests, [test.settled for test in tests] if masks is None else masks, strict=True):
+        if not mask.any():
+            continue
+        with np.errstate(over="ignore", invalid="ignore"):
+            force, slopes = force_and_slopes(law, parameters, test.motion)
         error = (force - test.force) / test.scale
-        shares = np.where(test.settled, test.weights, 0.0) / np.sum(test.weights[test.settled])
+        shares = np.where(mask, test.weights, 0.0) / np.sum(test.weights[mask])
         columns = slopes * sizes / test.scale
         curvature += columns.T @ (shares[:, None] * columns)
-        square = shares @ error**2
-        noise += square * columns.T @ (shares[:, None] ** 2 * columns)
+        noise += (shares @ error**2) * columns.T @ (shares[:, None] ** 2 * columns)
         scores += [columns[rows].T @ (shares[rows] * error[rows]) for rows in test.cycle_rows]
-        fitted.append(np.sqrt(square))
-        whole.append(np.sqrt(np.mean(error**2)))
     inverse = np.linalg.pinv(curvature, hermitian=True, rcond=1e-12)
     middle = np.array(scores).T @ np.array(scores) * len(scores) / (len(scores) - 1)
-    spreads = np.array([inverse @ each @ inverse * np.outer(sizes, sizes) for each in (middle, noise)])
-    return dataclasses.replace(
-        fit, parameters=parameters, fitted=np.array(fitted), whole=np.array(whole), spreads=spreads,
-        errors=deviations(spreads, sums_of(law)),
-    )  # fmt: skip
+    return np.array([inverse @ each @ inverse * np.outer(sizes, sizes) for each in (middle, noise)])
 
 
 def deviations(spreads: Vector, rows: Vector) -> Vector:

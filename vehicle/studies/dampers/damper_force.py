@@ -123,8 +123,9 @@ def _march(values: DamperValues, motion: Motion) -> tuple[Vector, Vector, Mask]:
     rig = packed(
         "DamperRig",
         {
-            "displacement": np.ascontiguousarray(motion.displacement), "velocity": np.ascontiguousarray(motion.velocity),
-            "rates": motion.rates, "knots": knots, "slopes": slopes, "offsets": offsets,
+            "displacement": np.ascontiguousarray(motion.displacement),
+            "velocity": np.ascontiguousarray(motion.velocity), "rates": motion.rates,
+            "knots": knots, "slopes": slopes, "offsets": offsets,
             "stiffness": values.stiffness, "limit": values.limit, "forces": np.zeros(elements),
             "spring": values.series, "gas": values.gas_stiffness, "offset": values.offset, "drop": at_rest - sliding,
             "critical": critical, "first": motion.first_force, **results,

@@ -14,13 +14,15 @@ outside the tests by a factor r, the squared error is
 where F_90 is the quantile of the F distribution: one unknown force, its variance estimated from n tests. Slower
 samples are in every test, as its velocity passes zero; faster ones are in none. Above the fastest test the curve may
 bend: with b bends in m octaves of tested velocities, the probability of one in an octave is (b + 1)/(m + 2) (rule of
-succession). The error after a bend is the larger one of a force that stays constant and of one that grows in proportion
-to the velocity; its square counts in e^2 with the probability, and in the limit wholly if that exceeds 10 %. Inside, e_in
-is the geometric mean of the errors left out, and e_in,90 the upper limit of a further value of a normal distribution
-of their logarithms, from Student's t: m + t_90(n - 1) s sqrt(1 + 1/n).
+succession). It is anywhere between, with a slope between zero (constant force) and that of a force in proportion to the
+velocity, or of the last segment where that is larger. The errors of a law that continues without this bend, over all
+these cases, give a mean square and a limit of nine of ten; the larger ones of both estimates count. Inside, e_in is the
+geometric mean of the errors left out, and e_in,90 the upper limit of a further value of a normal distribution of their
+logarithms, from Student's t: m + t_90(n - 1) s sqrt(1 + 1/n).
 
-Sources: rule of succession: Laplace, Essai philosophique sur les probabilites; random walk as discrepancy of a model: Kennedy and O'Hagan, J. R. Stat. Soc. B 63 (2001), 4.2; limits of a
-further value: Hahn and Meeker, Statistical Intervals, 4.7.
+Sources: rule of succession: Laplace, Essai philosophique sur les probabilites; random walk as discrepancy of a model:
+Kennedy and O'Hagan, J. R. Stat. Soc. B 63 (2001), 4.2; limits of a further value: Hahn and Meeker, Statistical
+Intervals, 4.7.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -43,6 +45,9 @@ LEAST_SAMPLES = 8
 
 PHASES = 64
 """Even number of velocities in a sine; none is zero."""
+
+CASES = 8
+"""Numbers of velocities and of slopes of a bend beyond the tests."""
 
 SHARE = 0.9
 """Share of tests whose error is below the larger of the two stated errors."""
@@ -99,7 +104,7 @@ def range_errors(tests: Sequence[DamperTest], fit: DamperFit) -> Mapping[str, Ve
 
 
 def _bends_within(law: DamperLaw, parameters: Vector, lowest: float, highest: float) -> Vector:
-    """Return parameters of a law whose velocities are within a range [m/s]: a start that knows nothing outside; (p,)."""
+    """Return parameters of a law whose velocities are within a range [m/s], a start without bends outside; (p,)."""
     plain = plain_parameters(law, parameters)
     for at, name in enumerate(law.parameters):
         if "velocity" in name:
@@ -129,19 +134,31 @@ def expected_error(fit: DamperFit, speeds: tuple[float, float], velocity: float)
         spread = float(np.std(logarithms, ddof=1) * scipy.stats.t.ppf(SHARE, tests - 1) * np.sqrt(1.0 + 1.0 / tests))
     at_most = scipy.stats.f.ppf(SHARE, 1, tests) * change
     if distance > 0.0 and not slower:
-        octaves = np.log(fastest / slowest) / np.log(RATIO)
-        probability = min(distance * (fit.law.bends + 1.0) / (octaves + 2.0), 1.0)
-        after = _error_after_bend(fit, fastest, velocity) ** 2
-        change = max(change, probability * after)
-        at_most = max(at_most, after if probability > 1.0 - SHARE else 0.0)
+        square, limit = _bend_beyond(fit, slowest, fastest, velocity)
+        change, at_most = max(change, square), max(at_most, limit)
     most = np.sqrt(np.exp(2.0 * (mean + spread)) + at_most)
     return Expected(float(np.sqrt(np.exp(2.0 * mean) + change)), float(most))
 
 
-def _error_after_bend(fit: DamperFit, fastest: float, velocity: float) -> float:
-    """Return the error of a sine up to a velocity, if the curve bends at the fastest test [m/s]."""
-    moving = velocity * np.sin(np.pi * (np.arange(PHASES) + 0.5) / PHASES * 2.0)
-    tested = np.clip(moving, -fastest, fastest)
-    force, constant = (steady_force(fit.law, fit.parameters, each)[0] for each in (moving, tested))
-    after = (constant, constant * moving / tested)
-    return max(float(np.sqrt(np.mean((force - each) ** 2)) / np.std(each)) for each in after)
+def _bend_beyond(fit: DamperFit, slowest: float, fastest: float, velocity: float) -> tuple[float, float]:
+    """Return the mean square and the limit of nine of ten squares of the error by a bend beyond the fastest test.
+
+    The motion is a sine up to a velocity [m/s].
+    """
+    octaves = np.log2([fastest / slowest, velocity / fastest])
+    bend = 1.0 - (1.0 - (fit.law.bends + 1.0) / (octaves[0] + fit.law.bends + 2.0)) ** octaves[1]
+    moving = velocity * np.sin(2.0 * np.pi * (np.arange(PHASES) + 0.5) / PHASES)
+    force = steady_force(fit.law, fit.parameters, moving)[0]
+    shares = (np.arange(CASES) + 0.5) / CASES
+    squares = []
+    for at in fastest * (velocity / fastest) ** shares:
+        before = np.clip(moving, -at, at)
+        held = steady_force(fit.law, fit.parameters, before)[0]
+        # Slope of a force in proportion to the velocity, or of the last segment.
+        largest = np.maximum(held / before, (force - held) / np.where(moving == before, np.inf, moving - before))
+        for share in shares:
+            bent = held + share * largest * (moving - before)
+            squares.append(float(np.mean((force - bent) ** 2) / np.var(bent)))
+    # The limit is exceeded in one of ten tests: in a share of the cases, if a bend is more probable than that.
+    inside = 1.0 - (1.0 - SHARE) / bend
+    return bend * float(np.mean(squares)), float(np.quantile(squares, inside)) if inside > 0.0 else 0.0

@@ -9,7 +9,7 @@ import numpy as np
 from vehicle.digits import number, rounded
 from vehicle.model.parameters.tested_range import range_lines
 from vehicle.signals.formats.csv_table import table_text
-from vehicle.studies.dampers.damper_choice import RELEVANT, WORST, standard_error
+from vehicle.studies.dampers.damper_choice import WORST
 from vehicle.studies.dampers.damper_fit import DamperFit
 from vehicle.studies.dampers.damper_force import steady_force
 from vehicle.studies.dampers.damper_law import EXPONENT, SMOOTHING, values_of
@@ -94,10 +94,10 @@ def expected_rows(fitted: FittedDamper) -> list[tuple[str, Expected]]:
 
 def choice_sentence(fitted: FittedDamper) -> str:
     """Return the rule of the choice in words, with its tolerance."""
-    tolerance = number(100.0 * math.expm1(standard_error(fitted.compared[0])), 2)
+    tolerance = number(100.0 * math.expm1(fitted.fit.tolerance), 2)
     return (
         f"the law with the fewest parameters of {len(fitted.accepted)} whose error left out is within one standard "
-        f"error of the best law ({tolerance} %, at least {100.0 * RELEVANT:.0f} %) and in no test {WORST:g} times as "
+        f"error of the best law ({tolerance} %) and in no test {WORST:g} times as "
         "large"
     )
 
@@ -273,8 +273,8 @@ def summary_lines(fitted: FittedDamper) -> list[str]:
     lines = [caption_of(fitted), *(f"notice: {test.name}: {text}" for test in fitted.tests for text in test.notices)]
     slow, fast = (number(1e3 * speed, 2) for speed in (fitted.speeds[0] / RATIO, RATIO * fitted.speeds[1]))
     lines.append(
-        f"{'left out':>9}{'slower':>8}{'faster':>8}{f'at {slow} mm/s':>14}{f'at {fast} mm/s':>14}{'parameters':>11}  law, "
-        f"{len(fitted.compared)} compared"
+        f"{'left out':>9}{'slower':>8}{'faster':>8}{f'at {slow} mm/s':>14}{f'at {fast} mm/s':>14}{'parameters':>11}  "
+        f"law, {len(fitted.compared)} compared"
     )
     for each in candidates(fitted):
         errors = "".join(f"{_or_dash(value, 3):>8}" for value in (each.slower, each.faster))

@@ -111,8 +111,8 @@ class FittedDamper:
         mean_force = -float(fit.values[0])
         if mean_force > ERRORS * float(fit.errors[0]):
             sentences.append(
-                f"gas force: the mean force is {mean_force:.3g} N in extension, but gas pushes the rod out: an offset of "
-                "the load cell; the lines have 0 N"
+                f"gas force: the mean force is {mean_force:.3g} N in extension, but gas pushes the rod out: an offset "
+                "of the load cell; the lines have 0 N"
             )
         low, high = limits_of(law)
         for name, value, lowest, highest, determined in zip(
