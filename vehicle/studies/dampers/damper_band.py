@@ -1,8 +1,8 @@
 """Band of the force of a damper over its velocity, from all laws within the tolerance of the choice.
 
 Each law gives F(v) +- z s(v), with the standard error s from the covariance of its parameters; the band contains these
-limits of all laws. It shows what the tests leave open within the family of laws. What no law of the family describes is
-in the stated errors (`damper_ranges`), not in the band.
+limits of all laws. It shows what the tests leave open within the family of laws. A force
+that no law of the family describes is in the stated errors (`damper_ranges`), not in the band.
 """
 
 from typing import NamedTuple

@@ -6,14 +6,14 @@ are left out instead of tests. The error of a law is the mean of the logarithms 
 count alike. In the end the law with the fewest parameters is chosen whose error is within one standard error of the
 best, and which is on no test worse than the best by more than `WORST` and one standard error there.
 
-The standard error is that of the best law's own error. Tests are chosen by the engineer, not drawn at random: the error
-is a mean over strata (Cochran, Sampling Techniques, 5.3). In each of the n tests, the mean square varies between its B
-blocks, and by the errors s of the force that the other tests leave in the parameters, common to all blocks,
+The standard error describes the error of the best law itself. Tests are chosen by the engineer, not drawn at random:
+the error is a mean over strata (Cochran, Sampling Techniques, 5.3). In each of the n tests, the mean square varies
+between its B blocks, and by the errors s of the force that the other tests leave in the parameters, common to all
+blocks,
 
     SE^2 = 1/n^2 sum over tests of (var(e^2)/B + 2 s^4)/(4 mean(e^2)^2),   s^2 = mean of x' cov x <= e^2,   x = dF/dp.
 
-The spread between tests is no part of it. It is common to all laws, as one test is harder than another, and would take
-laws in that describe no test best.
+The spread between tests does not count: one test is harder than another for all laws alike.
 
 Sources: leave-one-out and the rule of one standard error: Hastie, Tibshirani, Friedman, The Elements of Statistical
 Learning, 7.10.
@@ -69,7 +69,7 @@ RELEVANT = 0.03
 """Relative difference of two errors, with `FLOOR` in them, that is a reason for a further part."""
 
 WORST = 1.5
-"""Largest ratio of an error on a left-out test to that of the best law: the accuracy that is asked of stated errors."""
+"""Largest ratio of the errors of a law and of the best law on a test left out: the accuracy of stated errors."""
 
 
 def folds_of(tests: Sequence[DamperTest]) -> list[list[Mask]]:
@@ -214,5 +214,5 @@ def is_accepted(best: DamperFit, fit: DamperFit, errors: Vector) -> bool:
 
 
 def tolerance_of(errors: Vector) -> float:
-    """Return the standard error of the mean logarithm, at least that of the relative difference `RELEVANT`."""
+    """Return the standard error of the mean logarithm, at least ln(1 + `RELEVANT`)."""
     return max(float(np.sqrt(np.sum(errors**2))) / errors.size, float(np.log(1.0 + RELEVANT)))

@@ -74,7 +74,7 @@ class DamperFit:
 
     @property
     def logarithms(self) -> Vector:
-        """Logarithms of the RMS errors of each test left out and `FLOOR`; (tests,)."""
+        """Return the logarithms of the RMS errors of each test left out and `FLOOR`; (tests,)."""
         return np.asarray(0.5 * np.log(np.mean(self.blocks, axis=1)))
 
     @property
@@ -139,7 +139,7 @@ def fit_law(tests: Sequence[DamperTest], law: DamperLaw, starts: Sequence[Vector
                 weight = np.sqrt(share / np.sum(share)) / test.scale
                 rows.append(weight * (force - test.force)[mask])
                 columns.append(weight[:, None] * slopes[mask] * np.where(linear, scale, values))
-            # Rows with the same sum of squares, slopes and curvature, as few as parameters: QR of the slopes.
+            # QR gives few rows with the same sum of squares, slopes and curvature.
             triangle = np.linalg.qr(np.column_stack([np.concatenate(columns), np.concatenate(rows)]), mode="r")
             last.clear()
             last[key] = triangle[:, -1], triangle[:, :-1]
@@ -243,7 +243,7 @@ def covariances(
 
 
 def deviations(spreads: Vector, rows: Vector) -> Vector:
-    """Return the standard errors of sums over the parameters, (n,), the larger ones of both covariances.
+    """Return the standard errors of sums over the parameters by the larger variance of both; (n,).
 
     Args:
         rows: derivatives of the sums over the parameters; (n, p).

@@ -46,7 +46,7 @@ class Motion:
 
     @cached_property
     def refined(self) -> tuple[Motion, Counts]:
-        """The motion with its parts as samples, and the numbers of the samples of this motion among them."""
+        """Return the motion with its parts as samples, and the numbers of the samples of this motion among them."""
         rows = np.concatenate([[0], np.cumsum(np.broadcast_to(self.parts, self.time.size - 1))])
         time = np.interp(np.arange(rows[-1] + 1), rows, self.time)
         cubic = scipy.interpolate.CubicHermiteSpline(self.time, self.displacement, self.velocity)
@@ -54,7 +54,7 @@ class Motion:
 
     @cached_property
     def rates(self) -> Vector:
-        """a_0, a_1 and a_2 of the backward difference at each sample [1/s]; (3, n), zeros at the first."""
+        """Return a_0, a_1 and a_2 of the backward difference at each sample [1/s]; (3, n), zeros at the first."""
         steps = np.diff(self.time, prepend=self.time[0] - 1.0)
         ratio = steps / np.concatenate([[np.inf, np.inf], steps[1:-1]])
         ratio[ratio > FASTEST_GROWTH] = 0.0
@@ -115,11 +115,8 @@ def _march(values: DamperValues, motion: Motion) -> tuple[Vector, Vector, Mask]:
     knots, slopes, offsets = map(np.array, _curve(values, STEP))
     samples, elements = motion.time.size, values.limit.size
     sliding, at_rest, critical = values.friction
-    results = {
-        "deflection": np.empty(samples),
-        "inner": np.empty(samples),
-        "sticking": np.empty((samples, elements), dtype=np.uint8),
-    }
+    deflection, inner = np.empty(samples), np.empty(samples)
+    sticking = np.empty((samples, elements), dtype=np.uint8)
     rig = packed(
         "DamperRig",
         {
@@ -128,11 +125,12 @@ def _march(values: DamperValues, motion: Motion) -> tuple[Vector, Vector, Mask]:
             "knots": knots, "slopes": slopes, "offsets": offsets,
             "stiffness": values.stiffness, "limit": values.limit, "forces": np.zeros(elements),
             "spring": values.series, "gas": values.gas_stiffness, "offset": values.offset, "drop": at_rest - sliding,
-            "critical": critical, "first": motion.first_force, **results,
+            "critical": critical, "first": motion.first_force,
+            "deflection": deflection, "inner": inner, "sticking": sticking,
         },
     )  # fmt: skip
     core().core_damper_rig(ctypes.c_void_p(rig.address))
-    return results["deflection"], results["inner"], np.ascontiguousarray(results["sticking"].T, dtype=bool)
+    return deflection, inner, np.ascontiguousarray(sticking.T != 0)
 
 
 def _curve_columns(law: DamperLaw, values: DamperValues, velocity: Vector, step_width: float) -> tuple[Vector, Vector]:

@@ -125,7 +125,7 @@ class DamperValues:
 
 
 def values_of(law: DamperLaw, parameters: Vector) -> DamperValues:
-    """Return the numbers of a law for parameters in the order of `law.parameters`, as `plain_parameters` takes them."""
+    """Return the numbers of a law for parameters in the order of `law.parameters`, widths and excess."""
     number = dict(zip(law.parameters, parameters.tolist(), strict=True))
     sides = law.sides * (2 if len(law.sides) == 1 else 1)
     slopes = [[number[f"{side}damping_{j + 1}"] for j in range(law.bends + 1)] for side in sides]

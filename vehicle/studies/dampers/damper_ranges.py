@@ -1,23 +1,23 @@
 """Errors of a damper law outside its tests: ranges of velocity and amplitude that its fit does not contain.
 
-Of all tests the samples are left out that are slower than half of the highest velocity of the slowest test, then those
-faster than half of that of the fastest test; and the tests with the smaller half of the amplitudes, then with the
-larger. The law is fitted to the rest, and its bends begin there.
+The samples below half of the highest velocity of the slowest test are left out of all tests, then those above half of
+the highest velocity of the fastest test. Two further fits leave out the tests with the smaller amplitudes, and those
+with the larger. The law is fitted to the rest, and its bends begin there.
 
-What no law of the family describes is an unknown function of the velocity. Its increments over equal ratios of the
-velocity are taken as independent, so that its variance grows in proportion to the logarithm. Over a factor of 2, tau^2
-is the mean increase of the squared error where samples are left out, over that of the fit of all samples. At a velocity
-outside the tests by a factor r, the squared error is
+A force that no law of the family describes is an unknown function of the velocity. Its increments over equal ratios of
+the velocity are independent, so that its variance grows in proportion to the logarithm. tau^2 is the mean increase of
+the squared error over a factor of 2, against the fit of all samples. At a velocity outside the tests by a factor r, the
+squared error is
 
-    e^2 = e_in^2 + tau^2 ln(r)/ln(2);    in nine of ten tests at most   e_in,90^2 + F_90(1, n) tau^2 ln(r)/ln(2),
+    e^2 = e_in^2 + tau^2 ln(r)/ln(2);    in nine of ten tests at most   e_in,90^2 + F_90(1, n) tau^2 ln(r)/ln(2).
 
-where F_90 is the quantile of the F distribution: one unknown force, its variance estimated from n tests. Slower
-samples are in every test, as its velocity passes zero; faster ones are in none. Above the fastest test the curve may
-bend: with b bends in m octaves of tested velocities, the probability of one in an octave is (b + 1)/(m + 2) (rule of
-succession). It is anywhere between, with a slope between zero (constant force) and that of a force in proportion to the
-velocity, or of the last segment where that is larger. The errors of a law that continues without this bend, over all
-these cases, give a mean square and a limit of nine of ten; the larger ones of both estimates count. Inside, e_in is the
-geometric mean of the errors left out, and e_in,90 the upper limit of a further value of a normal distribution of their
+F_90 is the quantile of the F distribution: one unknown force, its variance estimated from n tests. Every test contains
+slower samples, because its velocity passes zero, but no test contains faster ones. Above the fastest test the curve may
+bend: with b bends in m octaves of tested velocities, the probability of a bend in an octave is (b + 1)/(m + 2) (rule of
+succession). The bend is at any velocity in the octaves up to the further test. The slope behind it is at least zero,
+and at most F/v or that of the last segment. A law without this bend has an error in each of these cases: their mean
+square and their limit of nine of ten replace the values above where they are larger. Inside the tests, e_in is the
+geometric mean of the errors left out. e_in,90 is the upper limit of a further value of a normal distribution of their
 logarithms, from Student's t: m + t_90(n - 1) s sqrt(1 + 1/n).
 
 Sources: rule of succession: Laplace, Essai philosophique sur les probabilites; random walk as discrepancy of a model:
@@ -44,7 +44,7 @@ LEAST_SAMPLES = 8
 """Minimum number of samples of a test in a range."""
 
 PHASES = 64
-"""Even number of velocities in a sine; none is zero."""
+"""Even number of velocities in a sine, without zero."""
 
 CASES = 8
 """Numbers of velocities and of slopes of a bend beyond the tests."""

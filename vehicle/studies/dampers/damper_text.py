@@ -70,13 +70,13 @@ def _range_error(fit: DamperFit, name: str) -> tuple[float, float]:
 def range_rows(fitted: FittedDamper) -> list[tuple[str, float, float]]:
     """Return ranges in words, with the errors there without the range in the fit, and with it."""
     slowest, fastest = (1e3 * speed for speed in fitted.speeds)
-    words = {
+    texts = {
         "slower": f"slower than {number(slowest / RATIO, 2)} mm/s, fitted to faster motion",
         "faster": f"faster than {number(fastest / RATIO, 2)} mm/s, fitted to slower motion",
         "smaller": "smaller half of the amplitudes, fitted to larger",
         "larger": "larger half of the amplitudes, fitted to smaller",
     }
-    rows = [(text, *_range_error(fitted.fit, name)) for name, text in words.items()]
+    rows = [(text, *_range_error(fitted.fit, name)) for name, text in texts.items()]
     return [row for row in rows if not math.isnan(row[1])]
 
 
@@ -84,12 +84,12 @@ def expected_rows(fitted: FittedDamper) -> list[tuple[str, Expected]]:
     """Return velocities in words, with the error that is expected in a further test up to there."""
     slowest, fastest = fitted.speeds
     inside = number(1e3 * slowest, 2), number(1e3 * fastest, 2)
-    words = {
+    texts = {
         slowest / RATIO: f"{number(1e3 * slowest / RATIO, 2)} mm/s, half of the slowest test",
-        fastest: f"{' to '.join(dict.fromkeys(inside))} mm/s, as the tests",
+        fastest: f"{' to '.join(dict.fromkeys(inside))} mm/s, the range of the tests",
         RATIO * fastest: f"{number(1e3 * RATIO * fastest, 2)} mm/s, twice the fastest test",
     }
-    return [(text, expected_error(fitted.fit, fitted.speeds, speed)) for speed, text in words.items()]
+    return [(text, expected_error(fitted.fit, fitted.speeds, speed)) for speed, text in texts.items()]
 
 
 def choice_sentence(fitted: FittedDamper) -> str:

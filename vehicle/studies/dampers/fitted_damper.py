@@ -65,7 +65,7 @@ class FittedDamper:
 
     @property
     def accepted(self) -> list[DamperFit]:
-        """Laws within the tolerance of the choice, see `damper_choice`."""
+        """Return the laws within the tolerance of the choice, see `damper_choice`."""
         return [fit for fit in self.compared if fit.accepted]
 
     @property
