@@ -190,9 +190,11 @@ def _single_precision_factors(
     suitable.sort(key=lambda car: _nonlinear_elements(models[car]))
     for _, equal in groupby(suitable, lambda car: _nonlinear_elements(models[car])):
         cars = list(equal)
-        factors = car_factors([models[car] for car in cars], timestep, columns, exact=False, present_load=rolling)
-        pairs = zip(cars, factors, strict=True)
-        by_car |= {car: factor for car, factor in pairs if factor.single_iterations}
+        # Cars with equal matrices share their model.
+        different = list(dict.fromkeys(models[car] for car in cars))
+        factors = car_factors(different, timestep, columns, exact=False, present_load=rolling)
+        by_model = {model: factor for model, factor in zip(different, factors, strict=True) if factor.single_iterations}
+        by_car |= {car: by_model[models[car]] for car in cars if models[car] in by_model}
     return by_car
 
 
