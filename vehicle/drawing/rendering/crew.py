@@ -14,6 +14,7 @@ from vehicle.drawing.rendering.backend import variables
 from vehicle.drawing.rendering.layout import Layout, Picture
 from vehicle.drawing.rendering.shot import Cut
 from vehicle.errors import OutputError
+from vehicle.machine import processors
 from vehicle.threads import one_thread_each
 
 
@@ -41,7 +42,7 @@ MOST = 8
 
 def drawing_jobs() -> int:
     """Return the number of processes for a film: the number of processors, up to `MOST`."""
-    return min(len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1, MOST)
+    return min(processors(), MOST)
 
 
 def drawn_by(jobs: int, shot: Drawable, backend: str) -> Iterator[Picture]:
