@@ -118,7 +118,7 @@ class VariantTerms:
         """
         if not self.complete or not same_geometry(vehicle, self.car.vehicle):
             return None
-        change = body_change(vehicle, self.car, self.trimmed_body)
+        change = body_change(vehicle, self.car, self.trimmed_body, self.rows.layout.modes.velocities)
         require_body_modes(vehicle, change.trimmed)
         element_values = element_numbers(vehicle, change.body, (self.car.vehicle, self.numbers))
         if not all(map(_same_fields, element_values, self.numbers)):
