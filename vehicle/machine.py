@@ -21,11 +21,6 @@ def physical_memory() -> float:
     return min(memory, _container_memory()[0])
 
 
-def processors() -> int:
-    """Return the number of processors that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
 def free_memory() -> float:
     """Return the memory that is free on this machine, with free swap [bytes]; all memory where this is unknown.
 

@@ -242,7 +242,7 @@ def engine_setting(default: str) -> Any:
 def stated_errors_setting() -> Any:
     """Declare the switch for the errors that a run with the reduced engine states."""
     return setting(
-        "state the errors of the reduced engine from its linear geometry; without them nothing is claimed",
+        "state the errors of the reduced engine from its linear geometry",
         True,
         flag="--no-stated-errors",
         action="store_false",

@@ -23,6 +23,7 @@ import numpy as np
 from tests.benchmarks.speed import on_four_plates, piece
 from vehicle.commands.shaker import main as shaker
 from vehicle.engines.reduced import batch_simulation
+from vehicle.engines.reduced.group_run import GroupRun
 from vehicle.engines.reduced.second_order import SecondOrder
 from vehicle.engines.simulation.callbacks import standing_data
 from vehicle.engines.simulation.rows import Rows
@@ -97,7 +98,7 @@ def batch_counts(name: str, signal: Signal, path: str, values: list[float]) -> d
     base = Car.load(name)
     base.with_({path: 2.0 * values[-1]}).check("reduced")
     measure, found, tables = comfort_measure(base.vehicle, 0.0), dict[str, int](), list[Any]()
-    with patch.object(batch_simulation, "GroupRun", _watched(batch_simulation.GroupRun, tables)):
+    with patch.object(batch_simulation, "GroupRun", _watched(GroupRun, tables)):
 
         def swept() -> None:
             cars = [base.with_({path: value}) for value in values]

@@ -281,7 +281,7 @@ def measure(effort: Effort) -> Figures:
     few = min(effort.steps, steps)
     for form, found in parts.items():
         stepping_time(car, signal, few, form, found)
-    counted = {}
+    counted = dict[str, int]()
     for head, one in (("", car), ("four_wheel_", road_car)):
         data = mujoco.MjData(one.model.model)
         mujoco.mj_forward(one.model.model, data)

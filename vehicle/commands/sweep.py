@@ -79,8 +79,7 @@ def parser() -> Parser:
         SweepSettings,
         "jobs",
         default=None,
-        help="processes for independent runs; default: as many as pay, by "
-        "the estimated work: a further one from 2.4 s of work for each on",
+        help="processes for independent runs; default: chosen by the estimated work (a process takes 2.4 s to start)",
     )
     setting_options(parser, SweepSettings, "executor", "time_limit")
     output_options(parser, Path("runs/sweep"))

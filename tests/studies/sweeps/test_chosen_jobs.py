@@ -50,6 +50,11 @@ def test_memory_limits_the_processes(monkeypatch):
 def test_the_chosen_number_is_said_and_another_one_is_obeyed(asked, pools, monkeypatch):
     made, said = list[int](), list[str]()
     monkeypatch.setattr(sweep, "chosen_jobs", lambda *arguments: (3, "3 processes"))
-    monkeypatch.setattr(sweep, "process_pool", lambda jobs: made.append(jobs) or ThisProcess())
+
+    def pool(jobs):
+        made.append(jobs)
+        return ThisProcess()
+
+    monkeypatch.setattr(sweep, "process_pool", pool)
     table = sweep.sweep([CASE], ComfortMeasure(), jobs=asked, notice=said.append)
     assert (made, said, table.failed) == (pools, ["3 processes"] if asked is None else [], [])

@@ -14,8 +14,7 @@ from vehicle.drawing.rendering.backend import variables
 from vehicle.drawing.rendering.layout import Layout, Picture
 from vehicle.drawing.rendering.shot import Cut
 from vehicle.errors import OutputError
-from vehicle.machine import processors
-from vehicle.threads import one_thread_each
+from vehicle.threads import one_thread_each, processors
 
 
 class Drawable(Protocol):

@@ -44,7 +44,7 @@ FRICTION = ("smoothing", "friction_limit", "static_limit", "stribeck_velocity", 
 """Numbers of a damper that enter neither the matrices nor the static forces."""
 
 STORED = 16
-"""Maximum number of stored variants: those of a grid over a few parameters, with friction or curves varied inside."""
+"""Maximum number of stored variants: enough for grids of a few parameters beside friction or curves."""
 
 BREAKPOINT_MARGIN = 10.0 * DIFFERENCE_STEP
 """Distance [m] from a breakpoint of a curve within which the central differences of a built car cross it."""

@@ -3,11 +3,12 @@
 from collections.abc import Collection
 from contextlib import suppress
 
-from vehicle.machine import free_memory, processors
+from vehicle.machine import free_memory
 from vehicle.runs.output.run_size import BASE
 from vehicle.studies.sweeps.case import Case
 from vehicle.studies.sweeps.measure import BatchMeasure, Measure
 from vehicle.studies.sweeps.study_size import duration_of
+from vehicle.threads import processors
 
 START = 2.4
 """Processor time in which a worker starts [s]: imports, reference car, inputs. Measured with `focus_road`."""
@@ -17,7 +18,7 @@ CAR = 0.02
 mass of `focus_road`."""
 
 BATCH, SINGLE, MUJOCO = 0.7e-3, 6e-3, 0.1
-"""Processor time of a simulated second [s]: in a batch, as a single run of the reduced engine, with MuJoCo. Measured
+"""Processor time of a simulated second [s]: batch, single run of the reduced engine, MuJoCo. Measured
 with `focus_road`; smaller cars take a half to a third."""
 
 

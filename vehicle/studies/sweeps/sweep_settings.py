@@ -46,8 +46,7 @@ class PoolSettings(Settings):
     """Settings of many runs on processes or a cluster; the results do not depend on them."""
 
     jobs: int | None = setting(
-        "processes for independent runs; default %(default)s: no further process is started; None: as many as the "
-        "estimated work pays",
+        "processes for independent runs; default %(default)s, None: chosen by the estimated work",
         1,
         within="[1, inf)",
         type=_jobs,
