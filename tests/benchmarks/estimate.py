@@ -1,4 +1,4 @@
-"""Accuracy of `Car.estimate` against runs of random cars on repeating roads: python -m tests.benchmarks.estimate.
+"""Accuracy of `Car.estimate` against runs of random cars: python -m tests.benchmarks.estimate [CARS SEED].
 
 Each random car differs in friction, damping, springs, tyres and mass, on the classes A to D at 50 to 110 km/h; in the
 set `stuck` the friction is 1 to 5 times that of the car, on A and B at 20 to 50 km/h, so that dampers stick. The
@@ -16,8 +16,8 @@ import numpy as np
 
 from vehicle import Car, road
 from vehicle.errors import SimulationError
-from vehicle.runs.car import estimate_limits, road_estimate
-from vehicle.runs.car.estimate_limits import LEAST_SLIP, MOST_OUTSIDE, outside_share, slip_share
+from vehicle.runs.car import road_estimate
+from vehicle.runs.car.estimate_limits import LEAST_LOOSE, MOST_ENGAGED, loose_share, outside_share
 from vehicle.studies.sweeps.plan import sweep
 
 NAMES = ("weighted", "weighted_x", "weighted_y", "weighted_z", "unweighted", "tyre_load_rms")
@@ -66,14 +66,14 @@ def random_cars(name: str, count: int, draw: np.random.Generator, friction: tupl
 
 
 def compared(name: str, speed: float, classes: str, cars: Sequence[Sequence[str]]) -> list[dict[str, Any]]:
-    """Return estimate and run of cars on classes: a row for each, with slip share and share outside."""
+    """Return estimate and run of cars on classes: a row for each, with the shares of the limits."""
     base, rows = Car.load(name), []
     seen: list[tuple[float, float]] = []
 
-    def note(dampers: Any, speeds: Any, laws: Any, displacements: Any) -> None:
-        slips = [slip_share(each) for each, one in zip(speeds, dampers, strict=True) if one.law.static_friction > 0.0]
+    def note(dampers: Any, forces: Any, laws: Any, displacements: Any) -> None:
+        shares = [loose_share(one.law.static_friction, each) for each, one in zip(forces, dampers, strict=True)]
         outside = [outside_share(law, each) for law, each in zip(laws, displacements, strict=True)]
-        seen.append((min(slips, default=1.0), max(outside, default=0.0)))
+        seen.append((min(shares), max(outside, default=0.0)))
 
     road_estimate.require_motion = note
     for letter in classes:
@@ -94,11 +94,11 @@ def compared(name: str, speed: float, classes: str, cars: Sequence[Sequence[str]
                 seen.append((0.0, 0.0))
             seconds = time.process_time() - began
             mean = runs[:, number].mean(axis=0)
-            slip, outside = seen.pop()
+            share, outside = seen.pop()
             rows.append({
                 "car": name, "class": letter, "speed": speed, "error": 100.0 * (found / mean - 1.0), "run": mean,
                 "scatter": 100.0 * runs[:, number].std(axis=0, ddof=1) / mean / np.sqrt(len(SEEDS)),
-                "slip": slip, "outside": outside, "seconds": seconds,
+                "loose": share, "outside": outside, "seconds": seconds,
             })  # fmt: skip
     return rows
 
@@ -106,24 +106,23 @@ def compared(name: str, speed: float, classes: str, cars: Sequence[Sequence[str]
 def printed(title: str, rows: Sequence[dict[str, Any]]) -> None:
     """Print the rows of a table."""
     error = np.array([row["error"] for row in rows])
-    refused = np.array([row["slip"] < LEAST_SLIP or row["outside"] > MOST_OUTSIDE for row in rows])
+    refused = np.array([row["loose"] < LEAST_LOOSE or row["outside"] > MOST_ENGAGED for row in rows])
     off = np.abs(error[:, 0]) > 2.0
     stated = error[~refused]
-    text = f"{title:24s} {len(rows):4d} refused {np.mean(refused):5.2f}  off by 2 %: {off.sum():3d}, refused {np.sum(off & refused):3d}"
+    text = f"{title:10s} {len(rows):4d} refused {np.mean(refused):5.2f}  off by 2 %: {off.sum():3d}, "
+    text += f"refused {np.sum(off & refused):3d}"
     if len(stated):
-        text += f" | weighted {stated[:, 0].mean():+.2f} {stated[:, 0].std(ddof=1) if len(stated) > 1 else 0:.2f}"
-        text += f" {stated[:, 0].min():+.2f} {stated[:, 0].max():+.2f} |"
-        text += "".join(
-            f" {n} {m:+.2f} {d:.2f}"
-            for n, m, d in zip(NAMES[1:], stated[:, 1:].mean(axis=0), stated[:, 1:].std(axis=0), strict=True)
-        )
+        text += f" | range {stated[:, 0].min():+.2f} {stated[:, 0].max():+.2f} |"
+        for name, errors in zip(NAMES, stated.T, strict=True):
+            text += f" {name} {errors.mean():+.2f} {errors.std():.2f}"
     scatter = np.array([row["scatter"][0] for row in rows])
     print(f"{text} | run {scatter.mean():.2f}", flush=True)
 
 
 def main() -> None:
     """Run both sets and print their tables."""
-    draw, count = np.random.default_rng(2060), int(sys.argv[1]) if len(sys.argv) > 1 else 8
+    count, seed = map(int, sys.argv[1:3]) if len(sys.argv) > 2 else (8, 1)
+    draw = np.random.default_rng(seed)
     usual: list[dict[str, Any]] = []
     for name in ("sedan", "focus", "focus_road"):
         for speed in (50.0, 80.0, 110.0):
@@ -140,8 +139,6 @@ def main() -> None:
     everything = usual + stuck
     printed("all", everything)
     print(f"{1e3 * np.median([row['seconds'] for row in everything]):.1f} ms a car and road")
-    if len(sys.argv) > 2:
-        np.save(sys.argv[2], np.array(everything, dtype=object), allow_pickle=True)
 
 
 if __name__ == "__main__":

@@ -1,12 +1,12 @@
-"""Statistical linearisation of dampers without a run: viscous constants for a Gaussian velocity of the linear car itself.
+"""Statistical linearisation of dampers without a run: viscous constants for the Gaussian velocity of the linear car.
 
 On a random road the velocity v of a damper is nearly Gaussian, with the standard deviation s. The viscous damper that
 minimises the mean square error of the force F(v) has the constant
 
     c = E[(F - E F) v]/s^2 = E[dF/dv]
 
-by Stein's lemma, and s in turn follows from the responses of the car with the constants c: a fixed point. For a force of
-straight lines between breakpoints v_j with slopes b_j, and the normal distribution Phi,
+by Stein's lemma, and s in turn follows from the responses of the car with the constants c: a fixed point. For a force
+of straight lines between breakpoints v_j with slopes b_j, and the normal distribution Phi,
 
     c = sum of b_j [Phi(v_(j+1)/s) - Phi(v_j/s)]
 

@@ -22,6 +22,7 @@ from vehicle.engines.reduced.linear_twin import LinearTwin, linear_twin
 from vehicle.engines.reduced.road_expectation import (
     Lines,
     band_width,
+    damper_speeds,
     density,
     integral_lines,
     track_sources,
@@ -30,7 +31,7 @@ from vehicle.engines.reduced.road_expectation import (
 from vehicle.engines.reduced.statistical_linearisation import LineSegments, line_segments, linearised_damping
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.names import AXES
-from vehicle.runs.car.estimate_limits import require_class, require_laws, require_motion
+from vehicle.runs.car.estimate_limits import LOCKED, require_class, require_laws, require_motion
 from vehicle.signals.analysis.comfort import COMFORT_BAND
 from vehicle.signals.analysis.evaluation import application
 from vehicle.signals.analysis.ride_comfort import (
@@ -49,8 +50,9 @@ if TYPE_CHECKING:
     from vehicle.runs.car.car import Car
     from vehicle.runs.car.road import Drive
 
-LAW_NUMBERS = ("viscous", "degressive_viscous", "degressive_velocity", "coulomb_friction", "smoothing") + tuple(
-    f"stribeck_{name}" for name in ("friction", "velocity", "exponent")
+LAW_NUMBERS = (
+    *("viscous", "degressive_viscous", "degressive_velocity", "coulomb_friction", "smoothing"),
+    *("stribeck_friction", "stribeck_velocity", "stribeck_exponent"),
 )
 """Parameters of a damper that change its force over velocity alone, neither preloads nor other elements."""
 
@@ -182,11 +184,12 @@ def road_estimate(car: Car, drive: Drive, channels: Iterable[str] = ()) -> RoadE
     loads = tuple(f"tyre_{wheel}_force_z" for wheel in model.matrices.system.inputs)
     part = _linear_part(_Itself(reference), _of_all_roads(road), (*accelerations, *loads))
     laws = [_segments(damper.law) for damper in dampers]
-    damping, speeds = linearised_damping(part.twin, part.lines, laws)
+    damping, _ = linearised_damping(part.twin, part.lines, laws)
     names = (*accelerations, *loads)
     densities = density(part.twin.responses(damping))
     displacements = np.sqrt(densities[len(names) :] @ part.lines.width)
-    require_motion(dampers, speeds, model.laws, displacements)
+    locked = np.full(len(dampers), LOCKED)
+    require_motion(dampers, locked * damper_speeds(part.twin, locked, part.lines), model.laws, displacements)
     return RoadEstimate(
         car=vehicle.name,
         road=road.name,
