@@ -55,7 +55,7 @@ def test_only_a_class_has_a_period(sedan):
 
 def test_a_span_below_six_seconds_is_noticed(sedan):
     spans = {duration: road("B", 80, duration=duration).under(sedan.vehicle).signal() for duration in (7.9, 8.0)}
-    assert "from 6 s on" in spans[7.9].notices[0] and not spans[8.0].notices
+    assert "5.9 s of road" in spans[7.9].notices[0] and not spans[8.0].notices
 
 
 def test_comfort_scatters_little_from_seed_to_seed(sedan):
