@@ -87,8 +87,9 @@ REFUSED = {
 def test_what_the_estimate_does_not_cover_is_refused_by_name(case: str):
     """Each with the sentence that names it."""
     changes, on, words = REFUSED[case]
+    car = Car.load("focus_road" if case == "control" else "sedan", changes)
     with pytest.raises((ConfigurationError, SimulationError), match=words):
-        Car.load("focus_road" if case == "control" else "sedan", changes).estimate(on, ["hub"] if case == "channel" else ())
+        car.estimate(on, ["hub"] if case == "channel" else ())
 
 
 def test_tyres_that_leave_the_road_are_refused(sedan: Car):

@@ -43,8 +43,8 @@ def test_figures_of_mean_squares_are_those_of_runs(sedan: Car):
     drive = road("C", 80, duration=12)
     tables = [sweep(sedan, [{}, {FRICTION: 70}], drive, measure=figures, **how) for how in ({"estimate": True}, {})]
     for name in tables[0].units:
-        # One seed of 10 s, 0.3 %, and the linearisation. The present load on slopes moves the car along x, and is not in
-        # the linear car: 2 % of x.
+        # One seed of 10 s, 0.3 %, and the linearisation. The linear car lacks the present load on slopes, 2 % of the
+        # motion along x.
         assert tables[0].column(name) == pytest.approx(tables[1].column(name), rel=0.03 if "ratio" in name else 0.01)
 
 

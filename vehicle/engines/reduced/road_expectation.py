@@ -1,4 +1,4 @@
-"""Expected mean squares of a linear car on all roads of a class, as closed integrals over frequency.
+"""Expected mean squares of a linear car on all roads of a class: closed integrals over frequency.
 
 A road of a class (`vehicle.signals.excitation.iso_road`) is the sum of two independent sources, the mean and the
 difference of the tracks. With the density G(n) of the class, the wavenumber n = f/V, the cross spectrum g(n) of the

@@ -25,11 +25,11 @@ random cars, 30 in classes A to D to 5 times the usual friction, 55 estimates we
 refuses 54 of them and 9 % of the others (`python -m tests.benchmarks.estimate`)."""
 
 LOCKED = 1e8
-"""Damping constant of a locked damper [N s/m]: a thousand times that of the strongest friction at rest."""
+"""Damping constant of a locked damper [N s/m]: far stiffer than the springs of a car up to 60 Hz."""
 
 MOST_LIFTED, MOST_ENGAGED = 0.03, 0.01
 """Maximum share of the time in which a tyre leaves the road, and in which another law over displacement leaves its
-segment at rest, as a stop its clearance. At these shares the weighted comfort of the sedan is 0.9 % and 0.5 % off."""
+segment at rest (a stop: its clearance). At these shares the weighted comfort of the sedan is 0.9 % and 0.5 % off."""
 
 REMEDY = "run the car instead"
 
@@ -44,7 +44,7 @@ def require_class(source: Any) -> RoadDrive:
         return source
     name = getattr(source, "road", getattr(source, "name", source))
     raise ConfigurationError(
-        f"estimate: {name} is no class of ISO 8608, so nothing is known of roads like it; choose a class, "
+        f"estimate: {name} is no class of ISO 8608, whose spectrum the estimate needs; choose a class, "
         f"{', '.join(CLASSES)}, or {REMEDY}"
     )
 

@@ -2,8 +2,8 @@
 
 The dampers become viscous with the constants of a Gaussian velocity
 (`vehicle.engines.reduced.statistical_linearisation`), and the mean squares of the linear car are closed integrals over
-the spectrum of the class (`vehicle.engines.reduced.road_expectation`). The value has no scatter; its error is that of
-the linearisation (docs/theory/estimate.md). Cars on which this error is large or unknown are refused
+the spectrum of the class (`vehicle.engines.reduced.road_expectation`). The value has no scatter. The linearisation has
+an error (docs/theory/estimate.md). Cars on which this error is large or unknown are rejected
 (`vehicle.runs.car.estimate_limits`).
 """
 
@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -44,11 +44,8 @@ from vehicle.signals.analysis.ride_comfort import (
 )
 from vehicle.signals.analysis.road_level import CLASSES
 from vehicle.signals.excitation.iso_road import IsoRoad
+from vehicle.signals.excitation.recorded_road import RecordedDrive
 from vehicle.signals.excitation.road_drive import RoadDrive
-
-if TYPE_CHECKING:
-    from vehicle.runs.car.car import Car
-    from vehicle.runs.car.road import Drive
 
 LAW_NUMBERS = (
     *("viscous", "degressive_viscous", "degressive_velocity", "coulomb_friction", "smoothing"),
@@ -63,7 +60,7 @@ class RoadEstimate:
 
     Attributes:
         car: name of the car.
-        road: class and speed, as "road_C_80".
+        road: class and speed, for example "road_C_80".
         lines: lines of the integrals over frequency.
         densities: channel to its density [(m/s2)^2/Hz, N^2/Hz]; (m,).
         static_load: static load of each tyre [N].
@@ -154,7 +151,7 @@ class _LinearPart(NamedTuple):
 class _Itself:
     """A car as a key of a cache: the object, not its parameters, whose comparison takes longer than an estimate."""
 
-    def __init__(self, car: Car) -> None:
+    def __init__(self, car: Any) -> None:
         self.car = car
 
     def __hash__(self) -> int:
@@ -164,7 +161,7 @@ class _Itself:
         return isinstance(other, _Itself) and other.car is self.car
 
 
-def road_estimate(car: Car, drive: Drive, channels: Iterable[str] = ()) -> RoadEstimate:
+def road_estimate(car: Any, drive: RoadDrive | RecordedDrive, channels: Iterable[str] = ()) -> RoadEstimate:
     """Estimate the vibration of a car on all roads of a class; see `Car.estimate`.
 
     Args:
@@ -200,7 +197,7 @@ def road_estimate(car: Car, drive: Drive, channels: Iterable[str] = ()) -> RoadE
     )
 
 
-def _split(car: Car) -> tuple[_Itself, tuple[str, ...]]:
+def _split(car: Any) -> tuple[_Itself, tuple[str, ...]]:
     """Return a car, and the changes of parameters that make the linear part of `car` of it."""
     if car._base is None:
         return _Itself(car), ()
@@ -220,7 +217,7 @@ def _of_all_roads(drive: RoadDrive) -> RoadDrive:
 
 # The cars of a study share a few linear parts if its dampers vary.
 @lru_cache(maxsize=32)
-def _reference(base: _Itself, changes: tuple[str, ...], by_road: tuple[str, ...]) -> Car:
+def _reference(base: _Itself, changes: tuple[str, ...], by_road: tuple[str, ...]) -> Any:
     """Return a base car with changes, of which those by the road come last; checked for stability."""
     texts = [*changes, *by_road]
     car = base.car.with_(texts) if texts else base.car

@@ -1,4 +1,4 @@
-"""Screening of a search: all cars are estimated without a run, and the best are run beside their estimates."""
+"""Screening of a search: all cars are estimated without a run, then the best cars are run."""
 
 import math
 from collections.abc import Mapping
@@ -67,7 +67,7 @@ class Screening:
 
 
 def best_rows(costs: Vector, count: int) -> Indices:
-    """Return the rows of the best cars: those of the front, then of the front of the others, until `count`.
+    """Return the rows of the best cars: the front, then the front of the other cars, until `count`.
 
     Args:
         costs: objectives of the cars within all limits, less is better; (n, goals).
