@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from vehicle.model.parameters.composition import PlacedDamper
 
 LEAST_LOOSE = 0.8
-"""Minimum share of the time in which the force in a damper, if all dampers were locked, exceeds its friction. Of 384
-random cars, 30 in classes A to D to 5 times the usual friction, 55 estimates were off by more than 2 %; this limit
-refuses 54 of them and 9 % of the others (`python -m tests.benchmarks.estimate`)."""
+"""Minimum share of the time in which the force in a damper, if all dampers were locked, exceeds its friction. Chosen
+with 384 random cars on classes A to D, of which 55 were off by more than 2 %: it rejects 54 of them and 9 % of the
+others. Of 384 other cars it rejects all 61 that are off (docs/theory/estimate.md)."""
 
 LOCKED = 1e8
 """Damping constant of a locked damper [N s/m]: far stiffer than the springs of a car up to 60 Hz."""
