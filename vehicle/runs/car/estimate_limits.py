@@ -50,7 +50,7 @@ def require_class(source: Any) -> RoadDrive:
 
 
 def require_laws(dampers: Sequence[PlacedDamper], model: PoleModel) -> None:
-    """Check that the force of each damper follows from its velocity, and that nothing but the road shakes the car.
+    """Check that the force of each damper follows from its velocity, and that the road is the only excitation.
 
     Raises:
         ConfigurationError: the first reason against it.
@@ -63,10 +63,10 @@ def require_laws(dampers: Sequence[PlacedDamper], model: PoleModel) -> None:
             "has presliding friction": law.presliding_stiffness is not None and law.friction_law == "presliding",
             "has friction that grows with its side force": law.side_force_coefficient > 0.0,
         }
-        for words, applies in reasons.items():
+        for reason, applies in reasons.items():
             if applies:
                 raise ConfigurationError(
-                    f"estimate: {damper.path} {words}, so its force does not follow from its velocity alone; {REMEDY}"
+                    f"estimate: {damper.path} {reason}, so its force does not follow from its velocity alone; {REMEDY}"
                 )
     for each in model.laws:
         if each.friction:
@@ -117,17 +117,17 @@ def require_motion(
     for damper, force in zip(dampers, locked_forces.tolist(), strict=True):
         share = loose_share(damper.law.static_friction, force)
         if share < LEAST_LOOSE:
-            found, limit = beside_limit(100.0 * share, 100.0 * LEAST_LOOSE)
+            percent, limit = beside_limit(100.0 * share, 100.0 * LEAST_LOOSE)
             raise ConfigurationError(
                 f"estimate: {damper.path} would stick too often on this road (the force in it exceeds its friction of "
-                f"{damper.law.static_friction:g} N for {found} % of the time, {limit} % are needed); choose a rougher "
-                f"road or a higher speed, or {REMEDY}"
+                f"{damper.law.static_friction:g} N for {percent} % of the time, {limit} % are needed); choose a "
+                f"rougher road or a higher speed, or {REMEDY}"
             )
     for law, displacement in zip(laws, displacements.tolist(), strict=True):
-        share, most = outside_share(law, displacement), MOST_LIFTED if law.one_sided else MOST_ENGAGED
-        if share > most:
-            found, limit = beside_limit(100.0 * share, 100.0 * most)
-            what = "leaves the road" if law.one_sided else "leaves its straight segment at rest"
+        share, maximum = outside_share(law, displacement), MOST_LIFTED if law.one_sided else MOST_ENGAGED
+        if share > maximum:
+            percent, limit = beside_limit(100.0 * share, 100.0 * maximum)
+            action = "leaves the road" if law.one_sided else "leaves its straight segment at rest"
             raise ConfigurationError(
-                f"estimate: {law.name} {what} for {found} % of the time, at most {limit} % are covered; {REMEDY}"
+                f"estimate: {law.name} {action} for {percent} % of the time, at most {limit} % are covered; {REMEDY}"
             )

@@ -92,7 +92,7 @@ class RoadEstimate:
 
     @cached_property
     def tyre_load(self) -> dict[str, float]:
-        """RMS of the dynamic load of each tyre [N]."""
+        """Return the RMS of the dynamic load of each tyre [N]."""
         return {
             wheel: float(np.sqrt(self.densities[f"tyre_{wheel}_force_z"] @ self.lines.width))
             for wheel in self.static_load
@@ -100,7 +100,7 @@ class RoadEstimate:
 
     @cached_property
     def values(self) -> dict[str, float]:
-        """Comfort under its names in sweeps: overall and by axis, seat rail and cushion, SEAT value."""
+        """Return the comfort values by their names in sweeps: overall and by axis, seat rail and cushion, SEAT value."""
         values = self._point("seat_rail", "")
         if f"seat_acc_{AXES[2]}" in self.densities:
             values |= self._point("seat", SEAT_PREFIX)
@@ -109,12 +109,12 @@ class RoadEstimate:
 
     @property
     def comfort(self) -> PointComfort:
-        """Comfort at the seat rail."""
+        """Return the comfort at the seat rail."""
         return point_comfort("seat rail", self.values, COMFORT_BAND)
 
     @property
     def cushion(self) -> PointComfort | None:
-        """Comfort on the cushion; None for a car without a seat."""
+        """Return the comfort on the cushion, or None for a car without a seat."""
         return point_comfort("cushion", self.values, COMFORT_BAND, SEAT_PREFIX) if SEAT_VALUE in self.values else None
 
     def _point(self, point: str, prefix: str) -> dict[str, float]:

@@ -101,13 +101,13 @@ def screening(runs: Trials, estimates: Outcome, count: int) -> Screening:
     values, reasons = runs(np.concatenate([estimates.base.points, tried.points[rows]]))
     base = TriedCars(points=estimates.base.points, values=values[:1], reasons=(reasons[0],))
     run_cars = TriedCars(points=tried.points[rows], values=values[1:], reasons=tuple(reasons[1:]))
-    found = replace(outcome(problem, base, [run_cars]), reached=estimates.reached)
+    best = replace(outcome(problem, base, [run_cars]), reached=estimates.reached)
     labels = [criterion.label for criterion in problem.criteria]
     with np.errstate(divide="ignore", invalid="ignore"):
         errors = np.concatenate([estimates.base.values, tried.values[rows]]) / values - 1.0
-    named = {BASE: 0} | {name: 1 + row for name, row in found.named.items()}
+    named = {BASE: 0} | {name: 1 + row for name, row in best.named.items()}
     return Screening(
-        outcome=found,
+        outcome=best,
         estimated=len(tried.reasons),
         refused=sum(map(bool, tried.reasons)),
         reason=next(filter(None, tried.reasons), ""),
