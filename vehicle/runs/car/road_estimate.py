@@ -100,7 +100,7 @@ class RoadEstimate:
 
     @cached_property
     def values(self) -> dict[str, float]:
-        """Return the comfort values by their names in sweeps: overall and by axis, seat rail and cushion, SEAT value."""
+        """Return the comfort values by their names in sweeps: overall, by axis, at seat rail and cushion, SEAT value."""
         values = self._point("seat_rail", "")
         if f"seat_acc_{AXES[2]}" in self.densities:
             values |= self._point("seat", SEAT_PREFIX)
@@ -228,7 +228,7 @@ def _reference(base: _Itself, changes: tuple[str, ...], by_road: tuple[str, ...]
 @lru_cache(maxsize=32)
 def _linear_part(car: _Itself, drive: RoadDrive, channels: tuple[str, ...]) -> _LinearPart:
     """Return the responses of a car to the two sources of a class."""
-    model, speed, placed = car.car.poles, drive.speed / 3.6, {wheel: place for wheel, *place in drive.wheels}
+    model, speed = car.car.poles, drive.speed / 3.6
     road = IsoRoad(
         level=CLASSES[str(drive.road)],
         seed=drive.seed,
@@ -237,7 +237,8 @@ def _linear_part(car: _Itself, drive: RoadDrive, channels: tuple[str, ...]) -> _
         patch=drive.patch,
         envelope=drive.envelope,
     )
-    wheels = {wheel: (placed[wheel][0], placed[wheel][1]) for wheel in model.matrices.system.inputs}
+    placed = {wheel: (behind, side) for wheel, behind, side in drive.wheels}
+    wheels = {wheel: placed[wheel] for wheel in model.matrices.system.inputs}
     lines = integral_lines(road, speed, drive.rate)
     sources = track_sources(road, speed, wheels, lines.frequency)
     return _LinearPart(lines, linear_twin(model, channels, lines.frequency, sources, further=model.law_outputs))
