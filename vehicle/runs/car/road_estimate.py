@@ -100,7 +100,7 @@ class RoadEstimate:
 
     @cached_property
     def values(self) -> dict[str, float]:
-        """Return the comfort values by their names in sweeps: overall, by axis, at seat rail and cushion, SEAT value."""
+        """Return the comfort values by their names in sweeps: overall and by axis, at rail and cushion, SEAT value."""
         values = self._point("seat_rail", "")
         if f"seat_acc_{AXES[2]}" in self.densities:
             values |= self._point("seat", SEAT_PREFIX)
