@@ -60,6 +60,7 @@ def require_laws(dampers: Sequence[PlacedDamper], model: PoleModel) -> None:
         reasons = {
             f"is controlled ({law.control.law if law.control else ''})": law.controlled is not None,
             f"has the law {law.function!r} of the user's own": law.function is not None,
+            f"has the friction {law.friction_function!r} of the user's own": law.friction_function is not None,
             "has presliding friction": law.presliding_stiffness is not None and law.friction_law == "presliding",
             "has friction that grows with its side force": law.side_force_coefficient > 0.0,
         }
