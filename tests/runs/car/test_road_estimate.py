@@ -1,10 +1,12 @@
 """Estimates of cars on road classes without a run: against runs, exact for a viscous car, and what they refuse."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 from tests.engines.reduced.test_road_expectation import VISCOUS
-from vehicle import Car, road
+from vehicle import Car, Road, road
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.runs.car.estimate_limits import loose_share
 from vehicle.runs.car.road import lifting_tyres
@@ -66,7 +68,7 @@ def test_the_tyre_load_is_that_of_runs(sedan: Car):
     assert np.mean([estimate["fr"], estimate["fl"]]) == pytest.approx(np.mean(loads), rel=0.01)
 
 
-REFUSED = {
+REFUSED: dict[str, tuple[dict[str, Any], Road, str]] = {
     "sticks": ({"front.damper.coulomb_friction": 400}, road("A", 30), "front.damper would stick too often"),
     "control": ({"front.damper.control.law": "skyhook"}, road("C", 80), "front.damper is controlled"),
     "side force": ({"front.damper.side_force_coefficient": 0.2}, road("C", 80), "front.damper has friction that grows"),
