@@ -73,7 +73,7 @@ def parser() -> Parser:
         "front.damper; coordinates are shifted by ±D mm (default 10), for example 20%%,5mm",
     )
     vehicle_options(parser)
-    setting_options(parser, SweepSettings, "measure", "engine", "skip")
+    setting_options(parser, SweepSettings, "estimate", "measure", "engine", "skip")
     setting_options(
         parser,
         SweepSettings,
