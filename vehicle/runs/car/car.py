@@ -336,8 +336,7 @@ class Car:
 
         H(jw) of (s^2 M + s C + K) u = l, s = jw, with the row l of the force; its history plays no part.
 
-        Args:
-            force: name of a force, for example "crank_torque" of [force.crank_torque].
+        `force` is the name of a force, for example "crank_torque" of [force.crank_torque].
         """
         return force_frf(self, channels, frequency, is_stuck(damper), force)
 
@@ -369,19 +368,17 @@ class Car:
         """Simulate the car on a signal or a road; `run.engine_reason` is the reason for the choice of the engine.
 
         Args:
-            source: displacement of the plates: a `Signal`, a file, or the name of a shipped file, for example
-                "low.csv"; or a road, for example road("C", 80), on which the tyres roll.
+            source: displacement of the plates: a `Signal`, a file or the name of a shipped one, for example "low.csv";
+                or a road, for example road("C", 80), on which the tyres roll.
             engine: "mujoco"; "reduced", 3 times faster (sweeps tens), with all laws but linear geometry; "auto":
                 "reduced", and "mujoco" if the motion leaves the valid range.
             progress: called with the finished fraction (MuJoCo only).
-            channels: names of the recorded channels; default: all but those on request
-                (`vehicle.requested_channels`).
-            skip: time at the beginning that comfort and slip shares leave out [s]; default: 0, on a road at least 2,
-                until the last wheel has risen with it.
+            channels: names of the recorded channels; default: all but `vehicle.requested_channels`.
+            skip: excluded time at the beginning [s]; default: 0, on a road at least 2, until the last wheel has risen.
             forces: {"crank_torque": values}, in place of the history in the vehicle file: values at the times of the
                 signal, or a function of the times [s] that returns them [N or N m].
-            stated_errors: compute the errors from linear geometry, 60 % of the first reduced run of a car and a
-                third of the next; without them its valid range is narrower (`vehicle.engines.reduced.validity`).
+            stated_errors: compute the errors from linear geometry; without them, the time is 0.4 of a first reduced
+                run and 0.7 of a further one, and the valid range is narrower (`vehicle.engines.reduced.validity`).
 
         Raises:
             ConfigurationError, DataError: an unknown name, a value out of range, an unstable car, a bad file.
