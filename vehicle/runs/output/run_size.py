@@ -18,7 +18,8 @@ BESIDE, OF_SAMPLE = 0.45e9, 200.0
 """Memory of a run with its files [byte]: program, model and short transforms; for each sample plates and an evaluation.
 
 Largest resident memory of runs of `focus_road` at 1 kHz with all 61 channels, in npz and h5, and `run_memory` [GB]:
-300 s 0.45 and 0.51; 600 s 0.64 and 0.57; 1200 s 0.64 and 0.69. From 2^20 samples on, transforms are made in blocks.
+300 s 0.45 and 0.51; 600 s 0.64 and 0.57; 1200 s 0.64 and 0.69; an hour, without the
+pages of the file, 1.2 and 1.2. From 2^20 samples on, transforms are made in blocks.
 """
 
 RECORDED = 64
