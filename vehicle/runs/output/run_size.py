@@ -17,9 +17,10 @@ BYTES = {"npz": 8.0, "h5": 8.0, "mf4": 8.0, "mat": 8.0, "uff": 8.0, "rpc": 4.0, 
 BESIDE, OF_SAMPLE = 0.45e9, 200.0
 """Memory of a run with its files [byte]: program, model and short transforms; for each sample plates and an evaluation.
 
-Largest resident memory of runs of `focus_road` at 1 kHz with all 61 channels, in npz and h5, and `run_memory` [GB]:
-300 s 0.45 and 0.51; 600 s 0.64 and 0.57; 1200 s 0.64 and 0.69; an hour, without the
-pages of the file, 1.2 and 1.2. From 2^20 samples on, transforms are made in blocks.
+Largest own memory of runs of `focus_road` at 1 kHz with all 61 channels, in npz and h5, to which libraries and pages of
+the file add 0.1 or more, and `run_memory` [GB]: 300 s 0.31 and 0.51; 600 s 0.42 and 0.57; 900 s 0.52 and 0.63; 1200 s
+0.48 and 0.69; an hour with pictures and report 1.24 and 1.17; MuJoCo, 300 s 0.34 and 0.51. From 2^20 samples on,
+transforms are made in blocks.
 """
 
 RECORDED = 64
