@@ -76,13 +76,13 @@ def test_nine_of_ten_tests_are_below_the_limit(tests):
     inside, slower = 0, 0
     for _ in range(DRAWS):
         errors = np.exp(-2.0 + 0.4 * rng.standard_normal(tests + 1))
-        limit = expected_error(made(errors[:-1]), (0.1, 0.4), 0.2).most
+        limit = expected_error(made(errors[:-1]), (0.1, 0.4), 0.2).limit
         inside += errors[-1] < limit
         # The error of the fit itself is negligible here.
         steps = rng.standard_normal(tests + 1)
         ranges = {"slower": np.array([np.abs(steps[:-1]), np.zeros(tests)])}
         slower += (
-            abs(steps[-1]) * 2.0 < expected_error(made([1e-6] * tests, ranges=ranges), (0.1, 0.4), 0.1 / 16.0).most
+            abs(steps[-1]) * 2.0 < expected_error(made([1e-6] * tests, ranges=ranges), (0.1, 0.4), 0.1 / 16.0).limit
         )
     # Three standard errors of a share of 0.9 in the draws.
     assert [inside / DRAWS, slower / DRAWS] == pytest.approx([0.9, 0.9], abs=3.0 * 0.3 / np.sqrt(DRAWS))
@@ -106,9 +106,9 @@ def test_a_bend_beyond_the_tests_is_in_the_limit():
 
 def test_the_steady_force_is_that_of_a_long_stroke():
     parameters = np.array([0.0, 5000.0, 1200.0, 0.05, 60.0, 30.0, 0.02])
-    law, time = DamperLaw(bends=1, friction="stribeck"), np.arange(100) * 1e-3
+    law, time = DamperLaw(bends=1, friction="stribeck"), np.linspace(0.0, 0.099, 100)
     for speed in (0.004, 0.03, 0.2):
-        motion = Motion(time, speed * time, np.full(100, speed), 0.0)
+        motion = Motion(time, np.asarray(speed * time), np.full(100, speed), 0.0)
         force, slopes = force_and_slopes(law, parameters, motion)
         steady, columns = steady_force(law, parameters, np.array([speed]))
         assert steady[0] == pytest.approx(force[-1], rel=1e-12)

@@ -140,7 +140,8 @@ def fit_law(tests: Sequence[DamperTest], law: DamperLaw, starts: Sequence[Vector
                 rows.append(weight * (force - test.force)[mask])
                 columns.append(weight[:, None] * slopes[mask] * np.where(linear, scale, values))
             # QR gives few rows with the same sum of squares, slopes and curvature.
-            triangle = np.linalg.qr(np.column_stack([np.concatenate(columns), np.concatenate(rows)]), mode="r")
+            both = np.column_stack([np.concatenate(columns), np.concatenate(rows)])
+            triangle = np.asarray(np.linalg.qr(both, mode="r"))
             last.clear()
             last[key] = triangle[:, -1], triangle[:, :-1]
         return last[key]

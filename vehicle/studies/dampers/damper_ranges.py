@@ -57,7 +57,7 @@ class Expected(NamedTuple):
     """Error that is expected in a further test, over the standard deviation of its force."""
 
     usual: float
-    most: float  # limit of nine of ten tests; NaN with less than three tests
+    limit: float  # limit of nine of ten tests; NaN with less than three tests
 
 
 def speeds_of(tests: Sequence[DamperTest]) -> tuple[float, float]:
@@ -136,8 +136,8 @@ def expected_error(fit: DamperFit, speeds: tuple[float, float], velocity: float)
     if distance > 0.0 and not slower:
         square, limit = _bend_beyond(fit, slowest, fastest, velocity)
         change, at_most = max(change, square), max(at_most, limit)
-    most = np.sqrt(np.exp(2.0 * (mean + spread)) + at_most)
-    return Expected(float(np.sqrt(np.exp(2.0 * mean) + change)), float(most))
+    highest = np.sqrt(np.exp(2.0 * (mean + spread)) + at_most)
+    return Expected(float(np.sqrt(np.exp(2.0 * mean) + change)), float(highest))
 
 
 def _bend_beyond(fit: DamperFit, slowest: float, fastest: float, velocity: float) -> tuple[float, float]:

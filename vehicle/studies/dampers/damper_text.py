@@ -241,8 +241,8 @@ def fit_json(fitted: FittedDamper) -> dict[str, Any]:
             {"range": text, "left_out": outside, "fitted": inside} for text, outside, inside in range_rows(fitted)
         ],
         "expected": [
-            {"velocity": text, "usual": usual, "nine_of_ten_below": _or_none(most)}
-            for text, (usual, most) in expected_rows(fitted)
+            {"velocity": text, "usual": usual, "nine_of_ten_below": _or_none(limit)}
+            for text, (usual, limit) in expected_rows(fitted)
         ],
         "not_determined": fitted.left_open(),
         "notices": [f"{test.name}: {text}" for test in fitted.tests for text in test.notices],
@@ -289,7 +289,7 @@ def summary_lines(fitted: FittedDamper) -> list[str]:
         lines.append(f"{'error in a range that the fit does not contain':<52}{'fitted':>8}{'left out':>10}")
         lines += [f"{text:<52}{inside:>8.3f}{outside:>10.3f}" for text, outside, inside in rows]
     lines.append(f"{'error to expect in a further test with up to':<52}{'usual':>8}{'nine of ten below':>20}")
-    lines += [f"{text:<52}{usual:>8.3f}{_or_dash(most, 3):>20}" for text, (usual, most) in expected_rows(fitted)]
+    lines += [f"{text:<52}{usual:>8.3f}{_or_dash(limit, 3):>20}" for text, (usual, limit) in expected_rows(fitted)]
     if float(np.max(fit.fitted)) > POOR:
         lines.append(
             f"poor fit: an error is above {POOR:g}; check signs and time shifts of the channels, and look at the "
