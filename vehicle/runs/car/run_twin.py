@@ -1,0 +1,96 @@
+"""Channels of the linear twin of a finished run, on a road that repeats after the evaluated span.
+
+The twin (`vehicle.engines.reduced.twin_run`) drives over the same road. What both have in common is the chance of the
+road, so the difference of both gives the error of a value of the run, see `vehicle.signals.analysis.comfort_error`.
+There is none off such a road, with cams, which follow the upper envelope of the road, and with controlled dampers,
+whose force is no function of their velocity.
+"""
+
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from vehicle.arrays import Vector
+from vehicle.engines.reduced.twin_run import damping_of_run, twin_run
+from vehicle.model.parameters.vehicle import Vehicle
+from vehicle.runs.car.car import Car
+from vehicle.signals.excitation.iso_road import RISE_S
+from vehicle.signals.excitation.rest import half_cosine_at
+from vehicle.signals.excitation.signal import Signal
+
+
+class Period(NamedTuple):
+    """One period of a road that repeats after the evaluated span.
+
+    Attributes:
+        plates: wheel to displacement [m].
+        begin: start of the evaluated span [s].
+        length: length of the period [s].
+    """
+
+    plates: Mapping[str, Vector]
+    begin: float
+    length: float
+
+
+def evaluated_period(
+    plates: Mapping[str, Vector], timestep: float, begin: float, repeats_after: float | None
+) -> Period | None:
+    """Return the period in the evaluated span of plates; None if the span is no period.
+
+    Args:
+        plates: wheel to displacement of the whole record [m]; (n,).
+        timestep: sampling interval [s].
+        begin: start of the evaluated span [s].
+        repeats_after: period of the road [s]; None if it does not repeat.
+    """
+    samples, first = {values.size for values in plates.values()}, round(begin / timestep)
+    if repeats_after is None or samples != {first + round(repeats_after / timestep) + 1}:
+        return None
+    return Period({wheel: values[first:-1] for wheel, values in plates.items()}, begin, repeats_after)
+
+
+def signal_period(signal: Signal, begin: float) -> Period | None:
+    """Return the period in the evaluated span of a signal, from `begin` [s] to its end; None without a twin."""
+    if signal.slope_velocity:
+        return None
+    return evaluated_period(signal.displacement, signal.timestep, begin, signal.repeats_after)
+
+
+def damper_channels(vehicle: Vehicle) -> tuple[str, ...]:
+    """Return the channels that a run must record for its twin; empty for a car without a twin."""
+    dampers = vehicle.composition.dampers
+    if any(damper.law.controlled or damper.law.function for damper in dampers):
+        return ()
+    return tuple(f"{damper.name}_{quantity}" for damper in dampers for quantity in ("velocity", "force"))
+
+
+def twin_channels(
+    car: Car, period: Period, record: Mapping[str, Vector], timestep: float, names: Iterable[str]
+) -> dict[str, Vector]:
+    """Return channels of the twin of a run, with a rise from rest in the lead-in, where the run has it too.
+
+    Args:
+        car: car of the run.
+        period: period of the road.
+        record: channels of the run.
+        timestep: sampling interval of the channels [s].
+        names: names of channels; those that the twin has are returned.
+
+    Returns:
+        Histories as long as the record; empty without the forces or velocities of all dampers.
+    """
+    needed = damper_channels(car.vehicle)
+    if not needed or not {*needed} <= {*record}:
+        return {}
+    first, samples = round(period.begin / timestep), round(period.length / timestep)
+    laws = [damper.law for damper in car.vehicle.composition.dampers]
+    damping = damping_of_run(car.poles, laws, record, slice(first, first + samples))
+    loads = {f"tyre_{wheel}_force_z": load for wheel, load in car.static.tyre_load.items()}
+    chosen = [name for name in names if name in needed or name in loads or "_acc_" in name]
+    histories = twin_run(car.poles, damping, period.plates, period.length, chosen, samples)
+    # The lead-in is the end of the same period.
+    index = np.arange(len(record[needed[0]])) - first
+    rise = half_cosine_at((index + first) * timestep, RISE_S)
+    return {name: history[index % samples] * rise + loads.get(name, 0.0) for name, history in histories.items()}
