@@ -46,6 +46,7 @@ from vehicle.runs.car.simulated_run import simulated_run
 from vehicle.runs.car.stepped_car import stepped_car
 from vehicle.signals.excitation.evaluation_start import evaluation_start
 from vehicle.signals.excitation.input_files import find_input
+from vehicle.signals.excitation.road_drive import evaluated_from
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.excitation.signal_file import read_signal
 from vehicle.threads import one_blas_thread
@@ -383,7 +384,8 @@ class Car:
             SimulationError: the run failed.
         """
         if isinstance(source, Road):
-            signal = (drive := source.under(self.vehicle, self.overrides)).signal()
+            drive = evaluated_from(source.under(self.vehicle, self.overrides), skip)
+            signal = drive.signal()
             start = evaluation_start({drive.name: signal.duration}, skip, drive.skip)
             car, named = self.with_(drive.overrides) if drive.overrides else self, replace(signal, source=drive.name)
             run = car.run(named, engine, progress=progress, channels=channels, skip=start, forces=forces)

@@ -20,6 +20,7 @@ from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car import Car
 from vehicle.runs.figures.chosen_figure import chosen_figure
 from vehicle.settings import with_settings
+from vehicle.signals.excitation.road_drive import evaluated_from
 from vehicle.studies.optimisation.front_checks import (
     mujoco_differences,
     named_cars,
@@ -120,6 +121,7 @@ def plan_search(
     if len(set(names)) < len(names):
         raise ConfigurationError(f"inputs {', '.join(names)}: equal names; rename a file, or use each input once")
     start = common_start(sources, settings.skip)
+    sources = [evaluated_from(source, start) for source in sources]
     functions = dict(minimise) if isinstance(minimise, Mapping) else {}
     criteria = parsed_criteria(list(minimise), settings.maximise, settings.limits, names)
     figures = {

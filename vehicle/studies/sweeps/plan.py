@@ -23,7 +23,7 @@ from vehicle.runs.car import Car
 from vehicle.runs.car.fast_run import fast_run
 from vehicle.runs.car.outside_tests import RAIL, outside_tests
 from vehicle.settings import with_settings
-from vehicle.signals.excitation.road_drive import RoadDrive
+from vehicle.signals.excitation.road_drive import RoadDrive, evaluated_from
 from vehicle.studies.sweeps.case import all_tyre_words, overrides_of, signal_of
 from vehicle.studies.sweeps.case_evaluation import OF_A_RUN, loaded_car, reason_for_mujoco
 from vehicle.studies.sweeps.case_table import Cases, Combinations, RowChanges
@@ -169,6 +169,7 @@ def plan_sweep(
     if any(text.partition("=")[0].strip().endswith("speed") for text in each):
         require_speed_of_roads(sources, changes)
     start = common_start(sources, settings.skip)
+    sources = [evaluated_from(source, start) for source in sources]
     cases = Cases(changes, sources, engine=settings.engine, vehicle=vehicle, fixed=car.overrides)
     states = {(*car.overrides, *overrides_of(source)) for source in sources}
     idle = tuple(set.intersection(*(set(_idle_notes(vehicle, state, changes, settings.engine)) for state in states)))
