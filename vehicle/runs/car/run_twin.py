@@ -2,22 +2,26 @@
 
 The twin (`vehicle.engines.reduced.twin_run`) drives over the same road. What both have in common is the chance of the
 road, so the difference of both gives the error of a value of the run, see `vehicle.signals.analysis.comfort_error`.
-There is none off such a road, with cams, which follow the upper envelope of the road, and with controlled dampers,
-whose force is no function of their velocity.
+There is none off such a road, with cams, which follow the upper envelope of the road, and for a car with controlled
+dampers, whose force is no function of their velocity, or with stops in its dampers.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Mapping
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from vehicle.arrays import Vector
 from vehicle.engines.reduced.twin_run import damping_of_run, twin_run
 from vehicle.model.parameters.vehicle import Vehicle
-from vehicle.runs.car.car import Car
 from vehicle.signals.excitation.iso_road import RISE_S
 from vehicle.signals.excitation.rest import half_cosine_at
 from vehicle.signals.excitation.signal import Signal
+
+if TYPE_CHECKING:
+    from vehicle.runs.car.car import Car
 
 
 class Period(NamedTuple):
@@ -25,7 +29,7 @@ class Period(NamedTuple):
 
     Attributes:
         plates: wheel to displacement [m].
-        begin: start of the evaluated span [s].
+        begin: start of the period, which is that of the evaluated span [s].
         length: length of the period [s].
     """
 
@@ -34,34 +38,39 @@ class Period(NamedTuple):
     length: float
 
 
-def evaluated_period(
-    plates: Mapping[str, Vector], timestep: float, begin: float, repeats_after: float | None
-) -> Period | None:
-    """Return the period in the evaluated span of plates; None if the span is no period.
+def last_period(plates: Mapping[str, Vector], timestep: float, length: float | None) -> Period | None:
+    """Return the last period of a record, whose last sample is the first of the next period.
 
     Args:
-        plates: wheel to displacement of the whole record [m]; (n,).
+        plates: wheel to displacement [m]; (n,).
         timestep: sampling interval [s].
-        begin: start of the evaluated span [s].
-        repeats_after: period of the road [s]; None if it does not repeat.
+        length: period of the road [s]; None for a road without a twin.
+
+    Returns:
+        The period; None without one.
     """
-    samples, first = {values.size for values in plates.values()}, round(begin / timestep)
-    if repeats_after is None or samples != {first + round(repeats_after / timestep) + 1}:
+    if length is None or not plates:
         return None
-    return Period({wheel: values[first:-1] for wheel, values in plates.items()}, begin, repeats_after)
+    end = next(iter(plates.values())).size - 1
+    first = end - round(length / timestep)
+    return Period({wheel: values[first:end] for wheel, values in plates.items()}, first * timestep, length)
 
 
-def signal_period(signal: Signal, begin: float) -> Period | None:
-    """Return the period in the evaluated span of a signal, from `begin` [s] to its end; None without a twin."""
-    if signal.slope_velocity:
-        return None
-    return evaluated_period(signal.displacement, signal.timestep, begin, signal.repeats_after)
+def signal_period(signal: Signal) -> Period | None:
+    """Return the last period of a signal; None on a road without a twin."""
+    return last_period(signal.displacement, signal.timestep, None if signal.slope_velocity else signal.repeats_after)
+
+
+def repeats_after(road: Mapping[str, object] | None) -> float | None:
+    """Return the period [s] of the road in the summary of a run, which has a twin; None for another road."""
+    length = (road or {}).get("repeats_after_s")
+    return length if isinstance(length, float) and "tyre_contact" not in (road or {}) else None
 
 
 def damper_channels(vehicle: Vehicle) -> tuple[str, ...]:
     """Return the channels that a run must record for its twin; empty for a car without a twin."""
     dampers = vehicle.composition.dampers
-    if any(damper.law.controlled or damper.law.function for damper in dampers):
+    if any(damper.law.controlled or damper.law.function or damper.law.stop for damper in dampers):
         return ()
     return tuple(f"{damper.name}_{quantity}" for damper in dampers for quantity in ("velocity", "force"))
 

@@ -7,7 +7,6 @@ from vehicle.names import AXES
 from vehicle.runs.figures.figure import Details, Figure, Reduction, Values
 from vehicle.runs.figures.rows import unread
 from vehicle.runs.figures.run_batch import Runs
-from vehicle.signals.analysis.comfort_error import WAVES
 from vehicle.signals.analysis.ride_comfort import (
     ERROR,
     SEAT_PREFIX,
@@ -15,7 +14,7 @@ from vehicle.signals.analysis.ride_comfort import (
     UNWEIGHTED,
     WEIGHTED,
     comfort_units,
-    wave_names,
+    waves_of,
 )
 from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.seat_value import seat_value
@@ -37,9 +36,7 @@ def _comfort(point: str, name: str) -> Reduction:
             return Values(columns[f"{name}_{details.axis}"])
         if not runs.errors:
             return Values(columns[name])
-        parts = np.stack([columns[each] for each in wave_names(name)], axis=1)
-        waves = np.ascontiguousarray(parts).view(np.complex128).reshape(-1, WAVES)
-        return Values(columns[name], columns[name] * columns[f"{name}{ERROR}"], waves)
+        return Values(columns[name], columns[name] * columns[f"{name}{ERROR}"], waves_of(columns, name))
 
     return Reduction(of=of, page="comfort" if (point, name) == ("seat_rail", WEIGHTED) else "")
 

@@ -120,7 +120,7 @@ def single(run: Run) -> Runs:
         random=run.signal.random,
         left_obstacle=left_obstacle(run.road) if run.road is not None else run.signal.left_obstacle,
         cars=(run.car,),
-        period=signal_period(run.signal, run.skip),
+        period=signal_period(run.signal),
     )
 
 

@@ -14,6 +14,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.shipped import CARS, vehicle_file
 from vehicle.model.parameters.toml_file import build, read_table
 from vehicle.runs.car import Car
+from vehicle.runs.car.run_twin import last_period, repeats_after
 from vehicle.runs.figures.run_batch import Runs
 from vehicle.runs.figures.value import require_unit, values_of
 from vehicle.runs.targets.target import Target
@@ -85,6 +86,7 @@ class RatedRun:
         """Time histories and static data for the figures."""
         recording = self.recording
         road, obstacle = self.summary.input.road or {}, self.summary.obstacle
+        plates = {wheel: recording[f"plate_{wheel}_displacement"] for wheel in recording.excited}
         return Runs(
             time=recording.time,
             channels={name: history[None] for name, history in recording.channels.items()},
@@ -95,6 +97,7 @@ class RatedRun:
             cars=(self.car,),
             skip=self.skip,
             band=self.summary.comfort_band,
+            period=last_period(plates, recording.timestep, repeats_after(road)),
         )
 
     def value_of(self, target: Target) -> tuple[float, float | None]:

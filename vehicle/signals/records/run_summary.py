@@ -72,13 +72,16 @@ class ComfortSummary(Stored):
     """Comfort at one output point; `iso2631` is the result of `analysis.evaluation.evaluate`.
 
     `rms_of_band` replaces `rms_2_50_hz`, then null, where the band of the signal ends below 50 Hz. `half_interval`:
-    half of the 95 % interval of both overall values over roads of a class [m/s2], for a run on one of them.
+    half of the 95 % interval of both overall values and of their axes, as "weighted_x", over roads of a class [m/s2],
+    for a run on one of them. `explained_by_linear_car`: share of the scatter over these roads that the linear car on
+    the same road explains [-], by the same names, on a road that repeats after the evaluated span.
     """
 
     rms_2_50_hz: dict[str, float | None]
     iso2631: ContactVibration
     rms_of_band: dict[str, Any] | None = omitted()
     half_interval: dict[str, float] | None = omitted()
+    explained_by_linear_car: dict[str, float] | None = omitted()
 
     @property
     def weighted(self) -> float:
