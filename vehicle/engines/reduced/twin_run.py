@@ -44,7 +44,12 @@ def damping_of_run(model: PoleModel, laws: Sequence[Damper], record: Mapping[str
 
 
 def twin_run(
-    model: PoleModel, damping: Vector, plates: Mapping[str, Vector], period: float, channels: Sequence[str], samples: int
+    model: PoleModel,
+    damping: Vector,
+    plates: Mapping[str, Vector],
+    period: float,
+    channels: Sequence[str],
+    samples: int,
 ) -> dict[str, Vector]:
     """Return the steady state of the twin over one period of the plates.
 

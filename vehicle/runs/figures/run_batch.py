@@ -104,7 +104,13 @@ class Runs:
         if (point, name) not in self._comfort:
             records = self.stacked(*(f"{point}_acc_{axis}" for axis in "xyz"))
             self._comfort[point, name] = comfort_columns(
-                self.timestep, records, skip=self.skip, band=self.band, names=[name], errors=self.errors
+                self.timestep,
+                records,
+                skip=self.skip,
+                band=self.band,
+                names=[name],
+                errors=self.errors,
+                axes=self.errors,
             )
         return self._comfort[point, name]
 

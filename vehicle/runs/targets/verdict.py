@@ -4,6 +4,7 @@ import math
 import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from importlib import resources
 from pathlib import Path
 
@@ -81,7 +82,7 @@ class RatedRun:
         overrides = self.summary.vehicle.overrides
         return [text for text in overrides if not text.startswith("driving.speed=") and "one_sided=" not in text]
 
-    @property
+    @cached_property
     def runs(self) -> Runs:
         """Time histories and static data for the figures."""
         recording = self.recording

@@ -65,8 +65,7 @@ class Paired(NamedTuple):
     """Error of values of which the linear twin on the same road is known; (r,) each, waves (r, `WAVES`).
 
     Attributes:
-        error: standard error, in the unit of the value, such that `NORMAL_95` errors are the interval of Student's t
-            with 2 `WAVES` degrees of freedom; that of the run alone where the twin explains less than half.
+        error: standard error, see `wave_error`; that of the run alone where the twin explains less than half.
         waves: waves R_m that the twin does not explain.
         explained: share of the scatter that the twin explains, 1 - sum |R_m|^2 / sum |C_m|^2 [-]; NaN without a twin.
     """
@@ -74,6 +73,15 @@ class Paired(NamedTuple):
     error: Vector
     waves: Complex
     explained: Vector
+
+
+def wave_error(waves: Complex) -> Vector:
+    """Return the standard error of values from their waves, (r, `WAVES`), in the unit of the waves; (r,).
+
+    It is estimated with 2 `WAVES` degrees of freedom, and widened so that `NORMAL_95` errors are the 95 % interval of
+    Student's t, as those of a known error.
+    """
+    return np.asarray(STUDENT_95 / NORMAL_95 * np.sqrt(np.mean(np.abs(waves) ** 2, axis=1)))
 
 
 def paired(value: Vector, error: Vector, waves: Complex, twin_value: Vector, twin_waves: Complex) -> Paired:
@@ -86,12 +94,10 @@ def paired(value: Vector, error: Vector, waves: Complex, twin_value: Vector, twi
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         left = waves - (value / twin_value)[:, None] * twin_waves
-        squares = np.sum(np.abs(left) ** 2, axis=1)
-        explained = 1.0 - squares / np.sum(np.abs(waves) ** 2, axis=1)
+        explained = 1.0 - np.sum(np.abs(left) ** 2, axis=1) / np.sum(np.abs(waves) ** 2, axis=1)
     known = np.isfinite(explained)
-    pair_error = STUDENT_95 / NORMAL_95 * np.sqrt(squares / waves.shape[1])
     return Paired(
-        error=np.where(known & (explained >= LEAST_EXPLAINED), pair_error, error),
+        error=np.where(known & (explained >= LEAST_EXPLAINED), wave_error(left), error),
         waves=np.where(known[:, None], left, waves),
         explained=explained,
     )

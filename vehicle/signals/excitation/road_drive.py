@@ -207,9 +207,7 @@ class RoadDrive:
                     f"{self.span:.3g} s of road are evaluated: comfort scatters less from {SHORTEST_SPAN_S:g} s on; "
                     "choose a longer --duration",
                 )
-            return replace(
-                signal, random=self.random, left_obstacle=left, notices=notices, repeats_after=self.span
-            )
+            return replace(signal, random=self.random, left_obstacle=left, notices=notices, repeats_after=self.span)
         return replace(signal, notices=(*road.notices, *acceleration_events(signal.displacement, signal.timestep)))
 
     def _road(self) -> tuple[IsoRoad | MeasuredRoad, float]:
