@@ -11,8 +11,8 @@ from vehicle.engines.simulation.recording import Energies, Recording, Statistics
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.leftovers import mention
 from vehicle.names import in_order
-from vehicle.runs.car.run_twin import repeats_after
 from vehicle.runs.car import Car, Run
+from vehicle.runs.car.run_twin import repeats_after
 from vehicle.runs.output.folder import output_folder
 from vehicle.runs.output.run_files import write_run
 from vehicle.signals.excitation.signal import Signal

@@ -33,8 +33,8 @@ and mean |R_m|^2 is the variance of the value over roads of the class (`paired`)
 difference.
 
 Sources: Bendat and Piersol, Random Data, 4th ed., chapter 8; Heidelberger and Welch, Communications of the ACM 24
-(1981): variance of a mean from the spectrum near zero frequency; Ripley, Stochastic Simulation (1987), section 5.3: control
-variates.
+(1981): variance of a mean from the spectrum near zero frequency; Ripley, Stochastic Simulation (1987), section 5.3:
+control variates.
 """
 
 from collections.abc import Sequence

@@ -33,7 +33,8 @@ DIFFERENCES = "differences.csv"
 
 REPEATING, CLASS, SEEDS = "roads of this class", "Gaussian roads of this class", "seeds of the generated road"
 RECORDS, EVENT = "Gaussian records with this spectrum", "one event: no random error"
-"""Populations for which an error is stated: of a road that repeats, of another, of its seeds, of a file; and an input without an error."""
+"""Populations for which an error is stated: of a road that repeats, of another road, of its seeds, of a file; and an
+input without an error."""
 
 HEADS = (
     "{} [m/s2]",
