@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from vehicle.digits import number
 from vehicle.names import side_of, slip_words
+from vehicle.signals.records.run_summary import interval_words
 
 if TYPE_CHECKING:
     from vehicle.signals.records.run_summary import Peaks, RunSummary, SolverSummary
@@ -97,12 +98,13 @@ def _comfort(summary: RunSummary) -> list[str]:
     if "seat_rail" in points:
         rms, (low, high) = points["seat_rail"].unweighted
         axes = ", ".join(f"{axis} {rms[axis]:.4f}" for axis in "xyz")
-        half = points["seat_rail"].half_interval or {}
-        plus = {name: f" ± {value:.4f}" for name, value in half.items()}
+        half, values = points["seat_rail"].half_interval or {}, {"unweighted": rms["overall"]}
+        values["weighted"] = points["seat_rail"].weighted
+        plus = {name: f" ± {number(100.0 * half[name] / values[name], 2)} %" for name in values if half.get(name)}
         lines.append(
-            f"comfort     seat rail {rms['overall']:.4f}{plus.get('unweighted', '')} m/s2 unweighted RMS, {low:g} to "
-            f"{high:g} Hz ({axes}); {points['seat_rail'].weighted:.4f}{plus.get('weighted', '')} m/s2 weighted RMS "
-            f"(ISO 2631-1){'; ±: 95 % interval over roads of this class' if half else _event_words(summary)}"
+            f"comfort     seat rail {rms['overall']:.4f} m/s2{plus.get('unweighted', '')} unweighted RMS, {low:g} to "
+            f"{high:g} Hz ({axes}); {values['weighted']:.4f} m/s2{plus.get('weighted', '')} weighted RMS (ISO 2631-1)"
+            + (f"; {interval_words(summary, points['seat_rail'])}" if half else _event_words(summary))
         )
     if (rim := summary.steering_wheel_rim) is not None:
         axes = ", ".join(f"{axis} {rim.weighted_rms[axis]:.4f}" for axis in "xyz")

@@ -21,6 +21,7 @@ from vehicle.engines.reduced.equivalent_damping import equivalent_damping
 from vehicle.engines.reduced.linear_twin import linear_twin
 from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.model.parameters.force_elements import Damper
+from vehicle.threads import one_blas_thread
 
 HIGHEST = 100.0
 """Highest frequency of the twin [Hz], the upper limit of the weightings of ISO 2631-1."""
@@ -43,6 +44,7 @@ def damping_of_run(model: PoleModel, laws: Sequence[Damper], record: Mapping[str
     )
 
 
+@one_blas_thread()
 def twin_run(
     model: PoleModel,
     damping: Vector,

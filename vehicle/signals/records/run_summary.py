@@ -5,8 +5,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from vehicle.digits import number
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.comfort import COMFORT_BAND
+from vehicle.signals.analysis.comfort_error import LEAST_EXPLAINED
 from vehicle.signals.analysis.contact_vibration import ContactVibration
 from vehicle.signals.analysis.seat_value import SeatValue
 from vehicle.stored import Stored, omitted
@@ -327,3 +329,14 @@ def available_summary(folder: Path) -> RunSummary | None:
         return read_summary(folder)
     except (ConfigurationError, DataError):
         return None
+
+
+def interval_words(summary: RunSummary, comfort: ComfortSummary) -> str:
+    """Return the meaning of the intervals of comfort on a road of a class."""
+    text = f"±: 95 % interval over roads of class {(summary.input.road or {}).get('class')}"
+    share = (comfort.explained_by_linear_car or {}).get("weighted")
+    if share is None:
+        return text
+    if share < LEAST_EXPLAINED:
+        return f"{text}, of the run alone: the linear car on the same road explains less than half of the scatter"
+    return f"{text}; the linear car on the same road explains {number(100.0 * share)} % of the scatter"
