@@ -56,6 +56,9 @@ NORMAL_95 = 1.96
 STUDENT_95 = float(stdtrit(2 * WAVES, 0.975))
 """The same for an error that is itself estimated with 2 `WAVES` degrees of freedom."""
 
+WIDENED = float(np.sqrt(2 * WAVES / (2 * WAVES - 1)) * stdtrit(2 * WAVES - 1, 0.975)) / STUDENT_95
+"""Factor on waves from which one degree of freedom is taken by a fit: then `STUDENT_95` fits them too."""
+
 LEAST_EXPLAINED = 0.5
 """Minimum share of the scatter that the twin must explain; below it the run and its twin are two different cars, and
 the error is that of the run alone."""
@@ -93,12 +96,13 @@ def paired(value: Vector, error: Vector, waves: Complex, twin_value: Vector, twi
         twin_value, twin_waves: the same of the twins; 0 without a twin.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
-        left = waves - (value / twin_value)[:, None] * twin_waves
+        factor = np.sum((twin_waves.conj() * waves).real, axis=1) / np.sum(np.abs(twin_waves) ** 2, axis=1)
+        left = waves - factor[:, None] * twin_waves
         explained = 1.0 - np.sum(np.abs(left) ** 2, axis=1) / np.sum(np.abs(waves) ** 2, axis=1)
     known = np.isfinite(explained)
     return Paired(
-        error=np.where(known & (explained >= LEAST_EXPLAINED), wave_error(left), error),
-        waves=np.where(known[:, None], left, waves),
+        error=np.where(known & (explained >= LEAST_EXPLAINED), wave_error(WIDENED * left), error),
+        waves=np.where(known[:, None], WIDENED * left, waves),
         explained=explained,
     )
 
