@@ -25,6 +25,7 @@ from vehicle.model.parameters.channel_words import channels_named
 from vehicle.names import AXES
 from vehicle.runs.car.run_twin import signal_period, twin_channels
 from vehicle.signals.analysis.comfort import COMFORT_BAND
+from vehicle.signals.analysis.evaluated_span import evaluated_span
 from vehicle.signals.analysis.motion_response import MotionResponse
 from vehicle.signals.analysis.order_cut import order_cut
 from vehicle.signals.analysis.order_lines import order_lines
@@ -134,7 +135,7 @@ class Run:
     @property
     def evaluated(self) -> slice:
         """Samples of the evaluated span, from `skip` to the end."""
-        return slice(round(self.skip / self.recording.timestep), None)
+        return evaluated_span(self.recording.time.size, self.recording.timestep, self.skip)
 
     @property
     def wheel(self) -> str:
