@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from vehicle.digits import number
 from vehicle.names import side_of, slip_words
-from vehicle.signals.records.run_summary import interval_words
 
 if TYPE_CHECKING:
     from vehicle.signals.records.run_summary import Peaks, RunSummary, SolverSummary
@@ -93,6 +92,7 @@ def _forces(summary: RunSummary) -> list[str]:
 
 def _comfort(summary: RunSummary) -> list[str]:
     """Return the lines of comfort at the seat rail and, for a car with seats, on the seat."""
+    from vehicle.signals.records.run_summary import interval_words
 
     lines, points = [], summary.comfort
     if "seat_rail" in points:

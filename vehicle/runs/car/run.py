@@ -23,7 +23,7 @@ from vehicle.handed_down import HANDED
 from vehicle.model.parameters.applied_force import CRANK
 from vehicle.model.parameters.channel_words import channels_named
 from vehicle.names import AXES
-from vehicle.runs.car.run_twin import signal_period, twin_channels
+from vehicle.runs.car.run_twin import twin_accelerations
 from vehicle.signals.analysis.comfort import COMFORT_BAND
 from vehicle.signals.analysis.evaluated_span import evaluated_span
 from vehicle.signals.analysis.motion_response import MotionResponse
@@ -194,32 +194,17 @@ class Run:
         Args:
             point: output point of the car, for example "seat_rail".
         """
-
-        def at(name: str) -> Vector:
-            return np.stack([self.recording[f"{name}_acc_{axis}"] for axis in AXES])
-
         recorded = all(f"seat_acc_{axis}" in self.recording.channels for axis in AXES)
-        seated = point == "seat_rail" and self.car.vehicle.seated and recorded
-        points = (point, "seat") if seated else (point,)
-        twin = self._twin([f"{name}_acc_{axis}" for name in points for axis in AXES])
-        both = np.reshape([*twin.values()], (-1, 3, self.time.size))
+        points = (point, "seat") if point == "seat_rail" and self.car.vehicle.seated and recorded else (point,)
         return run_comfort(
             self.recording.timestep,
-            at(point),
-            at("seat") if seated else None,
+            *(np.stack([self.recording[f"{name}_acc_{axis}"] for axis in AXES]) for name in points),
             skip=self.skip,
             band=self.signal.band(COMFORT_BAND),
             point=point.replace("_", " "),
             contact="steering_wheel" if point == RIM else "seat",
-            twin=(both[0], both[1] if seated else None) if twin else None,
+            twin=twin_accelerations(self.car, self.signal, self.recording, self.skip, points),
         )
-
-    def _twin(self, names: Sequence[str]) -> dict[str, Vector]:
-        """Return channels of the linear twin, see `run_twin`; empty without it, or for another evaluated span."""
-        period, step = signal_period(self.signal), self.recording.timestep
-        if period is None or round(abs(self.skip - period.begin) / step):
-            return {}
-        return twin_channels(self.car, period, self.recording.channels, step, names)
 
     def figure(self, name: str) -> float:
         """Return a figure in its unit: NaN where it is undefined, infinite for a motion that does not settle.

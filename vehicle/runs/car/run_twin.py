@@ -6,23 +6,38 @@ There is none off such a road, with cams, which follow the upper envelope of the
 dampers, whose force is no function of their velocity, or with stops in its dampers.
 """
 
-from __future__ import annotations
-
-from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from vehicle.arrays import Vector
+from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.engines.reduced.twin_run import damping_of_run, twin_run
+from vehicle.engines.simulation.recording import Recording
+from vehicle.engines.simulation.static_trim import StaticTrim
 from vehicle.model.parameters.vehicle import Vehicle
+from vehicle.names import AXES
 from vehicle.signals.excitation.iso_road import RISE_S
 from vehicle.signals.excitation.rest import half_cosine_at
 from vehicle.signals.excitation.road_drive import SHORTEST_SPAN_S
 from vehicle.signals.excitation.signal import Signal
 
-if TYPE_CHECKING:
-    from vehicle.runs.car.car import Car
+
+class TwinCar(Protocol):
+    """Car of a run, see `vehicle.runs.car.car.Car`."""
+
+    @property
+    def vehicle(self) -> Vehicle:
+        """Return its parameters."""
+
+    @property
+    def static(self) -> StaticTrim:
+        """Return its static equilibrium."""
+
+    @property
+    def poles(self) -> PoleModel:
+        """Return its pole model."""
 
 
 class Period(NamedTuple):
@@ -78,7 +93,7 @@ def damper_channels(vehicle: Vehicle) -> tuple[str, ...]:
 
 
 def twin_channels(
-    car: Car, period: Period, record: Mapping[str, Vector], timestep: float, names: Iterable[str]
+    car: TwinCar, period: Period, record: Mapping[str, Vector], timestep: float, names: Iterable[str]
 ) -> dict[str, Vector]:
     """Return channels of the twin of a run, with a rise from rest in the lead-in, where the run has it too.
 
@@ -105,3 +120,21 @@ def twin_channels(
     index = np.arange(len(record[needed[0]])) - first
     rise = half_cosine_at((index + first) * timestep, RISE_S)
     return {name: history[index % samples] * rise + loads.get(name, 0.0) for name, history in histories.items()}
+
+
+def twin_accelerations(
+    car: TwinCar, signal: Signal, recording: Recording, begin: float, points: Sequence[str]
+) -> list[Vector] | None:
+    """Return the accelerations of the twin of a run in x, y, z at points, (3, n) each; None without a twin.
+
+    Args:
+        car, signal, recording: of the run.
+        begin: start of the evaluated span [s].
+        points: output points.
+    """
+    period, step = signal_period(signal), recording.timestep
+    if period is None or round(abs(begin - period.begin) / step):
+        return None
+    names = [[f"{point}_acc_{axis}" for axis in AXES] for point in points]
+    twin = twin_channels(car, period, recording.channels, step, [name for each in names for name in each])
+    return [np.stack([twin[name] for name in each]) for each in names] if twin else None

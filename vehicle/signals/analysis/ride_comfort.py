@@ -7,7 +7,7 @@ chapter 4); `weighted` is the RMS after the weightings of a seat, Wd for x and y
 """
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -278,13 +278,13 @@ def point_comfort(point: str, values: Mapping[str, float], band: tuple[float, fl
 def run_comfort(
     time_step: float,
     rail: Vector,
-    cushion: Vector | None,
+    cushion: Vector | None = None,
     *,
     skip: float,
     band: tuple[float, float],
     point: str = "seat rail",
     contact: str = "seat",
-    twin: tuple[Vector, Vector | None] | None = None,
+    twin: Sequence[Vector] | None = None,
 ) -> RunComfort:
     """Return the comfort of one run; arguments as in `comfort_columns`, with accelerations of (3, n).
 
@@ -294,10 +294,10 @@ def run_comfort(
         cushion: accelerations of the cushion [m/s2], (3, n), or None.
         point: words of the point of `rail`.
         contact: point of contact there, see `comfort_columns`.
-        twin: accelerations of the linear twin at both points; None without a twin.
+        twin: accelerations of the linear twin at the rail, and on the cushion if given; None without a twin.
     """
 
-    def of(rail: Vector, cushion: Vector | None) -> dict[str, Vector]:
+    def of(rail: Vector, cushion: Vector | None = None) -> dict[str, Vector]:
         above = None if cushion is None else cushion[None]
         return comfort_columns(time_step, rail[None], above, skip=skip, band=band, contact=contact, axes=True)
 
