@@ -73,7 +73,7 @@ def parser() -> Parser:
         "front.damper; coordinates are shifted by ±D mm (default 10), for example 20%%,5mm",
     )
     vehicle_options(parser)
-    setting_options(parser, SweepSettings, "measure", "engine", "skip", "jobs", "executor", "time_limit")
+    setting_options(parser, SweepSettings, "estimate", "measure", "engine", "skip", "jobs", "executor", "time_limit")
     output_options(parser, Path("runs/sweep"))
     resume_options(parser)
     parser.add_argument("--allow-failed", action="store_true", help="exit with 0 instead of 4 if runs failed")

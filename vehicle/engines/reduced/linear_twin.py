@@ -18,7 +18,7 @@ from functools import cached_property
 import numpy as np
 
 from vehicle.arrays import Complex, Vector
-from vehicle.engines.reduced.pole_model import PoleModel
+from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -60,7 +60,12 @@ class LinearTwin:
 
 
 def linear_twin(
-    model: PoleModel, channels: Sequence[str], frequency: Vector, plates: Complex | Vector, rates: Complex | None = None
+    model: PoleModel,
+    channels: Sequence[str],
+    frequency: Vector,
+    plates: Complex | Vector,
+    rates: Complex | None = None,
+    further: Outputs | None = None,
 ) -> LinearTwin:
     """Return the responses of channels of a car to inputs, each of which moves all plates.
 
@@ -70,11 +75,12 @@ def linear_twin(
         frequency: lines [Hz]; (m,).
         plates: displacement of each plate for a unit of each input [m]; (w, i, m), or (w, i, 1) for all lines.
         rates: velocity of each plate [m/s], where it is not the derivative of the displacement (cams); as `plates`.
+        further: outputs after the channels.
     """
     s = np.asarray(2j * np.pi * np.asarray(frequency), dtype=np.complex128)
     rates = s * plates if rates is None else rates
-    channel_rows = model.outputs(channels)
-    rows = np.concatenate([channel_rows.poles, model.slip])
+    outputs = model.outputs(channels) if further is None else model.outputs(channels) + further
+    rows = np.concatenate([outputs.poles, model.slip])
     # Re(a xi) = (a xi + conj(a xi))/2: a stored pole and its conjugate.
     by_input = np.zeros((len(rows), plates.shape[1], s.size), dtype=np.complex128)
     by_force = np.zeros((len(rows), model.force.shape[1], s.size), dtype=np.complex128)
@@ -84,10 +90,12 @@ def linear_twin(
         for number in range(plates.shape[1]):
             by_input[:, number] += half @ ((height @ plates[:, number] + velocity @ rates[:, number]) * resolvent)
         by_force += (half[:, None, :] * force.T) @ resolvent
-    count = len(channels)
-    by_input[:count] += np.tensordot(channel_rows.height, plates, 1) + np.tensordot(channel_rows.velocity, rates, 1)
+    count = len(outputs.poles)
+    by_input[:count] += np.tensordot(outputs.height, plates, 1) + np.tensordot(outputs.velocity, rates, 1)
     # The rows of an acceleration are those of its displacement.
-    scale = np.where([[channel.startswith("tyre_")] for channel in channels], 1.0, s**2)[:, None]
+    accelerations = [not channel.startswith("tyre_") for channel in channels]
+    scale = np.ones((count, 1, s.size), dtype=np.complex128)
+    scale[np.flatnonzero(accelerations)] = s**2
     return LinearTwin(
         frequency=np.asarray(frequency),
         viscous=model.matrices.viscous,

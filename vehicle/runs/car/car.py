@@ -41,6 +41,7 @@ from vehicle.runs.car.given_forces import GivenForce, with_histories
 from vehicle.runs.car.linear_response import force_frf, is_stuck, plate_frf
 from vehicle.runs.car.outside_tests import with_range_notice
 from vehicle.runs.car.road import Road
+from vehicle.runs.car.road_estimate import RoadEstimate, road_estimate
 from vehicle.runs.car.run import Run
 from vehicle.runs.car.simulated_run import simulated_run
 from vehicle.runs.car.stepped_car import stepped_car
@@ -90,10 +91,8 @@ class Car:
 
         Args:
             path: TOML file, or the name of a shipped car; default: the car of Bommer 2006.
-            overrides: {"damper.coulomb_friction": 93.75}, or texts "damper.coulomb_friction=93.75".
-
-        Raises:
-            ConfigurationError: the file, a name or a value is wrong.
+            overrides: {"damper.coulomb_friction": 93.75}, or texts "damper.coulomb_friction=93.75". A wrong file, name
+                or value raises a `ConfigurationError`.
         """
         file = None if path is None else mention(vehicle_file(Path(path)))
         changes = assignments(overrides)
@@ -109,9 +108,7 @@ class Car:
         Changes add to earlier ones; the inertia of the body follows another mass or CoG (docs/vehicle-file.md).
         `overrides` lists all steps: `Car.load(file, variant.overrides)` loads the same car.
         Variants of laws and masses are fast: their matrices come from terms of this car, computed once.
-
-        Raises:
-            ConfigurationError: a name or a value is wrong.
+        A wrong name or value raises a `ConfigurationError`.
         """
         more = assignments(overrides)
         vehicle = self._variants.variant(more)
@@ -129,10 +126,7 @@ class Car:
         Args:
             name: name of the point, for example "tunnel".
             at: coordinates in the design position [m], or the name of a hardpoint.
-            on: part that the point moves with.
-
-        Raises:
-            ConfigurationError: the car has an output of this name, or lacks the part or the hardpoint.
+            on: part that the point moves with; an unknown one raises a `ConfigurationError`.
         """
         if any(output.name == name for output in self.vehicle.composition.outputs):
             raise ConfigurationError(f"with_channel: the car already has an output {name!r}; choose another name")
@@ -173,8 +167,7 @@ class Car:
 
     def save(self, file: Path | str, *, force: bool = False) -> Path:
         """Write the car as a vehicle file, from which `Car.load` makes the same car; see `vehicle.save_car`."""
-        path: Path = HANDED["save_car"](self, file, force=force)
-        return path
+        return Path(HANDED["save_car"](self, file, force=force))
 
     def show(self) -> CarData:
         """Return masses, loads, stiffnesses, frequencies, geometry and parameters; `print` shows them."""
@@ -193,10 +186,8 @@ class Car:
 
         Args:
             path: whole path or its end, for example "front.damper.viscous" or "damper.viscous"; of one component
-                "tyre.stiffness.z"; "*.damper.viscous" for all parameters with this end, if they are equal.
-
-        Raises:
-            ConfigurationError: no parameter or several have this path, or it is a table.
+                "tyre.stiffness.z"; "*.damper.viscous" for all parameters with this end, if they are equal. No parameter
+                of the path, several, or a table raise a `ConfigurationError`.
         """
         from vehicle.runs.car.car_data import source_file
 
@@ -294,8 +285,7 @@ class Car:
         """Check once that the car is stable and, for "mujoco", that its time step is small enough.
 
         Raises:
-            ConfigurationError: the car cannot be built, is unstable, or its time step is too large.
-            DataError, MissingPartError: the FMU of a controller cannot be used.
+            ConfigurationError, DataError, MissingPartError: car, time step or FMU of a controller cannot be used.
         """
         if engine in self._checked:
             return
@@ -353,6 +343,19 @@ class Car:
         return force_frf(self, channels, frequency, is_stuck(damper), force)
 
     @one_blas_thread()
+    def estimate(self, source: Road, channels: Sequence[str] = ()) -> RoadEstimate:
+        """Return comfort and tyre loads on all roads of a class without a run, by statistical linearisation.
+
+        Args:
+            source: class and speed, for example road("C", 80).
+            channels: further acceleration channels, for `RoadEstimate.rms`.
+
+        Raises:
+            ConfigurationError, SimulationError: a car or road that is not covered (docs/theory/estimate.md).
+        """
+        return road_estimate(self, source.under(self.vehicle, self.overrides), channels)
+
+    @one_blas_thread()
     def run(
         self,
         source: Signal | Road | Path | str,
@@ -379,8 +382,7 @@ class Car:
                 signal, or a function of the times [s] that returns them [N or N m].
 
         Raises:
-            ConfigurationError: an unknown engine, channel or force, a value out of range, or an unstable car.
-            DataError: a file cannot be read, or its data are bad.
+            ConfigurationError, DataError: an unknown name, a value out of range, an unstable car, a bad file.
             SimulationError: the run failed.
         """
         if isinstance(source, Road):

@@ -26,6 +26,7 @@ from vehicle.runs.figures.run_batch import Runs
 from vehicle.signals.excitation.signal import Signal
 from vehicle.studies.sweeps.case import Case, signal_of
 from vehicle.studies.sweeps.case_result import Result
+from vehicle.studies.sweeps.estimate_measure import ESTIMATE, EstimateMeasure
 from vehicle.studies.sweeps.function_measure import FunctionMeasure
 from vehicle.studies.sweeps.measure import BatchMeasure, ComfortMeasure, Measure, figures_of
 from vehicle.threads import one_blas_thread
@@ -53,6 +54,8 @@ def evaluate(cases: Sequence[Case], measure: Measure) -> list[Result]:
         Results in the order of the cases; a failed case has an error message instead of values. The values of a case
         are bitwise independent of the other cases.
     """
+    if isinstance(measure, EstimateMeasure):
+        return [_estimated(case, measure) for case in cases]
     results: dict[int, Result] = {}
     if isinstance(measure, BatchMeasure):
         cars: dict[Hashable, list[int]] = {}
@@ -104,8 +107,8 @@ def _loaded(vehicle: Path | None, changed: int, overrides: tuple[str, ...]) -> C
     return Car.load(vehicle, overrides)
 
 
-# A separate cache, so that cars of single runs do not evict the reference car.
-@lru_cache(maxsize=4)
+# A separate cache, so that cars of single runs do not evict the reference cars, one for each speed.
+@lru_cache(maxsize=16)
 def _reference(vehicle: Path | None, changed: int, shared: tuple[str, ...]) -> Car:
     return Car.load(vehicle, shared)
 
@@ -150,6 +153,19 @@ def _for_twin(measure: Measure, vehicle: Vehicle, signal: Signal) -> tuple[str, 
     if not names or not errors or signal_period(signal) is None:
         return ()
     return tuple(name for name in damper_channels(vehicle) if name not in names)
+
+
+def _estimated(case: Case, measure: EstimateMeasure) -> Result:
+    """Estimate a single case without a run."""
+    started = clock.perf_counter()
+    try:
+        with _ONE_AT_A_TIME:
+            shared, changes = case.overrides[: case.shared], case.overrides[case.shared :]
+            car = _reference(case.vehicle, _changed(case.vehicle), shared)
+            values = _checked(measure.of_car(car.with_(changes) if changes else car, case.source))
+    except OF_A_RUN as error:
+        return _failed(error, started)
+    return Result(values=values, engine=ESTIMATE, seconds=clock.perf_counter() - started)
 
 
 def _lock_of(measure: Measure) -> AbstractContextManager[object]:

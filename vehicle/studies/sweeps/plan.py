@@ -29,6 +29,7 @@ from vehicle.studies.sweeps.case_evaluation import OF_A_RUN, loaded_car, reason_
 from vehicle.studies.sweeps.case_table import Cases, Combinations, RowChanges
 from vehicle.studies.sweeps.comfort_ranking import measured_evaluation, ranking_evaluation
 from vehicle.studies.sweeps.dispatcher import FILL
+from vehicle.studies.sweeps.estimate_measure import ESTIMATE, NOTE, estimate_measure
 from vehicle.studies.sweeps.evaluation import Evaluation
 from vehicle.studies.sweeps.figure_inputs import require_on_inputs
 from vehicle.studies.sweeps.measure import BatchMeasure, Measure, chosen_measure
@@ -71,6 +72,8 @@ class SweepPlan:
         the reduced engine the message names the first input on which the first car leaves its valid range.
         """
         engine = self.cases[0].engine
+        if self.settings.estimate:
+            return (NOTE,)
         if not isinstance(self.measure, BatchMeasure):
             return ()
         if engine == "reduced":
@@ -170,12 +173,15 @@ def plan_sweep(
         require_speed_of_roads(sources, changes)
     start = common_start(sources, settings.skip)
     sources = [evaluated_from(source, start) for source in sources]
-    cases = Cases(changes, sources, engine=settings.engine, vehicle=vehicle, fixed=car.overrides)
+    engine = ESTIMATE if settings.estimate else settings.engine
+    cases = Cases(changes, sources, engine=engine, vehicle=vehicle, fixed=car.overrides)
     states = {(*car.overrides, *overrides_of(source)) for source in sources}
-    idle = tuple(set.intersection(*(set(_idle_notes(vehicle, state, changes, settings.engine)) for state in states)))
-    if idle and all(_all_idle(vehicle, state, each, settings.engine) for state in states):
+    idle = tuple(set.intersection(*(set(_idle_notes(vehicle, state, changes, engine)) for state in states)))
+    if idle and all(_all_idle(vehicle, state, each, engine) for state in states):
         raise ConfigurationError(f"vary: every run would be the same car: {'; '.join(idle)}")
     measure = chosen_measure(settings.measure, car.vehicle, start)
+    if settings.estimate:
+        measure = estimate_measure(measure, car.vehicle, sources)
     require_on_inputs(measure, car, [changes[0], changes[-1]], sources)
     return SweepPlan(
         name=car.vehicle.name,

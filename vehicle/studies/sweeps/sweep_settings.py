@@ -83,6 +83,12 @@ class SweepSettings(RunSettings):
     """Settings of a sweep of a car."""
 
     engine: str = engine_setting("auto")
+    estimate: bool = setting(
+        "estimate each car on a road class without a run, about 2 ms a car if only its dampers differ: comfort, tyre "
+        "load and RMS accelerations; a car that the estimate does not cover is a failed row",
+        False,
+        action="store_true",
+    )
     skip: float | None = skip_setting()
     measure: MeasureChoice = setting(
         "figure instead of comfort and slip shares, for example travel, tyre_load, peak:seat_rail_acc_z or "
