@@ -190,6 +190,16 @@ class RoadDrive:
         span = (USUAL_DURATION if self.duration is None else self.duration) - self.skip
         return span if self.repeats and self.skip >= 0.0 and span > 0.0 else None
 
+    @property
+    def notices(self) -> tuple[str, ...]:
+        """Messages on a span that is too short for the small scatter of a road that repeats."""
+        if self.span is None or self.span >= SHORTEST_SPAN_S * (1.0 - 1e-9):
+            return ()
+        return (
+            f"{self.span:.3g} s of road {self.name} are evaluated: from {SHORTEST_SPAN_S:g} s on comfort scatters by "
+            "less than 1 %; choose a longer --duration",
+        )
+
     def signal(self) -> Signal:
         """Generate the plate signals."""
         if self.road == LEVEL:
@@ -201,13 +211,9 @@ class RoadDrive:
         if isinstance(road, IsoRoad) or not self.random:
             obstacle = self.obstacle
             left = None if obstacle is None else self._times(obstacle)[1]
-            notices: tuple[str, ...] = ()
-            if self.span is not None and self.span < SHORTEST_SPAN_S * (1.0 - 1e-9):
-                notices = (
-                    f"{self.span:.3g} s of road are evaluated: comfort scatters less from {SHORTEST_SPAN_S:g} s on; "
-                    "choose a longer --duration",
-                )
-            return replace(signal, random=self.random, left_obstacle=left, notices=notices, repeats_after=self.span)
+            return replace(
+                signal, random=self.random, left_obstacle=left, notices=self.notices, repeats_after=self.span
+            )
         return replace(signal, notices=(*road.notices, *acceleration_events(signal.displacement, signal.timestep)))
 
     def _road(self) -> tuple[IsoRoad | MeasuredRoad, float]:

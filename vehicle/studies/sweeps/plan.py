@@ -55,7 +55,7 @@ class SweepPlan:
     measure: Measure  # measure of each run
     skip: float  # start of the evaluation [s]
     settings: SweepSettings  # settings of the runs
-    notes: tuple[str, ...]  # messages on side effects of the varied parameters
+    notes: tuple[str, ...]  # messages on side effects of the varied parameters, and on short roads
     # returns the evaluation of the table, for a caption with tyres and evaluated span
     evaluation_of: Callable[[SweepTable, str], Evaluation]
 
@@ -176,6 +176,7 @@ def plan_sweep(
     engine = ESTIMATE if settings.estimate else settings.engine
     cases = Cases(changes, sources, engine=engine, vehicle=vehicle, fixed=car.overrides)
     states = {(*car.overrides, *overrides_of(source)) for source in sources}
+    short = dict.fromkeys(text for source in sources if isinstance(source, RoadDrive) for text in source.notices)
     idle = tuple(set.intersection(*(set(_idle_notes(vehicle, state, changes, engine)) for state in states)))
     if idle and all(_all_idle(vehicle, state, each, engine) for state in states):
         raise ConfigurationError(f"vary: every run would be the same car: {'; '.join(idle)}")
@@ -189,7 +190,7 @@ def plan_sweep(
         measure=measure,
         skip=start,
         settings=settings,
-        notes=(*body_rules(car.vehicle, [text.partition("=")[0] for text in each]), *idle),
+        notes=(*body_rules(car.vehicle, [text.partition("=")[0] for text in each]), *idle, *short),
         evaluation_of=evaluation_of or (ranking_evaluation if settings.measure is None else measured_evaluation),
     )
 
