@@ -2,7 +2,7 @@
 
 Parts: `comfort`, comfort_error and the error of a difference, of a linear car on generated and on Gaussian roads;
 `length`, comfort of 10, 30 and 60 s of one class with the reduced engine; `twin`, comfort and differences of cars on
-roads that repeat, with their linear twins; `quantile`, quantiles of made cars; `sobol`,
+roads that repeat, with their linear twins; `ratio`, comfort over a class from roads that do not repeat; `quantile`, quantiles of made cars; `sobol`,
 intervals of Sobol indices; `tuning`, standard errors of fitted parameters.
 """
 
@@ -22,7 +22,8 @@ from vehicle.engines.reduced.batch_simulation import COARSE_STEP
 from vehicle.model.parameters.ranges import Range
 from vehicle.names import AXES
 from vehicle.runs.car import Car, Road
-from vehicle.signals.analysis.comfort import comfort_values
+from vehicle.runs.car.class_value import class_values
+from vehicle.signals.analysis.comfort import COMFORT_BAND, comfort_values
 from vehicle.signals.analysis.comfort_error import STUDENT_95, WAVES, difference_error
 from vehicle.signals.analysis.ride_comfort import ERROR, UNWEIGHTED, WEIGHTED, comfort_columns, wave_names, waves_of
 from vehicle.signals.analysis.road_level import CLASSES, REFERENCE
@@ -200,6 +201,34 @@ def twin(repetitions: int) -> Rows:
     return rows
 
 
+def ratio(repetitions: int) -> Rows:
+    """Comfort over roads of a class from 10 s of roads that do not repeat, against 5 roads of 100 s that repeat."""
+    rows: Rows = []
+    for name, speed, road in itertools.product(CHANGES, (50.0, 100.0), "ABC"):
+        car = Car.load(name)
+        long = [car.run(Road(road, speed, duration=102.0, seed=seed), engine="reduced") for seed in range(1, 6)]
+        reference = np.mean([run.comfort().weighted.overall for run in long])
+        found, values = [], []
+        for seed in range(1, repetitions + 1):
+            run = car.run(Road(road, speed, duration=12.0, seed=seed, period="record"), engine="reduced")
+            assert run.road is not None
+            found.append(run.comfort().weighted.overall)
+            each = class_values(run.car, run.signal, run.recording, run.skip, run.road, run.signal.band(COMFORT_BAND))
+            values.append([each[WEIGHTED].value, each[WEIGHTED].half_interval])
+        value, half = np.array(values).T
+        rows.append(
+            {
+                "car": f"{name} {speed:g} km/h {road}",
+                "scatter_of_run_percent": 100.0 * np.std(found, ddof=1) / reference,
+                "scatter_percent": 100.0 * value.std(ddof=1) / reference,
+                "bias_percent": 100.0 * (value.mean() / reference - 1.0),
+                "half_width_percent": 100.0 * np.sqrt(np.mean(half**2)) / reference,
+                "covers_95": np.mean(np.abs(value - reference) < half),
+            }
+        )
+    return rows
+
+
 def quantile(repetitions: int) -> Rows:
     """Share of new cars within a stated quantile of made cars, for responses of one to six tolerances."""
     responses: dict[str, Callable[[Vector], Vector]] = {
@@ -326,7 +355,7 @@ def tuning(repetitions: int) -> Rows:
 
 
 PARTS: dict[str, Callable[[int], Rows]] = {
-    "comfort": comfort, "length": length, "twin": twin, "quantile": quantile, "sobol": sobol, "tuning": tuning,
+    "comfort": comfort, "length": length, "twin": twin, "ratio": ratio, "quantile": quantile, "sobol": sobol, "tuning": tuning,
 }  # fmt: skip
 
 

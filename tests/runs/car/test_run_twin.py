@@ -63,6 +63,20 @@ def test_other_roads_and_spans_have_the_error_of_the_run_alone(car: Car, run: Ru
         assert comfort.explained == {} and 0.02 < comfort.errors["weighted"] < 0.1
 
 
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_road_that_does_not_repeat_has_the_value_of_its_class(car: Car, run: Run, seed: int):
+    """Second derivation: the run on a road that repeats, whose value is that of the class within its own error."""
+    other = drive(car, period="record", seed=seed)
+    stored = comfort_values(other)["seat_rail"]
+    assert stored.over_class is not None and comfort_values(run)["seat_rail"].over_class is None
+    comfort, alone = run.comfort(), other.comfort()
+    for name, of_class in stored.over_class.items():
+        wanted, half = comfort.values[name], 1.96 * comfort.errors[name] * comfort.values[name]
+        assert abs(of_class["value"] - wanted) < math.hypot(half, of_class["half_interval"])
+        assert of_class["half_interval"] < 0.3 * 1.96 * alone.errors[name] * alone.values[name]
+        assert of_class["explained"] > 0.9
+
+
 def test_controlled_dampers_have_no_twin():
     assert drive(Car.load("focus_road", {"front.damper.control.law": "skyhook"})).comfort().explained == {}
 

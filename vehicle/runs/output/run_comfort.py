@@ -6,6 +6,7 @@ import numpy as np
 
 from vehicle.names import AXES, point_words
 from vehicle.runs.car import Run
+from vehicle.runs.car.class_value import class_values
 from vehicle.signals.analysis.comfort import COMFORT_BAND, settling
 from vehicle.signals.analysis.comfort_error import NORMAL_95
 from vehicle.signals.analysis.evaluation import application, evaluate
@@ -81,6 +82,13 @@ def _recorded(run: Run, point: str) -> bool:
     return all(f"{point}_acc_{axis}" in run.recording.channels for axis in AXES)
 
 
+def _over_class(run: Run) -> dict[str, dict[str, float]] | None:
+    """Return the comfort of the seat rail over roads of a class, from a road that does not repeat; None elsewhere."""
+    band = run.signal.band(COMFORT_BAND)
+    values = class_values(run.car, run.signal, run.recording, run.skip, run.road or {}, band)
+    return {name: value._asdict() for name, value in values.items()} or None
+
+
 def _at(run: Run, point: str) -> ComfortSummary:
     value = run.comfort(point)
     xyz = [run[f"{point}_acc_{axis}"][: run.evaluated.stop] for axis in AXES]
@@ -95,4 +103,5 @@ def _at(run: Run, point: str) -> ComfortSummary:
         rms_of_band={"band_hz": list(value.band), **rms} if slow else None,
         half_interval=half,
         explained_by_linear_car=explained,
+        over_class=_over_class(run) if point == RAIL else None,
     )
