@@ -2,8 +2,8 @@
 
 Parts: `comfort`, comfort_error and the error of a difference, of a linear car on generated and on Gaussian roads;
 `length`, comfort of 10, 30 and 60 s of one class with the reduced engine; `twin`, comfort and differences of cars on
-roads that repeat, with their linear twins; `ratio`, comfort over a class from roads that do not repeat; `quantile`, quantiles of made cars; `sobol`,
-intervals of Sobol indices; `tuning`, standard errors of fitted parameters.
+roads that repeat, with their linear twins; `ratio`, comfort over a class from roads that do not repeat; `quantile`,
+quantiles of made cars; `sobol`, intervals of Sobol indices; `tuning`, standard errors of fitted parameters.
 """
 
 import argparse
@@ -355,7 +355,8 @@ def tuning(repetitions: int) -> Rows:
 
 
 PARTS: dict[str, Callable[[int], Rows]] = {
-    "comfort": comfort, "length": length, "twin": twin, "ratio": ratio, "quantile": quantile, "sobol": sobol, "tuning": tuning,
+    "comfort": comfort, "length": length, "twin": twin, "ratio": ratio,
+    "quantile": quantile, "sobol": sobol, "tuning": tuning,
 }  # fmt: skip
 
 
