@@ -6,8 +6,8 @@ on the lines k/T of the period,
 
     Y(f) = sum over plates of H(f, c) Z(f),
 
-exact without time steps. Left out are what makes the car nonlinear: the memory of friction, laws over displacement
-beyond their tangent, and the present tyre load on slopes. Lines above `HIGHEST` are left out too.
+exact without time steps. The twin lacks the nonlinear parts of the car: the memory of friction, laws over displacement
+beyond their tangent, and the present tyre load on slopes. It also lacks lines above `HIGHEST`.
 
 Sources: see `vehicle.engines.reduced.equivalent_damping`.
 """
@@ -58,7 +58,7 @@ def twin_run(
     Args:
         model: pole model of the car.
         damping: damping constants c [N s/m]; (d,).
-        plates: wheel to displacement over one period [m]; other plates stand still.
+        plates: wheel to displacement over one period [m]; other plates do not move.
         period: length of the period T [s].
         channels: accelerations [m/s2], dynamic tyre forces [N], velocities [m/s] and forces [N] of the dampers.
         samples: number of samples n of the result.

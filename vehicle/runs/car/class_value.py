@@ -1,8 +1,8 @@
 """Comfort over roads of a class, from a run on one road of the class that does not repeat.
 
-The value W of one road scatters by several percent. Most of this scatter is that of the road, and the linear twin of
-the run (`vehicle.engines.reduced.twin_run`) has it too: its value W' on the same road is known, and its expectation
-E[W'] over all roads of the class is a closed integral (`vehicle.engines.reduced.road_expectation`). The ratio estimate
+The value W of one road scatters by several percent, and so does the value W' of the linear twin on the same road
+(`vehicle.engines.reduced.twin_run`). The expectation E[W'] over all roads of the class is a closed integral
+(`vehicle.engines.reduced.road_expectation`). The ratio estimate
 
     W E[W'] / W',    error sqrt(mean |C_m - (W/W') C'_m|^2) with 6 degrees of freedom,
 
@@ -71,8 +71,12 @@ def class_values(
     needed, rail = damper_channels(car.vehicle), [f"seat_rail_acc_{axis}" for axis in AXES]
     step, samples = recording.timestep, recording.time.size
     span = evaluated_span(samples, step, begin)
-    known = road.get("class") and "repeats_after_s" not in road and "tyre_contact" not in road and needed
-    if not known or not {*needed, *rail} <= {*recording.channels} or (span.stop - span.start) * step < SHORTEST_SPAN_S:
+    applies = road.get("class") and "repeats_after_s" not in road and "tyre_contact" not in road and needed
+    if (
+        not applies
+        or not {*needed, *rail} <= {*recording.channels}
+        or (span.stop - span.start) * step < SHORTEST_SPAN_S
+    ):
         return {}
     laws = [damper.law for damper in car.vehicle.composition.dampers]
     damping = damping_of_run(car.poles, laws, recording.channels, span)

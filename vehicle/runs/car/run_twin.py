@@ -1,9 +1,10 @@
 """Channels of the linear twin of a finished run, on a road that repeats after the evaluated span.
 
-The twin (`vehicle.engines.reduced.twin_run`) drives over the same road. What both have in common is the chance of the
-road, so the difference of both gives the error of a value of the run, see `vehicle.signals.analysis.comfort_error`.
-There is none off such a road, with cams, which follow the upper envelope of the road, and for a car with controlled
-dampers, whose force is no function of their velocity, or with stops in its dampers.
+The twin (`vehicle.engines.reduced.twin_run`) drives over the same road. The random phases of the road act on both
+alike, so the difference between run and twin gives the error of a value of the run
+(`vehicle.signals.analysis.comfort_error`). Other roads have no twin, nor cams, which follow the upper envelope of the
+road. A car with controlled dampers, or with stops in its dampers, has no twin: their forces depend on more than the
+damper velocity.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -45,7 +46,7 @@ class Period(NamedTuple):
 
     Attributes:
         plates: wheel to displacement [m].
-        begin: start of the period, which is that of the evaluated span [s].
+        begin: start of the period and of the evaluated span [s].
         length: length of the period [s].
     """
 
@@ -60,7 +61,7 @@ def last_period(plates: Mapping[str, Vector], timestep: float, length: float | N
     Args:
         plates: wheel to displacement [m]; (n,).
         timestep: sampling interval [s].
-        length: period of the road [s]; None for a road without a twin.
+        length: period of the road [s]; None for another road.
 
     Returns:
         The period; None without one, and for a shorter one than `SHORTEST_SPAN_S`, for which the errors would cover
@@ -79,7 +80,7 @@ def signal_period(signal: Signal) -> Period | None:
 
 
 def repeats_after(road: Mapping[str, object] | None) -> float | None:
-    """Return the period [s] of the road in the summary of a run, which has a twin; None for another road."""
+    """Return the period [s] of the road in the summary of a run; None without a period or with cams."""
     length = (road or {}).get("repeats_after_s")
     return length if isinstance(length, float) and "tyre_contact" not in (road or {}) else None
 

@@ -89,9 +89,9 @@ class Runs:
                 twin_channels(car, self.period, record, self.timestep, self.channels)
                 for car, record in zip(self.cars, records, strict=True)
             ]
-            rest = np.zeros(self.time.size)
+            at_rest = np.zeros(self.time.size)
             names = next(filter(None, twins), {})
-            channels = {name: np.stack([twin.get(name, rest) for twin in twins]) for name in names}
+            channels = {name: np.stack([twin.get(name, at_rest) for twin in twins]) for name in names}
             self._twins.append(replace(self, channels=channels, period=None))
         return self._twins[0] if self._twins[0].channels else None
 

@@ -60,15 +60,15 @@ WIDENED = float(np.sqrt(2 * WAVES / (2 * WAVES - 1)) * stdtrit(2 * WAVES - 1, 0.
 """Factor on waves from which one degree of freedom is taken by a fit: then `STUDENT_95` fits them too."""
 
 LEAST_EXPLAINED = 0.5
-"""Minimum share of the scatter that the twin must explain; below it the run and its twin are two different cars, and
-the error is that of the run alone."""
+"""Minimum share of the scatter that the twin must explain. Below it, the run and its twin are two different cars, and
+the error of the run alone counts."""
 
 
 class Paired(NamedTuple):
     """Error of values of which the linear twin on the same road is known; (r,) each, waves (r, `WAVES`).
 
     Attributes:
-        error: standard error, see `wave_error`; that of the run alone where the twin explains less than half.
+        error: standard error, see `wave_error`; of the run alone where the twin explains less than half.
         waves: waves R_m that the twin does not explain.
         explained: share of the scatter that the twin explains, 1 - sum |R_m|^2 / sum |C_m|^2 [-]; NaN without a twin.
     """
@@ -81,8 +81,8 @@ class Paired(NamedTuple):
 def wave_error(waves: Complex) -> Vector:
     """Return the standard error of values from their waves, (r, `WAVES`), in the unit of the waves; (r,).
 
-    It is estimated with 2 `WAVES` degrees of freedom, and widened so that `NORMAL_95` errors are the 95 % interval of
-    Student's t, as those of a known error.
+    The estimate has 2 `WAVES` degrees of freedom. It is widened, so that `NORMAL_95` errors are the half width of the
+    95 % interval of Student's t.
     """
     return np.asarray(STUDENT_95 / NORMAL_95 * np.sqrt(np.mean(np.abs(waves) ** 2, axis=1)))
 
@@ -97,12 +97,12 @@ def paired(value: Vector, error: Vector, waves: Complex, twin_value: Vector, twi
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         factor = np.sum((twin_waves.conj() * waves).real, axis=1) / np.sum(np.abs(twin_waves) ** 2, axis=1)
-        left = waves - factor[:, None] * twin_waves
-        explained = 1.0 - np.sum(np.abs(left) ** 2, axis=1) / np.sum(np.abs(waves) ** 2, axis=1)
-    known = np.isfinite(explained)
+        residual = waves - factor[:, None] * twin_waves
+        explained = 1.0 - np.sum(np.abs(residual) ** 2, axis=1) / np.sum(np.abs(waves) ** 2, axis=1)
+    defined = np.isfinite(explained)
     return Paired(
-        error=np.where(known & (explained >= LEAST_EXPLAINED), wave_error(WIDENED * left), error),
-        waves=np.where(known[:, None], WIDENED * left, waves),
+        error=np.where(defined & (explained >= LEAST_EXPLAINED), wave_error(WIDENED * residual), error),
+        waves=np.where(defined[:, None], WIDENED * residual, waves),
         explained=explained,
     )
 

@@ -156,7 +156,7 @@ def _point(
 
 
 def _axis_errors(name: str, lines: Complex) -> dict[str, Vector]:
-    """Return the columns of the errors of the axes of a comfort value and of their waves; lines: (r, 3, m)."""
+    """Return errors and waves of the axes of a comfort value as columns; lines: (r, 3, m)."""
     columns: dict[str, Vector] = {}
     for number, axis in enumerate(AXES):
         row = lines[:, number : number + 1]
@@ -169,7 +169,7 @@ def with_twins(columns: Mapping[str, Vector], twins: Mapping[str, Vector]) -> di
 
     Args:
         columns: values of `comfort_columns`.
-        twins: those of the twins.
+        twins: values of the twins.
     """
     result = dict(columns)
     for name in (column.removesuffix(ERROR) for column in columns if column.endswith(ERROR)):
@@ -240,7 +240,7 @@ class RunComfort(PointComfort):
         cushion: both values on the cushion; None for a car without a seat.
         seat_value: SEAT value [-]; None for a car without a seat, or a rail at rest.
         values: all values under their names in sweeps and searches, see `comfort_units`.
-        errors: relative standard errors of the values and of their axes [-], as "weighted", "weighted_x".
+        errors: relative standard errors of values and axes [-], by the names "weighted", "weighted_x" and so on.
         explained: share of the scatter that the linear twin explains [-], by the same names; empty without a twin.
     """
 

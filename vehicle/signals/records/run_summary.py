@@ -74,11 +74,11 @@ class ComfortSummary(Stored):
     """Comfort at one output point; `iso2631` is the result of `analysis.evaluation.evaluate`.
 
     `rms_of_band` replaces `rms_2_50_hz`, then null, where the band of the signal ends below 50 Hz. `half_interval`:
-    half of the 95 % interval of both overall values and of their axes, as "weighted_x", over roads of a class [m/s2],
-    for a run on one of them. `explained_by_linear_car`: share of the scatter over these roads that the linear car on
-    the same road explains [-], by the same names, on a road that repeats after the evaluated span. `over_class`: on
-    another road of a class, "unweighted" and "weighted" over all roads of the class, by the linear car: `value` and
-    `half_interval` [m/s2], `explained` [-].
+    half of the 95 % interval over roads of a class [m/s2], of both overall values and of each axis ("weighted_x").
+    `explained_by_linear_car`: share of the scatter over these roads that the linear car on the same road explains [-],
+    by the same names, on a road that repeats after the evaluated span. `over_class`: on another road of a class,
+    "unweighted" and "weighted" over all roads of the class, corrected by the linear car: `value` and `half_interval`
+    [m/s2], `explained` [-].
     """
 
     rms_2_50_hz: dict[str, float | None]
