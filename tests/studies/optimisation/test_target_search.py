@@ -77,9 +77,9 @@ def test_targets_that_exclude_each_other(sedan):
 def test_a_coordinate_is_changed_by_a_length(sedan):
     """The change of a coordinate through 0 has a size and a text in mm."""
     car = sedan.with_({"hardpoints.seat_rail.y": 0.0})
-    limit = 0.999 * car.run(road("C", 80, duration=2.2), engine="reduced").comfort().weighted.overall
+    limit = 0.999 * car.run(road("C", 80, duration=3.0), engine="reduced").comfort().weighted.overall
     ranges = [Range(path="hardpoints.seat_rail.y", low=-0.4, high=0.4)]
-    found = meet_targets(car, targets(limit, 0.1), ranges, duration=2.2)
+    found = meet_targets(car, targets(limit, 0.1), ranges, duration=3.0)
     assert found.change.feasible and found.ranges[0].is_linear
     assert found.values[0] == pytest.approx(0.05 * found.change.position[0])
     assert next(line for line in found.lines() if "seat_rail.y" in line).split()[4] == "mm"

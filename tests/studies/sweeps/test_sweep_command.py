@@ -296,7 +296,7 @@ def test_an_interrupted_force_keeps_the_old_sweep_and_goes_on(signal, tmp_path, 
 
 
 def test_a_varied_parameter_without_effect_is_noted():
-    car, road = Car.load("sedan"), Road("B", speed=80, duration=6)
+    car, road = Car.load("sedan"), Road("B", speed=80, duration=8)
     (note,) = plan_sweep(car, {"front.damper.viscous": [1000, 2000], "rear.damper.viscous": [1000]}, road).notes
     assert note.startswith("front.damper.viscous=1000: has no effect") and "front.damper.viscous_law" in note
     assert not plan_sweep(car, {"front.damper.coulomb_friction": [40, 80]}, road).notes
