@@ -92,7 +92,7 @@ def linear_twin(
         by_force += (half[:, None, :] * force.T) @ resolvent
     count = len(outputs.poles)
     by_input[:count] += np.tensordot(outputs.height, plates, 1) + np.tensordot(outputs.velocity, rates, 1)
-    # The rows of an acceleration are those of its displacement.
+    # The rows of an acceleration return its displacement.
     accelerations = [not channel.startswith("tyre_") for channel in channels]
     scale = np.ones((count, 1, s.size), dtype=np.complex128)
     scale[np.flatnonzero(accelerations)] = s**2

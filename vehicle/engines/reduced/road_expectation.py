@@ -1,4 +1,4 @@
-"""Expected mean squares of a linear car on all roads of a class, as closed integrals over frequency.
+"""Expected mean squares of a linear car on all roads of a class: closed integrals over frequency.
 
 A road of a class (`vehicle.signals.excitation.iso_road`) is the sum of two independent sources, the mean and the
 difference of the tracks. With the density G(n) of the class, the wavenumber n = f/V, the cross spectrum g(n) of the
@@ -10,8 +10,8 @@ for unit densities of the sources. An output y with the responses Y_1, Y_2 to th
 
     S_y(f) = |Y_1|^2 + |Y_2|^2,    E[y_W^2] = integral of |W(f)|^2 S_y(f) df.
 
-No road and no run are needed, and the value has no scatter. The lines f = k/P of a road that repeats after the time P,
-with the width df = 1/P, give the expectation over the phases of this road.
+The value needs neither a road nor a run, and does not scatter. The lines f = k/P of a road that repeats after the time
+P, with the width df = 1/P, give the expectation over the phases of this road.
 
 Sources: Dodds and Robson, Journal of Sound and Vibration 31 (1973) 175; Robson, Vehicle System Dynamics 8 (1979) 43.
 """
@@ -125,7 +125,7 @@ def band_width(lines: Lines, band: tuple[float, float], duration: float | None =
         lines: lines of the integral.
         band: lowest and highest frequency [Hz].
         duration: length T of a record that is cut from a longer road [s], whose periodogram has lines f_k = k/T. Each
-            of them reads the density through the window sinc^2((f - f_k) T): leakage. None for a spectrum without it.
+            of them reads the density through the window sinc^2((f - f_k) T): leakage; by default without it.
     """
     low, high = band
     if duration is None:

@@ -10,8 +10,8 @@ of straight lines between breakpoints v_j with slopes b_j, and the normal distri
 
     c = sum of b_j [Phi(v_(j+1)/s) - Phi(v_j/s)]
 
-is exact; every law is taken as such lines between its own breakpoints and a graded grid. A mean force E F, of a table
-that is stiffer in rebound, moves the mean position only and changes no vibration of a car that is linear otherwise.
+is exact; every law is replaced by straight lines between its breakpoints and a graded grid. A table that is stiffer in
+rebound has a mean force E F, which moves the mean position and changes no vibration of a car that is linear otherwise.
 
 Sources: Booton, IRE Transactions on Circuit Theory 1 (1954) 9; Caughey, J. Acoust. Soc. Am. 35 (1963) 1706; Roberts and
 Spanos, Random Vibration and Statistical Linearization, 1990, chapters 2 and 5; Stein, Annals of Statistics 9 (1981).

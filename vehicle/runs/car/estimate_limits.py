@@ -20,16 +20,16 @@ if TYPE_CHECKING:
     from vehicle.model.parameters.composition import PlacedDamper
 
 LEAST_LOOSE = 0.8
-"""Minimum share of the time in which the force in a damper, if all dampers were locked, exceeds its friction. Of 384
-random cars, 30 in classes A to D to 5 times the usual friction, 55 estimates were off by more than 2 %; this limit
-refuses 54 of them and 9 % of the others (`python -m tests.benchmarks.estimate`)."""
+"""Minimum share of the time in which the force in a damper, if all dampers were locked, exceeds its friction. Chosen
+with 384 random cars on classes A to D, of which 55 were off by more than 2 %: it rejects 54 of them and 9 % of the
+others. Of 384 other cars it rejects all 61 that are off (docs/theory/estimate.md)."""
 
 LOCKED = 1e8
-"""Damping constant of a locked damper [N s/m]: a thousand times that of the strongest friction at rest."""
+"""Damping constant of a locked damper [N s/m]: far stiffer than the springs of a car up to 60 Hz."""
 
 MOST_LIFTED, MOST_ENGAGED = 0.03, 0.01
 """Maximum share of the time in which a tyre leaves the road, and in which another law over displacement leaves its
-segment at rest, as a stop its clearance. At these shares the weighted comfort of the sedan is 0.9 % and 0.5 % off."""
+segment at rest (a stop: its clearance). At these shares the weighted comfort of the sedan is 0.9 % and 0.5 % off."""
 
 REMEDY = "run the car instead"
 
@@ -44,13 +44,13 @@ def require_class(source: Any) -> RoadDrive:
         return source
     name = getattr(source, "road", getattr(source, "name", source))
     raise ConfigurationError(
-        f"estimate: {name} is no class of ISO 8608, so nothing is known of roads like it; choose a class, "
+        f"estimate: {name} is no class of ISO 8608, whose spectrum the estimate needs; choose a class, "
         f"{', '.join(CLASSES)}, or {REMEDY}"
     )
 
 
 def require_laws(dampers: Sequence[PlacedDamper], model: PoleModel) -> None:
-    """Check that the force of each damper follows from its velocity, and that nothing but the road shakes the car.
+    """Check that the force of each damper follows from its velocity, and that the road is the only excitation.
 
     Raises:
         ConfigurationError: the first reason against it.
@@ -63,10 +63,10 @@ def require_laws(dampers: Sequence[PlacedDamper], model: PoleModel) -> None:
             "has presliding friction": law.presliding_stiffness is not None and law.friction_law == "presliding",
             "has friction that grows with its side force": law.side_force_coefficient > 0.0,
         }
-        for words, applies in reasons.items():
+        for reason, applies in reasons.items():
             if applies:
                 raise ConfigurationError(
-                    f"estimate: {damper.path} {words}, so its force does not follow from its velocity alone; {REMEDY}"
+                    f"estimate: {damper.path} {reason}, so its force does not follow from its velocity alone; {REMEDY}"
                 )
     for each in model.laws:
         if each.friction:
@@ -117,17 +117,17 @@ def require_motion(
     for damper, force in zip(dampers, locked_forces.tolist(), strict=True):
         share = loose_share(damper.law.static_friction, force)
         if share < LEAST_LOOSE:
-            found, limit = beside_limit(100.0 * share, 100.0 * LEAST_LOOSE)
+            percent, limit = beside_limit(100.0 * share, 100.0 * LEAST_LOOSE)
             raise ConfigurationError(
                 f"estimate: {damper.path} would stick too often on this road (the force in it exceeds its friction of "
-                f"{damper.law.static_friction:g} N for {found} % of the time, {limit} % are needed); choose a rougher "
-                f"road or a higher speed, or {REMEDY}"
+                f"{damper.law.static_friction:g} N for {percent} % of the time, {limit} % are needed); choose a "
+                f"rougher road or a higher speed, or {REMEDY}"
             )
     for law, displacement in zip(laws, displacements.tolist(), strict=True):
-        share, most = outside_share(law, displacement), MOST_LIFTED if law.one_sided else MOST_ENGAGED
-        if share > most:
-            found, limit = beside_limit(100.0 * share, 100.0 * most)
-            what = "leaves the road" if law.one_sided else "leaves its straight segment at rest"
+        share, maximum = outside_share(law, displacement), MOST_LIFTED if law.one_sided else MOST_ENGAGED
+        if share > maximum:
+            percent, limit = beside_limit(100.0 * share, 100.0 * maximum)
+            action = "leaves the road" if law.one_sided else "leaves its straight segment at rest"
             raise ConfigurationError(
-                f"estimate: {law.name} {what} for {found} % of the time, at most {limit} % are covered; {REMEDY}"
+                f"estimate: {law.name} {action} for {percent} % of the time, at most {limit} % are covered; {REMEDY}"
             )

@@ -2,8 +2,8 @@
 
 The dampers become viscous with the constants of a Gaussian velocity
 (`vehicle.engines.reduced.statistical_linearisation`), and the mean squares of the linear car are closed integrals over
-the spectrum of the class (`vehicle.engines.reduced.road_expectation`). The value has no scatter; its error is that of
-the linearisation (docs/theory/estimate.md). Cars on which this error is large or unknown are refused
+the spectrum of the class (`vehicle.engines.reduced.road_expectation`). The value has no scatter. The linearisation has
+an error (docs/theory/estimate.md). Cars on which this error is large or unknown are rejected
 (`vehicle.runs.car.estimate_limits`).
 """
 
@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -44,11 +44,8 @@ from vehicle.signals.analysis.ride_comfort import (
 )
 from vehicle.signals.analysis.road_level import CLASSES
 from vehicle.signals.excitation.iso_road import IsoRoad
+from vehicle.signals.excitation.recorded_road import RecordedDrive
 from vehicle.signals.excitation.road_drive import RoadDrive
-
-if TYPE_CHECKING:
-    from vehicle.runs.car.car import Car
-    from vehicle.runs.car.road import Drive
 
 LAW_NUMBERS = (
     *("viscous", "degressive_viscous", "degressive_velocity", "coulomb_friction", "smoothing"),
@@ -63,7 +60,7 @@ class RoadEstimate:
 
     Attributes:
         car: name of the car.
-        road: class and speed, as "road_C_80".
+        road: class and speed, for example "road_C_80".
         lines: lines of the integrals over frequency.
         densities: channel to its density [(m/s2)^2/Hz, N^2/Hz]; (m,).
         static_load: static load of each tyre [N].
@@ -95,7 +92,7 @@ class RoadEstimate:
 
     @cached_property
     def tyre_load(self) -> dict[str, float]:
-        """RMS of the dynamic load of each tyre [N]."""
+        """Return the RMS of the dynamic load of each tyre [N]."""
         return {
             wheel: float(np.sqrt(self.densities[f"tyre_{wheel}_force_z"] @ self.lines.width))
             for wheel in self.static_load
@@ -103,7 +100,7 @@ class RoadEstimate:
 
     @cached_property
     def values(self) -> dict[str, float]:
-        """Comfort under its names in sweeps: overall and by axis, seat rail and cushion, SEAT value."""
+        """Return the comfort values by their names in sweeps: overall and by axis, at rail and cushion, SEAT value."""
         values = self._point("seat_rail", "")
         if f"seat_acc_{AXES[2]}" in self.densities:
             values |= self._point("seat", SEAT_PREFIX)
@@ -112,12 +109,12 @@ class RoadEstimate:
 
     @property
     def comfort(self) -> PointComfort:
-        """Comfort at the seat rail."""
+        """Return the comfort at the seat rail."""
         return point_comfort("seat rail", self.values, COMFORT_BAND)
 
     @property
     def cushion(self) -> PointComfort | None:
-        """Comfort on the cushion; None for a car without a seat."""
+        """Return the comfort on the cushion, or None for a car without a seat."""
         return point_comfort("cushion", self.values, COMFORT_BAND, SEAT_PREFIX) if SEAT_VALUE in self.values else None
 
     def _point(self, point: str, prefix: str) -> dict[str, float]:
@@ -154,7 +151,7 @@ class _LinearPart(NamedTuple):
 class _Itself:
     """A car as a key of a cache: the object, not its parameters, whose comparison takes longer than an estimate."""
 
-    def __init__(self, car: Car) -> None:
+    def __init__(self, car: Any) -> None:
         self.car = car
 
     def __hash__(self) -> int:
@@ -164,7 +161,7 @@ class _Itself:
         return isinstance(other, _Itself) and other.car is self.car
 
 
-def road_estimate(car: Car, drive: Drive, channels: Iterable[str] = ()) -> RoadEstimate:
+def road_estimate(car: Any, drive: RoadDrive | RecordedDrive, channels: Iterable[str] = ()) -> RoadEstimate:
     """Estimate the vibration of a car on all roads of a class; see `Car.estimate`.
 
     Args:
@@ -200,7 +197,7 @@ def road_estimate(car: Car, drive: Drive, channels: Iterable[str] = ()) -> RoadE
     )
 
 
-def _split(car: Car) -> tuple[_Itself, tuple[str, ...]]:
+def _split(car: Any) -> tuple[_Itself, tuple[str, ...]]:
     """Return a car, and the changes of parameters that make the linear part of `car` of it."""
     if car._base is None:
         return _Itself(car), ()
@@ -220,7 +217,7 @@ def _of_all_roads(drive: RoadDrive) -> RoadDrive:
 
 # The cars of a study share a few linear parts if its dampers vary.
 @lru_cache(maxsize=32)
-def _reference(base: _Itself, changes: tuple[str, ...], by_road: tuple[str, ...]) -> Car:
+def _reference(base: _Itself, changes: tuple[str, ...], by_road: tuple[str, ...]) -> Any:
     """Return a base car with changes, of which those by the road come last; checked for stability."""
     texts = [*changes, *by_road]
     car = base.car.with_(texts) if texts else base.car
@@ -231,7 +228,7 @@ def _reference(base: _Itself, changes: tuple[str, ...], by_road: tuple[str, ...]
 @lru_cache(maxsize=32)
 def _linear_part(car: _Itself, drive: RoadDrive, channels: tuple[str, ...]) -> _LinearPart:
     """Return the responses of a car to the two sources of a class."""
-    model, speed, placed = car.car.poles, drive.speed / 3.6, {wheel: place for wheel, *place in drive.wheels}
+    model, speed = car.car.poles, drive.speed / 3.6
     road = IsoRoad(
         level=CLASSES[str(drive.road)],
         seed=drive.seed,
@@ -240,7 +237,8 @@ def _linear_part(car: _Itself, drive: RoadDrive, channels: tuple[str, ...]) -> _
         patch=drive.patch,
         envelope=drive.envelope,
     )
-    wheels = {wheel: (placed[wheel][0], placed[wheel][1]) for wheel in model.matrices.system.inputs}
+    placed = {wheel: (behind, side) for wheel, behind, side in drive.wheels}
+    wheels = {wheel: placed[wheel] for wheel in model.matrices.system.inputs}
     lines = integral_lines(road, speed, drive.rate)
     sources = track_sources(road, speed, wheels, lines.frequency)
     return _LinearPart(lines, linear_twin(model, channels, lines.frequency, sources, further=model.law_outputs))

@@ -1,4 +1,4 @@
-"""Screening of a search: all cars are estimated without a run, and the best are run beside their estimates."""
+"""Screening of a search: all cars are estimated without a run, then the best cars are run."""
 
 import math
 from collections.abc import Mapping
@@ -67,7 +67,7 @@ class Screening:
 
 
 def best_rows(costs: Vector, count: int) -> Indices:
-    """Return the rows of the best cars: those of the front, then of the front of the others, until `count`.
+    """Return the rows of the best cars: the front, then the front of the other cars, until `count`.
 
     Args:
         costs: objectives of the cars within all limits, less is better; (n, goals).
@@ -101,13 +101,13 @@ def screening(runs: Trials, estimates: Outcome, count: int) -> Screening:
     values, reasons = runs(np.concatenate([estimates.base.points, tried.points[rows]]))
     base = TriedCars(points=estimates.base.points, values=values[:1], reasons=(reasons[0],))
     run_cars = TriedCars(points=tried.points[rows], values=values[1:], reasons=tuple(reasons[1:]))
-    found = replace(outcome(problem, base, [run_cars]), reached=estimates.reached)
+    best = replace(outcome(problem, base, [run_cars]), reached=estimates.reached)
     labels = [criterion.label for criterion in problem.criteria]
     with np.errstate(divide="ignore", invalid="ignore"):
         errors = np.concatenate([estimates.base.values, tried.values[rows]]) / values - 1.0
-    named = {BASE: 0} | {name: 1 + row for name, row in found.named.items()}
+    named = {BASE: 0} | {name: 1 + row for name, row in best.named.items()}
     return Screening(
-        outcome=found,
+        outcome=best,
         estimated=len(tried.reasons),
         refused=sum(map(bool, tried.reasons)),
         reason=next(filter(None, tried.reasons), ""),

@@ -41,7 +41,7 @@ class FoundCars:
         nominal: values of the Pareto front without tolerances, (f, objectives and limits); None without tolerances.
         reached: share of new cars within the tolerances with values as good as stated [-]; None without a quantile.
         checked: relative differences between MuJoCo and the engine of the search [-]; None without a check.
-        screened: the screening by estimates, whose best cars the outcome has; None without one.
+        screened: screening by estimates, whose best cars are in `outcome`; None for a search by runs.
         notices: named cars that left the valid range of the reduced engine.
     """
 

@@ -24,7 +24,7 @@ NOTE = (
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class EstimateMeasure:
-    """Measure that estimates the values of another one.
+    """Measure that estimates the values of another measure.
 
     Attributes:
         each: measure of comfort, or of figures with an estimate.

@@ -176,7 +176,8 @@ def plan_sweep(
     engine = ESTIMATE if settings.estimate else settings.engine
     cases = Cases(changes, sources, engine=engine, vehicle=vehicle, fixed=car.overrides)
     states = {(*car.overrides, *overrides_of(source)) for source in sources}
-    short = dict.fromkeys(text for source in sources if isinstance(source, RoadDrive) for text in source.notices)
+    run = [source for source in sources if isinstance(source, RoadDrive) and not settings.estimate]
+    short = dict.fromkeys(text for source in run for text in source.notices)
     idle = tuple(set.intersection(*(set(_idle_notes(vehicle, state, changes, engine)) for state in states)))
     if idle and all(_all_idle(vehicle, state, each, engine) for state in states):
         raise ConfigurationError(f"vary: every run would be the same car: {'; '.join(idle)}")
