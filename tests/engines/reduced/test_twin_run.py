@@ -11,6 +11,7 @@ from vehicle.engines.reduced.road_expectation import density, repeating_lines, t
 from vehicle.engines.reduced.twin_run import HIGHEST, damping_of_run, twin_run
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.weighting import weighting
+from vehicle.signals.excitation.iso_road import Side
 from vehicle.signals.excitation.signal import Signal, uniform_time
 
 __all__ = ["linear_car"]
@@ -24,7 +25,7 @@ OTHER = np.array([2500.0, 2300.0, 1300.0, 1200.0])
 def plates_of(car: Car, *, mirrored: bool = False) -> dict[str, np.ndarray]:
     """Return one period of the plates on a road of class C or on its mirror image."""
     road = road_of(car, quadruples=True)
-    opposite = {"right": "left", "left": "right"}
+    opposite: dict[Side, Side] = {"right": "left", "left": "right"}
     return {
         wheel: road.height(-behind, SPEED / RATE, SAMPLES, opposite[side] if mirrored else side, 0.4 * RATE / SPEED)
         for wheel, (behind, side) in wheels_of(car).items()

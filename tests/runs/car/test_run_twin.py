@@ -1,6 +1,7 @@
 """Errors of a run on a road that repeats: from its linear twin, in Python, summary, saved run, report and sweep."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -20,7 +21,7 @@ from vehicle.signals.analysis.ride_comfort import waves_of
 DURATION = 8.0
 
 
-def drive(car: Car, **settings: object) -> Run:
+def drive(car: Car, **settings: Any) -> Run:
     """Return a run of 6 s after the lead-in on class B at 80 km/h."""
     return car.run(road("B", 80, duration=DURATION, **settings), engine="reduced")
 

@@ -119,7 +119,7 @@ def twin_channels(
     histories = twin_run(car.poles, damping, period.plates, period.length, chosen, samples)
     # The lead-in is the end of the same period.
     index = np.arange(len(record[needed[0]])) - first
-    rise = half_cosine_at((index + first) * timestep, RISE_S)
+    rise = half_cosine_at(np.asarray((index + first) * timestep), RISE_S)
     return {name: history[index % samples] * rise + loads.get(name, 0.0) for name, history in histories.items()}
 
 

@@ -143,7 +143,7 @@ def _point(
             each = [weighted_rms(row) for row in rows]
             rms.append((*each, vector_sum(each, factors)))
             if errors or axes:
-                lines.append(weighted_lines(time_step, rows, np.ones(3)))
+                lines.append(weighted_lines(time_step, rows, (1.0, 1.0, 1.0)))
         columns |= {f"{WEIGHTED}_{axis}": values for axis, values in zip(AXES, np.array(rms).T, strict=False)}
         columns[WEIGHTED] = np.array(rms)[:, 3]
         if errors:

@@ -107,7 +107,7 @@ class FigureMeasure:
         runs = replace(runs, skip=self.skip, errors=self.errors, random=runs.random and self.random)
         columns: dict[str, Vector] = {}
         for name, chosen in self.figures:
-            value, error, waves = values_of(chosen, runs)
+            value, error, waves, _ = values_of(chosen, runs)
             columns[name] = np.where(np.isinf(value), np.nan, value)
             if not self.errors or chosen.figure.exact:
                 continue
