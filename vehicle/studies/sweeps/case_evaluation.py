@@ -137,7 +137,7 @@ def _single(case: Case, measure: Measure, engine: str | None = None) -> Result:
     started = clock.perf_counter()
     try:
         with _ONE_AT_A_TIME:
-            more = _for_twin(measure, _car_of(case).vehicle, signal_of(case.source))
+            more = _for_twin(measure, loaded_car(case).vehicle, signal_of(case.source))
             names = None if measure.channels is None else (*measure.channels, *more)
             run = run_of(replace(case, engine=engine or case.engine), names)
         with _lock_of(measure):
