@@ -174,8 +174,9 @@ def test_each_damper_has_its_own_slip_and_force(browser):
         for state in states:
             result = page.ask("record", **state)
             for index, damper in enumerate(result["dampers"]):
-                fast = np.abs(damper["velocity"][:-1]) > car.vehicle.damper.slip_velocity
-                assert result["slips"][index] == np.mean(fast)
+                assert result["slips"][index] == np.mean(
+                    np.abs(damper["velocity"][:-1]) > car.vehicle.damper.slip_velocity
+                )
                 assert result["highest"][index] == np.max(np.abs(damper["force"]))
 
 

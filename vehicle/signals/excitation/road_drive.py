@@ -334,5 +334,6 @@ def evaluated_from(source: Source, start: float | None) -> Source:
 
     Other inputs do not depend on the start, and are returned unchanged.
     """
-    repeats = isinstance(source, RoadDrive) and source.repeats and start is not None and start != source.skip
-    return replace(source, start=start) if repeats else source
+    if isinstance(source, RoadDrive) and source.repeats and start is not None and start != source.skip:
+        return replace(source, start=start)
+    return source
