@@ -1,5 +1,7 @@
 """Expected mean squares on a class of roads: against time integration over a whole period, and closed forms."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -51,9 +53,10 @@ def wheels_of(car: Car) -> dict[str, tuple[float, Side]]:
     }
 
 
-def road_of(car: Car, **changes: object) -> IsoRoad:
+def road_of(car: Car, **changes: Any) -> IsoRoad:
     """Return a road of class C."""
-    return IsoRoad(**{"level": CLASSES["C"], "seed": 3, "track": 1.5, "patch": 0.1} | changes)
+    usual: dict[str, Any] = {"level": CLASSES["C"], "seed": 3, "track": 1.5, "patch": 0.1}
+    return IsoRoad(**usual | changes)
 
 
 def twin_of(car: Car, road: IsoRoad, lines: Lines, channels: tuple[str, ...]):

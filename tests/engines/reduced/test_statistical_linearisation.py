@@ -1,5 +1,7 @@
 """Damping constants for a Gaussian velocity: closed forms of friction laws, quadrature of a table, the fixed point."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -10,9 +12,14 @@ from vehicle.model.parameters.force_elements import Damper
 SUBJECT = "Dampers and friction"
 
 
-def damper(**numbers: object) -> Damper:
+def damper(**numbers: Any) -> Damper:
     """Return a linear damper of 1500 N s/m with other numbers."""
-    usual = {"viscous": 1500.0, "viscous_law": "linear", "friction_law": "coulomb", "coulomb_friction": 0.0}
+    usual: dict[str, Any] = {
+        "viscous": 1500.0,
+        "viscous_law": "linear",
+        "friction_law": "coulomb",
+        "coulomb_friction": 0.0,
+    }
     return Damper(**{**usual, "smoothing": 1e5, "slip_velocity": 0.006, **numbers})
 
 

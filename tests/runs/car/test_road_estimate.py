@@ -1,10 +1,12 @@
 """Estimates of cars on road classes without a run: against runs, exact for a viscous car, and what they refuse."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 from tests.engines.reduced.test_road_expectation import VISCOUS
-from vehicle import Car, road
+from vehicle import Car, Road, road
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.runs.car.estimate_limits import loose_share
 from vehicle.runs.car.road import lifting_tyres
@@ -39,8 +41,11 @@ def test_a_viscous_car_is_four_times_as_loud_on_the_class_above(sedan: Car):
 def test_cars_that_differ_in_their_dampers_share_one_linear_part(sedan: Car):
     """A variant of the car has the values of the same car loaded anew."""
     changes = {"front.damper.coulomb_friction": 95, "rear.damper.viscous": 1300, "body.mass": 1250}
-    variant = sedan.with_(changes).estimate(road("B", 90))
-    assert variant.values == pytest.approx(Car.load("sedan", changes).estimate(road("B", 90)).values, rel=1e-8)
+    # Another law is incomplete without its numbers.
+    law = {"front.damper.viscous_law": "linear", "front.damper.viscous": 1600}
+    for changed in (changes, law):
+        variant = sedan.with_(changed).estimate(road("B", 90))
+        assert variant.values == pytest.approx(Car.load("sedan", changed).estimate(road("B", 90)).values, rel=1e-8)
 
 
 def test_bands_add_up_and_the_seat_has_its_own_values():
@@ -63,7 +68,7 @@ def test_the_tyre_load_is_that_of_runs(sedan: Car):
     assert np.mean([estimate["fr"], estimate["fl"]]) == pytest.approx(np.mean(loads), rel=0.01)
 
 
-REFUSED = {
+REFUSED: dict[str, tuple[dict[str, Any], Road, str]] = {
     "sticks": ({"front.damper.coulomb_friction": 400}, road("A", 30), "front.damper would stick too often"),
     "control": ({"front.damper.control.law": "skyhook"}, road("C", 80), "front.damper is controlled"),
     "side force": ({"front.damper.side_force_coefficient": 0.2}, road("C", 80), "front.damper has friction that grows"),

@@ -41,7 +41,7 @@ def test_figures_of_mean_squares_are_those_of_runs(sedan: Car):
     """Tyre load, RMS in a band and ratio of two channels, within the error of the linearisation."""
     figures = ["tyre_load", "tyre_load_rms_fr", "rms:seat_rail_acc_z:5-25", "ratio:seat_rail_acc_z:seat_rail_acc_x"]
     drive = road("C", 80, duration=12)
-    tables = [sweep(sedan, [{}, {FRICTION: 70}], drive, measure=figures, **how) for how in ({"estimate": True}, {})]
+    tables = [sweep(sedan, [{}, {FRICTION: 70}], drive, measure=figures, estimate=how) for how in (True, False)]
     for name in tables[0].units:
         # One seed of 10 s, 0.3 %, and the linearisation. The linear car lacks the present load on slopes, 2 % of the
         # motion along x.
@@ -95,6 +95,7 @@ def test_a_screening_runs_the_best_beside_their_estimates(sedan: Car):
     best = found.cars["best weighted"]
     run = best.run(road("C", 80, duration=12), "reduced").comfort().weighted.overall
     value = found.values["best weighted"]["weighted"]
+    assert value is not None
     assert value == pytest.approx(run, rel=1e-4)  # batches are in single precision
     error = best.estimate(road("C", 80)).comfort.weighted.overall / value - 1.0
     assert screened.errors["best weighted"]["weighted"] == pytest.approx(error, abs=1e-6)

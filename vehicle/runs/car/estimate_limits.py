@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 LEAST_LOOSE = 0.8
 """Minimum share of the time in which the force in a damper, if all dampers were locked, exceeds its friction. Chosen
-with 384 random cars on classes A to D, of which 55 were off by more than 2 %: it rejects 54 of them and 9 % of the
-others. Of 384 other cars it rejects all 61 that are off (docs/theory/estimate.md)."""
+with 384 cases of random cars on classes A to D, of which 55 were off by more than 2 %: it rejects 54 of them and 9 % of
+the others. Of 384 other cases it rejects all 61 that are off (docs/theory/estimate.md)."""
 
 LOCKED = 1e8
 """Damping constant of a locked damper [N s/m]: far stiffer than the springs of a car up to 60 Hz."""
@@ -60,6 +60,7 @@ def require_laws(dampers: Sequence[PlacedDamper], model: PoleModel) -> None:
         reasons = {
             f"is controlled ({law.control.law if law.control else ''})": law.controlled is not None,
             f"has the law {law.function!r} of the user's own": law.function is not None,
+            f"has the friction {law.friction_function!r} of the user's own": law.friction_function is not None,
             "has presliding friction": law.presliding_stiffness is not None and law.friction_law == "presliding",
             "has friction that grows with its side force": law.side_force_coefficient > 0.0,
         }

@@ -201,13 +201,16 @@ def _split(car: Any) -> tuple[_Itself, tuple[str, ...]]:
     """Return a car, and the changes of parameters that make the linear part of `car` of it."""
     if car._base is None:
         return _Itself(car), ()
-    return _Itself(car._base), tuple(text for text in car._step if not _changes_law(text))
+    of_dampers = [text for text in car._step if _key_of_damper(text)]
+    if not all(_key_of_damper(text) in LAW_NUMBERS for text in of_dampers):
+        return _Itself(car._base), car._step  # another law, which is incomplete without its numbers
+    return _Itself(car._base), tuple(text for text in car._step if text not in of_dampers)
 
 
-def _changes_law(text: str) -> bool:
-    """Return True for "path=value" of a number of a damper in `LAW_NUMBERS`."""
+def _key_of_damper(text: str) -> str:
+    """Return the parameter of a damper that "path=value" sets; empty for another path."""
     path = text.partition("=")[0].strip().split(".")
-    return path[-1] in LAW_NUMBERS and path[-2:-1] == ["damper"]
+    return path[-1] if path[-2:-1] == ["damper"] else ""
 
 
 def _of_all_roads(drive: RoadDrive) -> RoadDrive:
