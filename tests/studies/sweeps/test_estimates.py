@@ -35,6 +35,7 @@ def test_each_car_of_a_sweep_has_its_estimate(sedan: Car):
     assert np.isnan(table.column("weighted_error")).all()
     assert not any("slip" in name for name in table.units)
     assert {each["engine"] for each in table.rows()} == {"estimate"}
+    assert "estimates without a run" in str(table)
 
 
 def test_figures_of_mean_squares_are_those_of_runs(sedan: Car):

@@ -139,7 +139,10 @@ def _shake(
     with output_folder(output, force=settings.destination.force, protect=protect) as folder:
         try:
             progress = listener.progress("simulation")
-            run = replace(car.run(signal, engine, progress=progress, channels=channels, skip=skip), road=description)
+            run = car.run(
+                signal, engine, progress=progress, channels=channels, skip=skip, stated_errors=settings.stated_errors
+            )
+            run = replace(run, road=description)
         except SimulationError as error:
             raise save_last_state(error, output) from None
         summary = write_run(

@@ -69,8 +69,7 @@ class Run:
 
     def __repr__(self) -> str:
         """One line."""
-        engine = self.recording.statistics.engine
-        source = Path(self.signal.source).name
+        engine, source = self.recording.statistics.engine, Path(self.signal.source).name
         short = source if len(source) < 50 else f"{source[:47]}..."
         return f"Run({short}, {self.signal.duration:g} s, {engine}, {self.car!r})"
 

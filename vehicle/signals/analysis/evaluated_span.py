@@ -3,7 +3,7 @@
 A run of the length T has N + 1 samples, t = 0 to T. Its span from t_0 to T consists of n = round((T - t_0)/dt) samples,
 without the last one: that closes the span, and on a road that repeats after the span it is the first one again. The
 lines of the spectrum then lie at k/(n dt) = k/(T - t_0); with n + 1 samples, for example, that at 2 Hz would fall to
-1.9998 Hz, out of the band. A measured record of n samples stays as it is, as nobody says that it closes a span.
+1.9998 Hz, out of the band. A measured record is evaluated whole: its last sample is not known to close a span.
 """
 
 

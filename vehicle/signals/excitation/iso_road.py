@@ -14,7 +14,7 @@ and the real part of their cross spectrum, g, are exact. With phases in quadrupl
     psi_k = phi_k + theta_q + {0, pi, pi, 0},    theta_q a random phase for four lines
 
 the terms with psi - phi add to zero over the four lines: then each track has the power of the class and the cross
-spectrum g exactly, but for the second difference of sqrt(1 - g^2) within the four lines.
+spectrum g exactly, except for the second difference of sqrt(1 - g^2) within the four lines.
 """
 
 from __future__ import annotations

@@ -72,7 +72,7 @@ class RoadDrive:
         rate: sampling rate [Hz].
         seed: seed of a class.
         period: "evaluated" for a class that repeats after the evaluated span, with phases of the tracks in quadruples;
-            "record" for one that repeats behind the end of the drive, with independent phases; None for "evaluated".
+            "record" for one with independent phases that repeats nowhere in the drive; None for "evaluated".
         start: start of the evaluation [s], see `evaluated_from`; None for the default.
         coherence: coherence of the tracks of a class; None for an isotropic surface.
         tagged: the name contains the seed, for several seeds of one road.

@@ -80,12 +80,13 @@ class SearchPlan:
             cars=settings.cars,
             numbers=len(trials.problem.ranges) + len(trials.problem.criteria),
         )
-        if settings.executor is None and settings.jobs > 1:
+        jobs = settings.jobs or 1
+        if settings.executor is None and jobs > 1:
             require_picklable(trials.measure)
         with ExitStack() as held:
             executor: Executor | StandingExecutor | None = None
-            if settings.executor is not None or settings.jobs > 1:
-                make = settings.executor or partial(process_pool, settings.jobs)
+            if settings.executor is not None or jobs > 1:
+                make = settings.executor or partial(process_pool, jobs)
                 executor = make if isinstance(make, Executor) else held.enter_context(StandingExecutor(make))
                 trials = replace(trials, evaluate=on_executor(executor, trials.measure))
             base, generations = stored_search(trials, folder, settings)

@@ -90,7 +90,9 @@ def reason_for_mujoco(case: Case, measure: BatchMeasure) -> str | None:
 
 def run_of(case: Case, channels: Sequence[str] | None = None) -> Run:
     """Run a single case; channels as in `Car.run`."""
-    return loaded_car(case).run(signal_of(case.source), engine=case.engine, channels=channels)
+    # Only "auto" needs the errors, for its choice.
+    stated = case.engine == "auto"
+    return loaded_car(case).run(signal_of(case.source), engine=case.engine, channels=channels, stated_errors=stated)
 
 
 def loaded_car(case: Case) -> Car:

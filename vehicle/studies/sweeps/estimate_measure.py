@@ -16,10 +16,11 @@ from vehicle.studies.sweeps.measure import ComfortMeasure, FigureMeasure, Measur
 ESTIMATE = "estimate"
 """Engine of a case that is estimated."""
 
-NOTE = (
-    "values are estimates without a run, for all roads of the class (error: docs/theory/estimate.md); "
-    "run the best cars before you choose"
-)
+WORDS = "estimates without a run, for all roads of the class"
+"""Words of a table of estimates."""
+
+NOTE = f"values are {WORDS} (error: docs/theory/estimate.md); run the best cars before you choose"
+"""Message before a sweep of estimates."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -45,12 +45,13 @@ def _executor(text: str) -> Callable[[], Executor]:
 class PoolSettings(Settings):
     """Settings of many runs on processes or a cluster; the results do not depend on them."""
 
-    jobs: int = setting(
-        "processes for independent runs; default %(default)s: no further process is started",
+    jobs: int | None = setting(
+        "processes for independent runs; default %(default)s, None: chosen by the estimated work",
         1,
         within="[1, inf)",
         type=_jobs,
         metavar="N",
+        help="processes for independent runs; default %(default)s: no further process is started",
     )
     executor: Callable[[], Executor] | Executor | None = setting(
         "function that returns an executor, used instead of `jobs`; or an executor, which stays open and is not "
