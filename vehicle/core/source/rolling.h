@@ -53,6 +53,7 @@ static void rolling_rows(const Now *o, const Layout *e) {
 
 /* Update heading and angular velocity of the hubs once for each time, and add the heading to the side slip.
  *
+ * Headings count from those at rest, where each wheel points as its static side force needs.
  * At t = 0, where the car is linearised, the side slip has no heading. */
 static void headings(const Now *o, const Layout *e, State *s) {
   const Rolling *r = &e->rolling;
@@ -63,7 +64,7 @@ static void headings(const Now *o, const Layout *e, State *s) {
       const double *frame = frame_of(o, r->hubs.at[n]);
       double *turning = ROW(s->turning, n);
       past[n] = present[n];
-      present[n] = atan2(-frame[1], frame[4]);
+      present[n] = atan2(-frame[1], frame[4]) - r->rest.at[2 + n];
       for (int i = 0; i < 3; i++) {
         turning[3 + i] = turning[i];
         turning[i] = 0.0;
