@@ -188,10 +188,7 @@ def _row_stiffness(rows: Rows) -> Vector:
     """Return the stiffness of all rows [N/m], diagonal except for oblique ground contacts."""
     e, b = rows.layout, rows.layout.bushings
     ground = ground_contacts(rows)
-    diagonal = np.zeros(e.row_count)
-    # Rubber relaxes under a static load: its friction carries none.
-    elastic = b.stiffness.copy()
-    np.subtract.at(elastic, (e.rubber.elements, e.rubber.axes), e.rubber.stiffness)
+    diagonal, elastic = np.zeros(e.row_count), elastic_stiffness(e)
     diagonal[b.rows] = elastic
     rolling = e.rolling.tyres
     # Along the road a rolling tyre has no stiffness but that of its carcass, the spring of its branch.
@@ -207,6 +204,13 @@ def _row_stiffness(rows: Rows) -> Vector:
             level = slide @ (way.T * elastic[index]) @ way @ slide
             whole[np.ix_(element_rows, element_rows)] = back.T @ level @ back
     return whole
+
+
+def elastic_stiffness(layout: Layout) -> Vector:
+    """Return the stiffness of the bushings under a static load, for which rubber relaxes its friction; (n, 3)."""
+    elastic = layout.bushings.stiffness.copy()
+    np.subtract.at(elastic, (layout.rubber.elements, layout.rubber.axes), layout.rubber.stiffness)
+    return elastic
 
 
 def unsolved(layout: Layout, weight: Vector) -> Vector:

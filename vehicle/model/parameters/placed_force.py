@@ -66,8 +66,10 @@ class PlacedForce:
 
     @property
     def channel(self) -> str:
-        """Channel of its history, recorded on request; empty if it changes a tyre."""
-        return "" if self.tyre else f"{'torque' if self.unit == 'N m' else 'force'}_{self.name}"
+        """Channel of its history, recorded on request; empty if it changes a tyre or is the steady drive torque."""
+        return (
+            "" if self.tyre or self.path == "driving" else f"{'torque' if self.unit == 'N m' else 'force'}_{self.name}"
+        )
 
     @property
     def acts(self) -> bool:
