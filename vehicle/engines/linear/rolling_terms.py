@@ -4,10 +4,10 @@ The side slip of a rolling tyre drifts with the heading psi = atan2(-a_x, a_y) o
 
     g = V (a_x a_y' - a_y a_x') / (a_x^2 + a_y^2),    a' = t x a,
 
-V t_z in the design position, where a = e_y. The rows t are the rotations of the hub over the coordinates. By its trail,
-the side force also acts about the vertical, h = e + trail t_z. The moment H a x omega of the wheel, H = -I V/R, is -C u'
-with C = -H t' [a]x t, skew. The slope of the road z'/V exerts a force on the wheel centre along x, proportional to the
-static load.
+V t_z in the design position, where a = e_y. The rows t are the rotations of the hub over the coordinates. By its
+trail, the side force also acts about the vertical, h = e + trail t_z. The moment H a x omega of the wheel, H = -I V/R,
+is -C u' with C = -H t' [a]x t, skew. The slope of the road z'/V exerts a force on the wheel centre along x, proportional
+to the static load.
 """
 
 from typing import Any

@@ -11,9 +11,9 @@ X_i R from outside the hub is a couple between hub and differential, which moves
 do the rest: in equilibrium the work of all these forces is zero for each motion of the car, so that brakes outside and
 drive at the differential support the body as the side view of an axle says.
 
-The elements keep the laws of the car at rest, with its preloads f_0: f = f_0 - K r or the curve of the element. Newton's
-method finds the position in which J' f + J_c' l and the weight are in equilibrium. Derivatives are differences of the
-forces in MuJoCo. Tyres slide, rubber friction is relaxed, wheels do not turn, as at rest (`static_trim`).
+The elements keep the laws of the car at rest, with its preloads f_0: f = f_0 - K r or the curve of the element.
+Newton's method finds the position in which J' f + J_c' l and the weight are in equilibrium. Derivatives are differences
+of the forces in MuJoCo. Tyres slide, rubber friction is relaxed, wheels do not turn, as at rest (`static_trim`).
 
 Sources: Gillespie, Fundamentals of Vehicle Dynamics, chapters 1, 3 and 7; Milliken, Race Car Vehicle Dynamics,
 chapter 17; signs of ISO 8855 in the parameters (x forwards, y to the left), of the hardpoints here.
