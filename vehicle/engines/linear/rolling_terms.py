@@ -6,8 +6,8 @@ The side slip of a rolling tyre drifts with the heading psi = atan2(-a_x, a_y) o
 
 V t_z in the design position, where a = e_y. The rows t are the rotations of the hub over the coordinates. By its
 trail, the side force also acts about the vertical, h = e + trail t_z. The moment H a x omega of the wheel, H = -I V/R,
-is -C u' with C = -H t' [a]x t, skew. The slope of the road z'/V exerts a force on the wheel centre along x, proportional
-to the static load.
+is -C u' with C = -H t' [a]x t, skew. The slope of the road z'/V exerts a force on the wheel centre along x,
+proportional to the static load.
 """
 
 from typing import Any
@@ -16,7 +16,6 @@ import mujoco
 import numpy as np
 
 from vehicle.arrays import Vector
-from vehicle.engines.linear.part_motions import cross_matrix
 from vehicle.engines.simulation.rows import Rows
 
 
@@ -48,7 +47,7 @@ def rolling_terms(rows: Rows, preload: Vector, branch_rows: Vector) -> tuple[Vec
         rotations, axles, -rolling.inertias * rolling.speeds / rolling.arms[:, 2], strict=True
     ):
         # -H t' [a]x t.
-        damping -= momentum * rotation.T @ cross_matrix(axle) @ rotation
+        damping -= momentum * rotation.T @ np.cross(axle, rotation.T).T
     course = rolling.course_rows(model.nv)
     damping += course.T @ (rolling.hold[3:6, None] * course)
     slope = np.zeros((model.nv, len(e.tyres)))
@@ -60,8 +59,8 @@ def rolling_terms(rows: Rows, preload: Vector, branch_rows: Vector) -> tuple[Vec
     numbers = np.cumsum(e.bushings.branch_stiffness > 0.0).reshape(-1, 3)[rolling.tyres, 1] - 1
     drifts, effects = np.zeros_like(branch_rows), branch_rows.copy()
     # g, and h = e + trail t_z.
-    # a' = -[a]x t.
-    turned = -np.einsum("wij,wjn->win", [cross_matrix(axle) for axle in axles], rotations)
+    # a' = t x a.
+    turned = np.cross(rotations, axles[:, :, None], axis=1)
     level = rolling.speeds / (axles[:, 0] ** 2 + axles[:, 1] ** 2)
     drifts[numbers] = level[:, None] * (axles[:, :1] * turned[:, 1] - axles[:, 1:2] * turned[:, 0])
     effects[numbers] += rolling.trails[:, None] * rotations[:, 2]

@@ -1,11 +1,11 @@
 """Specification of a car moved to another position, from which its coordinates then count.
 
-The moved model is the same mechanical system. A body keeps its frame; the axis and the anchor of each joint are those
-of the position, so that T = exp(S1 (q1 - q1*)) exp(S2 (q2 - q2*)) T* is the motion of the car as before. Coordinates of
-joints keep their values, by the reference of the joint. Coordinates of the flexible body and of fluids begin at zero:
-the sites of the body contain the displacement Phi q* of their nodes.
+The moved model is the same mechanical system. A body keeps its frame. Axis and anchor of each joint are taken in the
+position q*, so that a part moves by T = exp(S1 (q1 - q1*)) exp(S2 (q2 - q2*)) T* in both models. The coordinates of
+joints keep their values, by the reference of the joint. The coordinates of the flexible body and of fluids begin at
+zero: the sites on the body contain the displacement Phi q* of their nodes.
 
-In this position every bushing has the displacement zero: the site of its carrier moves to that of its moving part.
+In this position every bushing has the displacement zero: the site on its carrier moves to the site on its moving part.
 Force and reaction then act at one point, and the forces inside the car are in equilibrium exactly. A tyre touches the
 plate: its radius is the height of the wheel centre, along the plane of the wheel, and its force acts at the plate.
 """
@@ -54,7 +54,7 @@ class MovedCar:
         for name, position in self.sites.items():
             spec.site(name).pos = position
         for name, values in self.numbers.items():
-            (spec.numeric(name) or spec.add_numeric(name=name)).data = values
+            spec.numeric(name).data = values
 
 
 def moved_car(rows: Rows, position: Vector, gravity: Vector, preload: Vector) -> MovedCar:
@@ -69,26 +69,26 @@ def moved_car(rows: Rows, position: Vector, gravity: Vector, preload: Vector) ->
     model, data = rows.model, mujoco.MjData(rows.model)
     data.qpos[:] = position
     mujoco.mj_kinematics(model, data)
-    sites, numbers = _sites(rows, data)
+    sites, numbers = _moved_sites(rows, data)
     for tyre in rows.layout.rolling.tyres:
         numbers[f"steady/{rows.names[tyre]}"] = preload[rows.layout.bushings.rows[tyre, :2]]
     return MovedCar(
-        poses=_poses(model, data), joints=_joints(model, data), sites=sites, numbers=numbers, gravity=gravity
+        poses=_body_poses(model, data), joints=_joints(model, data), sites=sites, numbers=numbers, gravity=gravity
     )
 
 
-def _poses(model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, Vector]:
+def _body_poses(model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, Vector]:
     """Return the poses of the bodies relative to their parents."""
     poses = {}
     for body in range(1, model.nbody):
         name, parent = str(model.body(body).name), int(model.body_parentid[body])
         if model.body_mocapid[body] >= 0 or name.startswith(SCALARS):
             continue
-        inverse, quat, place = np.zeros(4), np.zeros(4), np.zeros(3)
+        inverse, quat, point = np.zeros(4), np.zeros(4), np.zeros(3)
         mujoco.mju_negQuat(inverse, data.xquat[parent])
         mujoco.mju_mulQuat(quat, inverse, data.xquat[body])
-        mujoco.mju_rotVecQuat(place, data.xpos[body] - data.xpos[parent], inverse)
-        poses[name] = np.concatenate([place, quat])
+        mujoco.mju_rotVecQuat(point, data.xpos[body] - data.xpos[parent], inverse)
+        poses[name] = np.concatenate([point, quat])
     return poses
 
 
@@ -110,23 +110,23 @@ def _joints(model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, Vector]:
     return joints
 
 
-def _sites(rows: Rows, data: mujoco.MjData) -> tuple[dict[str, Vector], dict[str, Vector]]:
+def _moved_sites(rows: Rows, data: mujoco.MjData) -> tuple[dict[str, Vector], dict[str, Vector]]:
     """Return the changed sites, and the changed custom fields."""
     model, layout = rows.model, rows.layout
-    places, modal = data.site_xpos.copy(), data.qpos[layout.modes.positions]
+    points, modal = data.site_xpos.copy(), data.qpos[layout.modes.positions]
     body, moved, numbers = layout.modes.body, dict[str, Vector](), dict[str, Vector]()
 
-    def put(site: int, place: Vector) -> None:
+    def put(site: int, point: Vector) -> None:
         owner = int(model.site_bodyid[site])
-        moved[str(model.site(site).name)] = data.xmat[owner].reshape(3, 3).T @ (place - data.xpos[owner])
+        moved[str(model.site(site).name)] = data.xmat[owner].reshape(3, 3).T @ (point - data.xpos[owner])
 
     for site in np.flatnonzero(model.site_bodyid == body).tolist() if modal.size else []:
         name = str(model.site(site).name)
         shape = next((shape for key in (name, name.rpartition("/")[0])
                       if (shape := numeric(model, f"shape/{key}")) is not None), None)  # fmt: skip
         if shape is not None:
-            places[site] += data.xmat[body].reshape(3, 3) @ (shape.reshape(3, -1) @ modal)
-            put(site, places[site])
+            points[site] += data.xmat[body].reshape(3, 3) @ (shape.reshape(3, -1) @ modal)
+            put(site, points[site])
     tyres = set(layout.tyres.tolist())
     for index, name in enumerate(rows.names):
         if name.startswith(FLUID):
@@ -134,22 +134,22 @@ def _sites(rows: Rows, data: mujoco.MjData) -> tuple[dict[str, Vector], dict[str
         equality = model.equality(name).id
         part, carrier = int(model.eq_obj1id[equality]), int(model.eq_obj2id[equality])
         if index not in tyres:
-            put(carrier, places[part])
+            put(carrier, points[part])
             continue
         hub = data.xmat[int(model.site_bodyid[part])].reshape(3, 3)
         rolling, radius = numeric(model, f"rolling/{name}"), numeric(model, f"round/{name}")
-        ground = places[carrier][2]
+        ground = points[carrier][2]
         if rolling is None and radius is None:
-            # A patch fixed to the wheel.
-            touching = np.array([*places[part][:2], ground])
+            # The patch is fixed to the wheel.
+            touching = np.array([*points[part][:2], ground])
             put(part, touching)
             put(carrier, touching)
             continue
         long = float(rolling[4] if rolling is not None else radius[0])
         # The lowest point of the tread, p + R (d_wheel - d), is on the plate: see rows.h.
         level = np.sqrt(1.0 - hub[2, 1] ** 2)
-        short = (places[part][2] + long * hub[2, 2] - ground) / level
-        patch = places[part] + (long - short) * hub[:, 2]
+        short = (points[part][2] + long * hub[2, 2] - ground) / level
+        patch = points[part] + (long - short) * hub[:, 2]
         put(part, patch)
         arm = short * (hub[:, 2] + hub[2, 1] / level * hub[:, 1] - [0.0, 0.0, 1.0 / level])
         put(carrier, patch + (arm if rolling is not None else arm * [0.0, 0.0, 1.0]))

@@ -7,9 +7,9 @@ road answers with the horizontal forces X_i and Y_i of the tyres,
 
 X_i by the shares of brake or drive, Y_i of each axle by its balance about the vertical, of each wheel by its load. X_i
 and Y_i act at the contact, on the hub: a brake locks the wheel to its hub for a virtual displacement. A drive torque
-X_i R from outside the hub is a couple between hub and differential, which moves X_i to the wheel centre. The linkages
-do the rest: in equilibrium the work of all these forces is zero for each motion of the car, so that brakes outside and
-drive at the differential support the body as the side view of an axle says.
+X_i R by a shaft turns the hub one way and the part with the differential the other way, which moves X_i to the wheel
+centre. In equilibrium the work of all forces is zero for each small motion of the car, so that every linkage supports
+the body by its own instant centre (anti-dive, anti-squat, jacking).
 
 The elements keep the laws of the car at rest, with its preloads f_0: f = f_0 - K r or the curve of the element.
 Newton's method finds the position in which J' f + J_c' l and the weight are in equilibrium. Derivatives are differences
@@ -62,6 +62,8 @@ def steady_trim(
         SimulationError: no equilibrium was found.
     """
     driving = vehicle.driving
+    if vehicle.gravity == 0.0:
+        raise ConfigurationError(f"{_named(vehicle)}: without gravity no tyre has a load and so no grip; set gravity")
     # Hardpoints have x to the rear and y to the right.
     acceleration = np.array([-driving.acceleration, -driving.lateral, 0.0])
     gravity = np.array([0.0, 0.0, -vehicle.gravity]) - acceleration
@@ -75,7 +77,7 @@ def steady_trim(
         for joint in range(design.njnt):
             if str(design.joint(joint).name).startswith(SCALARS):
                 model.qpos_spring[design.jnt_qposadr[joint]] -= position[design.jnt_qposadr[joint]]
-        preload = _forces(rows, position)
+        preload = _element_forces(rows, position)
         preload[joints] = reactions
         _set_contacts(vehicle, rows, model, preload, acceleration)
         step, reaction = _newton_step(Rows(model, preload))
@@ -91,8 +93,8 @@ def steady_trim(
     )
 
 
-def _forces(rows: Rows, position: Vector) -> Vector:
-    """Return the forces of the elements of a car at rest in a position, as preloads; those of joints are missing."""
+def _element_forces(rows: Rows, position: Vector) -> Vector:
+    """Return the element forces in a position, by the laws at rest, as preloads without reactions of joints."""
     e, fresh, data = rows.layout, rows.anew(), mujoco.MjData(rows.model)
     data.qpos[:] = position
     mujoco.mj_fwdPosition(rows.model, data)

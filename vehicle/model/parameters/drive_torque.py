@@ -1,4 +1,4 @@
-"""Drive torques of a car in steady acceleration, as couples between hubs and the part with the differential."""
+"""Drive torques of a car in steady acceleration: moments on the hubs, with a reaction on another part."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -11,7 +11,7 @@ from vehicle.model.parameters.driving import Driving, driven_wheels
 from vehicle.model.parameters.placed_force import PlacedForce
 
 ENGINE, WHEEL, BODY = "engine", "wheel", "body"
-"""Part with the differential of most cars; motors in the wheels; trimmed body, which only a flexible car bends."""
+"""Part with the differential in most cars; word for motors in the wheels; trimmed body, which must be rigid."""
 
 
 def with_drive_torques(car: Composition, driving: Driving, body: TrimmedBody) -> Composition:

@@ -7,7 +7,7 @@ the share of its linkage in the load transfer m a h / l (Milliken, Race Car Vehi
 
 with the share s of the axle in the brake or drive force, X of a wheel, the angle of the line to the swing centre in the
 side view (from the contact for brakes and for motors in the wheels, from the wheel centre for drive by shafts), and the
-wheel rate k. All are those of the design position, also where the position below is that of the whole motion.
+wheel rate k, all in the design position. Pitch, roll and travel come from the equilibrium of the whole car.
 """
 
 import math
@@ -15,10 +15,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import mujoco
-import numpy as np
-
-from vehicle.engines.simulation.rows import Rows
+from vehicle.engines.simulation.steady_positions import steady_positions
 from vehicle.model.parameters.driving import driven_wheels
 from vehicle.runs.car.axle_data import AxleData
 
@@ -87,31 +84,22 @@ def steady_data(car: Any, still: Any, axles: Sequence[AxleData], cog_height: flo
         axles: data of its axles at rest.
         cog_height: height of its centre of gravity above the ground at rest [m].
     """
-    driving, model, static = car.vehicle.driving, car.model.model, car.model.static
+    driving, placed = car.vehicle.driving, {wheel.name: wheel for wheel in car.vehicle.composition.wheels}
     if not driving.accelerates:
         return None
-    data, layout = mujoco.MjData(model), Rows(model, static.preload).layout
-    mujoco.mj_kinematics(model, data)
-    frame = data.body("body").xmat.reshape(3, 3)
-    forces = static.preload[layout.bushings.rows[layout.tyres]].tolist()
-    wheels, placed = [], {wheel.name: wheel for wheel in car.vehicle.composition.wheels}
-    # Loads and tyres are in the order of the plates.
-    for name, (x, y, z) in zip(static.tyre_load, forces, strict=True):
-        wheel = placed[name]
-        own = data.body(wheel.part)
-        centre = own.xpos + own.xmat.reshape(3, 3) @ (np.array(wheel.center) - car.model.origins[wheel.part])
-        height = frame[:, 2] @ (centre - data.body("body").xpos)
-        wheels.append(
-            WheelInAcceleration(
-                name=name,
-                load_n=z,
-                load_change_n=z - still.static.tyre_load[name],
-                travel_m=float(height - (wheel.center[2] - car.model.origins["body"][2])),
-                along_n=-x,
-                across_n=-y,
-                friction=math.hypot(x, y) / z,
-            )
+    frame, positions = steady_positions(car.model)
+    wheels = [
+        WheelInAcceleration(
+            name=name,
+            load_n=z,
+            load_change_n=z - still.static.tyre_load[name],
+            travel_m=travel,
+            along_n=-x,
+            across_n=-y,
+            friction=math.hypot(x, y) / z,
         )
+        for name, (travel, x, y, z) in positions.items()
+    ]
     supports = []
     if driving.acceleration:
         shares, wheelbase = driven_wheels(driving, placed.values()), abs(axles[1].x_m - axles[0].x_m)
@@ -130,7 +118,7 @@ def steady_data(car: Any, still: Any, axles: Sequence[AxleData], cog_height: flo
     return SteadyData(
         acceleration=driving.acceleration,
         lateral=driving.lateral,
-        # The axes of the body in those of ISO 8855: x to the front, y to the left.
+        # ISO 8855 has x to the front and y to the left.
         pitch_deg=math.degrees(math.asin(frame[2, 0])),
         roll_deg=math.degrees(math.atan2(-frame[2, 1], frame[2, 2])),
         wheels=tuple(wheels),
