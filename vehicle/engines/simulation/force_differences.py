@@ -1,4 +1,4 @@
-"""Central differences of the forces of a car over its velocity coordinates."""
+"""Central differences over the velocity coordinates of a car."""
 
 from collections.abc import Callable
 

@@ -8,7 +8,7 @@ from vehicle.model.parameters.applied_force import AppliedForce
 from vehicle.model.parameters.body import TrimmedBody
 from vehicle.model.parameters.composition import Composition, PlacedPart
 from vehicle.model.parameters.driving import Driving, driven_wheels
-from vehicle.model.parameters.placed_force import PlacedForce
+from vehicle.model.parameters.placed_force import DRIVING, PlacedForce
 
 ENGINE, WHEEL, BODY = "engine", "wheel", "body"
 """Part with the differential in most cars; word for motors in the wheels; trimmed body, which must be rigid."""
@@ -49,7 +49,7 @@ def with_drive_torques(car: Composition, driving: Driving, body: TrimmedBody) ->
                 mean=-mass * driving.acceleration * shares[wheel.name] * (wheel.center[2] - wheel.patch[2])
             ),
             speed=0.0,
-            path="driving",
+            path=DRIVING,
             unit="N m",
         )
         for wheel in car.wheels

@@ -17,6 +17,7 @@ from typing import Any
 
 from vehicle.engines.simulation.steady_positions import steady_positions
 from vehicle.model.parameters.driving import driven_wheels
+from vehicle.model.parameters.placed_force import DRIVING
 from vehicle.runs.car.axle_data import AxleData
 
 
@@ -104,7 +105,7 @@ def steady_data(car: Any, still: Any, axles: Sequence[AxleData], cog_height: flo
     if driving.acceleration:
         shares, wheelbase = driven_wheels(driving, placed.values()), abs(axles[1].x_m - axles[0].x_m)
         along = {wheel.name: abs(wheel.along_n) for wheel in wheels}
-        by_shafts = any(force.path == "driving" for force in car.vehicle.composition.forces)
+        by_shafts = any(force.path == DRIVING for force in car.vehicle.composition.forces)
         for axle in axles:
             angle = axle.geometry.drive_support_deg if by_shafts else axle.geometry.brake_support_deg
             slope, wheel_name = math.tan(math.radians(angle)), axle.wheels[0]
