@@ -243,3 +243,18 @@ def test_a_sweep_over_the_acceleration_builds_each_car():
         Car.load("sedan", ["driving.acceleration=-2", "body.mass=1300"]),
     )
     assert heavier.static.tyre_load == loaded.static.tyre_load
+
+
+@pytest.mark.parametrize("engine", ["mujoco", "reduced"])
+def test_a_tyre_that_loses_its_grip_on_a_cleat_is_named(engine):
+    """At 0.95 of the friction a loss of 5 % of the load is enough; on a level road there is none."""
+    car = Car.load("sedan", ["driving.acceleration=-4", "driving.brake_balance=0.6"])
+    grip, loads = car.static.tyre_grip, car.static.tyre_load
+    friction = max(grip[wheel] / loads[wheel] for wheel in loads) / 0.95
+    run = car.with_({"driving.friction": friction}).run(Road("cleat:10x50", 40, duration=4), engine)
+    (text,) = [notice for notice in run.recording.statistics.notices if "would slide" in notice]
+    wheel = max(loads, key=lambda name: grip[name] / loads[name])
+    share = np.mean(friction * run.recording[f"tyre_{wheel}_force_z"] < grip[wheel])
+    assert 0.0 < share < 0.5 and text.startswith(f"tyre {wheel[:1]}")
+    rough = car.with_({"driving.friction": 2.0}).run(Road("cleat:10x50", 40, duration=4), engine)
+    assert not [notice for notice in rough.recording.statistics.notices if "would slide" in notice]

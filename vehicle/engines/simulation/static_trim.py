@@ -8,7 +8,7 @@ while the car settles, so that they carry no horizontal force; wheels do not rot
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import scipy
@@ -45,12 +45,14 @@ class StaticTrim:
         tyre_load: vertical load of each tyre [N], by wheel.
         support_load: vertical load of each other ground contact with a vertical stiffness [N], by name.
         residual: maximum displacement due to the remaining forces [m].
+        tyre_grip: horizontal force of each tyre in steady acceleration [N], by wheel; empty without.
     """
 
     preload: Vector
     tyre_load: dict[str, float]
     support_load: dict[str, float]
     residual: float
+    tyre_grip: dict[str, float] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         """One line."""

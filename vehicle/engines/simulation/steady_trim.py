@@ -203,6 +203,7 @@ def _static(vehicle: Vehicle, rows: Rows, preload: Vector, residual: float) -> S
         tyre_load=dict(zip(wheels, force[:, 2].tolist(), strict=True)),
         support_load={},
         residual=residual,
+        tyre_grip={wheel: float(np.hypot(x, y)) for wheel, (x, y, _) in zip(wheels, force, strict=True)},
     )
 
 
