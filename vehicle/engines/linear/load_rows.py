@@ -168,7 +168,7 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
     for name, part, offset, height in load_places.wheels:
         centre = data.xpos[part] + data.xmat[part].reshape(3, 3) @ offset
         part_motion, body_motion = np.zeros((2, 3, model.nv))
-        # Travel: height of the wheel centre in the axes of the body, less that of the same point of the body.
+        # Travel: height of the wheel centre in the axes of the body, less the height of the same point on the body.
         mujoco.mj_jac(model, data, part_motion, None, centre, part)
         mujoco.mj_jac(model, data, body_motion, None, centre, body)
         travel = float(upwards @ (centre - data.xpos[body])) - height if car.moved else 0.0

@@ -285,7 +285,7 @@ def _rolling(
 ) -> dict[str, Any]:
     """Return the fields of the record of the rolling tyres that do not follow from their laws.
 
-    `names` are those of the tyres, `wheels` has index among the bushings, sites and spin coordinate of each tyre,
+    `names` has the tyres, `wheels` index among the bushings, sites and spin coordinate of each tyre,
     `plates` the index of each plate.
     """
     order = sorted(int(position) for position in plates.values() if position >= 0)

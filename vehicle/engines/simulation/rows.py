@@ -174,7 +174,7 @@ class Rows:
         return np.asarray(q + h * (v + h * (elastic / space.mass + space.spread @ pull)))
 
     def element_jacobian(self, data: mujoco.MjData) -> Vector:
-        """Return the Jacobian of all rows, those of the elements along the axes of their laws; (rows, nv)."""
+        """Return the Jacobian of all rows, of an element along the axes of its law; (rows, nv)."""
         jacobian, b = data.efc_J.reshape(self.layout.row_count, self.model.nv).copy(), self.layout.bushings
         oblique = set(b.oblique.tolist())
         for index, carrier in enumerate(b.carriers):
