@@ -21,7 +21,6 @@ chapter 17; signs of ISO 8855 in the parameters (x forwards, y to the left), of 
 
 import mujoco
 import numpy as np
-import scipy
 
 from vehicle.arrays import Vector
 from vehicle.engines.simulation.callbacks import standing_data
@@ -145,11 +144,10 @@ def _newton_step(rows: Rows) -> tuple[Vector, Vector]:
     scale = np.ones(len(system))
     scale[: model.nv] = 1.0 / np.sqrt(np.maximum(np.abs(np.diag(system)[: model.nv]), 1.0))
     try:
-        solution = scale * scipy.linalg.solve(
-            system * scale[:, None] * scale[None, :], scale * np.concatenate([force, -gap])
-        )
+        solved = np.linalg.solve(system * scale[:, None] * scale[None, :], scale * np.concatenate([force, -gap]))
     except np.linalg.LinAlgError as error:
         raise SimulationError(f"steady acceleration: the car can move without resistance ({error})") from None
+    solution = scale * solved
     return solution[: model.nv], solution[model.nv :]
 
 
