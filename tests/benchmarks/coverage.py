@@ -123,7 +123,7 @@ def length(repetitions: int) -> Rows:
     for duration in (10.0, 30.0, 60.0):
         found, whole = [], []
         for seed in range(1, min(repetitions, 30) + 1):
-            drive = Road("B", 80.0, duration=duration, seed=seed).under(car.vehicle)
+            drive = Road("B", 80.0, duration=duration, seed=seed, period="record").under(car.vehicle)
             run = replace(car.run(drive.signal(), engine="reduced", channels=RAIL), skip=drive.skip)
             step = run.recording.timestep
             found.append(comfort_values(step, np.array([run.at("seat_rail")])))

@@ -68,7 +68,9 @@ def parser() -> Parser:
     car = vehicle_options(parser)
     acceleration_options(car)
     setting_options(car, ShakerSettings, "controller", "trust")
-    setting_options(parser, ShakerSettings, "engine", "skip", "timestep", "time_format", "channels", "formats")
+    setting_options(
+        parser, ShakerSettings, "engine", "stated_errors", "skip", "timestep", "time_format", "channels", "formats"
+    )
     figures_option(parser)
     film = film_options(parser, "render a video of the run")
     setting_options(film, ShakerSettings, "video_mode")

@@ -99,7 +99,7 @@ def test_largest_of_all_wheels_and_channels(on_road):
 
 def test_ratio_of_two_waves():
     """A tone of 2 m/s2 over one of 5: the ratio is 0.4, with no scatter over the blocks."""
-    time = np.linspace(0.0, 15.999, 16_000)
+    time = np.linspace(0.0, 16.0, 16_001)
     waves = {"above": 2.0 * np.sin(2.0 * np.pi * 4.0 * time), "below": 5.0 * np.sin(2.0 * np.pi * 4.0 * time + 1.0)}
     channels = {name: wave[None] for name, wave in waves.items()}
     ride = Runs(time=time, channels=channels, vehicles=(load_vehicle(),), tyre_load={})

@@ -15,11 +15,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from vehicle.handover.page.packed_numbers import integers, track
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.samples import Vector
+from vehicle.signals.analysis.spline import CubicSpline
 from vehicle.signals.excitation.signal import Signal
 
 LONGEST = 30.0

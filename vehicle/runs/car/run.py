@@ -24,6 +24,7 @@ from vehicle.model.parameters.applied_force import CRANK
 from vehicle.model.parameters.channel_words import channels_named
 from vehicle.names import AXES
 from vehicle.signals.analysis.comfort import COMFORT_BAND
+from vehicle.signals.analysis.evaluated_span import evaluated_span
 from vehicle.signals.analysis.motion_response import MotionResponse
 from vehicle.signals.analysis.order_cut import order_cut
 from vehicle.signals.analysis.order_lines import order_lines
@@ -67,8 +68,7 @@ class Run:
 
     def __repr__(self) -> str:
         """One line."""
-        engine = self.recording.statistics.engine
-        source = Path(self.signal.source).name
+        engine, source = self.recording.statistics.engine, Path(self.signal.source).name
         short = source if len(source) < 50 else f"{source[:47]}..."
         return f"Run({short}, {self.signal.duration:g} s, {engine}, {self.car!r})"
 
@@ -133,7 +133,7 @@ class Run:
     @property
     def evaluated(self) -> slice:
         """Samples of the evaluated span, from `skip` to the end."""
-        return slice(round(self.skip / self.recording.timestep), None)
+        return evaluated_span(self.recording.time.size, self.recording.timestep, self.skip)
 
     @property
     def wheel(self) -> str:

@@ -45,7 +45,7 @@ def _comfort(point: str, name: str) -> Reduction:
 
 
 def _seat_value(_: Vector, __: Details, runs: Runs) -> Values:
-    above, below = runs["seat_acc_z"], runs["seat_rail_acc_z"]
+    above, below = (runs[name][:, : runs.evaluated.stop] for name in ("seat_acc_z", "seat_rail_acc_z"))
     values = [
         seat_value(runs.timestep, cushion, rail, skip=runs.skip).rms if np.any(rail) else np.nan
         for cushion, rail in zip(above, below, strict=True)

@@ -9,6 +9,7 @@ from vehicle.arrays import Vector
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car import Car, Run
 from vehicle.signals.analysis.comfort import COMFORT_BAND
+from vehicle.signals.analysis.evaluated_span import evaluated_span
 from vehicle.signals.analysis.ride_comfort import comfort_columns
 
 
@@ -57,7 +58,7 @@ class Runs:
     @property
     def evaluated(self) -> slice:
         """Return the evaluated samples."""
-        return slice(round(self.skip / self.timestep), None)
+        return evaluated_span(self.time.size, self.timestep, self.skip)
 
     def slip_velocities(self, wheels: Sequence[str]) -> Vector:
         """Return the velocity above which the damper of each wheel slips [m/s]; (r, dampers)."""

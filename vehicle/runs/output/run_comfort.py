@@ -32,7 +32,7 @@ def seat_values(run: Run) -> SeatValue | None:
     """Return the SEAT value of a run, by RMS and by dose; None for a car without seat, or a rail at rest."""
     if not (run.car.vehicle.seated and _recorded(run, RAIL) and _recorded(run, SEAT)):
         return None
-    seat, rail = (run[f"{point}_acc_z"] for point in (SEAT, RAIL))
+    seat, rail = (run[f"{point}_acc_z"][: run.evaluated.stop] for point in (SEAT, RAIL))
     if not np.any(rail):
         return None
     return seat_value(run.recording.timestep, seat, rail, skip=run.skip)
@@ -85,7 +85,7 @@ def _recorded(run: Run, point: str) -> bool:
 
 def _at(run: Run, point: str) -> ComfortSummary:
     value = run.comfort(point)
-    xyz = [run[f"{point}_acc_{axis}"] for axis in AXES]
+    xyz = [run[f"{point}_acc_{axis}"][: run.evaluated.stop] for axis in AXES]
     rms, slow, half = asdict(value.unweighted), run.signal.highest is not None, None
     if (run.road or {}).get("class"):
         half = {

@@ -15,6 +15,7 @@ import numpy as np
 from vehicle.names import AXES
 from vehicle.signals.analysis.comfort import COMFORT_BAND, comfort_values
 from vehicle.signals.analysis.comfort_error import WAVES, overall_error, overall_waves, weighted_lines
+from vehicle.signals.analysis.evaluated_span import evaluated_span
 from vehicle.signals.analysis.evaluation import application
 from vehicle.signals.analysis.exposure import vector_sum, weighted_rms
 from vehicle.signals.analysis.samples import Complex, Vector
@@ -78,7 +79,7 @@ def comfort_columns(
 
     Args:
         time_step: sampling interval [s].
-        rail: accelerations of the seat rail in x, y, z [m/s2], (r, 3, n).
+        rail: accelerations of the seat rail in x, y, z [m/s2], (r, 3, n); the last sample closes the span.
         cushion: accelerations of the cushion [m/s2], (r, 3, n); None for a car without a seat.
         skip: excluded time at the beginning [s]; the filters of the weightings process it.
         band: band of the unweighted value [Hz].
@@ -90,8 +91,11 @@ def comfort_columns(
         Name to values, (r,) each: those of `comfort_units` with these names, and their `wave_names`. `seat_value` is
         NaN for a rail at rest.
     """
+    end = evaluated_span(rail.shape[2], time_step, skip).stop
+    rail = rail[:, :, :end]
     columns = _point(time_step, rail, skip, band, names, contact, errors)
     if cushion is not None:
+        cushion = cushion[:, :, :end]
         on_seat = {
             f"{SEAT_PREFIX}{name}": values
             for name, values in _point(time_step, cushion, skip, band, names, errors=errors).items()

@@ -25,6 +25,7 @@ from vehicle.runs.figures.run_batch import Runs
 from vehicle.signals.excitation.signal import Signal
 from vehicle.studies.sweeps.case import Case, signal_of
 from vehicle.studies.sweeps.case_result import Result
+from vehicle.studies.sweeps.estimate_measure import ESTIMATE, EstimateMeasure
 from vehicle.studies.sweeps.function_measure import FunctionMeasure
 from vehicle.studies.sweeps.measure import BatchMeasure, ComfortMeasure, Measure, figures_of
 from vehicle.threads import one_blas_thread
@@ -52,6 +53,8 @@ def evaluate(cases: Sequence[Case], measure: Measure) -> list[Result]:
         Results in the order of the cases; a failed case has an error message instead of values. The values of a case
         are bitwise independent of the other cases.
     """
+    if isinstance(measure, EstimateMeasure):
+        return [_estimated(case, measure) for case in cases]
     results: dict[int, Result] = {}
     if isinstance(measure, BatchMeasure):
         cars: dict[Hashable, list[int]] = {}
@@ -86,7 +89,9 @@ def reason_for_mujoco(case: Case, measure: BatchMeasure) -> str | None:
 
 def run_of(case: Case, channels: Sequence[str] | None = None) -> Run:
     """Run a single case; channels as in `Car.run`."""
-    return loaded_car(case).run(signal_of(case.source), engine=case.engine, channels=channels)
+    # Only "auto" needs the errors, for its choice.
+    stated = case.engine == "auto"
+    return loaded_car(case).run(signal_of(case.source), engine=case.engine, channels=channels, stated_errors=stated)
 
 
 def loaded_car(case: Case) -> Car:
@@ -103,8 +108,8 @@ def _loaded(vehicle: Path | None, changed: int, overrides: tuple[str, ...]) -> C
     return Car.load(vehicle, overrides)
 
 
-# A separate cache, so that cars of single runs do not evict the reference car.
-@lru_cache(maxsize=4)
+# A separate cache, so that cars of single runs do not evict the reference cars, one for each speed.
+@lru_cache(maxsize=16)
 def _reference(vehicle: Path | None, changed: int, shared: tuple[str, ...]) -> Car:
     return Car.load(vehicle, shared)
 
@@ -139,6 +144,19 @@ def _single(case: Case, measure: Measure, engine: str | None = None) -> Result:
     except OF_A_RUN as error:
         return _failed(error, started)
     return Result(values=values, engine=run.recording.statistics.engine, seconds=clock.perf_counter() - started)
+
+
+def _estimated(case: Case, measure: EstimateMeasure) -> Result:
+    """Estimate a single case without a run."""
+    started = clock.perf_counter()
+    try:
+        with _ONE_AT_A_TIME:
+            shared, changes = case.overrides[: case.shared], case.overrides[case.shared :]
+            car = _reference(case.vehicle, _changed(case.vehicle), shared)
+            values = _checked(measure.of_car(car.with_(changes) if changes else car, case.source))
+    except OF_A_RUN as error:
+        return _failed(error, started)
+    return Result(values=values, engine=ESTIMATE, seconds=clock.perf_counter() - started)
 
 
 def _lock_of(measure: Measure) -> AbstractContextManager[object]:

@@ -19,6 +19,7 @@ from vehicle.signals.analysis.ride_comfort import ERROR, MEANING, SEAT_PREFIX, S
 from vehicle.studies.sweeps.case import Case, parameter_cells
 from vehicle.studies.sweeps.case_result import Row
 from vehicle.studies.sweeps.change_error import MEANING_OF_ERROR, NO_ERROR, change_errors, half_width
+from vehicle.studies.sweeps.estimate_measure import ESTIMATE, WORDS
 
 RANKED_BY = (f"{SEAT_PREFIX}{WEIGHTED}", WEIGHTED)
 """Columns by which cars are ranked: on the cushion of a car with a seat, otherwise at the seat rail."""
@@ -197,6 +198,7 @@ def ranked_cars(table: SweptCases) -> RankedCars | None:
         return None
     errors, events = change_errors(table.rows(), rows_of_cars, ranked_by)
     widths = 100.0 * half_width(errors / values[rows_of_cars[0]])
+    error_words = NO_ERROR if events.all() else MEANING_OF_ERROR if np.any(widths > 0.0) else ""
     return RankedCars(
         prefix=prefix,
         paths=names,
@@ -207,7 +209,7 @@ def ranked_cars(table: SweptCases) -> RankedCars | None:
         seat_value=seat_values[0] if seat_values else None,
         order=order,
         half_width=widths,
-        error_words=NO_ERROR if events.all() else MEANING_OF_ERROR if np.any(widths > 0.0) else "",
+        error_words=WORDS if base.engine == ESTIMATE else error_words,
         inputs=len({case.source for case in table.cases}),
         units={path: unit_of_override(vehicle, path) for path in names},
     )
@@ -282,6 +284,7 @@ def measure_lines(table: SweptCases) -> list[str]:
         for row, case in enumerate(islice(table.cases, SHOWN))
     ]
     lines = aligned([["input", *paths, *(f"{name} [{units[name]}]" for name in columns)], *rows], left=1)
+    lines += [WORDS] if base.engine == ESTIMATE else []
     left = len(table.cases) - len(rows)
     return [*lines, f"{left} more runs: see table.csv"] if left else lines
 
