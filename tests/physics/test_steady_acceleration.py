@@ -205,13 +205,14 @@ def test_both_engines_ride_alike_while_braking():
     runs = [car.run(Road("B", 80, duration=10), engine, channels=CHANNELS)
             for engine in ("mujoco", "reduced")]  # fmt: skip
     precise, quick = (run.recording for run in runs)
-    energies, errors = precise.statistics.energies, quick.statistics.errors
+    energies, errors, shown = precise.statistics.energies, quick.statistics.errors, car.show()
+    assert energies is not None and shown.steady is not None
     assert energies.residual < 1e-4
-    travel = {wheel.name: wheel.travel_m for wheel in car.show().steady.wheels}["fr"]
+    travel = {wheel.name: wheel.travel_m for wheel in shown.steady.wheels}["fr"]
     steady = slice(2000, None)
-    for channel, mean in (("suspension_travel_fr", travel), ("tyre_fr_force_x", 0.35 * 4.0 * car.show().mass_kg)):
+    for channel, mean in (("suspension_travel_fr", travel), ("tyre_fr_force_x", 0.35 * 4.0 * shown.mass_kg)):
         # The mean over 8 s of a random road is known to a tenth of its standard deviation.
-        spread = np.std(precise[channel][steady])
+        spread = float(np.std(precise[channel][steady]))
         assert np.mean(precise[channel][steady]) == pytest.approx(mean, abs=0.1 * spread)
         assert np.mean(quick[channel][steady]) == pytest.approx(np.mean(precise[channel][steady]), abs=0.02 * spread)
     for channel in CHANNELS[2:]:
@@ -225,6 +226,7 @@ def test_the_support_of_a_trailing_arm_is_that_of_its_pivot():
     car = Car.load("kinematic_reference", ["driving.acceleration=-5", "driving.brake_balance=0.6"])
     shown, points = car.show(), car.vehicle.points
     pivot, centre, patch = (np.array(points[f"{name}_rr"]) for name in ("pivot", "wheel_center", "tyre_patch"))
+    assert shown.steady is not None
     tangent = (pivot[2] - patch[2]) / (centre[0] - pivot[0])
     by_hand = 100.0 * 0.4 * tangent * shown.wheelbase_m / shown.cog_height_m
     rear = shown.steady.supports[1]
@@ -239,6 +241,7 @@ def test_the_support_of_a_trailing_arm_is_that_of_its_pivot():
 def test_the_travel_is_what_the_linkage_leaves_to_the_springs(reaction):
     """dN - X tan(angle) on the wheel rate: geometry moves a little under 2 m/s2, and so do bushings."""
     shown = Car.load("sedan", ["driving.acceleration=2", f"driving.drive_reaction={reaction}"]).show()
+    assert shown.steady is not None
     axle, wheel = shown.axles[0], shown.steady.wheels[0]
     angle = axle.geometry.drive_support_deg if reaction == "engine" else axle.geometry.brake_support_deg
     # In front, the drive force lifts less where its line to the swing centre rises, by 3 mm with a motor in the wheel.

@@ -124,7 +124,7 @@ def vehicle_options(parser: argparse._ActionsContainer) -> argparse._ActionsCont
 
 
 STEADY = ("acceleration", "lateral")
-"""Parameters of a steady acceleration of the car, which have options of their own."""
+"""Parameters of a steady acceleration, with an option each."""
 
 
 def acceleration_options(group: argparse._ActionsContainer) -> None:

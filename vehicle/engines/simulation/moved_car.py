@@ -138,27 +138,27 @@ def _moved_sites(rows: Rows, data: mujoco.MjData) -> tuple[dict[str, Vector], di
             continue
         hub = data.xmat[int(model.site_bodyid[part])].reshape(3, 3)
         rolling, radius = numeric(model, f"rolling/{name}"), numeric(model, f"round/{name}")
-        ground = points[carrier][2]
-        if rolling is None and radius is None:
-            # The patch is fixed to the wheel.
-            touching = np.array([*points[part][:2], ground])
-            put(part, touching)
-            put(carrier, touching)
-            continue
-        long = float(rolling[4] if rolling is not None else radius[0])
-        # The lowest point of the tread, p + R (d_wheel - d), is on the plate: see rows.h.
-        level = np.sqrt(1.0 - hub[2, 1] ** 2)
-        short = (points[part][2] + long * hub[2, 2] - ground) / level
-        patch = points[part] + (long - short) * hub[:, 2]
-        put(part, patch)
-        arm = short * (hub[:, 2] + hub[2, 1] / level * hub[:, 1] - [0.0, 0.0, 1.0 / level])
-        put(carrier, patch + (arm if rolling is not None else arm * [0.0, 0.0, 1.0]))
-        if rolling is not None:
-            numbers[f"rolling/{name}"] = np.array([*rolling[:4], short])
+        ground, shortened = points[carrier][2], 1.0
+        if rolling is not None or radius is not None:
+            # The lowest point of the tread, p + R (d_wheel - d), is on the plate: see rows.h.
+            (long,) = (rolling[4:] if rolling is not None else np.zeros(0) if radius is None else radius).tolist()
+            level = np.sqrt(1.0 - hub[2, 1] ** 2)
+            short = float((points[part][2] + long * hub[2, 2] - ground) / level)
+            patch, shortened = points[part] + (long - short) * hub[:, 2], short / long
+            arm = short * (hub[:, 2] + hub[2, 1] / level * hub[:, 1] - [0.0, 0.0, 1.0 / level])
+            put(part, patch)
+            if rolling is not None:
+                numbers[f"rolling/{name}"] = np.array([*rolling[:4], short])
+                put(carrier, patch + arm)
+            else:
+                numbers[f"round/{name}"] = np.array([short])
+                put(carrier, patch + arm * [0.0, 0.0, 1.0])
         else:
-            numbers[f"round/{name}"] = np.array([short])
+            # The patch is fixed to the wheel.
+            for site in (part, carrier):
+                put(site, np.array([*points[part][:2], ground]))
         drive = f"{FORCE}drive_{name.removeprefix('bushing/tyre_')}"
         if (torque := numeric(model, drive)) is not None:
             # The drive torque is the force times the loaded radius.
-            numbers[drive] = np.array([*torque[:4], short / long, *torque[5:]])
+            numbers[drive] = np.array([*torque[:4], shortened, *torque[5:]])
     return moved, numbers

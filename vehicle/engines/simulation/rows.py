@@ -182,7 +182,7 @@ class Rows:
             # In the design position carriers are parallel to the vehicle frame; oblique rows are along their laws.
             if index not in oblique and not np.array_equal(frame, np.eye(3)):
                 jacobian[b.rows[index]] = frame.T @ jacobian[b.rows[index]]
-        return jacobian
+        return np.asarray(jacobian)
 
     def rotation(self, data: mujoco.MjData) -> tuple[Vector, Vector]:
         """Return sin(angle) n of each moving part relative to its carrier, world axes, (m, 3), and carrier frames."""

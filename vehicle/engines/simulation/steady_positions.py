@@ -11,8 +11,7 @@ from vehicle.engines.simulation.rows import Rows
 def steady_positions(car: CarModel) -> tuple[Vector, dict[str, tuple[float, float, float, float]]]:
     """Return the axes of the body as columns, (3, 3), and by wheel its travel [m] and the force of the road [N].
 
-    The wheel centre travels along z of the body, from the design position upwards. Forces are along the axes of the
-    hardpoints.
+    Travel is the rise of the wheel centre in axes of the body; forces are along the axes of the hardpoints.
     """
     data, layout = mujoco.MjData(car.model), Rows(car.model, car.static.preload).layout
     mujoco.mj_kinematics(car.model, data)

@@ -8,8 +8,8 @@ road answers with the horizontal forces X_i and Y_i of the tyres,
 X_i by the shares of brake or drive, Y_i of each axle by its balance about the vertical, of each wheel by its load. X_i
 and Y_i act at the contact, on the hub: a brake locks the wheel to its hub for a virtual displacement. A drive torque
 X_i R by a shaft turns the hub one way and the part with the differential the other way, which moves X_i to the wheel
-centre. In equilibrium the work of all forces is zero for each small motion of the car, so that every linkage supports
-the body by its own instant centre (anti-dive, anti-squat, jacking).
+centre. In equilibrium the work of all forces is zero for each small motion of the car, which gives the
+support of each axle: anti-dive, anti-squat, jacking.
 
 The elements keep the laws of the car at rest, with its preloads f_0: f = f_0 - K r or the curve of the element.
 Newton's method finds the position in which J' f + J_c' l and the weight are in equilibrium. Derivatives are differences
@@ -105,11 +105,11 @@ def _element_forces(rows: Rows, position: Vector) -> Vector:
     extension = np.sqrt(np.sum(lines**2, axis=1)) - e.springs.lengths
     preload[e.springs.rows] -= e.springs.stiffness * extension
     t = e.tables
-    for index, (kind, element, axis) in enumerate(zip(t.kinds, t.elements, t.axes, strict=True)):
-        if kind == 0:
+    for index, (law_type, element, axis) in enumerate(zip(t.kinds, t.elements, t.axes, strict=True)):
+        if law_type == 0:
             at = t.at[index] + state.residual[element, axis]
             preload[e.bushings.rows[element, axis]] = -float(curve_of(t, index).force(at))
-        elif kind == 1:
+        elif law_type == 1:
             preload[e.springs.rows[element]] = -float(curve_of(t, index).force(t.at[index] + extension[element]))
     return preload
 
@@ -118,13 +118,14 @@ def _newton_step(rows: Rows) -> tuple[Vector, Vector]:
     """Return the step u to the equilibrium, and the change of the joint reactions.
 
     K u + J_c' l = f and J_c u = -gap, in the moved position. Sliding tyres leave the place of the car and its heading
-    free, and the balance of all forces fulfils the equations of the body along x and y and in yaw: u = 0 stands there
-    instead, in yaw the way back to the heading at rest.
+    free, and the balance of all forces fulfils the equations of the body along x and y and in yaw: the rows there
+    state u = 0, and in yaw the rotation back to the heading at rest.
     """
     e, model = rows.layout, rows.model
     stiffness = elastic_stiffness(e)
     stiffness[e.tyres, :2] = 0.0
-    none = RubberFriction(*(values[:0] for values in e.rubber))
+    rubber = e.rubber
+    none = RubberFriction(rubber.elements[:0], rubber.axes[:0], rubber.stiffness[:0], rubber.limit[:0])
     soft = rows.anew()
     soft.layout = e._replace(bushings=e.bushings._replace(stiffness=stiffness), rubber=none)
     matrix = -differences(soft, lambda data: data.qfrc_passive - data.qfrc_bias + data.qfrc_applied)
@@ -174,8 +175,8 @@ def _set_contacts(vehicle: Vehicle, rows: Rows, model: mujoco.MjModel, preload: 
     weights = np.array([[load[k] * (axles[wheel] == name) for k, wheel in enumerate(wheels)] for name in names])
     weights /= np.maximum(weights.sum(axis=1, keepdims=True), 1.0)
     arms = weights @ points[:, 0]
-    turning = masses @ (centres[:, 0] * acceleration[1] - centres[:, 1] * acceleration[0]) + points[:, 1] @ along
-    both = np.linalg.solve(np.stack([np.ones(2), arms]), [masses.sum() * acceleration[1], turning])
+    moment = masses @ (centres[:, 0] * acceleration[1] - centres[:, 1] * acceleration[0]) + points[:, 1] @ along
+    both = np.linalg.solve(np.stack([np.ones(2), arms]), [masses.sum() * acceleration[1], moment])
     preload[tyre_rows[:, 0]], preload[tyre_rows[:, 1]] = along, both @ weights
 
 

@@ -11,7 +11,7 @@ from vehicle.model.parameters.driving import Driving, driven_wheels
 from vehicle.model.parameters.placed_force import DRIVING, PlacedForce
 
 ENGINE, WHEEL, BODY = "engine", "wheel", "body"
-"""Part with the differential in most cars; word for motors in the wheels; trimmed body, which must be rigid."""
+"""Part with the differential in most cars; word for motors in the wheels; trimmed body if it is rigid."""
 
 
 def with_drive_torques(car: Composition, driving: Driving, body: TrimmedBody) -> Composition:
@@ -67,7 +67,7 @@ def require_acceleration(car: Composition, driving: Driving) -> None:
     """Check that a car can brake, drive and turn.
 
     Raises:
-        ConfigurationError: it stands on blocks, or has another number of axles than two.
+        ConfigurationError: it stands on blocks, or does not have two axles.
     """
     name = "acceleration" if driving.acceleration else "lateral"
     message = f"driving.{name}: found {getattr(driving, name):g} m/s2, but"
