@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from vehicle.arrays import Vector
+from vehicle.arrays import Complex, Vector
 
 MAPPED_FROM = 128e6
 """Minimum size of a table in a file [byte]: 250 s of 64 channels at 1 kHz. Writing a smaller one would take longer than
@@ -49,7 +49,7 @@ def table_of(shape: tuple[int, ...]) -> Vector:
         return np.empty(shape)
 
 
-def release(part: Vector) -> None:
+def release(part: Vector | Complex) -> None:
     """Take the pages of the table that contains an array out of memory; the next access reads them from the file.
 
     Source: madvise(2), MADV_DONTNEED on a shared mapping of a file: "subsequent accesses of pages in the range will

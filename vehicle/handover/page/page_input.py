@@ -78,7 +78,7 @@ class PageInput:
             samples_of_track, step = integers(self.tracks[index])
             z = step * samples_of_track
             if ratio != 1.0 or behind != 0.0:
-                spline = CubicSpline(np.arange(samples), z)
+                spline = CubicSpline(np.arange(samples, dtype=np.float64), np.asarray(z, dtype=np.float64))
                 z = np.where(position > behind, spline(np.maximum(position - behind, 0.0)), 0.0)
             displacement[wheel] = np.asarray(z, dtype=np.float64)
         return dataclasses.replace(self.signal, time=self.signal.time[:count], displacement=displacement, profile={})

@@ -67,7 +67,7 @@ def power_spectral_density(
         power += np.sum(spectra.real**2 + spectra.imag**2, axis=1)
     # S = c |X|^2 dt/sum(w^2), mean over the segments; c = 2 except at 0 Hz and at Nyquist.
     power[:, 1 : (cut.length + 1) // 2] *= 2.0
-    frequency = np.fft.rfftfreq(cut.length, step)
+    frequency = np.fft.rfftfreq(cut.length, step).astype(np.float64)
     return PowerSpectralDensity(
         frequency=frequency,
         density=power * (step / (cut.count * np.sum(cut.window**2))),

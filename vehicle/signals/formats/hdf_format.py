@@ -302,7 +302,7 @@ class _Disk(FileIO):
             raise self.error
 
     def __exit__(self, *error: object) -> None:
-        """Close the file, and raise the kept error: those of HDF5 follow from it."""
+        """Close the file, and raise the kept error, from which HDF5 has others."""
         super().close()
         self.check()
 
