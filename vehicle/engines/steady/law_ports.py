@@ -152,24 +152,31 @@ class Stribeck(Port):
         """See `Port`: Newton's method for phi(v) + lambda v = u between the motions with the limits Fd and Fs."""
         ends = [(sums - each.force(sums, scaling, sign)) / scaling for each in (self.sliding, self.static)]
         low, high = np.minimum(*ends), np.maximum(*ends)
-        # Beyond the friction line phi falls from Fs to Fd: the start is right where it has ended.
-        v, accuracy = ends[0], 1e-13 * (np.abs(sums) + float(np.max(self.law.static_limit)))
+        # A stuck damper has the limit Fs, and one far beyond vs the limit Fd.
+        v = np.where(np.abs(ends[1]) < self.full, ends[1], ends[0])
+        accuracy = ROUND_OFF * (np.abs(sums) + float(np.max(self.law.static_limit)))
+        scaling = np.broadcast_to(scaling, v.shape)
+        at = np.nonzero(np.abs(self.at(v) + scaling * v - sums) > accuracy)
         for _ in range(STEPS):
-            excess = self.at(v) + scaling * v - sums
-            if (np.abs(excess) <= accuracy).all():
+            if not at[0].size:
                 break
-            low, high = np.where(excess < 0.0, v, low), np.where(excess > 0.0, v, high)
-            moving = np.where(v == 0.0, self.full, np.abs(v))
-            share = np.minimum(np.abs(v) / self.full, 1.0)
-            slope = scaling + share * self.law.fall_at(v, self.law) / moving
-            slope = slope + (np.abs(v) < self.full) * self.law.limit(v) / self.full
-            new = v - excess / slope
-            v = np.where((new > low) & (new < high), new, 0.5 * (low + high))
+            here, factor = v[at], scaling[at]
+            excess, moving = self.at(here) + factor * here - sums[at], np.where(here == 0.0, self.full, np.abs(here))
+            low[at], high[at] = np.where(excess < 0.0, here, low[at]), np.where(excess > 0.0, here, high[at])
+            slope = factor + np.minimum(moving / self.full, 1.0) * self.law.fall_at(here, self.law) / moving
+            slope += (moving < self.full) * self.law.limit(here) / self.full
+            new = here - excess / slope
+            v[at] = np.where((new > low[at]) & (new < high[at]), new, 0.5 * (low[at] + high[at]))
+            wrong = np.abs(excess) > accuracy[at]
+            at = (at[0][wrong], at[1][wrong])
         return np.asarray(sums - scaling * v)
 
 
 STEPS = 60
 """Maximum number of Newton steps: with bisection alone a bracket shrinks below round-off in 60."""
+
+ROUND_OFF = 1e-12
+"""Accuracy of the sum of a law of friction over its size, far below that of the iteration."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vehicle.arrays import Complex, Mask, Vector
+from vehicle.arrays import Complex, Vector
 from vehicle.engines.reduced.linear_motion import SLOWEST
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
-from vehicle.engines.reduced.validity import tyre_outputs
+from vehicle.engines.steady.channel_rows import ChannelRows, plain_rows
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -33,47 +33,36 @@ class Responses:
 
 
 class Plant:
-    """Linear car with rows of ports, tyres and outputs.
+    """Linear car with rows of ports and of channels.
 
     Args:
         model: pole model.
         moved: stiffness of each base row that moves into its law, see `CarPorts`; (base rows,).
-        channels: names of accelerations and tyre forces.
+        channels: further rows.
 
     Attributes:
-        base, tyres, outputs: rows of the ports, of the dynamic tyre forces, and of the channels; those of
-            accelerations are displacements.
-        accelerations: True for the channels that are accelerations; (channels,).
+        base: number of the base rows, which come first.
     """
 
-    def __init__(self, model: PoleModel, moved: Vector, channels: list[str]) -> None:
-        self.model, self.moved = model, moved
+    def __init__(self, model: PoleModel, moved: Vector, channels: ChannelRows) -> None:
+        self.model, self.moved, self.base = model, moved, len(moved)
         none = np.zeros((len(model.slip), model.height.shape[1]))
-        slip, tyres = Outputs(poles=model.slip, height=none, velocity=none), tyre_outputs(model)
-        rows = slip + model.scalar_rows + tyres + model.outputs(channels)
-        first, second = len(moved), len(moved) + len(tyres.poles)
-        self.base, self.tyres, self.outputs = slice(0, first), slice(first, second), slice(second, len(rows.poles))
-        self.accelerations: Mask = np.array([not name.startswith("tyre_") for name in channels], dtype=bool)
-        self._rows = rows
-        # A law on a tyre changes the force of the tyre itself.
-        self._direct = np.zeros((len(rows.poles), first))
-        for column, law in enumerate(model.laws, start=first - len(model.laws)):
-            if law.plate >= 0:
-                self._direct[first + law.plate, column] = 1.0
-                for row, name in enumerate(channels, start=second):
-                    if name == f"tyre_{model.matrices.system.inputs[law.plate]}_force_z":
-                        self._direct[row, column] = 1.0
+        slip = Outputs(poles=model.slip, height=none, velocity=none)
+        self._rows = plain_rows(model, slip + model.scalar_rows) + channels
 
     def responses(self, speeds: Vector) -> Responses:
         """Return the responses at angular frequencies w [rad/s]; (m,)."""
-        model, rows, wheels = self.model, self._rows, self.model.height.shape[1]
+        model, rows, wheels = self.model, self._rows.outputs, self.model.height.shape[1]
         columns = np.hstack([model.force, model.scalar_force, model.slope, model.height, model.velocity])
         table = _transfer(model, rows.poles, columns, speeds)
         s = 1j * speeds
         ends = np.cumsum([len(self.moved), model.slope.shape[1], wheels])
         forces, slopes, height, velocity = np.split(table, ends, axis=1)
-        forces = forces + self._direct[:, :, None]
+        forces, slopes = forces + self._rows.forces[:, :, None], slopes + self._rows.slopes[:, :, None]
         plates = height + s * velocity + rows.height[:, :, None] + s * rows.velocity[:, :, None]
+        # The rows of accelerations are displacements.
+        second = np.where(self._rows.accelerations[:, None], s**2, 1.0)[:, None]
+        forces, slopes, plates = second * forces, second * slopes, second * plates
         at = np.flatnonzero(self.moved)
         if at.size:
             # A stiffness k less in the car: its row has w = W - G (p - k w), so w = (1 - G k)^-1 (W - G p).

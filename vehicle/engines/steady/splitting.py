@@ -30,6 +30,12 @@ PAST = 8
 GROWN = 10.0
 """Growth of the residual above its smallest value at which a point forgets its past steps."""
 
+LOST = 0.1
+"""Residual over the largest force from which a further scaling goes on; with a larger one it begins at zero."""
+
+SMALLEST = 1e-12
+"""Residual that counts as none [N]."""
+
 EVERY = 5
 """Iterations between two checks for finished points."""
 
@@ -190,21 +196,24 @@ class _Iteration:
             if iteration % EVERY == 0 or final:
                 gap = np.abs(step).max(axis=(1, 2)) / RELAXED
                 largest = np.abs(force).max(axis=(1, 2))
-                ended = (gap <= tolerance * largest + 1e-12) & (moved <= tolerance)
-                if final or ended.any():
-                    self._write(force, (sums - force) / self.scaling, ended, iteration, final)
-                    if final or ended.all():
+                ended = (gap <= tolerance * largest + SMALLEST) & (moved <= tolerance)
+                # A point that has grown beyond its forces begins the next scaling at zero.
+                lost = ~(gap <= LOST * largest + SMALLEST) if final else ~(gap <= LOST**-2 * largest + SMALLEST)
+                force[lost], sums[lost] = 0.0, 0.0
+                leaving = ended | lost | final
+                if leaving.any():
+                    self._write(force, (sums - force) / self.scaling, ended, leaving, iteration)
+                    if leaving.all():
                         return
-                    step = step[~ended]
-                    self._keep(~ended)
+                    step = step[~leaving]
+                    self._keep(~leaving)
             self._advance(iteration, step)
 
-    def _write(self, force: Vector, motion: Vector, ended: Mask, iteration: int, final: bool) -> None:
-        """Write the points that have ended, and at the end all, into the result."""
-        chosen = np.ones_like(ended) if final else ended
-        at = self.points[chosen]
-        self.result.force[at], self.result.motion[at] = force[chosen], motion[chosen]
-        self.result.slope[at], self.result.ended[at] = self.slope[chosen], ended[chosen]
+    def _write(self, force: Vector, motion: Vector, ended: Mask, leaving: Mask, iteration: int) -> None:
+        """Write the points that leave the iteration into the result."""
+        at = self.points[leaving]
+        self.result.force[at], self.result.motion[at] = force[leaving], motion[leaving]
+        self.result.slope[at], self.result.ended[at] = self.slope[leaving], ended[leaving]
         self.result.iterations[at] += iteration
 
     def _keep(self, points: Mask) -> None:

@@ -1,0 +1,47 @@
+"""Proof that a car has only one periodic state with a period.
+
+For two answers w = W - G p the differences obey <dp, dw> = -<dp, G dp>. A law that never falls has <dp, dw> >= 0, so
+dp = 0 if the Hermitian part of G is positive at every harmonic. A law that falls by at most m has <dp, dw> >= -m |dw|^2,
+and dw = 0 if the Hermitian part of G^-1 exceeds m. Elements with memory over a displacement x obey the same over the
+velocity x', and over that their mean force and the place of their sliders remain open, not the motion.
+
+Nothing is proven of laws over a displacement without memory (stops, tables, one-sided tyres), as a mass beyond its
+resonance moves against its force, and of rolling tyres, whose force changes with the load times the motion of the plate.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from vehicle.arrays import Complex, Mask, Vector
+from vehicle.engines.steady.cycle import Cycle
+from vehicle.engines.steady.law_ports import Play, Port
+
+ROUND_OFF = 1e-10
+"""Smallest eigenvalue that counts as positive, over the largest response of the ports."""
+
+
+def one_answer(ports: Sequence[Port], effects: Complex, speeds: Vector, cycle: Cycle, *, rolling: bool) -> Mask:
+    """Return True at the frequencies at which the proof holds, at the harmonics that are computed; (f,).
+
+    Args:
+        ports: the laws.
+        effects: G; (f, ports, ports, k).
+        speeds: angular frequencies of the harmonics [rad/s]; (f, k).
+        cycle: samples of the period.
+        rolling: True for rolling tyres.
+    """
+    if rolling or any(not port.of_velocity and not isinstance(port, Play) for port in ports):
+        return np.zeros(len(effects), dtype=bool)
+    moving = cycle.harmonics > 0
+    of_velocity = np.array([port.of_velocity for port in ports])
+    s = 1j * speeds[:, None, None, moving]
+    mobility = np.moveaxis(effects[..., moving] * np.where(of_velocity[:, None, None], 1.0, s), -1, 1)
+    falls = np.array([port.fall for port in ports])
+    if falls.any():
+        mobility = np.linalg.inv(mobility)
+    # Of ports of different size, each in proportion to its own response.
+    size = np.sqrt(np.abs(np.einsum("fkii->fki", mobility)))
+    hermitian = 0.5 * (mobility + np.conj(np.swapaxes(mobility, -1, -2))) - np.diag(falls)
+    least = np.linalg.eigvalsh(hermitian / (size[..., :, None] * size[..., None, :]))[..., 0]
+    return np.asarray((least > ROUND_OFF).all(axis=1))
