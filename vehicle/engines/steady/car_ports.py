@@ -22,6 +22,10 @@ MOVED = 0.98
 """Share of the falling slope of a one-sided tyre that moves from the matrices into its law, which then never falls.
 With all of it the car floats, and its response to a constant force is infinite."""
 
+RUBBER_MOVED = 0.7
+"""Share of the stiffness at rest of rubber friction that moves from the matrices into its law: between the stiffness of
+a stuck and that of a slipping rubber the fewest points do not end."""
+
 DAMPER, PLAY, ELASTIC = 1.0, 0.5, 0.3
 """Scaling lambda as a share of 1/|G| of the car at the fundamental frequency; ten times as much or a tenth takes five
 times the iterations."""
@@ -86,8 +90,8 @@ def car_ports(model: PoleModel, dampers: Sequence[Damper]) -> CarPorts:
     for base, law in enumerate(model.laws, start=first):
         if law.friction:
             stiffness, stroke = law.elements
-            moved[base] = stiffness.sum()
-            ports.append(_play(base, stiffness, stroke))
+            moved[base] = RUBBER_MOVED * stiffness.sum()
+            ports.append(_play(base, stiffness, stroke, stiffness.sum() - float(moved[base])))
         else:
             moved[base] = MOVED * -law.slopes[0] if law.one_sided else 0.0
             ports.append(_elastic(base, law, float(moved[base])))
@@ -132,9 +136,11 @@ def _with_friction(oil: Polygon, full: float, limit: float) -> Polygon:
     return Polygon(base=oil.base, of_velocity=True, share=DAMPER, knots=knots, slopes=slopes)
 
 
-def _play(base: int, stiffness: Vector, stroke: Vector) -> Play:
+def _play(base: int, stiffness: Vector, stroke: Vector, kept: float = 0.0) -> Play:
     order = np.argsort(stroke)
-    return Play(base=base, of_velocity=False, share=PLAY, stiffness=stiffness[order], stroke=stroke[order])
+    return Play(
+        base=base, of_velocity=False, share=PLAY, stiffness=stiffness[order], stroke=stroke[order], kept=kept
+    )
 
 
 def _elastic(base: int, law: DisplacementLaw, moved: float) -> Polygon:

@@ -6,7 +6,8 @@ and dw = 0 if the Hermitian part of G^-1 exceeds m. Elements with memory over a 
 velocity x', and over that their mean force and the place of their sliders remain open, not the motion.
 
 Nothing is proven of laws over a displacement without memory (stops, tables, one-sided tyres), as a mass beyond its
-resonance moves against its force, and of rolling tyres, whose force changes with the load times the motion of the plate.
+resonance moves against its force, of rubber friction, a part of whose stiffness is in the matrices, and of rolling
+tyres, whose force changes with the load times the motion of the plate.
 """
 
 from collections.abc import Sequence
@@ -31,7 +32,8 @@ def one_answer(ports: Sequence[Port], effects: Complex, speeds: Vector, cycle: C
         cycle: samples of the period.
         rolling: True for rolling tyres.
     """
-    if rolling or any(not port.of_velocity and not isinstance(port, Play) for port in ports):
+    proven = (port.of_velocity or (isinstance(port, Play) and not port.kept) for port in ports)
+    if rolling or not all(proven):
         return np.zeros(len(effects), dtype=bool)
     moving = cycle.harmonics > 0
     of_velocity = np.array([port.of_velocity for port in ports])

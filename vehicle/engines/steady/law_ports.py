@@ -172,6 +172,9 @@ class Stribeck(Port):
         return np.asarray(sums - scaling * v)
 
 
+RUBBER = 0.5
+"""Scaling lambda of rubber friction over its stiffness at rest: with 2, twice as many points do not end."""
+
 STEPS = 60
 """Maximum number of Newton steps: with bisection alone a bracket shrinks below round-off in 60."""
 
@@ -181,7 +184,7 @@ ROUND_OFF = 1e-12
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Play(Port):
-    """Jenkins elements in parallel over a displacement: presliding friction, rubber friction; p = H[x].
+    """Jenkins elements in parallel over a displacement: presliding friction, rubber friction; p = H[x] - c x.
 
     The inverse of x + H[x]/lambda is of the same form (Kuhnen, Eur. J. Control 9, 2003): p over u = p + lambda x is the
     force of Jenkins elements too. With the stiffness K_i of the elements that stick while the elements before i slip,
@@ -191,23 +194,35 @@ class Play(Port):
     Attributes:
         stiffness: k of the elements [N/m], in the order of their strokes; (e,).
         stroke: x of the elements, ascending [m]; (e,).
+        kept: part c of their stiffness that stays in the matrices [N/m].
     """
 
     stiffness: Vector
     stroke: Vector
+    kept: float = 0.0
 
     @property
     def fall(self) -> float:
         """See `Port`."""
-        return 0.0
+        return self.kept
 
     @property
     def odd(self) -> bool:
         """See `Port`."""
         return True
 
+    def scaling(self, effect: Vector) -> Vector:
+        """See `Port`."""
+        return np.full_like(effect, RUBBER * self.stiffness.sum()) if self.kept else Port.scaling(self, effect)
+
     def force(self, sums: Vector, scaling: Vector, sign: float) -> Vector:
-        """See `Port`; the second of two periods, in which the elements repeat their forces."""
+        """See `Port`: with l = lambda - c, H + l x = u and p = H - c (u - H)/l."""
+        rest = scaling - self.kept
+        elements = self._elements(sums, rest, sign)
+        return np.asarray(elements - self.kept * (sums - elements) / rest)
+
+    def _elements(self, sums: Vector, scaling: Vector, sign: float) -> Vector:
+        """Return H of u = H + lambda x in the second of two periods, in which the elements repeat their forces."""
         sticking = np.cumsum(self.stiffness[::-1])[::-1][:, None]
         slopes = sticking / (sticking + scaling.T)
         stiffness = -np.diff(slopes, axis=0, append=0.0)

@@ -270,7 +270,7 @@ def full_velocity(port: Port, dampers: Sequence[Damper]) -> float | None:
 def slope_at_rest(port: Port) -> float:
     """Return d phi/dw at w = 0, the larger of two at a breakpoint."""
     if isinstance(port, Play):
-        return float(port.stiffness.sum())
+        return float(port.stiffness.sum()) - port.kept
     if isinstance(port, Stribeck):
         return slope_at_rest(port.static)
     assert isinstance(port, Polygon)

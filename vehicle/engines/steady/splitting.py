@@ -145,7 +145,9 @@ def periodic_forces(
         factors = np.array([of_velocity if port.of_velocity else of_displacement for port in ports])
         scaled = np.maximum(scaling[left] * factors, least)
         part = None if present is None else present.at(~result.ended)
-        _Iteration(ports, cycle, effects[left], drive[left], scaled, part, left, result).run(tolerance, limit)
+        # A point that diverges is found at the next check, and leaves.
+        with np.errstate(over="ignore", invalid="ignore"):
+            _Iteration(ports, cycle, effects[left], drive[left], scaled, part, left, result).run(tolerance, limit)
     return result
 
 
@@ -237,7 +239,7 @@ class _Iteration:
         self.states[:, slot], self.steps[:, slot] = flat - self.before[0], residual - self.before[1]
         row = np.matmul(self.steps, self.steps[:, slot, :, None])[..., 0]
         self.products[:, slot], self.products[:, :, slot] = row, row
-        lost = size > GROWN**2 * self.best
+        lost = ~(size <= GROWN**2 * self.best)
         if lost.any():
             for array in (self.states, self.steps, self.products):
                 array[lost] = 0.0
@@ -247,6 +249,7 @@ class _Iteration:
         trace = np.trace(self.products, axis1=1, axis2=2)[:, None]
         trace = np.where(trace > 0.0, trace, 1.0)
         matrix = self.products / trace[..., None] + REGULAR * np.eye(PAST)
+        matrix[~np.isfinite(matrix).all(axis=(1, 2))] = np.eye(PAST)
         right = np.matmul(self.steps, residual[..., None])[..., 0] / trace
         weights = np.linalg.solve(matrix, right[..., None])[..., 0]
         change = np.matmul(weights[:, None], self.states + self.steps)[:, 0]
