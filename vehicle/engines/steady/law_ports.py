@@ -81,7 +81,7 @@ class Polygon(Port):
 
     def at(self, motion: Vector) -> Vector:
         """Return phi(w); same shape."""
-        return self._sum(motion, self.knots, self.slopes)
+        return self._sum(motion, self.knots[None], self.slopes[None])
 
     def scaling(self, effect: Vector) -> Vector:
         """See `Port`."""
@@ -92,25 +92,27 @@ class Polygon(Port):
     def force(self, sums: Vector, scaling: Vector, sign: float) -> Vector:
         """See `Port`."""
         # p over u is a polygon too: knots phi(w_j) + lambda w_j, slopes s/(s + lambda).
-        slopes = self.slopes / (self.slopes + scaling)
-        return self._sum(sums, self.at(self.knots) + scaling * self.knots, slopes)
+        knots = self.at(self.knots) + scaling * self.knots
+        return self._sum(sums, knots, self.slopes / (self.slopes + scaling))
 
-    @staticmethod
-    def _sum(x: Vector, knots: Vector, slopes: Vector) -> Vector:
-        """Return the polygon through (0, 0) as the sum over its segments of slope times length; x (..., samples).
+    def _sum(self, x: Vector, knots: Vector, slopes: Vector) -> Vector:
+        """Return the polygon through (0, 0) at x, the sum over its segments of slope times length within them.
 
         Args:
-            x: positions.
-            knots, slopes: of the polygon, (k,) and (k + 1,), or of each row of x, (rows, k) and (rows, k + 1).
+            x: positions; (rows, samples), or any shape with one row of knots.
+            knots, slopes: of the polygon of each row; (rows, k) and (rows, k + 1).
         """
-        result = np.zeros_like(x)
-        for segment in range(slopes.shape[-1]):
-            slope = slopes[..., segment : segment + 1]
-            if not np.any(slope):
-                continue
-            low = knots[..., segment - 1 : segment] if segment else -np.inf
-            high = knots[..., segment : segment + 1] if segment < knots.shape[-1] else np.inf
-            result += slope * (np.clip(x, low, high) - np.clip(0.0, low, high))
+        beyond = np.full((len(knots), 1), np.inf)
+        edges = np.hstack([-beyond, knots, beyond])
+        # The part of each segment on the way from 0 to x is clip(x) - clip(0).
+        result = np.zeros_like(x) - (slopes * np.clip(0.0, edges[:, :-1], edges[:, 1:])).sum(axis=1, keepdims=x.ndim > 1)
+        part = np.empty_like(x)
+        for segment in np.flatnonzero(self.slopes):
+            low, high = (edges[:, end : end + 1] if x.ndim > 1 else edges[0, end] for end in (segment, segment + 1))
+            np.maximum(x, low, out=part)
+            np.minimum(part, high, out=part)
+            part *= slopes[:, segment : segment + 1] if x.ndim > 1 else slopes[0, segment]
+            result += part
         return result
 
 
