@@ -43,6 +43,7 @@ from vehicle.runs.car.outside_tests import with_range_notice
 from vehicle.runs.car.road import Road
 from vehicle.runs.car.run import Run
 from vehicle.runs.car.simulated_run import simulated_run
+from vehicle.runs.car.steady_car import SteadyCar
 from vehicle.runs.car.stepped_car import stepped_car
 from vehicle.signals.excitation.evaluation_start import evaluation_start
 from vehicle.signals.excitation.input_files import find_input
@@ -65,7 +66,7 @@ class Origin(TypedDict):
     overrides: list[str]
 
 
-class Car:
+class Car(SteadyCar):
     """Car on a shaker or a road: its parameters, model, matrices, modes and runs.
 
     Args:

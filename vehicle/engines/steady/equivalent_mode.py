@@ -1,0 +1,71 @@
+"""Mode of a car whose dampers are replaced by viscous ones."""
+
+import numpy as np
+
+from vehicle.arrays import Complex, Vector
+from vehicle.engines.reduced.pole_model import PoleModel
+
+STEPS = 12
+"""Steps in which the damping constants change from one set to the next; the pole of each starts the next."""
+
+NEWTON = 30
+"""Maximum number of Newton steps for a pole."""
+
+ACCURACY = 1e-9
+"""Last Newton step over the size of a pole."""
+
+
+def strongest(model: PoleModel, damping: Vector, row: Complex, plates: Complex, frequency: float) -> complex:
+    """Return the pole with the largest part of the response of an output to the plates near a frequency [rad/s].
+
+    Args:
+        model: pole model.
+        damping: damping constants c [N s/m]; (d,).
+        row: row of the output over the stored poles; (p,).
+        plates: share of each plate; (w,).
+        frequency: frequency [Hz].
+    """
+    matrix, effects, rows = _parts(model)
+    values, vectors = np.linalg.eig(matrix - (effects * (damping - model.matrices.viscous)) @ rows)
+    s, pairs = 2j * np.pi * frequency, model.pairs
+    residue = (model.height + s * model.velocity) @ plates
+    # The response to the real plate is that of both conjugates: both get the same input.
+    given = np.concatenate([residue, ((model.height + s * model.velocity).conj()[:pairs] @ plates)])
+    half = np.concatenate([0.5 * row[:pairs], row[pairs:], 0.5 * row[:pairs].conj()])
+    given[pairs : len(residue)] = residue[pairs:].real
+    part = (half @ vectors) * np.linalg.solve(vectors, given) / (s - values)
+    oscillating = values.imag > 0.0
+    return complex(values[oscillating][np.argmax(np.abs(part[oscillating]))])
+
+
+def followed(model: PoleModel, pole: complex, first: Vector, last: Vector) -> complex:
+    """Return the pole that a pole becomes while the damping constants change from one set to another; NaN if it is lost.
+
+    A pole s of the car with viscous dampers has det(1 + T (c - D)) = 0, T = row (s - poles)^-1 effect: d equations in
+    place of those of all states. Newton's method for the logarithm of the determinant, whose derivative is the trace of
+    (1 + T (c - D))^-1 T' (c - D).
+    """
+    matrix, effects, rows = _parts(model)
+    poles, own = np.diag(matrix), model.matrices.viscous
+    for share in np.arange(1, STEPS + 1) / STEPS:
+        more = (first - own) ** (1.0 - share) * (last - own) ** share
+        for _ in range(NEWTON):
+            factor = 1.0 / (pole - poles)
+            table = (rows * factor) @ effects * more
+            slope = -(rows * factor**2) @ effects * more
+            change = 1.0 / np.trace(np.linalg.solve(np.eye(len(more)) + table, slope))
+            pole -= change
+            if not abs(change) > ACCURACY * abs(pole):
+                break
+        else:
+            return complex("nan")
+    return complex(pole)
+
+
+def _parts(model: PoleModel) -> tuple[Complex, Complex, Complex]:
+    """Return diag(s), effects of forces and rows of damper velocities over the stored poles and their conjugates."""
+    pairs, s = model.pairs, model.poles
+    matrix = np.diag(np.concatenate([s, s[:pairs].conj()]))
+    effects = np.concatenate([model.force, model.force[:pairs].conj()])
+    half = model.slip[:, :pairs] * 0.5
+    return matrix, effects, np.hstack([half, model.slip[:, pairs:], half.conj()])
