@@ -87,7 +87,7 @@ class LevelSettings(Settings):
         'also compute all levels at this frequency, for example "3.7 Hz". May be repeated', action="append", metavar="HZ"
     )
     band: tuple[float, float] | None = setting(
-        "band of the peak [Hz]; default: around the highest peak at the lowest level",
+        "band of the peak [Hz]; default: around the peak that falls most from the lowest to the highest level",
         type=pair("--band", "LOW:HIGH in Hz, for example 2:5"),
         metavar="HZ:HZ",
     )

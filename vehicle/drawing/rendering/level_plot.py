@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vehicle.arrays import Mask, Vector
+from vehicle.digits import number
 from vehicle.drawing.rendering.figure import COLOURS, INK, power_of_ten, saved_figure
 
 if TYPE_CHECKING:
@@ -111,7 +112,7 @@ def plot_level_damping(
     with saved_figure(path, (12.0, 8.4), title, caption) as figure:
         (first, second), (third, last) = figure.subplots(2, 2)
         for axes, (frequency, values), heading, label in (
-            (first, peaks, f"Highest peak, {band[0]:g} to {band[1]:g} Hz", data.label),
+            (first, peaks, f"Highest peak, {number(band[0])} to {number(band[1])} Hz", data.label),
             (second, (mode[0], 100.0 * mode[1]), "Mode with viscous dampers of the same energy", "damping ratio [%]"),
         ):
             axes.plot(data.level, values, color="black", linewidth=1.8)
@@ -152,7 +153,7 @@ def ridges(frequency: Vector, size: Vector) -> list[tuple[Vector, Any]]:
     """
     lines: list[list[tuple[float, int]]] = []
     for row, values in enumerate(size.T):
-        for peak in _peaks(values):
+        for peak in peaks_of(values):
             place = float(frequency[peak])
             near = [line for line in lines if line[-1][1] == row - 1 and abs(np.log(place / line[-1][0])) < LINKED]
             if near:
@@ -162,7 +163,7 @@ def ridges(frequency: Vector, size: Vector) -> list[tuple[Vector, Any]]:
     return [(np.array([at for at, _ in line]), [row for _, row in line]) for line in lines if len(line) > 2]
 
 
-def _peaks(values: Vector) -> list[int]:
+def peaks_of(values: Vector) -> list[int]:
     """Return the indices of maxima that stand out of both valleys beside them."""
     inner = np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])) + 1
     found = []
@@ -235,13 +236,14 @@ def _frequency_ticks(axes: Axes, frequency: Vector) -> None:
 
 
 def _plain_log(axis: Any, values: Vector) -> None:
-    """Label 1, 2 and 5, or 1 and 3, of each decade of a logarithmic axis as plain numbers."""
+    """Label some numbers of each decade of a logarithmic axis, more of them on a short one."""
     finite = values[np.isfinite(values) & (values > 0.0)]
     if not finite.size:
         return
     low, high = float(finite.min()), float(finite.max())
     decades = range(int(np.floor(np.log10(low))), int(np.ceil(np.log10(high))) + 1)
-    steps = (1, 3) if np.log10(high / low) > 2.0 else (1, 2, 5)
+    span = np.log10(high / low)
+    steps = (1, 3) if span > 2.0 else (1, 2, 5) if span > 0.8 else (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 9)
     ticks = [step * 10.0**decade for decade in decades for step in steps]
     ticks = [tick for tick in ticks if 0.999 * low <= tick <= 1.001 * high]
     axis.set_ticks(ticks, [f"{tick:g}" for tick in ticks])

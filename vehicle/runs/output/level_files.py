@@ -12,10 +12,10 @@ import numpy as np
 
 from vehicle.arrays import Vector
 from vehicle.digits import aligned, number
-from vehicle.drawing.rendering.level_plot import LevelPicture, plot_level_damping, plot_level_map
+from vehicle.drawing.rendering.level_plot import LevelPicture, peaks_of, plot_level_damping, plot_level_map
 from vehicle.engines.reduced.validity import LARGEST_ANGLE
-from vehicle.names import channel_words, side_of
-from vehicle.runs.car.levels import LevelMap
+from vehicle.names import channel_words, side_of, wheel_words
+from vehicle.runs.car.levels import MOTIONS, LevelMap
 from vehicle.runs.output.folder import output_folder, write_files, write_json
 from vehicle.signals.formats.csv_table import table_text
 
@@ -23,7 +23,7 @@ DRAWN = 7
 """Number of levels whose FRFs are drawn."""
 
 AROUND = 1.5
-"""Band around the highest peak of the lowest level: its frequency over this, and times this."""
+"""Default band of the peak: its frequency at the lowest level over this, and times this."""
 
 SEVERAL = 2
 """Number of dampers from which each axle has one line, of the damper that slips first."""
@@ -35,8 +35,8 @@ class LevelReport:
 
     Attributes:
         states: the map.
-        plates: motion of the plates in words.
-        band: band of the peak [Hz]; by default around the highest peak at the lowest level.
+        plates: motion of the plates, as given.
+        band: band of the peak [Hz]; by default around the peak at the lowest level that falls most.
     """
 
     states: LevelMap
@@ -45,11 +45,15 @@ class LevelReport:
 
     @cached_property
     def near(self) -> float:
-        """Frequency of the highest FRF value at the lowest level, in the band [Hz]."""
+        """Frequency of the peak at the lowest level that falls most up to the highest, in the band [Hz]."""
         low, high = self.band or (0.0, np.inf)
-        inside = (self.states.frequency >= low) & (self.states.frequency <= high)
-        size = np.where(inside, np.nan_to_num(np.abs(self.states.frf[0, :, 0])), -1.0)
-        return float(self.states.frequency[int(np.argmax(size))])
+        frequency, size = self.states.frequency, np.nan_to_num(np.abs(self.states.frf[0]), nan=1e-30)
+        inside = (frequency >= low) & (frequency <= high)
+        fall = np.where(inside, size[:, 0] / size[:, -1], -1.0)
+        summit = peaks_of(size[:, 0])
+        if chosen := [index for index in summit if inside[index]]:
+            return float(frequency[max(chosen, key=lambda index: float(fall[index]))])
+        return float(frequency[int(np.argmax(np.where(inside, size[:, 0], -1.0)))])
 
     @property
     def around(self) -> tuple[float, float]:
@@ -126,16 +130,25 @@ class LevelReport:
 
     @property
     def rows(self) -> list[int]:
-        """Indices of the levels whose FRFs are drawn."""
-        count = len(self.states.level)
-        return sorted({round(index) for index in np.linspace(0, count - 1, min(DRAWN, count)).tolist()})
+        """Indices of the levels whose FRFs are drawn: the last level at which all dampers stick, and those above."""
+        lowest = np.nanmin(self.states.unsticking, initial=np.inf)
+        count, first = len(self.states.level), max(0, int(np.searchsorted(self.states.level, lowest)) - 1)
+        first = first if first < count - 1 else 0
+        return sorted({round(index) for index in np.linspace(first, count - 1, min(DRAWN, count)).tolist()})
 
     def proof(self) -> str:
         """Return the frequencies at which the state is proven to be the only one, in words."""
         proven, count = int(np.sum(self.states.unique)), len(self.states.frequency)
-        if proven == count:
-            return "yes, proven at all frequencies"
-        return "not proven" if not proven else f"proven at {proven} of {count} frequencies, not at the others"
+        where = "at all frequencies" if proven == count else f"at {proven} of {count} frequencies"
+        return f"no other periodic state: {f'proven {where}' if proven else 'not proven'}"
+
+    @property
+    def motion(self) -> str:
+        """Motion of the plates in words."""
+        wheels = self.states.car.vehicle.wheels
+        if self.plates in MOTIONS:
+            return f"plates in {self.plates}"
+        return f"plate of the {wheel_words(self.plates, wheels)}" if self.plates in wheels else f"plates {self.plates}"
 
 
 def chart_text(states: LevelMap, caption: str) -> str:
@@ -228,10 +241,9 @@ def write_levels(
         protect: input files.
     """
     states = report.states
-    title = f"{states.car.vehicle.name}, plates: {report.plates}"
+    title = f"{states.car.vehicle.name}, {report.motion}"
     caption = (
-        f"periodic states, first harmonic; {int(np.sum(states.ended))} of {states.ended.size} points; only one state: "
-        f"{report.proof()}"
+        f"periodic states, first harmonic; {int(np.sum(states.ended))} of {states.ended.size} points; {report.proof()}"
     )
     contents: dict[str, Any] = {
         "chart.csv": chart_text(states, f"{title}; {caption}"),
@@ -269,11 +281,11 @@ def printed(report: LevelReport, folder: Path | None, files: Sequence[str]) -> s
     states = report.states
     left = int(np.sum(~states.ended))
     lines = [
-        f"{states.car.vehicle.name}, plates: {report.plates}; {len(states.frequency)} frequencies "
+        f"{states.car.vehicle.name}, {report.motion}; {len(states.frequency)} frequencies "
         f"{number(states.frequency[0])} to {number(states.frequency[-1])} Hz, {len(states.level)} levels "
         f"{number(1e3 * states.level[0])} to {number(1e3 * states.level[-1])} mm",
         f"results: {states.ended.size - left} of {states.ended.size} points, {number(states.iterations.mean(), 2)} "
-        f"iterations each; only one state: {report.proof()}",
+        f"iterations each; {report.proof()}",
     ]
     for name, (level, at) in report.first_slip().items():
         lines.append(f"{report.words(name)}: slips first at {number(at)} Hz, from {number(1e3 * level)} mm on")
